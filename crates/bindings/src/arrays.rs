@@ -1,0 +1,50 @@
+//! NumPy arrays as slices of small arrays and back, without a copy.
+
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use delone_core::error::{Error, Result};
+
+/// The rows of a C-contiguous array of width `D`.
+pub fn rows<'a, T: Element, const D: usize>(
+    array: &'a PyReadonlyArray2<'_, T>,
+    name: &str,
+) -> Result<&'a [[T; D]]> {
+    let flat = array
+        .as_slice()
+        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))?;
+    if array.shape()[1] != D {
+        let width = array.shape()[1];
+        return Err(Error::Shape(format!("{name} has {width} columns, not {D}")));
+    }
+    Ok(flat.as_chunks().0)
+}
+
+/// Checks that every entry of `table` lies in `from..to`.
+pub fn in_range<const D: usize>(
+    table: &[[i32; D]],
+    from: i32,
+    to: usize,
+    name: &str,
+) -> Result<()> {
+    let inside = |v: &i32| *v >= from && i64::from(*v) < to as i64;
+    match table.iter().position(|row| !row.iter().all(inside)) {
+        None => Ok(()),
+        Some(i) => Err(Error::Shape(format!(
+            "{name}[{i}] = {:?} is outside {from}..{to}",
+            table[i]
+        ))),
+    }
+}
+
+/// A vector of rows as an `(n, D)` array that owns it.
+pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> PyResult<Py<PyAny>> {
+    let shape = [rows.len(), D];
+    let array = PyArray1::from_vec(py, rows.into_flattened()).reshape(shape)?;
+    Ok(Bound::<PyArray2<T>>::into_any(array).unbind())
+}
+
+/// A vector as a one-dimensional array that owns it.
+pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyAny> {
+    PyArray1::from_vec(py, values).into_any().unbind()
+}

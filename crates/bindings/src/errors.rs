@@ -1,0 +1,64 @@
+//! Errors of the core as the exceptions of `delone.errors`; a panic becomes `InternalError`.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use delone_core::error::{Error, Result};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Runs `work` without the GIL.
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+    let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
+    let outcome = outcome.unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        Err(Error::Internal(
+            text.unwrap_or_else(|| "a panic without a message".into()),
+        ))
+    });
+    outcome.map_err(|e| raise(py, &e))
+}
+
+/// The Python exception of an error.
+pub fn raise(py: Python<'_>, error: &Error) -> PyErr {
+    exception(py, error).unwrap_or_else(|failure| failure)
+}
+
+fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let details = PyDict::new(py);
+    let (class, message) = match error {
+        Error::Interrupted => {
+            // The signal's own handler has raised already, as a rule; that exception is kept.
+            return Ok(PyErr::take(py).unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
+        }
+        Error::Memory { .. } => return Ok(PyMemoryError::new_err(error.to_string())),
+        Error::NonFinite { rows, count } => {
+            details.set_item("rows", rows)?;
+            details.set_item("count", count)?;
+            let first = rows.first().copied().unwrap_or(0);
+            let message = format!("{error}; the first is row {first}: drop or repair them");
+            ("NonFiniteError", message)
+        }
+        Error::TooFew { chain } => {
+            details.set_item("reason", "too few points")?;
+            details.set_item("chain", chain)?;
+            let message = format!("{error} for a triangle: three that are not in line are needed");
+            ("DegenerateInputError", message)
+        }
+        Error::Collinear { chain } => {
+            details.set_item("reason", "collinear")?;
+            details.set_item("chain", chain)?;
+            let message = format!("{error}: there is no triangle; `chain` has them in order");
+            ("DegenerateInputError", message)
+        }
+        Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
+        Error::Shape(message) => ("ShapeError", message.clone()),
+        Error::Internal(message) => (
+            "InternalError",
+            format!("{message}: this is a bug in delone, please report the input"),
+        ),
+    };
+    let class = py.import("delone.errors")?.getattr(class)?;
+    Ok(PyErr::from_value(class.call((message,), Some(&details))?))
+}

@@ -1,0 +1,14 @@
+//! Delaunay triangulations of points in the plane, exact and canonical.
+//!
+//! Every method ends in the same triangles: cocircular points are tied by their coordinates, as if
+//! each lifted point were lowered by an infinitesimal that is larger the smaller the point is in
+//! lexicographic order.
+
+mod bowyer_watson;
+mod cavity;
+pub mod locate;
+mod triangulate;
+pub mod validate;
+mod walk;
+
+pub use triangulate::{Method, Stage, Triangulation, triangulate};

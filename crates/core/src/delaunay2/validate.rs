@@ -1,0 +1,220 @@
+//! Is this the Delaunay triangulation? Exact, and with the culprits where it is not.
+//!
+//! Why these checks suffice: where all triangles turn left and each inner edge joins exactly two
+//! of them, the triangles cover each point of the plane as often as their boundary winds round it;
+//! a boundary that is one convex cycle winds once round its inside. So they tile the hull, and a
+//! tiling whose inner edges are all locally Delaunay is Delaunay (B. Delaunay, "Sur la sphère
+//! vide", 1934).
+
+use delone_predicates::{Point2, Sign, incircle, lexicographic, orient2d, tie_flips};
+
+use crate::error::Result;
+use crate::memory::filled;
+use crate::order::curve;
+use crate::points;
+use crate::watch::Watch;
+
+/// Triangles between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 14;
+
+/// Culprits by kind; all empty where the triangulation is right.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// Triangles that do not turn left.
+    pub orientation: Vec<u32>,
+    /// Directed edges that more than one triangle has.
+    pub edges: Vec<[u32; 2]>,
+    /// Triangles whose neighbour across some edge does not share that edge.
+    pub neighbors: Vec<u32>,
+    /// Boundary edges after which the boundary is no convex cycle.
+    pub hull: Vec<[u32; 2]>,
+    /// Distinct points that are no vertex.
+    pub missing: Vec<u32>,
+    /// Adjacent triangles of which one has the other's apex in its circle.
+    pub delaunay: Vec<[u32; 2]>,
+    /// Adjacent cocircular triangles whose common edge is not the canonical one.
+    pub ties: Vec<[u32; 2]>,
+    /// Triangles expected, 2 n - h - 2, and found, where they differ.
+    pub count: Vec<[u32; 2]>,
+}
+
+/// Arrays as a caller holds them. Vertices must be rows of `points`, neighbours triangles or -1.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    /// Rows of coordinates, finite.
+    pub points: &'a [Point2],
+    /// Three rows a triangle.
+    pub simplices: &'a [[i32; 3]],
+    /// The triangle opposite each corner, -1 outside.
+    pub neighbors: &'a [[i32; 3]],
+}
+
+impl Given<'_> {
+    fn at(&self, v: i32) -> Point2 {
+        self.points[v as usize]
+    }
+
+    /// The ends of edge k of triangle t, counter-clockwise.
+    fn edge(&self, t: usize, k: usize) -> [i32; 2] {
+        let s = self.simplices[t];
+        [s[(k + 1) % 3], s[(k + 2) % 3]]
+    }
+
+    /// The corner of triangle `other` whose opposite edge is edge k of t, reversed.
+    fn mutual(&self, t: usize, k: usize, other: usize) -> Option<usize> {
+        let [u, v] = self.edge(t, k);
+        (0..3).find(|&j| self.neighbors[other][j] == t as i32 && self.edge(other, j) == [v, u])
+    }
+}
+
+/// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
+pub fn validate(given: Given, watch: &Watch) -> Result<Findings> {
+    let extent = points::scan(given.points)?;
+    let ordered = curve::along_curve(given.points, &extent, watch)?;
+    let mut found = Findings {
+        edges: repeated_edges(given)?,
+        ..Findings::default()
+    };
+    missing(given, &ordered, &mut found)?;
+    let mut boundary = Vec::new();
+    for t in 0..given.simplices.len() {
+        if t % WATCH_EVERY == 0 {
+            watch.check()?;
+        }
+        triangle(given, t, &mut found, &mut boundary);
+    }
+    let count = [2 * ordered.points.len(), boundary.len() + 2];
+    let expected = count[0].saturating_sub(count[1]);
+    if expected != given.simplices.len() {
+        found
+            .count
+            .push([expected as u32, given.simplices.len() as u32]);
+    }
+    hull(given, boundary, &mut found);
+    Ok(found)
+}
+
+/// One triangle: its turn, its neighbours, the circles across its edges.
+fn triangle(given: Given, t: usize, found: &mut Findings, boundary: &mut Vec<[i32; 2]>) {
+    let [a, b, c] = given.simplices[t].map(|v| given.at(v));
+    if orient2d(a, b, c) != Sign::Positive {
+        found.orientation.push(t as u32);
+    }
+    let mut joined = true;
+    for k in 0..3 {
+        let other = given.neighbors[t][k];
+        if other < 0 {
+            boundary.push(given.edge(t, k));
+            continue;
+        }
+        let other = other as usize;
+        let Some(j) = given.mutual(t, k, other) else {
+            joined = false;
+            continue;
+        };
+        if t < other {
+            let apex = given.simplices[other][j];
+            let [u, v] = given.edge(t, k).map(|v| given.at(v));
+            let pair = [t as u32, other as u32];
+            match incircle(a, b, c, given.at(apex)) {
+                Sign::Positive => found.delaunay.push(pair),
+                Sign::Zero if tie_flips(u, v, given.at(given.simplices[t][k]), given.at(apex)) => {
+                    found.ties.push(pair);
+                }
+                _ => {}
+            }
+        }
+    }
+    if !joined {
+        found.neighbors.push(t as u32);
+    }
+}
+
+/// Directed edges that occur twice, by a counting sort of the ends by origin.
+fn repeated_edges(given: Given) -> Result<Vec<[u32; 2]>> {
+    let mut start = filled(given.points.len() + 1, 0u32)?;
+    for s in given.simplices {
+        for &v in s {
+            start[v as usize + 1] += 1;
+        }
+    }
+    for v in 0..given.points.len() {
+        start[v + 1] += start[v];
+    }
+    let mut ends = filled(3 * given.simplices.len(), 0i32)?;
+    for s in given.simplices {
+        for k in 0..3 {
+            let at = &mut start[s[k] as usize];
+            ends[*at as usize] = s[(k + 1) % 3];
+            *at += 1;
+        }
+    }
+    let mut repeated = Vec::new();
+    let mut from = 0;
+    for (u, &to) in (0u32..).zip(&start[..given.points.len()]) {
+        let list = &mut ends[from..to as usize];
+        list.sort_unstable();
+        let twice = list
+            .windows(2)
+            .filter(|w| w[0] == w[1])
+            .map(|w| [u, w[0] as u32]);
+        repeated.extend(twice);
+        from = to as usize;
+    }
+    repeated.dedup();
+    Ok(repeated)
+}
+
+/// Distinct points of which no row is a vertex.
+fn missing(given: Given, ordered: &curve::Ordered, found: &mut Findings) -> Result<()> {
+    let mut used = filled(given.points.len(), false)?;
+    for &v in given.simplices.iter().flatten() {
+        used[v as usize] = true;
+    }
+    for &[row, first] in &ordered.duplicates {
+        used[first as usize] |= used[row as usize];
+    }
+    found.missing = ordered
+        .rows
+        .iter()
+        .copied()
+        .filter(|&r| !used[r as usize])
+        .collect();
+    found.missing.sort_unstable();
+    Ok(())
+}
+
+/// The boundary must be one cycle that goes lexicographically up and down once and never turns
+/// right: then it is the convex hull, with the points on its edges.
+fn hull(given: Given, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
+    boundary.sort_unstable();
+    let up = |[u, v]: [i32; 2]| lexicographic(given.at(u), given.at(v)).is_lt();
+    let Some(&first) = boundary.first() else {
+        return;
+    };
+    let mut edge = first;
+    let mut summits = 0;
+    let mut seen = 0;
+    loop {
+        seen += 1;
+        let after = boundary.binary_search_by_key(&edge[1], |e| e[0]);
+        let Ok(after) = after.map(|i| boundary[i]) else {
+            found.hull.push(edge.map(|v| v as u32));
+            return;
+        };
+        let turn = orient2d(given.at(edge[0]), given.at(edge[1]), given.at(after[1]));
+        summits += usize::from(up(edge) && !up(after));
+        let back = turn == Sign::Zero && up(edge) != up(after);
+        if turn == Sign::Negative || back {
+            found.hull.push(edge.map(|v| v as u32));
+        }
+        edge = after;
+        // A walk along a boundary that is no permutation might miss its start: the count ends it.
+        if edge == first || seen > boundary.len() {
+            break;
+        }
+    }
+    if seen != boundary.len() || summits != 1 {
+        found.hull.push(first.map(|v| v as u32));
+    }
+}

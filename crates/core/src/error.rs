@@ -1,0 +1,52 @@
+//! What can go wrong in the core, each case with the rows that the caller needs to name.
+
+/// Result of the core.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Every way in which a call of the core ends without an answer.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// Coordinates that are NaN or infinite: the first rows, and how many there are.
+    #[error("{count} rows have a coordinate that is NaN or infinite")]
+    NonFinite {
+        /// The first bad rows, ascending.
+        rows: Vec<u32>,
+        /// How many rows are bad.
+        count: usize,
+    },
+    /// Fewer than three distinct points: their rows in lexicographic order.
+    #[error("{} distinct points are too few", chain.len())]
+    TooFew {
+        /// First rows of the distinct points, lexicographic.
+        chain: Vec<u32>,
+    },
+    /// All points lie on one line: their rows in the order along it.
+    #[error("all {} distinct points lie on one line", chain.len())]
+    Collinear {
+        /// First rows of the distinct points, in order along the line.
+        chain: Vec<u32>,
+    },
+    /// More points than the 32-bit codes of the mesh can address.
+    #[error("{found} points are more than the {limit} that one triangulation can hold")]
+    TooMany {
+        /// Points given.
+        found: usize,
+        /// Points that can be held.
+        limit: usize,
+    },
+    /// An array that does not fit its role, in words that name the row.
+    #[error("{0}")]
+    Shape(String),
+    /// Memory that the system refused.
+    #[error("no memory for {bytes} bytes")]
+    Memory {
+        /// Bytes asked for.
+        bytes: usize,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// A promise of the core that did not hold: always a bug.
+    #[error("{0}")]
+    Internal(String),
+}

@@ -1,0 +1,14 @@
+//! The core of delone: point orders, meshes and the Delaunay triangulations on them.
+//!
+//! Knows nothing of Python. Data flows one way: `points` and `order` feed `delaunay2`, which fills a
+//! `mesh2`; consumers read that mesh and hand arrays out.
+
+pub mod delaunay2;
+pub mod error;
+pub mod memory;
+pub mod mesh2;
+pub mod order;
+pub mod points;
+pub mod watch;
+
+pub use delone_predicates::{Point2, Point3};

@@ -1,0 +1,223 @@
+//! The distinct points of an input in one canonical order along the Hilbert curve.
+//!
+//! Cells come from the box of the points. Cells that hold many points are keyed again in the box of
+//! their own points, so that clusters of any depth are in curve order, too; few points in one cell
+//! go lexicographically. Equal points meet in one cell, and all but the first row drop out as
+//! duplicates. The order depends on the coordinates alone, not on the order of the rows.
+
+use delone_predicates::{Point2, lexicographic};
+
+use super::{hilbert, radix};
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::points::Extent;
+use crate::watch::Watch;
+
+/// Longest run of equal keys that is sorted lexicographically and not keyed again.
+const CROWD: usize = 16;
+
+/// Distinct points along the curve.
+#[derive(Debug, Default)]
+pub struct Ordered {
+    /// The points, `-0.0` made `0.0`.
+    pub points: Vec<Point2>,
+    /// For each, its first row in the input.
+    pub rows: Vec<u32>,
+    /// `[row, first row of the same point]` for each further row, ascending.
+    pub duplicates: Vec<[u32; 2]>,
+}
+
+/// Cells of a box: 65536 to the longer side.
+struct Cells {
+    min: Point2,
+    before: f64,
+    scale: f64,
+}
+
+impl Cells {
+    fn of(extent: &Extent) -> Self {
+        let side = extent.side();
+        // A power of two keeps the differences and the scale inside the range of doubles. Only
+        // the order of the points hangs on the rounding here, never a triangle.
+        let before = if side > 1e300 {
+            2f64.powi(-30)
+        } else if side < 1e-280 {
+            2f64.powi(200)
+        } else {
+            1.0
+        };
+        let [x, y] = extent.min;
+        let cells = f64::from(1u32 << hilbert::BITS);
+        let far = [
+            extent.max[0] * before - x * before,
+            extent.max[1] * before - y * before,
+        ];
+        Self {
+            min: [x * before, y * before],
+            before,
+            scale: cells / far[0].max(far[1]),
+        }
+    }
+
+    /// The key of the cell of `p`; conversions saturate, so the far corner is in the last cell.
+    #[inline]
+    fn key(&self, p: Point2) -> u64 {
+        let cell = |k: usize| ((p[k] * self.before - self.min[k]) * self.scale) as u16;
+        u64::from(hilbert::key(cell(0), cell(1)))
+    }
+}
+
+/// Orders `points`, whose box is `extent`, and sets duplicates apart.
+pub fn along_curve(points: &[Point2], extent: &Extent, watch: &Watch) -> Result<Ordered> {
+    let cells = Cells::of(extent);
+    // Keys finer than about 16 cells a point cost passes and gain nothing: runs are few.
+    let fine = (usize::BITS - points.len().leading_zeros() + 4)
+        .next_multiple_of(8)
+        .min(32);
+    let low_bit = 32 - fine;
+    let mask = u64::MAX << (32 + low_bit);
+    let mut items = with_room(points.len())?;
+    items.extend(
+        (0u64..)
+            .zip(points)
+            .map(|(i, &p)| cells.key(p) << 32 & mask | i),
+    );
+    watch.check()?;
+    radix::sort(&mut items, low_bit)?;
+    watch.check()?;
+    order_runs(points, &mut items);
+    watch.check()?;
+    collect(points, &items)
+}
+
+/// The rows of the finite points along the curve; for points of which nothing is built.
+pub fn order_of(points: &[Point2]) -> Result<Vec<u32>> {
+    let finite = |p: &Point2| p[0].is_finite() && p[1].is_finite();
+    let cells = Cells::of(&Extent::of(points.iter().copied().filter(finite)));
+    let mut items = with_room(points.len())?;
+    let rows = (0u64..).zip(points).filter(|(_, p)| finite(p));
+    items.extend(rows.map(|(i, &p)| cells.key(p) << 32 | i));
+    radix::sort(&mut items, 0)?;
+    Ok(items.into_iter().map(|item| row(item) as u32).collect())
+}
+
+fn row(item: u64) -> usize {
+    (item & u64::from(u32::MAX)) as usize
+}
+
+/// Puts the items of each run of equal keys in order. A run that is keyed again splits, since the
+/// two ends of its box get different keys; so the stack of runs empties.
+fn order_runs(points: &[Point2], items: &mut [u64]) {
+    let mut runs = Vec::new();
+    push_runs(items, 0, &mut runs);
+    while let Some((start, end)) = runs.pop() {
+        let run = &mut items[start..end];
+        if run.len() <= CROWD {
+            run.sort_unstable_by(|&i, &j| {
+                lexicographic(points[row(i)], points[row(j)]).then(row(i).cmp(&row(j)))
+            });
+            continue;
+        }
+        let extent = Extent::of(run.iter().map(|&i| points[row(i)]));
+        if extent.min == extent.max {
+            continue; // One point many times; the stable sort has left its rows ascending.
+        }
+        let cells = Cells::of(&extent);
+        for item in run.iter_mut() {
+            *item = cells.key(points[row(*item)]) << 32 | row(*item) as u64;
+        }
+        run.sort_unstable();
+        push_runs(run, start, &mut runs);
+    }
+}
+
+/// Lists the runs of two and more equal keys of `items`, whose first is item `offset` of all.
+fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
+    let mut start = 0;
+    for i in 1..=items.len() {
+        if i == items.len() || items[i] >> 32 != items[start] >> 32 {
+            if i - start > 1 {
+                runs.push((offset + start, offset + i));
+            }
+            start = i;
+        }
+    }
+}
+
+fn collect(points: &[Point2], items: &[u64]) -> Result<Ordered> {
+    let mut out = Ordered {
+        points: with_room(items.len() + 1)?,
+        rows: with_room(items.len())?,
+        duplicates: Vec::new(),
+    };
+    let mut last = [f64::NAN; 2];
+    for &item in items {
+        // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
+        let p = points[row(item)].map(|x| x + 0.0);
+        if p == last {
+            let first = *out.rows.last().unwrap_or(&0);
+            out.duplicates.push([row(item) as u32, first]);
+        } else {
+            out.points.push(p);
+            out.rows.push(row(item) as u32);
+            last = p;
+        }
+    }
+    out.duplicates.sort_unstable();
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ordered(points: &[Point2]) -> Ordered {
+        let extent = Extent::of(points.iter().copied());
+        along_curve(points, &extent, &Watch::idle()).unwrap()
+    }
+
+    #[test]
+    fn duplicates_name_their_first_row() {
+        let points = [[1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [-0.0, 0.0], [1.0, -0.0]];
+        let out = ordered(&points);
+        assert_eq!(out.duplicates, [[2, 0], [3, 1], [4, 0]]);
+        let mut rows = out.rows.clone();
+        rows.sort();
+        assert_eq!(rows, [0, 1]);
+    }
+
+    #[test]
+    fn order_depends_on_coordinates_alone() {
+        let mut x = 7u64;
+        let mut next = || {
+            x = x
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (x >> 11) as f64 / (1u64 << 53) as f64
+        };
+        // Clusters of ten scales: deep cells are keyed again.
+        let points: Vec<Point2> = (0..3000)
+            .map(|i| {
+                let s = 1e-3f64.powi(i % 10);
+                [s * next(), s * next()]
+            })
+            .collect();
+        let reversed: Vec<Point2> = points.iter().rev().copied().collect();
+        assert_eq!(ordered(&points).points, ordered(&reversed).points);
+    }
+
+    #[test]
+    fn extreme_ranges_are_ordered() {
+        for s in [1e-320, 1e-300, 1.0, 1e300, f64::MAX] {
+            let points = [
+                [-s, -s],
+                [s, s],
+                [0.0, 0.0],
+                [s, -s],
+                [-s, s],
+                [s / 2.0, s / 2.0],
+            ];
+            assert_eq!(ordered(&points).points.len(), 6, "{s}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Least-significant-digit radix sort of `key << 32 | payload` by the key. Stable, so payloads that
+//! come in ascending stay ascending within a key.
+
+use crate::error::Result;
+use crate::memory::filled;
+
+const DIGIT: u32 = 8;
+const BUCKETS: usize = 1 << DIGIT;
+/// Below this length a comparison sort is faster than four histograms of 256.
+const SHORT: usize = 256;
+
+/// Sorts `items` by their upper 32 bits, of which those below `low_bit` are known to be zero.
+pub fn sort(items: &mut Vec<u64>, low_bit: u32) -> Result<()> {
+    if items.len() <= SHORT {
+        items.sort_unstable();
+        return Ok(());
+    }
+    let mut other = filled(items.len(), 0)?;
+    for shift in (32 + low_bit..64).step_by(DIGIT as usize) {
+        if scatter(items, &mut other, shift) {
+            std::mem::swap(items, &mut other);
+        }
+    }
+    Ok(())
+}
+
+/// One pass; `false` where all items share the digit and nothing was moved.
+fn scatter(from: &[u64], to: &mut [u64], shift: u32) -> bool {
+    let digit = |item: u64| (item >> shift) as usize & (BUCKETS - 1);
+    let mut start = [0usize; BUCKETS];
+    for &item in from {
+        start[digit(item)] += 1;
+    }
+    if start[digit(from[0])] == from.len() {
+        return false;
+    }
+    let mut sum = 0;
+    for s in &mut start {
+        sum += std::mem::replace(s, sum);
+    }
+    for &item in from {
+        let place = &mut start[digit(item)];
+        to[*place] = item;
+        *place += 1;
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sorts_by_key_and_keeps_payloads_in_order() {
+        let mut x = 1u64;
+        let mut items: Vec<u64> = (0..5000)
+            .map(|i| {
+                x = x
+                    .wrapping_mul(6364136223846793005)
+                    .wrapping_add(1442695040888963407);
+                (x >> 50) << 48 | i
+            })
+            .collect();
+        let mut expected = items.clone();
+        expected.sort();
+        sort(&mut items, 16).unwrap();
+        assert_eq!(items, expected);
+    }
+}

@@ -1,0 +1,80 @@
+//! What is known of a point set before anything is built: that its coordinates are finite, its
+//! box, and the lexicographic chain of a degenerate set.
+
+use delone_predicates::{Point2, lexicographic};
+
+use crate::error::{Error, Result};
+
+/// Points that one 2-D mesh can hold: half-edge codes are `8 t + k` in 32 bits, and n points have
+/// 2 n - 2 triangles with ghosts.
+pub const LIMIT2: usize = 1 << 28;
+
+/// How many bad rows an error names.
+const NAMED_ROWS: usize = 10;
+
+/// The box of a finite point set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Smallest coordinate of each axis.
+    pub min: Point2,
+    /// Largest coordinate of each axis.
+    pub max: Point2,
+}
+
+impl Extent {
+    /// The box of some points, which must be finite; inside out where there are none.
+    pub fn of(points: impl IntoIterator<Item = Point2>) -> Self {
+        let mut e = Self {
+            min: [f64::INFINITY; 2],
+            max: [f64::NEG_INFINITY; 2],
+        };
+        for p in points {
+            e.min = [e.min[0].min(p[0]), e.min[1].min(p[1])];
+            e.max = [e.max[0].max(p[0]), e.max[1].max(p[1])];
+        }
+        e
+    }
+
+    /// The longer side, rounded; infinite where it passes the range of doubles.
+    pub fn side(&self) -> f64 {
+        (self.max[0] - self.min[0]).max(self.max[1] - self.min[1])
+    }
+}
+
+/// Checks that `points` can be triangulated as far as numbers go, and returns their box.
+pub fn scan(points: &[Point2]) -> Result<Extent> {
+    if points.len() > LIMIT2 {
+        return Err(Error::TooMany {
+            found: points.len(),
+            limit: LIMIT2,
+        });
+    }
+    // A sum of 0 * x is 0 for finite numbers alone, and needs no branch a row.
+    let zero: f64 = points.iter().map(|p| 0.0 * p[0] + 0.0 * p[1]).sum();
+    if zero == 0.0 {
+        Ok(Extent::of(points.iter().copied()))
+    } else {
+        Err(non_finite(points))
+    }
+}
+
+fn non_finite(points: &[Point2]) -> Error {
+    let bad = |p: &Point2| !(p[0].is_finite() && p[1].is_finite());
+    let rows = (0u32..).zip(points).filter(|(_, p)| bad(p)).map(|(i, _)| i);
+    Error::NonFinite {
+        rows: rows.take(NAMED_ROWS).collect(),
+        count: points.iter().filter(|p| bad(p)).count(),
+    }
+}
+
+/// The error of distinct `points` that span no triangle; `rows` are their rows in the input.
+pub fn degenerate(points: &[Point2], rows: &[u32]) -> Error {
+    let mut order: Vec<u32> = (0u32..).zip(points).map(|(i, _)| i).collect();
+    order.sort_unstable_by(|&i, &j| lexicographic(points[i as usize], points[j as usize]));
+    let chain = order.iter().map(|&i| rows[i as usize]).collect();
+    if points.len() < 3 {
+        Error::TooFew { chain }
+    } else {
+        Error::Collinear { chain }
+    }
+}
