@@ -41,7 +41,6 @@ pub fn triangulate2(
     method: &str,
     workers: usize,
 ) -> PyResult<Made> {
-    let _ = workers;
     let method = Method::named(method).ok_or_else(|| {
         PyValueError::new_err(format!(
             "unknown method {method:?}: one of {:?}",
@@ -49,7 +48,7 @@ pub fn triangulate2(
         ))
     })?;
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| triangulate(points, method, watch))?;
+    let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
     let duplicates = made
         .duplicates
         .iter()

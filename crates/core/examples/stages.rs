@@ -1,5 +1,6 @@
 //! Nanoseconds a point and stage, median of several runs, on points made here:
 //! `cargo run --release -p delone-core --example stages -- 1000000 5 uniform grid`.
+//! The environment may set WORKERS, METHOD and CHECK (validates the first run).
 
 use std::time::Instant;
 
@@ -15,6 +16,11 @@ fn main() {
         .and_then(|a| a.parse().ok())
         .unwrap_or(1_000_000);
     let runs: usize = arguments.next().and_then(|a| a.parse().ok()).unwrap_or(5);
+    let setting = |name| std::env::var(name).ok();
+    let workers = setting("WORKERS").and_then(|w| w.parse().ok()).unwrap_or(1);
+    let method = setting("METHOD")
+        .and_then(|m| Method::named(&m))
+        .unwrap_or(Method::Auto);
     let mut sets: Vec<String> = arguments.collect();
     if sets.is_empty() {
         sets = ["uniform", "utm", "grid", "kuzmin", "circle"]
@@ -27,7 +33,8 @@ fn main() {
         let mut table: Vec<(&str, Vec<f64>)> = Vec::new();
         for run in 0..runs {
             let start = Instant::now();
-            let made = triangulate(&points, Method::Auto, &Watch::idle()).expect("a triangulation");
+            let made = triangulate(&points, method, workers, &Watch::idle());
+            let made = made.expect("a triangulation");
             let total = start.elapsed();
             let stages = made.stages.iter().copied().chain([("total", total)]);
             for (i, (name, time)) in stages.enumerate() {
@@ -36,7 +43,7 @@ fn main() {
                 }
                 table[i].1.push(time.as_secs_f64() * 1e9 / n);
             }
-            if run == 0 && std::env::var_os("CHECK").is_some() {
+            if run == 0 && setting("CHECK").is_some() {
                 let (simplices, neighbors) = (&made.arrays.simplices, &made.arrays.neighbors);
                 let given = Given {
                     points: &points,
@@ -83,7 +90,7 @@ fn make(set: &str, n: usize) -> Vec<Point2> {
                 [r * angle.cos(), r * angle.sin()]
             })
             .collect(),
-        "circle" => (0..n / 10)
+        "circle" => (0..n.div_ceil(10).max(3))
             .map(|_| {
                 let angle = std::f64::consts::TAU * random();
                 [angle.cos(), angle.sin()]

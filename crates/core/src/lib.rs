@@ -8,6 +8,7 @@ pub mod error;
 pub mod memory;
 pub mod mesh2;
 pub mod order;
+mod parallel;
 pub mod points;
 pub mod watch;
 

@@ -41,6 +41,49 @@ pub fn prefetch<T>(items: &[T], i: usize) {
     let _ = (items, i);
 }
 
+/// Types of which all bytes zero are a value, namely zero.
+///
+/// # Safety
+/// Zero bytes must be a valid value.
+#[allow(unsafe_code)]
+pub unsafe trait Zero: Copy {}
+
+#[allow(unsafe_code)]
+mod zero {
+    // SAFETY: an integer.
+    unsafe impl super::Zero for u32 {}
+    // SAFETY: an integer.
+    unsafe impl super::Zero for u64 {}
+    // SAFETY: integers without padding.
+    unsafe impl super::Zero for [i32; 3] {}
+    // SAFETY: doubles, whose zero bytes are 0.0, without padding.
+    unsafe impl super::Zero for [f64; 2] {}
+}
+
+/// A vector of `n` zeros that touches no page: each is touched first by the thread that fills it.
+#[allow(unsafe_code)]
+pub fn zeroed<T: Zero>(n: usize) -> Result<Vec<T>> {
+    use std::alloc::{Layout, alloc_zeroed};
+    let bytes = n.saturating_mul(size_of::<T>());
+    if n == 0 {
+        return Ok(Vec::new());
+    }
+    let layout = Layout::array::<T>(n).map_err(|_| Error::Memory { bytes })?;
+    // SAFETY: the layout is not empty. Zero bytes are a valid T, the pointer comes from the
+    // global allocator with the layout of a vector of n items, and null is caught before use.
+    let mut v = unsafe {
+        let start = alloc_zeroed(layout).cast::<T>();
+        if start.is_null() {
+            return Err(Error::Memory { bytes });
+        }
+        Vec::from_raw_parts(start, n, n)
+    };
+    if bytes >= HUGE_FROM {
+        huge::advise(&mut v);
+    }
+    Ok(v)
+}
+
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]
 mod huge {
@@ -72,6 +115,13 @@ mod tests {
     fn large_arrays_hold_what_is_written() {
         let v = filled(HUGE_FROM / 4 + 3, 0x1234_5678u32).unwrap();
         assert!(v.iter().all(|&x| x == 0x1234_5678));
+        assert!(
+            zeroed(HUGE_FROM / 4 + 3)
+                .unwrap()
+                .iter()
+                .all(|&x: &u32| x == 0)
+        );
+        assert!(zeroed::<u64>(0).unwrap().is_empty());
     }
 
     #[test]

@@ -4,13 +4,18 @@
 //! sense of N. Amenta, S. Choi and G. Rote, "Incremental constructions con BRIO" (2003), without
 //! the dice: every 64th point along the curve, then every 8th, then the rest. Early points
 //! spread over the plane keep cavities small; the curve keeps each round in the cache.
+//!
+//! An order that is fixed in advance has inputs that make it quadratic. A budget of triangles met,
+//! O(n log n), ends such a block early, and `divide_conquer` takes it.
+
+use std::ops::Range;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::cavity::Kernel;
 use super::walk::walk;
 use crate::error::Result;
-use crate::mesh2::Mesh2;
+use crate::mesh2::{Code, Patch, triangle};
 use crate::points::Extent;
 use crate::watch::Watch;
 
@@ -21,30 +26,49 @@ const STRIDES: [u32; 3] = [64, 8, 1];
 /// Insertions between two looks at the watch.
 const WATCH_EVERY: usize = 4096;
 
-/// The triangulation of distinct `points` in curve order, or nothing where all are collinear.
-/// A NaN point for the vertex at infinity is appended to `points`.
-pub fn build(points: &mut Vec<Point2>, extent: &Extent, watch: &Watch) -> Result<Option<Mesh2>> {
-    let Some(first) = first_triangle(points) else {
+/// Work that an insertion may cost on average, in triangles met, times the logarithm of the number
+/// of points. Points that spread cost about 6 in all.
+const BUDGET: usize = 8;
+
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
+/// block is collinear or the budget did not suffice. `points` end with NaN for infinity.
+pub fn build(
+    points: &[Point2],
+    block: Range<u32>,
+    mesh: Patch,
+    watch: &Watch,
+) -> Result<Option<Code>> {
+    let own = &points[block.start as usize..block.end as usize];
+    let Some(first) = first_triangle(own) else {
         return Ok(None);
     };
-    let n = points.len() as u32;
-    points.push([f64::NAN; 2]);
-    let points = &points[..];
-    let mut kernel = Kernel::start(points, extent, first)?;
-    let mut order = Rounds::over(n).filter(|i| !first.contains(i)).peekable();
-    let mut near = 0;
+    let first = first.map(|v| block.start + v);
+    let extent = Extent::of(own.iter().copied());
+    let mut kernel = Kernel::start(points, &extent, mesh, first);
+    let n = block.len();
+    let mut order = Rounds::over(n as u32)
+        .map(|i| block.start + i)
+        .filter(|v| !first.contains(v));
+    let mut budget = BUDGET * n * (n.ilog2() as usize + 1);
+    let mut near = triangle(kernel.ghost());
     let mut until_watch = WATCH_EVERY;
-    while let Some(p) = order.next() {
-        let aim = order.peek().map_or(p, |&q| q);
-        let seed = walk(kernel.mesh(), points, near, points[p as usize]);
-        near = kernel.insert(p, seed, points[aim as usize]);
+    let mut next = order.next();
+    while let Some(p) = next {
+        next = order.next();
+        let aim = points[next.unwrap_or(p) as usize];
+        let (seed, steps) = walk(kernel.mesh(), points, near, points[p as usize]);
+        near = kernel.insert(p, seed, aim);
+        let Some(left) = budget.checked_sub(kernel.carved() + steps) else {
+            return Ok(None);
+        };
+        budget = left;
         until_watch -= 1;
         if until_watch == 0 {
             watch.check()?;
             until_watch = WATCH_EVERY;
         }
     }
-    Ok(Some(kernel.into_mesh()))
+    Ok(Some(kernel.ghost()))
 }
 
 /// The first two points of the order and the first that is not in line with them, turned left.

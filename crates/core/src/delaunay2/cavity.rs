@@ -20,8 +20,7 @@
 
 use delone_predicates::{Point2, Sign, incircle_exact, lexicographic, orient2d, tie_flips};
 
-use crate::error::Result;
-use crate::mesh2::{Code, Mesh2, next, prev, triangle};
+use crate::mesh2::{Code, Patch, next, prev, triangle};
 use crate::points::Extent;
 
 /// Relative bound of the in-circle filter, 16 units of rounding.
@@ -62,38 +61,56 @@ fn cross(a: Point2, b: Point2) -> f64 {
 /// A mesh that grows by one point at a time.
 pub struct Kernel<'a> {
     points: &'a [Point2],
-    mesh: Mesh2,
+    mesh: Patch<'a>,
+    ghost: u32,
+    carved: usize,
     rim: Vec<Rim>,
     free: Vec<u32>,
     underflow: f64,
 }
 
 impl<'a> Kernel<'a> {
-    /// A kernel over `points`, which lie in `extent` and end with a NaN point for infinity, that
-    /// starts from the counter-clockwise triangle `first`.
-    pub fn start(points: &'a [Point2], extent: &Extent, first: [u32; 3]) -> Result<Self> {
-        let mut mesh = Mesh2::with_vertices(points.len() - 1)?;
-        mesh.start(first);
+    /// A kernel on an empty `mesh` over `points`, which lie in `extent` and end with a NaN point
+    /// for infinity, that starts from the counter-clockwise triangle `first`.
+    pub fn start(
+        points: &'a [Point2],
+        extent: &Extent,
+        mut mesh: Patch<'a>,
+        first: [u32; 3],
+    ) -> Self {
+        let ghost = triangle(mesh.triangle(first));
         // An infinite side makes the bound infinite: then every test is exact.
         let side = extent.side();
         let underflow = UNDERFLOW * (side * side).max(1.0);
-        Ok(Self {
+        Self {
             points,
             mesh,
+            ghost,
+            carved: 0,
             rim: Vec::new(),
             free: Vec::new(),
             underflow,
-        })
+        }
     }
 
     /// The mesh so far.
-    pub fn mesh(&self) -> &Mesh2 {
+    pub fn mesh(&self) -> &Patch<'a> {
         &self.mesh
     }
 
-    /// The finished mesh.
-    pub fn into_mesh(self) -> Mesh2 {
-        self.mesh
+    /// The triangles that the last insertion took away.
+    pub fn carved(&self) -> usize {
+        self.carved
+    }
+
+    /// The infinite corner of some ghost.
+    pub fn ghost(&self) -> Code {
+        let k = self
+            .mesh
+            .corners(self.ghost)
+            .iter()
+            .position(|&v| v == self.mesh.infinite());
+        8 * self.ghost + k.unwrap_or(0) as u32
     }
 
     #[inline]
@@ -118,6 +135,7 @@ impl<'a> Kernel<'a> {
         self.rim.clear();
         self.free.clear();
         self.free.push(seed);
+        self.carved = 1;
         self.rim.push(Rim {
             across: across_b,
             end: a,
@@ -155,6 +173,7 @@ impl<'a> Kernel<'a> {
             if conflict {
                 let e = edge.across;
                 self.free.push(triangle(e));
+                self.carved += 1;
                 let beyond_left = self.mesh.opposite(prev(e));
                 self.rim.push(Rim {
                     across: beyond_left,
@@ -175,6 +194,10 @@ impl<'a> Kernel<'a> {
                 self.mesh.link(8 * last + 1, 8 * t + 2);
             }
             last = t;
+            if edge.end.vertex == self.mesh.infinite() {
+                // Who takes a ghost away makes two: the last one made is there.
+                self.ghost = t;
+            }
             let ahead = cross(edge.end.d, aim);
             // A side of NaN is at infinity and counts as past the aim.
             hint = if side >= 0.0 && (ahead < 0.0 || ahead.is_nan()) {
@@ -197,9 +220,9 @@ impl<'a> Kernel<'a> {
     fn spoke(&mut self, corners: [u32; 3], across: Code) -> u32 {
         let t = match self.free.pop() {
             Some(t) => t,
-            None => self.mesh.push([0; 3]),
+            None => self.mesh.fresh(),
         };
-        self.mesh.set(t, corners, across);
+        self.mesh.set(t, corners);
         self.mesh.link(across, 8 * t);
         t
     }

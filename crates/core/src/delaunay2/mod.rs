@@ -6,7 +6,9 @@
 
 mod bowyer_watson;
 mod cavity;
+mod divide_conquer;
 pub mod locate;
+mod merge;
 mod triangulate;
 pub mod validate;
 mod walk;

@@ -1,15 +1,18 @@
-//! From rows of coordinates to arrays of triangles: scan, order, build, export.
+//! From rows of coordinates to arrays of triangles: scan, order, build in blocks, merge, export.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use delone_predicates::Point2;
 
-use super::bowyer_watson;
-use crate::error::{Error, Result};
-use crate::mesh2::export;
-use crate::order::curve;
-use crate::points;
+use super::merge::merge;
+use super::{bowyer_watson, divide_conquer};
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::mesh2::{Code, Mesh2, Patch, export};
+use crate::order::{Arranged, arrange};
 use crate::watch::Watch;
+use crate::{parallel, points};
 
 /// How a triangulation is built; the triangles are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,12 +21,17 @@ pub enum Method {
     Auto,
     /// Cavity insertion along the curve.
     BowyerWatson,
+    /// Halves, quarters and so on, merged.
+    DivideConquer,
 }
 
 impl Method {
     /// The names by which callers ask for methods.
-    pub const NAMES: [(&'static str, Self); 2] =
-        [("auto", Self::Auto), ("bowyer-watson", Self::BowyerWatson)];
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("auto", Self::Auto),
+        ("bowyer-watson", Self::BowyerWatson),
+        ("divide-and-conquer", Self::DivideConquer),
+    ];
 
     /// The method of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -48,39 +56,117 @@ pub struct Triangulation {
     pub stages: Vec<Stage>,
 }
 
-/// The canonical Delaunay triangulation of `input`.
-pub fn triangulate(input: &[Point2], method: Method, watch: &Watch) -> Result<Triangulation> {
+/// The canonical Delaunay triangulation of `input`; the same arrays for any number of workers.
+pub fn triangulate(
+    input: &[Point2],
+    method: Method,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Triangulation> {
     let mut clock = Clock::start();
-    let extent = points::scan(input)?;
+    points::scan(input)?;
     clock.lap("scan");
-    let mut ordered = curve::along_curve(input, &extent, watch)?;
+    let mut arranged = arrange(input, workers, watch)?;
     clock.lap("order");
-    let mesh = match method {
-        Method::Auto | Method::BowyerWatson => {
-            bowyer_watson::build(&mut ordered.points, &extent, watch)?
-        }
-    };
-    let Some(mesh) = mesh else {
-        return Err(points::degenerate(&ordered.points, &ordered.rows));
-    };
+    let n = arranged.rows.len();
+    if n < 3 {
+        return Err(points::degenerate(&arranged.points, &arranged.rows));
+    }
+    // The vertex at infinity: its NaN sends every filter on to the exact tests.
+    arranged.points.push([f64::NAN; 2]);
+    let mut mesh = Mesh2::with_vertices(n)?;
+    let ghost = build(&mut mesh, &arranged, method, workers, watch)?;
     clock.lap("build");
     watch.check()?;
-    if mesh.len() != 2 * ordered.rows.len() - 2 {
-        return Err(Error::Internal(format!(
-            "{} triangles were made",
-            mesh.len()
-        )));
+    let arrays = export::arrays(mesh, ghost, &arranged.rows, workers)?;
+    if arrays.simplices.is_empty() {
+        return Err(points::degenerate(&arranged.points[..n], &arranged.rows));
     }
-    drop(ordered.points);
-    let arrays = export::arrays(&mesh, &ordered.rows)?;
     clock.lap("export");
     Ok(Triangulation {
         arrays,
-        duplicates: ordered.duplicates,
+        duplicates: arranged.duplicates,
         stages: clock.stages,
     })
 }
 
+/// Triangulates each block, then merges them two by two.
+fn build(
+    mesh: &mut Mesh2,
+    arranged: &Arranged,
+    method: Method,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Code> {
+    let points = &arranged.points[..];
+    // Merges want two vertices on either side. Blocks of fewer come from duplicates alone.
+    let few = |w: &[usize]| w[1] - w[0] < 2;
+    let whole = [0, mesh.vertices()];
+    let one = arranged.starts.windows(2).any(few);
+    let starts = if one { &whole } else { &arranged.starts[..] };
+    let tasks = patches(mesh, starts, 1);
+    let mut ghosts = parallel::map(workers, tasks, |(i, mesh)| {
+        block(
+            points,
+            starts[i] as u32..starts[i + 1] as u32,
+            mesh,
+            method,
+            watch,
+        )
+    })
+    .into_iter()
+    .collect::<Result<Vec<Code>>>()?;
+    let mut width = 2;
+    while ghosts.len() > 1 {
+        watch.check()?;
+        let tasks = patches(mesh, starts, width);
+        ghosts = parallel::map(workers, tasks, |(i, mut mesh)| {
+            let spare = mesh.spare(starts[i * width + width / 2] - starts[i * width]);
+            let sides = [ghosts[2 * i], ghosts[2 * i + 1]];
+            merge(
+                &mut mesh,
+                points,
+                sides,
+                arranged.cuts.axis(i, width),
+                spare,
+            )
+        });
+        width *= 2;
+    }
+    Ok(ghosts[0])
+}
+
+/// The mesh in patches of `width` blocks.
+fn patches<'a>(mesh: &'a mut Mesh2, starts: &[usize], width: usize) -> Vec<(usize, Patch<'a>)> {
+    let bounds: Vec<usize> = starts.iter().copied().step_by(width).collect();
+    let mut rest = mesh.patch();
+    let mut patches = Vec::with_capacity(bounds.len());
+    for (i, w) in bounds.windows(2).enumerate() {
+        let (patch, after) = rest.split_at(w[1] - w[0]);
+        patches.push((i, patch));
+        rest = after;
+    }
+    patches
+}
+
+/// One block by the method that was asked for.
+fn block(
+    points: &[Point2],
+    block: Range<u32>,
+    mut mesh: Patch,
+    method: Method,
+    watch: &Watch,
+) -> Result<Code> {
+    if method != Method::DivideConquer {
+        let ghost = bowyer_watson::build(points, block.clone(), mesh.reborrow(), watch)?;
+        if let Some(ghost) = ghost {
+            return Ok(ghost);
+        }
+    }
+    let mut vertices: Vec<u32> = with_room(block.len())?;
+    vertices.extend(block);
+    divide_conquer::build(points, &mut vertices, &mut mesh, watch)
+}
 /// Times the stages one after the other.
 struct Clock {
     last: Instant,

@@ -10,7 +10,7 @@ use delone_predicates::{Point2, Sign, incircle, lexicographic, orient2d, tie_fli
 
 use crate::error::Result;
 use crate::memory::filled;
-use crate::order::curve;
+use crate::order::{Arranged, arrange};
 use crate::points;
 use crate::watch::Watch;
 
@@ -69,8 +69,8 @@ impl Given<'_> {
 
 /// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
 pub fn validate(given: Given, watch: &Watch) -> Result<Findings> {
-    let extent = points::scan(given.points)?;
-    let ordered = curve::along_curve(given.points, &extent, watch)?;
+    points::scan(given.points)?;
+    let ordered = arrange(given.points, 1, watch)?;
     let mut found = Findings {
         edges: repeated_edges(given)?,
         ..Findings::default()
@@ -166,7 +166,7 @@ fn repeated_edges(given: Given) -> Result<Vec<[u32; 2]>> {
 }
 
 /// Distinct points of which no row is a vertex.
-fn missing(given: Given, ordered: &curve::Ordered, found: &mut Findings) -> Result<()> {
+fn missing(given: Given, ordered: &Arranged, found: &mut Findings) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
     for &v in given.simplices.iter().flatten() {
         used[v as usize] = true;

@@ -7,12 +7,12 @@
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-use crate::mesh2::{Mesh2, next, prev, triangle};
+use crate::mesh2::{Patch, next, prev, triangle};
 
 /// The triangle whose closed area holds `q`, or a ghost whose hull edge has `q` strictly beyond
-/// it, walking from triangle `from`.
+/// it, walking from triangle `from`; and the number of triangles met on the way.
 #[inline]
-pub fn walk(mesh: &Mesh2, points: &[Point2], from: u32, q: Point2) -> u32 {
+pub fn walk(mesh: &Patch, points: &[Point2], from: u32, q: Point2) -> (u32, usize) {
     let at = |v: u32| points[v as usize];
     let inf = mesh.infinite();
     // Whether q lies strictly on the outer side of half-edge e.
@@ -28,7 +28,7 @@ pub fn walk(mesh: &Mesh2, points: &[Point2], from: u32, q: Point2) -> u32 {
             q,
         ) == Sign::Positive
         {
-            return from;
+            return (from, 0);
         }
         start = mesh.opposite(outer);
     }
@@ -36,9 +36,10 @@ pub fn walk(mesh: &Mesh2, points: &[Point2], from: u32, q: Point2) -> u32 {
     if beyond(start) {
         e = mesh.opposite(start);
         if mesh.vertex(e) == inf {
-            return triangle(e);
+            return (triangle(e), 1);
         }
     }
+    let mut steps = 1;
     loop {
         // The walk came across e; two edges are left to look at.
         let across = if beyond(next(e)) {
@@ -46,11 +47,12 @@ pub fn walk(mesh: &Mesh2, points: &[Point2], from: u32, q: Point2) -> u32 {
         } else if beyond(prev(e)) {
             mesh.opposite(prev(e))
         } else {
-            return triangle(e);
+            return (triangle(e), steps);
         };
         if mesh.vertex(across) == inf {
-            return triangle(across);
+            return (triangle(across), steps);
         }
         e = across;
+        steps += 1;
     }
 }

@@ -1,12 +1,18 @@
-//! The mesh as arrays, in an order that hangs on the triangles alone and not on their history:
-//! by smallest vertex, then by the vertex that follows it; each triangle begins with its smallest.
+//! The mesh as arrays. Ghosts go, triangles from the end take their records, and what is left is
+//! written in the order of the records, by all workers.
 
-use super::{Code, Mesh2, next, prev, triangle};
-use crate::error::Result;
-use crate::memory::{filled, with_room};
+use super::storage::{OPPOSITE, RECORD};
+use super::{Code, Mesh2, triangle};
+use crate::error::{Error, Result};
+use crate::memory::zeroed;
+use crate::parallel;
 
-/// How many triangles ahead records are prefetched: some ten records are on their way at a time.
-const AHEAD: usize = 16;
+/// Stands for the other side of a hull edge once the ghosts are gone; shifted like a code it
+/// gives -1.
+const OUTSIDE: Code = Code::MAX;
+
+/// Triangles that one task writes.
+const SHARE: usize = 1 << 14;
 
 /// The finite triangles of a mesh.
 #[derive(Debug, Default)]
@@ -17,98 +23,70 @@ pub struct Arrays {
     pub neighbors: Vec<[i32; 3]>,
 }
 
-/// Exports `mesh`; vertex v becomes `rows[v]`.
-pub fn arrays(mesh: &Mesh2, rows: &[u32]) -> Result<Arrays> {
-    let order = canonical_order(mesh)?;
-    let mut place = filled(mesh.len(), -1i32)?;
-    for (i, corner) in (0i32..).zip(&order) {
-        place[triangle(corner.code()) as usize] = i;
-    }
+/// Exports `mesh`, one of whose ghosts is `ghost`; vertex v becomes `rows[v]`.
+pub fn arrays(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays> {
+    let count = drop_ghosts(&mut mesh, ghost)?;
     let mut out = Arrays {
-        simplices: with_room(order.len())?,
-        neighbors: with_room(order.len())?,
+        simplices: zeroed(count)?,
+        neighbors: zeroed(count)?,
     };
-    for (i, corner) in order.iter().enumerate() {
-        if let Some(ahead) = order.get(i + AHEAD) {
-            mesh.prefetch(triangle(ahead.code()));
+    let shares = out
+        .simplices
+        .chunks_mut(SHARE)
+        .zip(out.neighbors.chunks_mut(SHARE));
+    let tasks = mesh.records[..RECORD * count]
+        .chunks(RECORD * SHARE)
+        .zip(shares)
+        .collect();
+    parallel::map(workers, tasks, |(records, (simplices, neighbors))| {
+        for ((r, s), n) in records
+            .as_chunks::<RECORD>()
+            .0
+            .iter()
+            .zip(simplices)
+            .zip(neighbors)
+        {
+            *s = [r[0], r[1], r[2]].map(|v| rows[v as usize] as i32);
+            *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
         }
-        let e = corner.code();
-        let codes = [e, next(e), prev(e)];
-        out.simplices
-            .push(codes.map(|c| rows[mesh.vertex(c) as usize] as i32));
-        out.neighbors
-            .push(codes.map(|c| place[triangle(mesh.opposite(c)) as usize]));
-    }
+    });
     Ok(out)
 }
 
-/// The half-edge of the smallest vertex of a triangle, below the vertex that follows: ordering
-/// these orders the triangles of one smallest vertex.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Corner(u64);
-
-impl Corner {
-    fn code(self) -> Code {
-        self.0 as Code
-    }
-}
-
-/// The finite triangles in canonical order.
-fn canonical_order(mesh: &Mesh2) -> Result<Vec<Corner>> {
-    // A counting sort by smallest vertex; the few triangles of one vertex are sorted in place.
-    let vertices = mesh.infinite() as usize;
-    let mut start = filled(vertices + 1, 0u32)?;
-    let mut finite = 0;
-    for (smallest, _) in smallest_corners(mesh) {
-        start[smallest as usize + 1] += 1;
-        finite += 1;
-    }
-    for v in 0..vertices {
-        start[v + 1] += start[v];
-    }
-    let mut order = filled(finite, Corner(0))?;
-    for (smallest, corner) in smallest_corners(mesh) {
-        let at = &mut start[smallest as usize];
-        order[*at as usize] = corner;
-        *at += 1;
-    }
-    let mut from = 0;
-    for &to in &start[..vertices] {
-        insertion_sort(&mut order[from..to as usize]);
-        from = to as usize;
-    }
-    Ok(order)
-}
-
-/// For fans of two or three; long ones (a hub of many points) go to the library.
-fn insertion_sort(fan: &mut [Corner]) {
-    if fan.len() > 16 {
-        return fan.sort_unstable();
-    }
-    for i in 1..fan.len() {
-        let corner = fan[i];
-        let mut j = i;
-        while j > 0 && fan[j - 1] > corner {
-            fan[j] = fan[j - 1];
-            j -= 1;
+/// Makes the finite triangles of `mesh` its first records and returns their count.
+fn drop_ghosts(mesh: &mut Mesh2, ghost: Code) -> Result<usize> {
+    let all = 2 * mesh.vertices() - 2;
+    let mut patch = mesh.patch();
+    let mut ghosts = Vec::new();
+    let mut g = ghost;
+    loop {
+        if ghosts.len() == all {
+            return Err(Error::Internal("the hull does not close".into()));
         }
-        fan[j] = corner;
+        ghosts.push(g);
+        g = patch.after(g);
+        if g == ghost {
+            break;
+        }
     }
-}
-
-/// The smallest vertex of each finite triangle and its corner.
-fn smallest_corners(mesh: &Mesh2) -> impl Iterator<Item = (u32, Corner)> + '_ {
-    (0..mesh.len() as u32).filter_map(|t| {
-        let [a, b, c] = mesh.corners(t);
-        let smallest = a.min(b).min(c);
-        let (k, after) = if smallest == a {
-            (0, b)
-        } else if smallest == b {
-            (1, c)
-        } else {
-            (2, a)
-        };
-        let corner = Corner(u64::from(after) << 32 | u64::from(8 * t + k));
-        (a.max(b).max(c) != mesh.infinite()).then_some((smallest, corner))
-    })
+    let count = all - ghosts.len();
+    if count == 0 {
+        return Ok(0); // A chain: ghosts on both sides of each edge, and no triangle.
+    }
+    for &g in &ghosts {
+        patch.set_opposite(patch.opposite(g), OUTSIDE);
+    }
+    let mut ghosts: Vec<u32> = ghosts.into_iter().map(triangle).collect();
+    ghosts.sort_unstable();
+    let holes = ghosts.partition_point(|&t| (t as usize) < count);
+    let (holes, tail) = ghosts.split_at(holes);
+    let mut tail = tail.iter().copied().peekable();
+    let mut moving = (count as u32..all as u32).filter(|&t| tail.next_if_eq(&t).is_none());
+    for &hole in holes {
+        let from = moving
+            .next()
+            .ok_or_else(|| Error::Internal("the hull is no ring".into()))?;
+        patch.relocate(from, hole);
+    }
+    Ok(count)
 }

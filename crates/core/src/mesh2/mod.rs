@@ -6,8 +6,12 @@
 //! half-edge is `8 t + k`: triangle t, the edge opposite its corner k, which runs from corner k + 1
 //! to corner k + 2. So `vertex(code)` is the apex, `opposite(code)` the same edge seen from the
 //! other side, and the apex across an edge is one load away.
+//!
+//! The records of a contiguous block of vertices are a *patch*. Patches are disjoint, so that
+//! threads fill them side by side; two adjacent ones join to one.
 
 pub mod export;
+mod hull;
 mod storage;
 
-pub use storage::{Code, Mesh2, next, prev, triangle};
+pub use storage::{Code, Mesh2, Patch, next, prev, triangle};

@@ -1,13 +1,16 @@
 //! The records of the mesh and the arithmetic of half-edge codes.
 
 use crate::error::Result;
-use crate::memory::{prefetch, with_room};
+use crate::memory::zeroed;
 
 /// A half-edge: `8 t + k` for the edge opposite corner k of triangle t.
 pub type Code = u32;
 
-const RECORD: usize = 8;
-const OPPOSITE: usize = 4;
+pub(super) const RECORD: usize = 8;
+pub(super) const OPPOSITE: usize = 4;
+
+/// Records that a vertex brings: as many as a mesh has a vertex, but for two of the mesh.
+const PER_VERTEX: usize = 2;
 
 /// The half-edge that follows in its triangle, counter-clockwise.
 #[inline]
@@ -27,104 +30,183 @@ pub fn triangle(e: Code) -> u32 {
     e >> 3
 }
 
-/// Triangles with ghosts over vertices `0..infinite`.
+/// The memory of a mesh over vertices `0..infinite`.
 #[derive(Debug)]
 pub struct Mesh2 {
-    records: Vec<u32>,
+    pub(super) records: Vec<u32>,
     infinite: u32,
 }
 
 impl Mesh2 {
-    /// An empty mesh with room for the triangles of `vertices` vertices.
+    /// Room for the triangles of `vertices` vertices.
     pub fn with_vertices(vertices: usize) -> Result<Self> {
-        let room = RECORD * (2 * vertices).saturating_sub(2);
+        let records = zeroed(RECORD * PER_VERTEX * vertices)?;
         Ok(Self {
-            records: with_room(room)?,
+            records,
             infinite: vertices as u32,
         })
     }
 
-    /// The vertex at infinity, one past the last finite vertex.
+    /// All records as one patch.
+    pub fn patch(&mut self) -> Patch<'_> {
+        Patch {
+            records: &mut self.records,
+            base: 0,
+            used: 0,
+            infinite: self.infinite,
+        }
+    }
+
+    /// The number of vertices.
+    pub fn vertices(&self) -> usize {
+        self.infinite as usize
+    }
+}
+
+/// The records of a contiguous block of vertices. Codes count from the start of the mesh.
+#[derive(Debug)]
+pub struct Patch<'a> {
+    records: &'a mut [u32],
+    base: Code,
+    used: u32,
+    infinite: u32,
+}
+
+impl<'a> Patch<'a> {
+    /// The vertex at infinity, one past the last vertex of the mesh.
     #[inline]
     pub fn infinite(&self) -> u32 {
         self.infinite
     }
 
-    /// Triangles in the mesh, ghosts included.
-    pub fn len(&self) -> usize {
-        self.records.len() / RECORD
+    /// Cuts the patch behind its first `vertices` vertices.
+    pub fn split_at(self, vertices: usize) -> (Patch<'a>, Patch<'a>) {
+        let cut = RECORD * PER_VERTEX * vertices;
+        let (left, right) = self.records.split_at_mut(cut);
+        let base = self.base + cut as Code;
+        let infinite = self.infinite;
+        let left = Patch {
+            records: left,
+            base: self.base,
+            used: 0,
+            infinite,
+        };
+        (
+            left,
+            Patch {
+                records: right,
+                base,
+                used: 0,
+                infinite,
+            },
+        )
     }
 
-    /// Whether the mesh holds no triangle.
-    pub fn is_empty(&self) -> bool {
-        self.records.is_empty()
+    /// The same records for a shorter time.
+    pub fn reborrow(&mut self) -> Patch<'_> {
+        Patch {
+            records: self.records,
+            base: self.base,
+            used: self.used,
+            infinite: self.infinite,
+        }
+    }
+
+    /// The two records that the mesh of the first `vertices` vertices leaves free.
+    pub fn spare(&self, vertices: usize) -> [u32; 2] {
+        let end = triangle(self.base) + (PER_VERTEX * vertices) as u32;
+        [end - 2, end - 1]
+    }
+
+    #[inline]
+    fn index(&self, e: Code) -> usize {
+        (e - self.base) as usize
     }
 
     /// The corners of triangle `t`.
     #[inline]
     pub fn corners(&self, t: u32) -> [u32; 3] {
-        let r = &self.records[RECORD * t as usize..][..3];
+        let r = &self.records[self.index(8 * t)..][..3];
         [r[0], r[1], r[2]]
     }
 
     /// The codes across the three edges of triangle `t`.
     #[inline]
     pub fn opposites(&self, t: u32) -> [Code; 3] {
-        let r = &self.records[RECORD * t as usize + OPPOSITE..][..3];
+        let r = &self.records[self.index(8 * t) + OPPOSITE..][..3];
         [r[0], r[1], r[2]]
     }
 
     /// The vertex opposite the half-edge `e` in its triangle.
     #[inline]
     pub fn vertex(&self, e: Code) -> u32 {
-        self.records[e as usize]
+        self.records[self.index(e)]
     }
 
     /// The half-edge on the other side of `e`.
     #[inline]
     pub fn opposite(&self, e: Code) -> Code {
-        self.records[e as usize + OPPOSITE]
+        self.records[self.index(e) + OPPOSITE]
     }
 
-    /// Whether triangle `t` touches infinity.
+    /// Takes the next record that was never used.
     #[inline]
-    pub fn is_ghost(&self, t: u32) -> bool {
-        self.corners(t).contains(&self.infinite)
-    }
-
-    /// Begins to load triangle `t` into the cache.
-    #[inline(always)]
-    pub fn prefetch(&self, t: u32) {
-        prefetch(&self.records, RECORD * t as usize);
-    }
-
-    /// Appends a triangle that is not linked yet.
-    #[inline]
-    pub fn push(&mut self, corners: [u32; 3]) -> u32 {
-        let t = (self.records.len() / RECORD) as u32;
-        let [a, b, c] = corners;
-        self.records.extend_from_slice(&[a, b, c, 0, 0, 0, 0, 0]);
+    pub fn fresh(&mut self) -> u32 {
+        let t = triangle(self.base) + self.used;
+        self.used += 1;
         t
     }
 
-    /// Writes the corners of triangle `t` and what lies across its edge 0.
+    /// Writes the corners of triangle `t`.
     #[inline]
-    pub fn set(&mut self, t: u32, corners: [u32; 3], across0: Code) {
-        let r = &mut self.records[RECORD * t as usize..][..RECORD];
-        r[..3].copy_from_slice(&corners);
-        r[OPPOSITE] = across0;
+    pub fn set(&mut self, t: u32, corners: [u32; 3]) {
+        let i = self.index(8 * t);
+        self.records[i..i + 3].copy_from_slice(&corners);
+    }
+
+    /// Makes `vertex` the corner opposite `e`.
+    #[inline]
+    pub fn set_vertex(&mut self, e: Code, vertex: u32) {
+        let i = self.index(e);
+        self.records[i] = vertex;
     }
 
     /// Makes `e` and `f` the two sides of one edge.
     #[inline]
     pub fn link(&mut self, e: Code, f: Code) {
-        self.records[e as usize + OPPOSITE] = f;
-        self.records[f as usize + OPPOSITE] = e;
+        let (i, j) = (self.index(e), self.index(f));
+        self.records[i + OPPOSITE] = f;
+        self.records[j + OPPOSITE] = e;
     }
 
-    /// The first mesh: triangle `a b c`, counter-clockwise, and its three ghosts.
-    pub fn start(&mut self, [a, b, c]: [u32; 3]) {
-        //        inf              Ghost k lies across edge k; seen from outside its
+    /// Says what lies across `e`, from this side alone.
+    pub(super) fn set_opposite(&mut self, e: Code, across: Code) {
+        let i = self.index(e);
+        self.records[i + OPPOSITE] = across;
+    }
+
+    /// Moves triangle `from` to record `to`; its neighbours follow, but for those outside.
+    pub(super) fn relocate(&mut self, from: u32, to: u32) {
+        self.set(to, self.corners(from));
+        for k in 0..3 {
+            let across = self.opposite(8 * from + k);
+            self.set_opposite(8 * to + k, across);
+            if self.records.get(across as usize).is_some() {
+                self.set_opposite(across, 8 * to + k);
+            }
+        }
+    }
+
+    fn push(&mut self, corners: [u32; 3]) -> Code {
+        let t = self.fresh();
+        self.set(t, corners);
+        8 * t
+    }
+
+    /// The mesh of the triangle `a b c`, counter-clockwise, and its three ghosts.
+    /// Returns a ghost.
+    pub fn triangle(&mut self, [a, b, c]: [u32; 3]) -> Code {
+        //        inf              Ghost k lies across edge k; seen from outside, its
         //     c ----- b           finite edge runs the other way.
         //   inf \   / inf
         //         a
@@ -136,16 +218,45 @@ impl Mesh2 {
             self.push([inf, b, a]),
         ];
         for k in 0..3 {
-            self.link(8 * t + k, 8 * ghosts[k as usize]);
+            self.link(t + k as u32, ghosts[k]);
             // Ghost k ends where ghost k + 1 begins: they share the edge to corner k + 2.
-            let after = ghosts[(k as usize + 1) % 3];
-            self.link(8 * ghosts[k as usize] + 2, 8 * after + 1);
+            self.link(ghosts[k] + 2, ghosts[(k + 1) % 3] + 1);
         }
+        ghosts[0]
     }
 
-    /// Checks that opposite codes are mutual and that both sides name the same two vertices.
-    pub fn check(&self) -> std::result::Result<(), String> {
-        for t in 0..self.len() as u32 {
+    /// The mesh of collinear vertices in order, two at least: ghosts on both sides of each edge.
+    /// Returns a ghost.
+    pub fn chain(&mut self, vertices: &[u32]) -> Code {
+        //      upper 0   upper 1
+        //    0 ------- 1 ------- 2        all to infinity
+        //      lower 0   lower 1
+        let inf = self.infinite;
+        let (mut first, mut last) = (None, None::<[Code; 2]>);
+        for pair in vertices.windows(2) {
+            let lower = self.push([inf, pair[1], pair[0]]);
+            let upper = self.push([inf, pair[0], pair[1]]);
+            self.link(lower, upper);
+            if let Some([lower_before, upper_before]) = last {
+                self.link(lower_before + 2, lower + 1);
+                self.link(upper + 2, upper_before + 1);
+            }
+            first = first.or(Some([lower, upper]));
+            last = Some([lower, upper]);
+        }
+        let (Some([lower0, upper0]), Some([lower1, upper1])) = (first, last) else {
+            return 0;
+        };
+        self.link(upper0 + 2, lower0 + 1);
+        self.link(lower1 + 2, upper1 + 1);
+        lower0
+    }
+
+    /// Checks of the first `triangles` records that opposite codes are mutual and that both sides
+    /// name the same two vertices.
+    pub fn check(&self, triangles: usize) -> std::result::Result<(), String> {
+        let start = triangle(self.base);
+        for t in start..start + triangles as u32 {
             for e in 8 * t..8 * t + 3 {
                 let o = self.opposite(e);
                 let ends = [self.vertex(next(e)), self.vertex(prev(e))];
@@ -177,10 +288,12 @@ mod tests {
     }
 
     #[test]
-    fn the_first_mesh_is_linked() {
-        let mut mesh = Mesh2::with_vertices(3).unwrap();
-        mesh.start([0, 1, 2]);
-        mesh.check().unwrap();
-        assert_eq!(mesh.len(), 4);
+    fn first_meshes_are_linked() {
+        let mut mesh = Mesh2::with_vertices(7).unwrap();
+        let (mut left, mut right) = mesh.patch().split_at(3);
+        left.triangle([0, 1, 2]);
+        left.check(4).unwrap();
+        right.chain(&[3, 4, 5, 6]);
+        right.check(6).unwrap();
     }
 }

@@ -1,4 +1,4 @@
-//! The distinct points of an input in one canonical order along the Hilbert curve.
+//! The distinct points of a block in one canonical order along the Hilbert curve.
 //!
 //! Cells come from the box of the points. Cells that hold many points are keyed again in the box of
 //! their own points, so that clusters of any depth are in curve order, too; few points in one cell
@@ -15,17 +15,6 @@ use crate::watch::Watch;
 
 /// Longest run of equal keys that is sorted lexicographically and not keyed again.
 const CROWD: usize = 16;
-
-/// Distinct points along the curve.
-#[derive(Debug, Default)]
-pub struct Ordered {
-    /// The points, `-0.0` made `0.0`.
-    pub points: Vec<Point2>,
-    /// For each, its first row in the input.
-    pub rows: Vec<u32>,
-    /// `[row, first row of the same point]` for each further row, ascending.
-    pub duplicates: Vec<[u32; 2]>,
-}
 
 /// Cells of a box: 65536 to the longer side.
 struct Cells {
@@ -67,9 +56,16 @@ impl Cells {
     }
 }
 
-/// Orders `points`, whose box is `extent`, and sets duplicates apart.
-pub fn along_curve(points: &[Point2], extent: &Extent, watch: &Watch) -> Result<Ordered> {
-    let cells = Cells::of(extent);
+/// Orders the points of a block into `out` and returns how many are distinct, with
+/// `[row, first row of the same point]` for each further row. `rows` are the block's rows, which
+/// ascend; where there are none, rows are places.
+pub fn along_curve(
+    points: &[Point2],
+    rows: Option<&[u32]>,
+    out: (&mut [Point2], &mut [u32]),
+    watch: &Watch,
+) -> Result<(usize, Vec<[u32; 2]>)> {
+    let cells = Cells::of(&Extent::of(points.iter().copied()));
     // Keys finer than about 16 cells a point cost passes and gain nothing: runs are few.
     let fine = (usize::BITS - points.len().leading_zeros() + 4)
         .next_multiple_of(8)
@@ -87,7 +83,7 @@ pub fn along_curve(points: &[Point2], extent: &Extent, watch: &Watch) -> Result<
     watch.check()?;
     order_runs(points, &mut items);
     watch.check()?;
-    collect(points, &items)
+    Ok(collect(points, rows, &items, out))
 }
 
 /// The rows of the finite points along the curve; for points of which nothing is built.
@@ -144,45 +140,52 @@ fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
     }
 }
 
-fn collect(points: &[Point2], items: &[u64]) -> Result<Ordered> {
-    let mut out = Ordered {
-        points: with_room(items.len() + 1)?,
-        rows: with_room(items.len())?,
-        duplicates: Vec::new(),
-    };
+fn collect(
+    points: &[Point2],
+    rows: Option<&[u32]>,
+    items: &[u64],
+    (out_points, out_rows): (&mut [Point2], &mut [u32]),
+) -> (usize, Vec<[u32; 2]>) {
+    let mut duplicates = Vec::new();
     let mut last = [f64::NAN; 2];
+    let mut distinct = 0;
     for &item in items {
+        let at = row(item);
+        let row = rows.map_or(at as u32, |rows| rows[at]);
         // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
-        let p = points[row(item)].map(|x| x + 0.0);
+        let p = points[at].map(|x| x + 0.0);
         if p == last {
-            let first = *out.rows.last().unwrap_or(&0);
-            out.duplicates.push([row(item) as u32, first]);
+            duplicates.push([row, out_rows[distinct - 1]]);
         } else {
-            out.points.push(p);
-            out.rows.push(row(item) as u32);
+            out_points[distinct] = p;
+            out_rows[distinct] = row;
+            distinct += 1;
             last = p;
         }
     }
-    out.duplicates.sort_unstable();
-    Ok(out)
+    (distinct, duplicates)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn ordered(points: &[Point2]) -> Ordered {
-        let extent = Extent::of(points.iter().copied());
-        along_curve(points, &extent, &Watch::idle()).unwrap()
+    fn ordered(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
+        let (mut to, mut rows) = (vec![[0.0; 2]; points.len()], vec![0; points.len()]);
+        let (distinct, duplicates) =
+            along_curve(points, None, (&mut to, &mut rows), &Watch::idle()).unwrap();
+        to.truncate(distinct);
+        rows.truncate(distinct);
+        (to, rows, duplicates)
     }
 
     #[test]
     fn duplicates_name_their_first_row() {
         let points = [[1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [-0.0, 0.0], [1.0, -0.0]];
-        let out = ordered(&points);
-        assert_eq!(out.duplicates, [[2, 0], [3, 1], [4, 0]]);
-        let mut rows = out.rows.clone();
-        rows.sort();
+        let (_, mut rows, mut duplicates) = ordered(&points);
+        duplicates.sort_unstable();
+        assert_eq!(duplicates, [[2, 0], [3, 1], [4, 0]]);
+        rows.sort_unstable();
         assert_eq!(rows, [0, 1]);
     }
 
@@ -203,7 +206,7 @@ mod tests {
             })
             .collect();
         let reversed: Vec<Point2> = points.iter().rev().copied().collect();
-        assert_eq!(ordered(&points).points, ordered(&reversed).points);
+        assert_eq!(ordered(&points).0, ordered(&reversed).0);
     }
 
     #[test]
@@ -217,7 +220,7 @@ mod tests {
                 [-s, s],
                 [s / 2.0, s / 2.0],
             ];
-            assert_eq!(ordered(&points).points.len(), 6, "{s}");
+            assert_eq!(ordered(&points).0.len(), 6, "{s}");
         }
     }
 }

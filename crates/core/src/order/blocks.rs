@@ -1,0 +1,213 @@
+//! Cuts a large point set into blocks, by a k-d tree over a sample, so that threads can work on
+//! blocks and each block fits the cache. The cuts hang on the points alone, never on the number of
+//! threads, and equal points fall in one block.
+
+use delone_predicates::{Point2, lexicographic};
+
+use crate::error::Result;
+use crate::memory::zeroed;
+use crate::parallel;
+use crate::points::Extent;
+
+/// Most points that a block should hold: its mesh of 80 bytes a point fits a shared cache.
+const BLOCK: usize = 1 << 17;
+
+/// Sampled points a block: cuts are off the median by some per cent.
+const SAMPLE: usize = 256;
+
+/// Points that one task classifies.
+const SHARE: usize = 1 << 16;
+
+/// Which coordinate leads where points are compared across a cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// By x, then y: left before right.
+    X,
+    /// By y, then from large x to small: below before above, turned a right angle.
+    Y,
+}
+
+impl Axis {
+    /// The point in the frame in which the axis leads: for Y the plane turned clockwise.
+    #[inline]
+    pub fn turned(self, p: Point2) -> Point2 {
+        match self {
+            Self::X => p,
+            Self::Y => [p[1], -p[0]],
+        }
+    }
+
+    /// Whether `p` comes before `q` along the axis.
+    #[inline]
+    pub fn before(self, p: Point2, q: Point2) -> bool {
+        lexicographic(self.turned(p), self.turned(q)).is_lt()
+    }
+}
+
+/// A cut of the plane: what comes before `at` along `axis` goes left.
+#[derive(Debug, Clone, Copy)]
+pub struct Cut {
+    /// The axis that leads.
+    pub axis: Axis,
+    at: Point2,
+}
+
+/// A complete binary tree of cuts, root first; the blocks are its leaves from left to right.
+#[derive(Debug)]
+pub struct Cuts {
+    cuts: Vec<Cut>,
+}
+
+impl Cuts {
+    /// Cuts for `points`: enough for blocks of at most about [`BLOCK`].
+    pub fn of(points: &[Point2]) -> Self {
+        let blocks = points.len().div_ceil(BLOCK).next_power_of_two();
+        let step = (points.len() / (SAMPLE * blocks)).max(1);
+        let mut sample: Vec<Point2> = points.iter().copied().step_by(step).collect();
+        let mut cuts = vec![
+            Cut {
+                axis: Axis::X,
+                at: [0.0; 2]
+            };
+            blocks - 1
+        ];
+        cut(&mut cuts, 0, &mut sample);
+        Self { cuts }
+    }
+
+    /// The number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.cuts.len() + 1
+    }
+
+    /// The axis of the cut between blocks `[i w, i w + w/2)` and the `w/2` that follow, w = `width`.
+    pub fn axis(&self, i: usize, width: usize) -> Axis {
+        self.cuts[self.blocks() / width - 1 + i].axis
+    }
+
+    /// The block of a point.
+    #[inline]
+    fn block(&self, p: Point2) -> usize {
+        let mut node = 0;
+        while let Some(cut) = self.cuts.get(node) {
+            node = 2 * node + 2 - usize::from(cut.axis.before(p, cut.at));
+        }
+        node - self.cuts.len()
+    }
+}
+
+fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
+    if node >= cuts.len() || sample.is_empty() {
+        return;
+    }
+    let extent = Extent::of(sample.iter().copied());
+    // Halves, since the sides themselves may overflow.
+    let half = |k: usize| extent.max[k] / 2.0 - extent.min[k] / 2.0;
+    let axis = if half(0) >= half(1) { Axis::X } else { Axis::Y };
+    let order = |p: &Point2, q: &Point2| lexicographic(axis.turned(*p), axis.turned(*q));
+    let middle = sample.len() / 2;
+    let (left, &mut at, right) = sample.select_nth_unstable_by(middle, order);
+    cuts[node] = Cut { axis, at };
+    cut(cuts, 2 * node + 1, left);
+    cut(cuts, 2 * node + 2, right);
+}
+
+/// Points sorted into blocks, in the order of their rows within each.
+#[derive(Debug)]
+pub struct Blocks {
+    /// The points, block after block.
+    pub points: Vec<Point2>,
+    /// Their rows.
+    pub rows: Vec<u32>,
+    /// Where each block begins, and the end.
+    pub starts: Vec<usize>,
+}
+
+/// Sorts `points` into the blocks of `cuts`.
+pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks> {
+    let blocks = cuts.blocks();
+    let shares: Vec<&[Point2]> = points.chunks(SHARE).collect();
+    let classified = parallel::map(workers, shares, |share| {
+        let mut counts = vec![0usize; blocks];
+        let block_of: Vec<u16> = share
+            .iter()
+            .map(|&p| {
+                let b = cuts.block(p);
+                counts[b] += 1;
+                b as u16
+            })
+            .collect();
+        (block_of, counts)
+    });
+    // Each share writes its part of each block: cut the outputs into those parts, block by block.
+    let mut out_points: Vec<Point2> = zeroed(points.len())?;
+    let mut out_rows: Vec<u32> = zeroed(points.len())?;
+    let mut starts = vec![0];
+    let mut parts: Vec<Vec<_>> = classified
+        .iter()
+        .map(|_| Vec::with_capacity(blocks))
+        .collect();
+    let (mut rest_points, mut rest_rows) = (&mut out_points[..], &mut out_rows[..]);
+    for b in 0..blocks {
+        let mut size = 0;
+        for ((_, counts), part) in classified.iter().zip(&mut parts) {
+            let (p, q) = rest_points.split_at_mut(counts[b]);
+            let (r, s) = rest_rows.split_at_mut(counts[b]);
+            part.push((p, r));
+            (rest_points, rest_rows) = (q, s);
+            size += counts[b];
+        }
+        starts.push(starts[b] + size);
+    }
+    let tasks = points
+        .chunks(SHARE)
+        .zip(&classified)
+        .zip(parts)
+        .enumerate()
+        .collect();
+    parallel::map(workers, tasks, |(i, ((share, (block_of, _)), mut part))| {
+        let mut filled = vec![0usize; blocks];
+        let first_row = (i * SHARE) as u32;
+        for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
+            let b = usize::from(b);
+            let (points, rows) = &mut part[b];
+            points[filled[b]] = p;
+            rows[filled[b]] = row;
+            filled[b] += 1;
+        }
+    });
+    Ok(Blocks {
+        points: out_points,
+        rows: out_rows,
+        starts,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_hold_each_row_once_and_lie_on_their_side_of_each_cut() {
+        let n = 3 * BLOCK;
+        let points: Vec<Point2> = (0..n as u64)
+            .map(|i| {
+                let hash = i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+                [(hash >> 40) as f64, (hash >> 20 & 0xfffff) as f64]
+            })
+            .collect();
+        let cuts = Cuts::of(&points);
+        assert_eq!(cuts.blocks(), 4);
+        let one = split(&points, &cuts, 1).unwrap();
+        let two = split(&points, &cuts, 2).unwrap();
+        assert_eq!((&one.rows, &one.starts), (&two.rows, &two.starts));
+        let mut rows = one.rows.clone();
+        rows.sort_unstable();
+        assert!(rows.iter().copied().eq(0..n as u32));
+        let root = cuts.cuts[0];
+        for (i, &p) in one.points.iter().enumerate() {
+            assert_eq!(points[one.rows[i] as usize], p);
+            assert_eq!(root.axis.before(p, root.at), i < one.starts[2]);
+        }
+    }
+}

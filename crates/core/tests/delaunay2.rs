@@ -1,0 +1,241 @@
+//! Whole triangulations: valid, canonical, the same for every method, order and number of workers.
+
+use std::collections::BTreeSet;
+
+use delone_core::Point2;
+use delone_core::delaunay2::validate::{Findings, Given, validate};
+use delone_core::delaunay2::{Method, Triangulation, triangulate};
+use delone_core::error::Error;
+use delone_core::watch::Watch;
+use proptest::prelude::*;
+
+fn made(points: &[Point2], method: Method, workers: usize) -> Triangulation {
+    triangulate(points, method, workers, &Watch::idle()).expect("a triangulation")
+}
+
+fn findings(points: &[Point2], made: &Triangulation) -> Findings {
+    let (simplices, neighbors) = (&made.arrays.simplices, &made.arrays.neighbors);
+    validate(
+        Given {
+            points,
+            simplices,
+            neighbors,
+        },
+        &Watch::idle(),
+    )
+    .expect("a report")
+}
+
+/// Triangles as coordinates, each from its smallest vertex on.
+fn triangles(points: &[Point2], made: &Triangulation) -> BTreeSet<[[u64; 2]; 3]> {
+    let bits = |v: i32| points[v as usize].map(|x| (x + 0.0).to_bits());
+    let turned = |t: &[i32; 3]| {
+        let [a, b, c] = t.map(bits);
+        [[a, b, c], [b, c, a], [c, a, b]]
+            .into_iter()
+            .min()
+            .expect("three")
+    };
+    made.arrays.simplices.iter().map(turned).collect()
+}
+
+fn methods() -> impl Iterator<Item = Method> {
+    Method::NAMES.iter().map(|&(_, m)| m)
+}
+
+/// All methods agree on `points`, or all refuse it.
+fn agree(points: &[Point2]) -> Result<(), TestCaseError> {
+    let mut sets = Vec::new();
+    let reversed: Vec<Point2> = points.iter().rev().copied().collect();
+    for method in methods() {
+        for points in [points, &reversed] {
+            match triangulate(points, method, 1, &Watch::idle()) {
+                Ok(made) => {
+                    prop_assert_eq!(findings(points, &made), Findings::default());
+                    sets.push(triangles(points, &made));
+                }
+                Err(Error::TooFew { .. } | Error::Collinear { .. }) => sets.push(BTreeSet::new()),
+                Err(other) => prop_assert!(false, "{other}"),
+            }
+        }
+    }
+    prop_assert!(sets.windows(2).all(|w| w[0] == w[1]));
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn lattices_where_ties_are_everywhere(
+        side in 2..7i32,
+        cells in prop::collection::vec((0..6i32, 0..6i32), 0..40),
+    ) {
+        let point = |(x, y): (i32, i32)| [f64::from(x % side), f64::from(y % side)];
+        agree(&cells.into_iter().map(point).collect::<Vec<_>>())?;
+    }
+
+    #[test]
+    fn doubles_of_every_size(bits in prop::collection::vec(any::<(u64, u64)>(), 3..20)) {
+        let finite = |b: u64| {
+            let x = f64::from_bits(b);
+            if x.is_finite() { x } else { f64::from_bits(b & !(1 << 62)) }
+        };
+        agree(&bits.into_iter().map(|(x, y)| [finite(x), finite(y)]).collect::<Vec<_>>())?;
+    }
+
+    #[test]
+    fn points_within_ulps_of_a_line(
+        steps in prop::collection::vec((0..50i64, -2..3i64), 3..30),
+        slope in 0.1..10.0f64,
+    ) {
+        let near = |x: f64, ulps: i64| f64::from_bits((x.to_bits() as i64 + ulps) as u64);
+        let point = |(i, ulps): (i64, i64)| {
+            let x = 1.0 + i as f64 / 16.0;
+            [x, near(x * slope, ulps)]
+        };
+        agree(&steps.into_iter().map(point).collect::<Vec<_>>())?;
+    }
+}
+
+/// A multiplicative hash in place of a random number.
+fn hash(i: u64) -> u64 {
+    let h = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (h ^ h >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9)
+}
+
+fn scattered(n: u64, side: f64) -> Vec<Point2> {
+    let unit = |h: u64| (h >> 11) as f64 / (1u64 << 53) as f64;
+    (0..n)
+        .map(|i| [side * unit(hash(2 * i)), side * unit(hash(2 * i + 1))])
+        .collect()
+}
+
+#[test]
+fn several_blocks_are_one_triangulation_for_any_number_of_workers() {
+    let lattice = |p: Point2| p.map(f64::floor);
+    for points in [
+        scattered(300_000, 1.0),
+        scattered(300_000, 500.0).into_iter().map(lattice).collect(),
+        scattered(300_000, 1e-3)
+            .into_iter()
+            .map(|[x, _]| [x.sin(), x.cos()])
+            .collect(),
+    ] {
+        let one = made(&points, Method::Auto, 1);
+        assert_eq!(findings(&points, &one), Findings::default());
+        for workers in [2, 3, 8, 64] {
+            let many = made(&points, Method::Auto, workers);
+            assert_eq!(one.arrays.simplices, many.arrays.simplices);
+            assert_eq!(one.arrays.neighbors, many.arrays.neighbors);
+            assert_eq!(one.duplicates, many.duplicates);
+        }
+        let other = made(&points, Method::DivideConquer, 2);
+        assert_eq!(triangles(&points, &one), triangles(&points, &other));
+    }
+}
+
+#[test]
+fn blocks_of_duplicates_and_of_lines_are_merged() {
+    // A block of one point, blocks that are collinear, and a few points beside.
+    let mut points = vec![[0.5, 0.5]; 200_000];
+    points.extend(scattered(1000, 1.0));
+    let one = made(&points, Method::Auto, 2);
+    assert_eq!(findings(&points, &one), Findings::default());
+    assert_eq!(one.duplicates.len(), 199_999);
+    let mut points: Vec<Point2> = (0..300_000u32)
+        .map(|i| [f64::from(i % 3), f64::from(i / 3)])
+        .collect();
+    points.push([-1.0, 0.25]);
+    let one = made(&points, Method::Auto, 2);
+    assert_eq!(findings(&points, &one), Findings::default());
+}
+
+#[test]
+fn degenerate_input_names_its_chain() {
+    let points = [[2.0, 2.0], [0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
+    for method in methods() {
+        let error = triangulate(&points, method, 1, &Watch::idle()).expect_err("no triangle");
+        assert_eq!(
+            error,
+            Error::Collinear {
+                chain: vec![1, 2, 0]
+            }
+        );
+        let error = triangulate(&points[..2], method, 1, &Watch::idle()).expect_err("two points");
+        assert_eq!(error, Error::TooFew { chain: vec![1, 0] });
+    }
+    let line: Vec<Point2> = (0..200_000u32)
+        .map(|i| [f64::from(i), 2.0 * f64::from(i)])
+        .collect();
+    let error = triangulate(&line, Method::Auto, 2, &Watch::idle()).expect_err("a line");
+    assert_eq!(
+        error,
+        Error::Collinear {
+            chain: (0..200_000).collect()
+        }
+    );
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_named() {
+    let mut points = scattered(100, 1.0);
+    points[7][1] = f64::NAN;
+    points[9][0] = f64::INFINITY;
+    let error = triangulate(&points, Method::Auto, 1, &Watch::idle()).expect_err("NaN");
+    assert_eq!(
+        error,
+        Error::NonFinite {
+            rows: vec![7, 9],
+            count: 2
+        }
+    );
+}
+
+#[test]
+fn a_watch_ends_the_work() {
+    let points = scattered(100_000, 1.0);
+    let error = triangulate(&points, Method::Auto, 2, &Watch::new(&|| true)).expect_err("stopped");
+    assert_eq!(error, Error::Interrupted);
+}
+
+#[test]
+fn validation_finds_each_kind_of_fault() {
+    let points = scattered(50, 1.0);
+    let right = made(&points, Method::Auto, 1);
+    let faulty = |change: &dyn Fn(&mut Triangulation)| {
+        let mut made = made(&points, Method::Auto, 1);
+        change(&mut made);
+        findings(&points, &made)
+    };
+    assert!(
+        !faulty(&|m| m.arrays.simplices[3].swap(0, 1))
+            .orientation
+            .is_empty()
+    );
+    assert!(
+        !faulty(&|m| m.arrays.neighbors[3].rotate_left(1))
+            .neighbors
+            .is_empty()
+    );
+    let twice = faulty(&|m| {
+        m.arrays.simplices.push(m.arrays.simplices[0]);
+        m.arrays.neighbors.push(m.arrays.neighbors[0]);
+    });
+    assert_eq!(twice.edges.len(), 3);
+    assert_eq!(
+        twice.count,
+        [[right.arrays.simplices.len() as u32, twice.count[0][1]]]
+    );
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.4]];
+    // The diagonal of the square's other pair, and a point that no triangle has.
+    let simplices = [[0, 1, 3], [1, 2, 3]];
+    let neighbors = [[1, -1, -1], [-1, 0, -1]];
+    let given = Given {
+        points: &square,
+        simplices: &simplices,
+        neighbors: &neighbors,
+    };
+    let found = validate(given, &Watch::idle()).expect("a report");
+    assert_eq!((found.missing, found.ties), (vec![4], vec![[0, 1]]));
+}
