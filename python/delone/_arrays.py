@@ -1,0 +1,436 @@
+"""The one place that coerces what callers pass, and refuses what has no exact meaning.
+
+After `as_points`, every other module may assume a float64, native, aligned, C-contiguous array of
+shape (n, 2) or (n, 3) whose values are exactly the ones that the caller wrote. Whatever float64
+cannot hold exactly is refused by name: an exact answer to rounded input is a wrong answer.
+
+Finiteness is not checked here, because the core reads every coordinate once anyway;
+`require_finite` is for callers that do not go through the core.
+"""
+
+from __future__ import annotations
+
+import operator
+import os
+import sys
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+# Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
+_LARGEST_EXACT_INTEGER = 2**53
+_LARGEST_INDEX = 2**31 - 1
+# More threads than this only cost stacks: the answer does not depend on their number.
+_MOST_WORKERS = 256
+_REFUSED_KINDS = {
+    "b": "booleans",
+    "c": "complex numbers",
+    "M": "dates",
+    "m": "time spans",
+    "O": "Python objects",
+    "S": "byte strings",
+    "T": "strings",
+    "U": "strings",
+    "V": "records",
+}
+
+
+def as_points(
+    points: ArrayLike, *, ndim: int | None = None, name: str = "points"
+) -> NDArray[np.float64]:
+    """Return points as a float64 C-contiguous array with exactly the values given.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+        Floats of up to 64 bits, integers up to 2**53 in magnitude, in any memory layout or byte
+        order, or anything that converts to such an array.
+    ndim : {2, 3}, optional
+        The number of coordinates wanted. By default both are welcome.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 2) or (n, 3)
+        Aligned, native, C-contiguous. The input itself where it is so already, which includes
+        read-only arrays; never modify it.
+
+    Raises
+    ------
+    ShapeError
+        Wrong number of axes or coordinates, or rows of unequal length.
+    DtypeError
+        Booleans, complex numbers, objects, strings, dates, records or masked arrays; integers
+        beyond 2**53, extended precision that float64 does not hold.
+
+    Notes
+    -----
+    NaN and infinity pass. O(n) time; no copy where none is needed.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_points
+    >>> as_points([(0, 0), (4, 0), (4, 3)])
+    array([[0., 0.],
+           [4., 0.],
+           [4., 3.]])
+    """
+    array = _as_plain_array(points, name)
+    _refuse_kind(array, name)
+    _refuse_shape(array, ndim, name)
+    if array.dtype.kind in "iu":
+        _refuse_large_integers(array, name)
+    elif array.dtype.itemsize > 8:
+        _refuse_lossy_longdouble(array, name)
+    elif isinstance(points, list | tuple):
+        _refuse_rounded_integers(points, array, name)
+    # The core reads the memory directly, so that alignment matters as much as contiguity.
+    return np.require(array, dtype=np.float64, requirements=["C", "A"])
+
+
+def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np.float64]:
+    """Return points under any leading axes, with exactly the values given.
+
+    Parameters
+    ----------
+    values : array_like, shape (..., d)
+        What `as_points` takes, and single points, grids of points and so on.
+    d : {2, 3}
+        Number of coordinates.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of float64, shape (..., d)
+        Aligned, native, C-contiguous.
+
+    Raises
+    ------
+    ShapeError
+        The last axis has not d entries, or rows are of unequal length.
+    DtypeError
+        As in `as_points`.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_vectors
+    >>> as_vectors((0, 1), 2)
+    array([0., 1.])
+    """
+    array = _as_plain_array(values, name)
+    if array.ndim == 0 or array.shape[-1] != d:
+        _refuse_kind(array, name)
+        raise ShapeError(f"{name} must have shape (..., {d}), got {array.shape}")
+    if array.ndim == 2:
+        return as_points(values, ndim=d, name=name)
+    if array.ndim == 1 and isinstance(values, list | tuple):
+        array = as_points([values], ndim=d, name=name)
+        return array.reshape(d)
+    return as_points(array.reshape(-1, d), ndim=d, name=name).reshape(array.shape)
+
+
+def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None:
+    """Refuse points of which a coordinate is NaN or infinite.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, d)
+        The points.
+    name : str, optional
+        What the argument is called in the error message.
+
+    Raises
+    ------
+    NonFiniteError
+        Names the first ten such rows and their number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone._arrays import require_finite
+    >>> require_finite(np.array([[0.0, 1.0], [np.nan, 2.0]]))
+    Traceback (most recent call last):
+    ...
+    delone.errors.NonFiniteError: points: 1 of 2 rows hold NaN or infinity; first: 1
+    """
+    finite = np.isfinite(points)
+    if finite.all():
+        return
+    rows = np.flatnonzero(~finite.all(axis=1))
+    first = ", ".join(map(str, rows[:10].tolist()))
+    message = f"{name}: {len(rows)} of {len(points)} rows hold NaN or infinity; first: {first}"
+    raise NonFiniteError(message, rows=rows[:10], count=len(rows))
+
+
+def as_simplices(
+    simplices: ArrayLike, npoints: int, d: int, *, name: str = "simplices"
+) -> NDArray[np.int32]:
+    """Return simplices as an int32 C-contiguous array of valid vertex indices.
+
+    Parameters
+    ----------
+    simplices : array_like of int, shape (m, d + 1)
+        Vertex indices.
+    npoints : int
+        Number of points that the indices refer to.
+    d : {2, 3}
+        Dimension of the points.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of int32, shape (m, d + 1)
+        The input itself where it is right already.
+
+    Raises
+    ------
+    ShapeError
+        Not of shape (m, d + 1).
+    DtypeError
+        Not integers.
+    InputError
+        An index below 0 or beyond the last point; the first such row is named.
+    LimitError
+        More points than int32 can number.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_simplices
+    >>> as_simplices([[0, 1, 2]], 3, 2)
+    array([[0, 1, 2]], dtype=int32)
+    """
+    if npoints > _LARGEST_INDEX:
+        raise LimitError(f"{npoints} points are more than the {_LARGEST_INDEX} an int32 can number")
+    return _as_indices(simplices, d + 1, 0, npoints, name)
+
+
+def as_neighbors(
+    neighbors: ArrayLike, nsimplex: int, d: int, *, name: str = "neighbors"
+) -> NDArray[np.int32]:
+    """Return neighbours as an int32 C-contiguous array of simplex numbers or -1.
+
+    Parameters
+    ----------
+    neighbors : array_like of int, shape (nsimplex, d + 1)
+        Number of the simplex opposite each vertex, -1 outside.
+    nsimplex : int
+        Number of simplices.
+    d : {2, 3}
+        Dimension of the points.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of int32, shape (nsimplex, d + 1)
+        The input itself where it is right already.
+
+    Raises
+    ------
+    ShapeError
+        Not of shape (nsimplex, d + 1).
+    DtypeError
+        Not integers.
+    InputError
+        A number below -1 or beyond the last simplex; the first such row is named.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_neighbors
+    >>> as_neighbors([[-1, -1, -1]], 1, 2)
+    array([[-1, -1, -1]], dtype=int32)
+    """
+    array = _as_indices(neighbors, d + 1, -1, nsimplex, name)
+    if len(array) != nsimplex:
+        raise ShapeError(f"{name} has {len(array)} rows, but there are {nsimplex} simplices")
+    return array
+
+
+def as_workers(workers: int | None) -> int:
+    """Return how many threads to use.
+
+    Parameters
+    ----------
+    workers : int or None
+        None means one for each core that this process may use.
+
+    Returns
+    -------
+    int
+        At least 1. What is asked for in excess of 256 is ignored: the answer is the same for every
+        number of threads, and each costs memory.
+
+    Raises
+    ------
+    InputError
+        A ValueError: below 1, or not an integer (then a TypeError, too).
+
+    Examples
+    --------
+    >>> from delone._arrays import as_workers
+    >>> as_workers(3)
+    3
+    >>> as_workers(0)
+    Traceback (most recent call last):
+    ...
+    delone.errors.InputError: workers must be None (all cores) or an integer of at least 1, got 0
+    """
+    if workers is None:
+        return min(_usable_cores(), _MOST_WORKERS)
+    wanted = "workers must be None (all cores) or an integer of at least 1"
+    if isinstance(workers, bool | np.bool_):
+        raise DtypeError(f"{wanted}, got {workers}")
+    try:
+        number = operator.index(workers)
+    except TypeError:
+        raise DtypeError(f"{wanted}, got {workers!r}") from None
+    if number < 1:
+        raise InputError(f"{wanted}, got {number}")
+    return min(number, _MOST_WORKERS)
+
+
+def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Return a read-only view of an array; the array itself stays as it is.
+
+    Parameters
+    ----------
+    array : ndarray
+        Any array.
+
+    Returns
+    -------
+    ndarray
+        The same memory, not writeable.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone._arrays import frozen
+    >>> frozen(np.zeros(3)).flags.writeable
+    False
+    """
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+def _as_plain_array(points: Any, name: str) -> NDArray[Any]:
+    """Convert to a base-class array, refusing masks before they are dropped silently."""
+    rows = points if isinstance(points, list | tuple) else ()
+    if isinstance(points, np.ma.MaskedArray) or any(
+        isinstance(row, np.ma.MaskedArray) for row in rows
+    ):
+        raise DtypeError(
+            f"{name} is a masked array; pass only the rows that count, "
+            "for example np.ma.compress_rows(points), or points.data if none is masked"
+        )
+    try:
+        return np.asarray(points)
+    except ValueError as error:
+        if not isinstance(points, list | tuple):
+            raise
+        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+
+
+def _refuse_kind(array: NDArray[Any], name: str) -> None:
+    kind = array.dtype.kind
+    if kind in "fiu":
+        return
+    what = _REFUSED_KINDS.get(kind, f"dtype {array.dtype}")
+    hint = "convert them to numbers that float64 holds exactly"
+    if kind == "V" and array.dtype.names:
+        hint = "for example np.column_stack((a['x'], a['y']))"
+    elif kind == "c":
+        hint = "for example np.column_stack((z.real, z.imag))"
+    raise DtypeError(f"{name} holds {what} (dtype {array.dtype}), not real numbers; {hint}")
+
+
+def _refuse_shape(array: NDArray[Any], ndim: int | None, name: str) -> None:
+    wanted = (2, 3) if ndim is None else (ndim,)
+    if array.ndim == 2 and array.shape[1] in wanted:
+        return
+    shapes = " or ".join(f"(n, {d})" for d in wanted)
+    hint = ""
+    if array.ndim == 2 and array.shape[0] in wanted:
+        hint = "; transpose it"
+    raise ShapeError(f"{name} must have shape {shapes}, got {array.shape}{hint}")
+
+
+def _refuse_large_integers(array: NDArray[Any], name: str) -> None:
+    if array.dtype.itemsize < 8 or array.size == 0:
+        return
+    limit = _LARGEST_EXACT_INTEGER
+    if int(array.max()) <= limit and int(array.min()) >= -limit:
+        return
+    # Not abs(): the magnitude of the smallest int64 is no int64.
+    outside = array > limit
+    if array.dtype.kind == "i":
+        outside |= array < -limit
+    row = int(np.flatnonzero(outside.any(axis=1))[0])
+    _raise_large_integer(row, array[row].tolist(), name)
+
+
+def _refuse_rounded_integers(points: Any, array: NDArray[Any], name: str) -> None:
+    """Refuse Python integers that NumPy rounded because floats stand beside them."""
+    large = np.abs(array) >= _LARGEST_EXACT_INTEGER
+    for row in np.flatnonzero(large.any(axis=1)).tolist():
+        for value in points[row]:
+            if isinstance(value, int | np.integer) and abs(int(value)) > _LARGEST_EXACT_INTEGER:
+                _raise_large_integer(row, list(points[row]), name)
+
+
+def _raise_large_integer(row: int, values: list[Any], name: str) -> None:
+    raise DtypeError(
+        f"{name}: row {row} is {values}, beyond the 2**53 up to which float64 holds every "
+        "integer; subtract an offset first"
+    )
+
+
+def _refuse_lossy_longdouble(array: NDArray[Any], name: str) -> None:
+    with np.errstate(over="ignore"):
+        narrow = array.astype(np.float64)
+    same = (narrow == array) | np.isnan(array)
+    if same.all():
+        return
+    row = int(np.flatnonzero(~same.all(axis=1))[0])
+    raise DtypeError(
+        f"{name}: row {row} has more precision or range than float64 ({array.dtype}); "
+        "round it with .astype(np.float64) if that is what you want"
+    )
+
+
+def _as_indices(
+    values: ArrayLike, columns: int, lowest: int, end: int, name: str
+) -> NDArray[np.int32]:
+    array = _as_plain_array(values, name)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ShapeError(f"{name} must have shape (m, {columns}), got {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+    if array.size and (int(array.min()) < lowest or int(array.max()) >= end):
+        bad = array >= end
+        if array.dtype.kind == "i":
+            bad |= array < lowest
+        row = int(np.flatnonzero(bad.any(axis=1))[0])
+        raise InputError(
+            f"{name}: row {row} is {array[row].tolist()}, outside the range {lowest} to {end - 1}"
+        )
+    return np.require(array, dtype=np.int32, requirements=["C", "A"])
+
+
+def _usable_cores() -> int:
+    if sys.version_info >= (3, 13):
+        return os.process_cpu_count() or 1
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

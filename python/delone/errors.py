@@ -1,0 +1,172 @@
+"""Every exception that delone raises on purpose.
+
+One root, `DeloneError`, so that one ``except`` clause catches whatever the package refuses. Each
+class also derives from the built-in exception that a NumPy or SciPy user expects in its place, and
+each carries the evidence (rows, reason, chain, extra) as attributes, because a message alone cannot
+be acted upon by a program. All of them pickle, so that they cross process boundaries.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "DegenerateInputError",
+    "DeloneError",
+    "DtypeError",
+    "FileFormatError",
+    "InputError",
+    "InternalError",
+    "LimitError",
+    "MissingExtraError",
+    "NonFiniteError",
+    "ShapeError",
+]
+
+
+def _row_numbers(rows: Iterable[int] | NDArray[np.integer]) -> NDArray[np.int64]:
+    array = np.array(rows if isinstance(rows, np.ndarray) else list(rows), dtype=np.int64)
+    array.flags.writeable = False
+    return array
+
+
+class DeloneError(Exception):
+    """Root of all exceptions that delone raises on purpose."""
+
+
+class InputError(DeloneError, ValueError):
+    """An argument has a value that cannot be used."""
+
+
+class ShapeError(InputError):
+    """An array has the wrong number of axes, or an axis the wrong length."""
+
+
+class DtypeError(InputError, TypeError):
+    """An array or argument is of a kind that has no exact float64 (or index) meaning."""
+
+
+class NonFiniteError(InputError):
+    """Some coordinates are NaN or infinite.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    rows : iterable of int, optional
+        Row numbers of the first bad points, ten at most.
+    count : int, optional
+        How many rows are bad in all. By default the length of `rows`.
+
+    Attributes
+    ----------
+    rows : ndarray of int64
+        Row numbers of the first bad points.
+    count : int
+        How many rows are bad in all.
+    """
+
+    rows: NDArray[np.int64]
+    count: int
+
+    def __init__(
+        self,
+        message: str = "points hold NaN or infinity",
+        *,
+        rows: Iterable[int] | NDArray[np.integer] = (),
+        count: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.rows = _row_numbers(rows)[:10]
+        self.count = len(self.rows) if count is None else int(count)
+
+
+class DegenerateInputError(InputError):
+    """The points span no area: too few of them are distinct, or all lie on one line.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    reason : str, optional
+        ``"too few points"`` or ``"collinear"``.
+    chain : iterable of int, optional
+        Row numbers of the distinct points, in their order along the line.
+
+    Attributes
+    ----------
+    reason : str
+        ``"too few points"`` or ``"collinear"``; empty where it is not known.
+    chain : ndarray of int64
+        Row numbers of the distinct points, in their order along the line.
+    """
+
+    reason: str
+    chain: NDArray[np.int64]
+
+    def __init__(
+        self,
+        message: str = "the points span no area",
+        *,
+        reason: str = "",
+        chain: Iterable[int] | NDArray[np.integer] = (),
+    ) -> None:
+        super().__init__(message)
+        self.reason = reason
+        self.chain = _row_numbers(chain)
+
+
+class LimitError(InputError):
+    """The input is larger than an index or a buffer of this build can hold."""
+
+
+class InternalError(DeloneError, RuntimeError):
+    """Delone contradicted itself: a bug in delone, never the caller's fault.
+
+    The message that the user reads ends with a request to report it.
+
+    Parameters
+    ----------
+    message : str
+        What went wrong.
+    """
+
+    REQUEST = "This is a bug in delone; please report it together with the input."
+
+    def __init__(self, message: str = "an internal check failed") -> None:
+        # Unpickling calls the constructor with the finished text, so it must not grow again.
+        super().__init__(message if self.REQUEST in message else f"{message}. {self.REQUEST}")
+
+
+class FileFormatError(DeloneError, ValueError):
+    """A file is torn, or is not in the format that its name or header claims."""
+
+
+class MissingExtraError(DeloneError, ImportError):
+    """An optional library is needed that is not installed.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    extra : str, optional
+        The extra of the delone package that brings the library.
+
+    Attributes
+    ----------
+    extra : str
+        The extra to install, as in ``pip install "delone[las]"``.
+    """
+
+    extra: str
+
+    def __init__(self, message: str = "", *, extra: str = "") -> None:
+        super().__init__(message or f'install it with: pip install "delone[{extra}]"')
+        self.extra = extra

@@ -1,0 +1,43 @@
+"""Delaunay triangulation as a teacher would show it: short, slow and exact.
+
+Everything here computes with Python's unbounded integers and `fractions.Fraction`, so that no
+answer depends on rounding, and follows the textbook word for word where the fast core does not. It
+is the oracle of the package's tests and a place to read; no other module of the package uses it.
+Two-dimensional.
+
+The five points that every textbook draws, a rectangle and one point inside:
+
+>>> from delone.reference import bowyer_watson, circumcircle
+>>> points = [(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]
+>>> triangles = bowyer_watson(points)
+>>> triangles
+[(0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4)]
+>>> a, b, c = (points[vertex] for vertex in triangles[0])
+>>> circle = circumcircle(a, b, c)
+>>> circle.centre
+(Fraction(2, 1), Fraction(-3, 2))
+>>> float(circle.squared_radius) ** 0.5
+2.5
+"""
+
+from delone.reference.bowyer_watson import bowyer_watson
+from delone.reference.exact import (
+    Circle,
+    circumcircle,
+    exact_point,
+    incircle,
+    incircle_canonical,
+    orient,
+)
+from delone.reference.lawson import lawson
+
+__all__ = [
+    "Circle",
+    "bowyer_watson",
+    "circumcircle",
+    "exact_point",
+    "incircle",
+    "incircle_canonical",
+    "lawson",
+    "orient",
+]

@@ -1,0 +1,231 @@
+"""Bowyer-Watson: insert one point after the other, digging the cavity that each one sees.
+
+There is no super-triangle. A triangle that is merely large is wrong for some input, so the outside
+of the hull is covered by *ghost* triangles instead: one for each hull edge, with a third vertex at
+infinity. A ghost's "circle" is the open half plane beyond its edge, and the loop below treats both
+kinds of triangle alike.
+
+Bowyer, A. (1981), "Computing Dirichlet tessellations", The Computer Journal 24 (2), 162-166.
+Watson, D. F. (1981), "Computing the n-dimensional Delaunay tessellation with application to Voronoi
+polytopes", The Computer Journal 24 (2), 167-172.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
+from delone.reference.exact import exact_point, incircle_canonical, orient
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from delone.reference.exact import ExactPoint
+
+Triangle: TypeAlias = tuple[int, int, int]
+
+INFINITE = -1
+
+
+def bowyer_watson(points: Sequence[Sequence[Any]]) -> list[Triangle]:
+    """Triangulate points by the algorithm of Bowyer and Watson.
+
+    Parameters
+    ----------
+    points : sequence of pairs of numbers, length n
+        Integers, floats, fractions or decimals, all taken exactly.
+
+    Returns
+    -------
+    list of tuple of int
+        Triangles as counter-clockwise triples of row numbers, each beginning with its smallest, in
+        ascending order. Of equal points only the first appears.
+
+    Raises
+    ------
+    NonFiniteError
+        A coordinate is NaN or infinite.
+    DegenerateInputError
+        Fewer than three points are distinct, or all lie on one line.
+    ShapeError
+        A point has not two coordinates.
+
+    Notes
+    -----
+    Every triangle is tested against every point: O(n²) tests, each exact. Cocircular points are
+    triangulated canonically, as `incircle_canonical` says, so the answer does not depend on the
+    order of the points. Points on the hull's edges are vertices. Bowyer (1981), Watson (1981).
+
+    Examples
+    --------
+    >>> from delone.reference import bowyer_watson
+    >>> bowyer_watson([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+    [(0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4)]
+    """
+    exact = exact_rows(points)
+    rows = first_rows(exact)
+    a, b, c = first_triangle(exact, rows)
+    triangles = {(a, b, c), (b, a, INFINITE), (c, b, INFINITE), (a, c, INFINITE)}
+    for row in rows:
+        if row in (a, b, c):
+            continue
+        cavity = {t for t in triangles if in_conflict(exact, t, row)}
+        triangles -= cavity
+        triangles |= {(u, v, row) for u, v in boundary(cavity)}
+    return sorted(smallest_first(t) for t in triangles if INFINITE not in t)
+
+
+def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> bool:
+    """Tell whether a point lies inside the circle of a triangle, ghost or not.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    triangle : tuple of int
+        Counter-clockwise; one of the vertices may be `INFINITE`.
+    row : int
+        The point in question.
+
+    Returns
+    -------
+    bool
+        For a ghost: whether the point is beyond its hull edge, or on that edge between its ends.
+    """
+    if INFINITE not in triangle:
+        a, b, c = (points[vertex] for vertex in triangle)
+        return incircle_canonical(a, b, c, points[row]) > 0
+    # Turn the triangle so that infinity comes last: u, v is the hull edge, the outside on its left.
+    k = triangle.index(INFINITE)
+    u, v, p = points[triangle[k - 2]], points[triangle[k - 1]], points[row]
+    side = orient(u, v, p)
+    return side > 0 or (side == 0 and min(u, v) < p < max(u, v))
+
+
+def boundary(cavity: Iterable[Triangle]) -> set[tuple[int, int]]:
+    """Return the directed edges that bound a set of triangles.
+
+    Parameters
+    ----------
+    cavity : iterable of tuple of int
+        Counter-clockwise triangles.
+
+    Returns
+    -------
+    set of tuple of int
+        Edges u, v with the cavity on their left: those whose reverse is not in the cavity, too.
+    """
+    edges = {(t[k - 1], t[k]) for t in cavity for k in range(3)}
+    return {(u, v) for u, v in edges if (v, u) not in edges}
+
+
+def exact_rows(points: Sequence[Sequence[Any]]) -> list[ExactPoint]:
+    """Return points as integers, exactly, up to one common factor.
+
+    Parameters
+    ----------
+    points : sequence of pairs of numbers
+        The points.
+
+    Returns
+    -------
+    list of tuple of int
+        The points times the least common multiple of all their denominators. That changes no
+        orientation and no circle test, and integers are several times faster than fractions.
+
+    Raises
+    ------
+    NonFiniteError
+        A coordinate is NaN or infinite.
+    ShapeError
+        A point has not two coordinates.
+    """
+    exact, bad = [], []
+    for row, point in enumerate(points):
+        if len(point) != 2:
+            raise ShapeError(f"points must have two coordinates; row {row} has {len(point)}")
+        try:
+            exact.append(exact_point(point))
+        except (ValueError, OverflowError):
+            bad.append(row)
+    if bad:
+        raise NonFiniteError(
+            f"{len(bad)} rows hold NaN or infinity; first: {bad[0]}", rows=bad, count=len(bad)
+        )
+    scale = lcm(*(Fraction(number).denominator for point in exact for number in point))
+    return [(int(x * scale), int(y * scale)) for x, y in exact]
+
+
+def first_rows(points: Sequence[ExactPoint]) -> list[int]:
+    """Return the rows of the distinct points, each at its first occurrence.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+
+    Returns
+    -------
+    list of int
+        Ascending row numbers.
+    """
+    first: dict[ExactPoint, int] = {}
+    for row, point in enumerate(points):
+        first.setdefault(point, row)
+    return list(first.values())
+
+
+def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangle:
+    """Return the first two distinct points and the first one off their line.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    rows : sequence of int
+        The rows of the distinct ones.
+
+    Returns
+    -------
+    tuple of int
+        Counter-clockwise.
+
+    Raises
+    ------
+    DegenerateInputError
+        There is no such triangle.
+    """
+    chain = sorted(rows, key=lambda row: points[row])
+    if len(rows) < 3:
+        raise DegenerateInputError(
+            f"a triangulation needs three distinct points, got {len(rows)}",
+            reason="too few points",
+            chain=chain,
+        )
+    a, b, *others = rows
+    for c in others:
+        side = orient(points[a], points[b], points[c])
+        if side != 0:
+            return (a, b, c) if side > 0 else (b, a, c)
+    raise DegenerateInputError(
+        f"all {len(rows)} distinct points lie on one line", reason="collinear", chain=chain
+    )
+
+
+def smallest_first(triangle: Triangle) -> Triangle:
+    """Return the same triangle, turned so that its smallest vertex comes first.
+
+    Parameters
+    ----------
+    triangle : tuple of int
+        Three vertices.
+
+    Returns
+    -------
+    tuple of int
+        In the same cyclic order.
+    """
+    a, b, c = triangle
+    return min((a, b, c), (b, c, a), (c, a, b))

@@ -1,0 +1,225 @@
+"""Signs and circles of exact points.
+
+A float denotes one rational number exactly, so arithmetic on `fractions.Fraction` (or on integers)
+gives the true sign of any polynomial in the coordinates. Signs follow the package: `orient` is
+positive for a left turn, `incircle` is positive inside a counter-clockwise circle.
+
+The empty-circle test is due to Delaunay, B. (1934), "Sur la sphère vide", Bulletin de l'Académie
+des Sciences de l'URSS, Classe des sciences mathématiques et naturelles 6, 793-800.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from numbers import Rational
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+from delone.errors import DegenerateInputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+ExactNumber: TypeAlias = int | Fraction
+ExactPoint: TypeAlias = tuple[ExactNumber, ExactNumber]
+
+
+class Circle(NamedTuple):
+    """A circle with rational centre.
+
+    Parameters
+    ----------
+    centre : tuple of Fraction
+        Its centre.
+    squared_radius : Fraction
+        The square of its radius, which is rational where the radius itself need not be.
+    """
+
+    centre: tuple[Fraction, Fraction]
+    squared_radius: Fraction
+
+
+def exact_point(point: Sequence[Any]) -> ExactPoint:
+    """Return the two coordinates of a point as exact numbers.
+
+    Parameters
+    ----------
+    point : sequence of two numbers
+        Integers, floats of any width, fractions or decimals.
+
+    Returns
+    -------
+    tuple of int or Fraction
+        The same values.
+
+    Raises
+    ------
+    ValueError, OverflowError
+        NaN or infinity denotes no number.
+
+    Examples
+    --------
+    >>> from delone.reference import exact_point
+    >>> exact_point((3, 0.5))
+    (3, Fraction(1, 2))
+    """
+    x, y = point
+    return _exact_number(x), _exact_number(y)
+
+
+def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
+    """Tell on which side of the line from a to b the point c lies.
+
+    Parameters
+    ----------
+    a, b, c : sequence of two numbers
+        Points.
+
+    Returns
+    -------
+    int
+        1 when c lies to the left (a, b, c turn counter-clockwise), -1 to the right, 0 on the line.
+
+    Examples
+    --------
+    >>> from delone.reference import orient
+    >>> orient((0, 0), (1, 0), (0, 5e-324))
+    1
+    >>> orient((0, 0), (1, 1), (3, 3))
+    0
+    """
+    (ax, ay), (bx, by), (cx, cy) = map(exact_point, (a, b, c))
+    return _sign((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+
+
+def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]) -> int:
+    """Tell whether d lies inside the circle through a, b and c.
+
+    Parameters
+    ----------
+    a, b, c : sequence of two numbers
+        Points on the circle, counter-clockwise; clockwise, the sign is turned round.
+    d : sequence of two numbers
+        The point in question.
+
+    Returns
+    -------
+    int
+        1 inside, 0 on the circle, -1 outside.
+
+    Notes
+    -----
+    The sign of a determinant: each point is lifted to the paraboloid z = x² + y², and d is inside
+    the circle exactly when its lifted image lies below the plane through the other three.
+
+    Examples
+    --------
+    >>> from delone.reference import incircle
+    >>> square = (0, 0), (1, 0), (1, 1)
+    >>> incircle(*square, (0.5, 0.5)), incircle(*square, (0, 1)), incircle(*square, (0, 1.5))
+    (1, 0, -1)
+    """
+    (ax, ay), (bx, by), (cx, cy), (dx, dy) = map(exact_point, (a, b, c, d))
+    ax, ay, bx, by, cx, cy = ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy
+    return _sign(
+        (ax * ax + ay * ay) * (bx * cy - by * cx)
+        + (bx * bx + by * by) * (cx * ay - cy * ax)
+        + (cx * cx + cy * cy) * (ax * by - ay * bx)
+    )
+
+
+def incircle_canonical(
+    a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]
+) -> int:
+    """Tell whether d lies inside the circle through a, b and c, with every tie broken.
+
+    Parameters
+    ----------
+    a, b, c : sequence of two numbers
+        Points on the circle, counter-clockwise; clockwise, the sign is turned round.
+    d : sequence of two numbers
+        The point in question.
+
+    Returns
+    -------
+    int
+        1 inside, -1 outside; 0 only when all four are on one line or two of them coincide.
+
+    Notes
+    -----
+    The lifted point of each vertex is lowered by an amount that is infinitely small, and infinitely
+    larger for the lexicographically smaller of any two points. Where the four are cocircular, only
+    the amount of the smallest of them counts: lowering d brings it inside, lowering a corner of the
+    triangle tilts the plane by that corner's barycentric coordinate at d. The result depends on
+    coordinates alone, never on the order in which points come.
+
+    Examples
+    --------
+    The corner (0, 0) of the square is the smallest, so it sees the opposite one:
+
+    >>> from delone.reference import incircle_canonical
+    >>> incircle_canonical((0, 0), (1, 0), (1, 1), (0, 1))
+    -1
+    >>> incircle_canonical((1, 0), (1, 1), (0, 1), (0, 0))
+    1
+    """
+    sign = incircle(a, b, c, d)
+    if sign != 0:
+        return sign
+    a, b, c, d = map(exact_point, (a, b, c, d))
+    smallest = min(a, b, c, d)
+    if smallest == d:
+        return orient(a, b, c)
+    if smallest == a:
+        return -orient(d, b, c)
+    if smallest == b:
+        return -orient(a, d, c)
+    return -orient(a, b, d)
+
+
+def circumcircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Circle:
+    """Return the circle through three points.
+
+    Parameters
+    ----------
+    a, b, c : sequence of two numbers
+        Points, not on one line.
+
+    Returns
+    -------
+    Circle
+        Its centre and squared radius, exactly.
+
+    Raises
+    ------
+    DegenerateInputError
+        The points are on one line.
+
+    Examples
+    --------
+    >>> from delone.reference import circumcircle
+    >>> circumcircle((0, 0), (4, 0), (2, 1))
+    Circle(centre=(Fraction(2, 1), Fraction(-3, 2)), squared_radius=Fraction(25, 4))
+    """
+    (ax, ay), (bx, by), (cx, cy) = map(exact_point, (a, b, c))
+    bx, by, cx, cy = bx - ax, by - ay, cx - ax, cy - ay
+    twice_cross = 2 * (bx * cy - by * cx)
+    if twice_cross == 0:
+        raise DegenerateInputError(
+            "no circle passes through points on one line", reason="collinear"
+        )
+    b_square, c_square = bx * bx + by * by, cx * cx + cy * cy
+    x = Fraction(cy * b_square - by * c_square) / twice_cross
+    y = Fraction(bx * c_square - cx * b_square) / twice_cross
+    return Circle((ax + x, ay + y), x * x + y * y)
+
+
+def _exact_number(value: Any) -> ExactNumber:
+    if isinstance(value, int | Fraction):
+        return value
+    if isinstance(value, Rational):  # NumPy's integers, which would overflow silently
+        return Fraction(int(value.numerator), int(value.denominator))
+    return Fraction(*value.as_integer_ratio())
+
+
+def _sign(number: ExactNumber) -> int:
+    return (number > 0) - (number < 0)

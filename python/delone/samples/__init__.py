@@ -1,0 +1,114 @@
+"""Two real surveys that travel in the wheel, with their credits in CREDITS.md beside them.
+
+The files hold integer columns as NumPy writes them, so that NumPy alone reads them; what comes out
+are the nearest doubles to the surveyed decimals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.resources import files
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import frozen
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["Sample", "ahn3", "baja"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Sample:
+    """A real survey: points with heights, and where they come from.
+
+    Parameters
+    ----------
+    name : str
+        What it shows.
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates, read-only.
+    z : ndarray of float64, shape (n,)
+        Heights in metres, read-only.
+    attributes : mapping of str to ndarray
+        Other values of each point.
+    crs : str
+        Authority and code of the coordinate reference system, as ``"EPSG:28992"``.
+    credit : str
+        Who is to be named, and the licence.
+    """
+
+    name: str
+    points: NDArray[np.float64]
+    z: NDArray[np.float64]
+    attributes: Mapping[str, NDArray[Any]]
+    crs: str
+    credit: str
+
+
+def ahn3() -> Sample:
+    """Return airborne laser points of 100 m by 100 m of the Dutch coast.
+
+    Returns
+    -------
+    Sample
+        212,550 points, all distinct in the plane; coordinates are whole millimetres, each the
+        nearest double. Attribute ``classification``: 2 ground, 6 building.
+
+    Examples
+    --------
+    >>> from delone.samples import ahn3
+    >>> sample = ahn3()
+    >>> sample.points.shape, sample.crs
+    ((212550, 2), 'EPSG:28992')
+    """
+    columns = _columns("ahn3.npz")
+    return Sample(
+        name="AHN3, a crop of 100 m by 100 m",
+        points=frozen(np.column_stack((columns["x"], columns["y"])) / 1000),
+        z=frozen(columns["z"] / 1000),
+        attributes=MappingProxyType({"classification": frozen(columns["classification"])}),
+        crs="EPSG:28992",
+        credit="Actueel Hoogtebestand Nederland (AHN3), CC0; crop by Hugo Ledoux (sst), MIT",
+    )
+
+
+def baja() -> Sample:
+    """Return ship soundings off Baja California: dense along the tracks, empty between.
+
+    Returns
+    -------
+    Sample
+        82,970 points in degrees east and north, 80,983 of them distinct; heights are negative
+        depths. No attributes.
+
+    Examples
+    --------
+    >>> from delone.samples import baja
+    >>> sample = baja()
+    >>> sample.points.shape, float(sample.z.min())
+    ((82970, 2), -7708.0)
+    """
+    columns = _columns("baja.npz")
+    return Sample(
+        name="Soundings off Baja California",
+        points=frozen(np.column_stack((columns["x"], columns["y"])) / 100_000),
+        z=frozen(columns["z"].astype(np.float64)),
+        attributes=MappingProxyType({}),
+        crs="EPSG:4326",
+        credit="NOAA and the GMT tutorial, public domain; file by the Verde Developers, BSD-3",
+    )
+
+
+def _columns(name: str) -> dict[str, NDArray[np.integer]]:
+    """Read integer columns; x, y and z are stored as steps from row to row, which pack better."""
+    with (files(__name__) / name).open("rb") as file, np.load(file) as archive:
+        columns: dict[str, NDArray[np.integer]] = {key: archive[key] for key in archive.files}
+    for key in "xyz":
+        columns[key] = np.cumsum(columns[key], dtype=np.int64)
+    return columns

@@ -1,0 +1,168 @@
+"""What an exact check of a triangulation found: nothing, or the culprits by number.
+
+The checks themselves run in the core; this module only gives their answer a name for each kind of
+fault and words that a person can read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone.errors import InternalError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["ValidationReport"]
+
+_SHOWN = 5
+
+
+def _none() -> NDArray[np.int64]:
+    return np.empty(0, dtype=np.int64)
+
+
+def _no_pairs() -> NDArray[np.int64]:
+    return np.empty((0, 2), dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ValidationReport:
+    """The answer of ``validate()``: truthy when the triangulation is right.
+
+    Every field is an array of culprits and empty when there is none.
+
+    Parameters
+    ----------
+    orientation : ndarray of int, shape (k,)
+        Triangles that are not counter-clockwise: flat or turned over.
+    edges : ndarray of int, shape (k, 2)
+        Directed edges that more than one triangle uses.
+    neighbors : ndarray of int, shape (k,)
+        Triangles whose row of neighbours is wrong.
+    hull : ndarray of int, shape (k, 2)
+        Boundary edges that are no part of the convex hull's cycle, or have a point outside.
+    missing : ndarray of int, shape (k,)
+        Rows of distinct points that no triangle uses.
+    delaunay : ndarray of int, shape (k, 2)
+        Pairs of adjacent triangles of which one has the other's far vertex inside its circle.
+    ties : ndarray of int, shape (k, 2)
+        Pairs of adjacent triangles that share one circle but are not fanned from the
+        lexicographically smallest vertex.
+    count : ndarray of int, shape (2,) or (0,)
+        Number of triangles expected, 2n - h - 2, and found, where they differ.
+
+    Attributes
+    ----------
+    ok : bool
+        True when there is no culprit.
+
+    Examples
+    --------
+    >>> from delone.validation import ValidationReport
+    >>> report = ValidationReport(missing=[7])
+    >>> bool(report)
+    False
+    >>> print(report)
+    not a canonical Delaunay triangulation:
+      missing: 1 point is no vertex: 7
+    >>> print(ValidationReport())
+    a canonical Delaunay triangulation
+    """
+
+    orientation: NDArray[np.integer] = field(default_factory=_none)
+    edges: NDArray[np.integer] = field(default_factory=_no_pairs)
+    neighbors: NDArray[np.integer] = field(default_factory=_none)
+    hull: NDArray[np.integer] = field(default_factory=_no_pairs)
+    missing: NDArray[np.integer] = field(default_factory=_none)
+    delaunay: NDArray[np.integer] = field(default_factory=_no_pairs)
+    ties: NDArray[np.integer] = field(default_factory=_no_pairs)
+    count: NDArray[np.integer] = field(default_factory=_none)
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            array = np.array(getattr(self, each.name), dtype=np.int64)
+            array.flags.writeable = False
+            object.__setattr__(self, each.name, array)
+
+    @classmethod
+    def from_culprits(cls, culprits: Mapping[str, NDArray[np.integer]]) -> ValidationReport:
+        """Make a report of what the core found.
+
+        Parameters
+        ----------
+        culprits : mapping of str to ndarray of int
+            Culprits by kind of fault; what is absent is right.
+
+        Returns
+        -------
+        ValidationReport
+            The report.
+
+        Raises
+        ------
+        InternalError
+            The core names a fault that this class does not know.
+
+        Examples
+        --------
+        >>> from delone.validation import ValidationReport
+        >>> bool(ValidationReport.from_culprits({}))
+        True
+        """
+        unknown = set(culprits) - {each.name for each in fields(cls)}
+        if unknown:
+            raise InternalError(f"unknown kinds of fault: {', '.join(sorted(unknown))}")
+        return cls(**culprits)
+
+    @property
+    def ok(self) -> bool:
+        """True when there is no culprit."""
+        return all(getattr(self, each.name).size == 0 for each in fields(self))
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        if self.ok:
+            return "a canonical Delaunay triangulation"
+        lines = ["not a canonical Delaunay triangulation:"]
+        for name, (one, many) in _SENTENCES.items():
+            culprits = getattr(self, name)
+            if len(culprits):
+                sentence = one if len(culprits) == 1 else many
+                lines.append(f"  {name}: {len(culprits)} {sentence}: {_list(culprits)}")
+        if self.count.size:
+            lines.append(f"  count: {self.count[1]} triangles, {self.count[0]} expected")
+        return "\n".join(lines)
+
+
+_SENTENCES = {
+    "orientation": ("triangle is not counter-clockwise", "triangles are not counter-clockwise"),
+    "edges": ("directed edge is used more than once", "directed edges are used more than once"),
+    "neighbors": ("triangle has wrong neighbours", "triangles have wrong neighbours"),
+    "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
+    "missing": ("point is no vertex", "points are no vertices"),
+    "delaunay": (
+        "pair of triangles is not locally Delaunay",
+        "pairs of triangles are not locally Delaunay",
+    ),
+    "ties": (
+        "pair of cocircular triangles is not canonical",
+        "pairs of cocircular triangles are not canonical",
+    ),
+}
+
+
+def _list(culprits: NDArray[np.integer]) -> str:
+    """Name the first few culprits, pairs joined by a hyphen."""
+    shown = [
+        "-".join(map(str, culprit)) if isinstance(culprit, list) else str(culprit)
+        for culprit in culprits[:_SHOWN].tolist()
+    ]
+    return ", ".join(shown) + (", ..." if len(culprits) > _SHOWN else "")
