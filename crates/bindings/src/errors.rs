@@ -54,10 +54,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         }
         Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
         Error::Shape(message) => ("ShapeError", message.clone()),
-        Error::Internal(message) => (
-            "InternalError",
-            format!("{message}: this is a bug in delone, please report the input"),
-        ),
+        Error::Internal(message) => ("InternalError", message.clone()),
     };
     let class = py.import("delone.errors")?.getattr(class)?;
     Ok(PyErr::from_value(class.call((message,), Some(&details))?))

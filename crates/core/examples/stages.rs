@@ -1,4 +1,4 @@
-//! Nanoseconds a point and stage, median of several runs, on points made here:
+//! Nanoseconds a point and stage, median and minimum of several runs, on points made here:
 //! `cargo run --release -p delone-core --example stages -- 1000000 5 uniform grid`.
 //! The environment may set WORKERS, METHOD and CHECK (validates the first run).
 
@@ -57,7 +57,7 @@ fn main() {
         print!("{set:8} {n:9}");
         for (name, times) in &mut table {
             times.sort_by(f64::total_cmp);
-            print!("  {name} {:6.1}", times[times.len() / 2]);
+            print!("  {name} {:6.1} ({:5.1})", times[times.len() / 2], times[0]);
         }
         println!(" ns");
     }

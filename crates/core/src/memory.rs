@@ -20,6 +20,15 @@ pub fn with_room<T>(n: usize) -> Result<Vec<T>> {
     Ok(v)
 }
 
+/// Empties `v` and gives it room for `n` items.
+pub fn clear_with_room<T>(v: &mut Vec<T>, n: usize) -> Result<()> {
+    v.clear();
+    if v.capacity() < n {
+        *v = with_room(n)?;
+    }
+    Ok(())
+}
+
 /// A vector of `n` copies of `value`.
 pub fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>> {
     let mut v = with_room(n)?;

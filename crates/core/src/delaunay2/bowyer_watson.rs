@@ -13,7 +13,6 @@ use std::ops::Range;
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::cavity::Kernel;
-use super::walk::walk;
 use crate::error::Result;
 use crate::mesh2::{Code, Patch, triangle};
 use crate::points::Extent;
@@ -49,23 +48,21 @@ pub fn build(
     let mut order = Rounds::over(n as u32)
         .map(|i| block.start + i)
         .filter(|v| !first.contains(v));
-    let mut budget = BUDGET * n * (n.ilog2() as usize + 1);
+    let budget = BUDGET * n * (n.ilog2() as usize + 1);
     let mut near = triangle(kernel.ghost());
     let mut until_watch = WATCH_EVERY;
     let mut next = order.next();
     while let Some(p) = next {
         next = order.next();
         let aim = points[next.unwrap_or(p) as usize];
-        let (seed, steps) = walk(kernel.mesh(), points, near, points[p as usize]);
-        near = kernel.insert(p, seed, aim);
-        let Some(left) = budget.checked_sub(kernel.carved() + steps) else {
-            return Ok(None);
-        };
-        budget = left;
+        near = kernel.insert(p, near, aim);
         until_watch -= 1;
         if until_watch == 0 {
             watch.check()?;
             until_watch = WATCH_EVERY;
+            if kernel.work() > budget {
+                return Ok(None);
+            }
         }
     }
     Ok(Some(kernel.ghost()))

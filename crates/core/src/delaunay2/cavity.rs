@@ -18,7 +18,9 @@
 //! A record is free once its two outer edges are on the stack; a cavity of k triangles
 //! gives its k records and two fresh ones to the k + 2 triangles of the star.
 
-use delone_predicates::{Point2, Sign, incircle_exact, lexicographic, orient2d, tie_flips};
+use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
+
+use super::walk::walk;
 
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 use crate::points::Extent;
@@ -31,6 +33,10 @@ use crate::points::Extent;
 /// two sums add 2 e, of (la lb + lb lc + lc la) in all, to first order. That sum itself is computed
 /// to 10 e. 16 e leaves room for all terms of second order.
 const INCIRCLE_BOUND: f64 = 16.0 * (f64::EPSILON / 2.0);
+
+/// Relative bound of a cross product against the sum of the lifts: 4 units, halved by the
+/// inequality of means; twice that leaves room.
+const TURN_BOUND: f64 = 4.0 * (f64::EPSILON / 2.0);
 
 /// What underflow may add, for differences up to 1: less than 2^6 products each err by at most
 /// 2^-1075 and are multiplied by at most 2 M^2 for differences up to M.
@@ -53,6 +59,15 @@ struct Rim {
     cross: f64,
 }
 
+/// A triangle in conflict, as seen from the new point.
+struct Seed {
+    /// The half-edge opposite the first corner.
+    e: Code,
+    corners: [Ray; 3],
+    /// Cross products of the two corners of each edge, by opposite corner.
+    crosses: [f64; 3],
+}
+
 #[inline]
 fn cross(a: Point2, b: Point2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
@@ -63,7 +78,7 @@ pub struct Kernel<'a> {
     points: &'a [Point2],
     mesh: Patch<'a>,
     ghost: u32,
-    carved: usize,
+    work: usize,
     rim: Vec<Rim>,
     free: Vec<u32>,
     underflow: f64,
@@ -86,21 +101,16 @@ impl<'a> Kernel<'a> {
             points,
             mesh,
             ghost,
-            carved: 0,
+            work: 0,
             rim: Vec::new(),
             free: Vec::new(),
             underflow,
         }
     }
 
-    /// The mesh so far.
-    pub fn mesh(&self) -> &Patch<'a> {
-        &self.mesh
-    }
-
-    /// The triangles that the last insertion took away.
-    pub fn carved(&self) -> usize {
-        self.carved
+    /// Triangles met so far, on the way and in cavities.
+    pub fn work(&self) -> usize {
+        self.work
     }
 
     /// The infinite corner of some ghost.
@@ -124,32 +134,36 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Inserts vertex `p`, which lies in the closed triangle `seed`, or strictly beyond the hull
-    /// edge of the ghost `seed`, and is no vertex yet. Returns the new triangle that points
-    /// towards `aim`.
-    pub fn insert(&mut self, p: u32, seed: u32, aim: Point2) -> u32 {
+    /// Inserts vertex `p`, which is none yet, and looks for its place from triangle `near` on.
+    /// Returns the new triangle that points towards `aim`.
+    pub fn insert(&mut self, p: u32, near: u32, aim: Point2) -> u32 {
         let origin = self.points[p as usize];
         let aim = [aim[0] - origin[0], aim[1] - origin[1]];
-        let [a, b, c] = self.mesh.corners(seed).map(|v| self.ray(v, origin));
-        let [across_a, across_b, across_c] = self.mesh.opposites(seed);
+        let Seed {
+            e,
+            corners: [a, b, c],
+            crosses: [bc, ca, ab],
+        } = self.seed(p, near);
         self.rim.clear();
         self.free.clear();
-        self.free.push(seed);
-        self.carved = 1;
+        let spare = [self.mesh.fresh(), self.mesh.fresh()];
+        self.free.extend_from_slice(&spare);
+        self.free.push(triangle(e));
+        self.work += 1;
         self.rim.push(Rim {
-            across: across_b,
+            across: self.mesh.opposite(next(e)),
             end: a,
-            cross: cross(c.d, a.d),
+            cross: ca,
         });
         self.rim.push(Rim {
-            across: across_a,
+            across: self.mesh.opposite(e),
             end: c,
-            cross: cross(b.d, c.d),
+            cross: bc,
         });
         let mut edge = Rim {
-            across: across_c,
+            across: self.mesh.opposite(prev(e)),
             end: b,
-            cross: cross(a.d, b.d),
+            cross: ab,
         };
         let mut from = a;
         let mut side = cross(a.d, aim);
@@ -173,7 +187,7 @@ impl<'a> Kernel<'a> {
             if conflict {
                 let e = edge.across;
                 self.free.push(triangle(e));
-                self.carved += 1;
+                self.work += 1;
                 let beyond_left = self.mesh.opposite(prev(e));
                 self.rim.push(Rim {
                     across: beyond_left,
@@ -215,13 +229,68 @@ impl<'a> Kernel<'a> {
         if hint == u32::MAX { last } else { hint }
     }
 
+    /// A triangle in conflict with vertex `p`: from `near` on, across edges that have p on their
+    /// other side, to the first whose circle holds p. Such a walk ends (see `walk`).
+    #[inline]
+    fn seed(&mut self, p: u32, near: u32) -> Seed {
+        let origin = self.points[p as usize];
+        let mut e = 8 * near;
+        let [mut a, mut b, mut c] = self.mesh.corners(near).map(|v| self.ray(v, origin));
+        loop {
+            //        c               The cross products tell on which side of its edges p
+            //      /   \             lies, and with the lifts whether its circle holds p.
+            //     a --- b
+            let [bc, ca, ab] = [cross(b.d, c.d), cross(c.d, a.d), cross(a.d, b.d)];
+            let det = a.lift * bc + b.lift * ca + c.lift * ab;
+            let sum = a.lift + b.lift;
+            let bound = INCIRCLE_BOUND * (a.lift * b.lift + c.lift * sum) + self.underflow;
+            if det > bound {
+                return Seed {
+                    e,
+                    corners: [a, b, c],
+                    crosses: [bc, ca, ab],
+                };
+            }
+            let certain = -(TURN_BOUND * (sum + c.lift) + self.underflow);
+            // Nothing is certain where a corner is infinite, which makes all of this NaN.
+            if det < -bound && bc < certain {
+                (b, c) = (c, b);
+            } else if det < -bound && ca < certain {
+                e = next(e);
+                (b, c) = (a, c);
+            } else if det < -bound && ab < certain {
+                e = prev(e);
+                (b, c) = (b, a);
+            } else {
+                return self.seed_exactly(p, triangle(e));
+            }
+            self.work += 1;
+            e = self.mesh.opposite(e);
+            a = self.ray(self.mesh.vertex(e), origin);
+        }
+    }
+
+    /// The same, by a walk with exact signs to the triangle that holds p.
+    #[cold]
+    #[inline(never)]
+    fn seed_exactly(&mut self, p: u32, near: u32) -> Seed {
+        let origin = self.points[p as usize];
+        let (seed, steps) = walk(&self.mesh, self.points, near, origin);
+        self.work += steps;
+        let [a, b, c] = self.mesh.corners(seed).map(|v| self.ray(v, origin));
+        let crosses = [cross(b.d, c.d), cross(c.d, a.d), cross(a.d, b.d)];
+        Seed {
+            e: 8 * seed,
+            corners: [a, b, c],
+            crosses,
+        }
+    }
+
     /// Writes a triangle of the star in a free record and links its outer edge.
     #[inline]
     fn spoke(&mut self, corners: [u32; 3], across: Code) -> u32 {
-        let t = match self.free.pop() {
-            Some(t) => t,
-            None => self.mesh.fresh(),
-        };
+        // The two fresh records lie at the bottom, so that the stack never runs empty.
+        let t = self.free.pop().unwrap_or_default();
         self.mesh.set(t, corners);
         self.mesh.link(across, 8 * t);
         t
@@ -236,11 +305,7 @@ impl<'a> Kernel<'a> {
         let inf = self.mesh.infinite();
         let (a, b) = match (u == inf, v == inf, w == inf) {
             (false, false, false) => {
-                return match incircle_exact(at(v), at(u), at(w), at(p)) {
-                    Sign::Positive => true,
-                    Sign::Negative => false,
-                    Sign::Zero => tie_flips(at(u), at(v), at(p), at(w)),
-                };
+                return incircle_canonical(at(v), at(u), at(w), at(p)) == Sign::Positive;
             }
             (true, ..) => (w, v),
             (_, true, _) => (u, w),

@@ -1,11 +1,12 @@
 //! The distinct points of an input as the methods want them: in blocks, each along the curve.
 
+use std::sync::Mutex;
+
 use delone_predicates::Point2;
 
 use super::blocks::{Blocks, Cuts, split};
-use super::curve::along_curve;
+use super::curve::{Scratch, along_curve};
 use crate::error::Result;
-use crate::memory::zeroed;
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -27,52 +28,45 @@ pub struct Arranged {
 /// Arranges finite `points`; the same for any number of workers.
 pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arranged> {
     let cuts = Cuts::of(points);
-    // One block keeps its rows and needs no copy.
-    let split = if cuts.blocks() > 1 {
-        Some(split(points, &cuts, workers)?)
-    } else {
-        None
-    };
+    let Blocks {
+        mut points,
+        mut rows,
+        starts,
+    } = split(points, &cuts, workers)?;
     watch.check()?;
-    let whole = [0, points.len()];
-    let (from, rows, starts) = match &split {
-        Some(Blocks {
-            points,
-            rows,
-            starts,
-        }) => (&points[..], Some(&rows[..]), &starts[..]),
-        None => (points, None, &whole[..]),
-    };
+    let (mut rest_points, mut rest_rows) = (&mut points[..], &mut rows[..]);
+    let mut tasks = Vec::with_capacity(cuts.blocks());
+    for w in starts.windows(2) {
+        let (p, q) = rest_points.split_at_mut(w[1] - w[0]);
+        let (r, s) = rest_rows.split_at_mut(w[1] - w[0]);
+        tasks.push((p, r));
+        (rest_points, rest_rows) = (q, s);
+    }
+    // As many blocks are in work as there are workers, and each needs room for its time only.
+    let rooms = Mutex::new(Vec::new());
+    let ordered = parallel::map(workers, tasks, |(points, rows)| {
+        let room = rooms.lock().ok().and_then(|mut rooms| rooms.pop());
+        let mut room: Scratch = room.unwrap_or_default();
+        let ordered = along_curve(points, rows, &mut room, watch);
+        if let Ok(mut rooms) = rooms.lock() {
+            rooms.push(room);
+        }
+        ordered
+    });
     let mut out = Arranged {
-        points: zeroed(points.len() + 1)?,
-        rows: zeroed(points.len())?,
+        points,
+        rows,
         duplicates: Vec::new(),
         starts: vec![0],
         cuts,
     };
-    let (mut rest_points, mut rest_rows) = (&mut out.points[..], &mut out.rows[..]);
-    let mut tasks = Vec::with_capacity(starts.len());
-    for range in starts.windows(2).map(|w| w[0]..w[1]) {
-        let (p, q) = rest_points.split_at_mut(range.len());
-        let (r, s) = rest_rows.split_at_mut(range.len());
-        tasks.push((range, (p, r)));
-        (rest_points, rest_rows) = (q, s);
-    }
-    let ordered = parallel::map(workers, tasks, |(range, out)| {
-        along_curve(
-            &from[range.clone()],
-            rows.map(|rows| &rows[range]),
-            out,
-            watch,
-        )
-    });
     let mut distinct = Vec::with_capacity(ordered.len());
     for block in ordered {
         let (count, duplicates) = block?;
         distinct.push(count);
         out.duplicates.extend(duplicates);
     }
-    close_up(&mut out, starts, &distinct);
+    close_up(&mut out, &starts, &distinct);
     out.duplicates.sort_unstable();
     Ok(out)
 }

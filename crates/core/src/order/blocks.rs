@@ -5,7 +5,7 @@
 use delone_predicates::{Point2, lexicographic};
 
 use crate::error::Result;
-use crate::memory::zeroed;
+use crate::memory::{with_room, zeroed};
 use crate::parallel;
 use crate::points::Extent;
 
@@ -90,7 +90,13 @@ impl Cuts {
     fn block(&self, p: Point2) -> usize {
         let mut node = 0;
         while let Some(cut) = self.cuts.get(node) {
-            node = 2 * node + 2 - usize::from(cut.axis.before(p, cut.at));
+            // The leading coordinates decide without a branch; ties are rare.
+            let k = usize::from(cut.axis == Axis::Y);
+            let mut left = p[k] < cut.at[k];
+            if p[k] == cut.at[k] {
+                left = cut.axis.before(p, cut.at);
+            }
+            node = 2 * node + 2 - usize::from(left);
         }
         node - self.cuts.len()
     }
@@ -115,7 +121,7 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
 /// Points sorted into blocks, in the order of their rows within each.
 #[derive(Debug)]
 pub struct Blocks {
-    /// The points, block after block.
+    /// The points, block after block, with room for one more.
     pub points: Vec<Point2>,
     /// Their rows.
     pub rows: Vec<u32>,
@@ -126,6 +132,17 @@ pub struct Blocks {
 /// Sorts `points` into the blocks of `cuts`.
 pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks> {
     let blocks = cuts.blocks();
+    if blocks == 1 {
+        let mut rows = with_room(points.len())?;
+        rows.extend(0..points.len() as u32);
+        let mut all = with_room(points.len() + 1)?;
+        all.extend_from_slice(points);
+        return Ok(Blocks {
+            points: all,
+            rows,
+            starts: vec![0, points.len()],
+        });
+    }
     let shares: Vec<&[Point2]> = points.chunks(SHARE).collect();
     let classified = parallel::map(workers, shares, |share| {
         let mut counts = vec![0usize; blocks];
@@ -140,7 +157,8 @@ pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks> {
         (block_of, counts)
     });
     // Each share writes its part of each block: cut the outputs into those parts, block by block.
-    let mut out_points: Vec<Point2> = zeroed(points.len())?;
+    let mut out_points: Vec<Point2> = zeroed(points.len() + 1)?;
+    out_points.pop(); // Room for one more.
     let mut out_rows: Vec<u32> = zeroed(points.len())?;
     let mut starts = vec![0];
     let mut parts: Vec<Vec<_>> = classified

@@ -9,7 +9,7 @@ use delone_predicates::{Point2, lexicographic};
 
 use super::{hilbert, radix};
 use crate::error::Result;
-use crate::memory::with_room;
+use crate::memory::{clear_with_room, with_room};
 use crate::points::Extent;
 use crate::watch::Watch;
 
@@ -56,13 +56,21 @@ impl Cells {
     }
 }
 
-/// Orders the points of a block into `out` and returns how many are distinct, with
-/// `[row, first row of the same point]` for each further row. `rows` are the block's rows, which
-/// ascend; where there are none, rows are places.
+/// Room that one block after the other uses.
+#[derive(Default)]
+pub struct Scratch {
+    items: Vec<u64>,
+    other: Vec<u64>,
+    points: Vec<Point2>,
+    rows: Vec<u32>,
+}
+
+/// Orders the `points` of a block and their `rows`, which ascend: distinct points first, whose
+/// number is returned with `[row, first row of the same point]` for each further row.
 pub fn along_curve(
-    points: &[Point2],
-    rows: Option<&[u32]>,
-    out: (&mut [Point2], &mut [u32]),
+    points: &mut [Point2],
+    rows: &mut [u32],
+    scratch: &mut Scratch,
     watch: &Watch,
 ) -> Result<(usize, Vec<[u32; 2]>)> {
     let cells = Cells::of(&Extent::of(points.iter().copied()));
@@ -72,18 +80,29 @@ pub fn along_curve(
         .min(32);
     let low_bit = 32 - fine;
     let mask = u64::MAX << (32 + low_bit);
-    let mut items = with_room(points.len())?;
+    let Scratch {
+        items,
+        other,
+        points: to,
+        rows: to_rows,
+    } = scratch;
+    clear_with_room(items, points.len())?;
+    clear_with_room(to, points.len())?;
+    clear_with_room(to_rows, points.len())?;
     items.extend(
         (0u64..)
-            .zip(points)
+            .zip(&*points)
             .map(|(i, &p)| cells.key(p) << 32 & mask | i),
     );
     watch.check()?;
-    radix::sort(&mut items, low_bit)?;
+    radix::sort(items, other, low_bit)?;
     watch.check()?;
-    order_runs(points, &mut items);
+    order_runs(points, items);
     watch.check()?;
-    Ok(collect(points, rows, &items, out))
+    let duplicates = collect(points, rows, items, to, to_rows);
+    points[..to.len()].copy_from_slice(to);
+    rows[..to.len()].copy_from_slice(to_rows);
+    Ok((to.len(), duplicates))
 }
 
 /// The rows of the finite points along the curve; for points of which nothing is built.
@@ -93,7 +112,7 @@ pub fn order_of(points: &[Point2]) -> Result<Vec<u32>> {
     let mut items = with_room(points.len())?;
     let rows = (0u64..).zip(points).filter(|(_, p)| finite(p));
     items.extend(rows.map(|(i, &p)| cells.key(p) << 32 | i));
-    radix::sort(&mut items, 0)?;
+    radix::sort(&mut items, &mut Vec::new(), 0)?;
     Ok(items.into_iter().map(|item| row(item) as u32).collect())
 }
 
@@ -142,28 +161,25 @@ fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
 
 fn collect(
     points: &[Point2],
-    rows: Option<&[u32]>,
+    rows: &[u32],
     items: &[u64],
-    (out_points, out_rows): (&mut [Point2], &mut [u32]),
-) -> (usize, Vec<[u32; 2]>) {
+    to: &mut Vec<Point2>,
+    to_rows: &mut Vec<u32>,
+) -> Vec<[u32; 2]> {
     let mut duplicates = Vec::new();
-    let mut last = [f64::NAN; 2];
-    let mut distinct = 0;
+    let (mut last, mut first) = ([f64::NAN; 2], 0);
     for &item in items {
-        let at = row(item);
-        let row = rows.map_or(at as u32, |rows| rows[at]);
         // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
-        let p = points[at].map(|x| x + 0.0);
+        let p = points[row(item)].map(|x| x + 0.0);
         if p == last {
-            duplicates.push([row, out_rows[distinct - 1]]);
+            duplicates.push([rows[row(item)], first]);
         } else {
-            out_points[distinct] = p;
-            out_rows[distinct] = row;
-            distinct += 1;
-            last = p;
+            (last, first) = (p, rows[row(item)]);
+            to.push(p);
+            to_rows.push(first);
         }
     }
-    (distinct, duplicates)
+    duplicates
 }
 
 #[cfg(test)]
@@ -171,9 +187,10 @@ mod tests {
     use super::*;
 
     fn ordered(points: &[Point2]) -> (Vec<Point2>, Vec<u32>, Vec<[u32; 2]>) {
-        let (mut to, mut rows) = (vec![[0.0; 2]; points.len()], vec![0; points.len()]);
+        let mut to = points.to_vec();
+        let mut rows: Vec<u32> = (0..points.len() as u32).collect();
         let (distinct, duplicates) =
-            along_curve(points, None, (&mut to, &mut rows), &Watch::idle()).unwrap();
+            along_curve(&mut to, &mut rows, &mut Scratch::default(), &Watch::idle()).unwrap();
         to.truncate(distinct);
         rows.truncate(distinct);
         (to, rows, duplicates)

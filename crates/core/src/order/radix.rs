@@ -2,7 +2,7 @@
 //! come in ascending stay ascending within a key.
 
 use crate::error::Result;
-use crate::memory::filled;
+use crate::memory::clear_with_room;
 
 const DIGIT: u32 = 8;
 const BUCKETS: usize = 1 << DIGIT;
@@ -10,15 +10,17 @@ const BUCKETS: usize = 1 << DIGIT;
 const SHORT: usize = 256;
 
 /// Sorts `items` by their upper 32 bits, of which those below `low_bit` are known to be zero.
-pub fn sort(items: &mut Vec<u64>, low_bit: u32) -> Result<()> {
+/// `other` is room for as many.
+pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32) -> Result<()> {
     if items.len() <= SHORT {
         items.sort_unstable();
         return Ok(());
     }
-    let mut other = filled(items.len(), 0)?;
+    clear_with_room(other, items.len())?;
+    other.resize(items.len(), 0);
     for shift in (32 + low_bit..64).step_by(DIGIT as usize) {
-        if scatter(items, &mut other, shift) {
-            std::mem::swap(items, &mut other);
+        if scatter(items, other, shift) {
+            std::mem::swap(items, other);
         }
     }
     Ok(())
@@ -63,7 +65,7 @@ mod tests {
             .collect();
         let mut expected = items.clone();
         expected.sort();
-        sort(&mut items, 16).unwrap();
+        sort(&mut items, &mut Vec::new(), 16).unwrap();
         assert_eq!(items, expected);
     }
 }
