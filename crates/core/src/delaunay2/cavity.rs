@@ -39,8 +39,9 @@ const INCIRCLE_BOUND: f64 = 16.0 * (f64::EPSILON / 2.0);
 const TURN_BOUND: f64 = 4.0 * (f64::EPSILON / 2.0);
 
 /// What underflow may add, for differences up to 1: less than 2^6 products each err by at most
-/// 2^-1075 and are multiplied by at most 2 M^2 for differences up to M.
-const UNDERFLOW: f64 = f64::from_bits(1 << 14);
+/// 2^-1075 and are multiplied by at most 2 M^2 for differences up to M. Far more than that, since
+/// a subnormal number would be slow on some processors.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// A vertex as seen from the new point.
 #[derive(Clone, Copy)]
@@ -57,6 +58,9 @@ struct Rim {
     end: Ray,
     /// The cross product of its two ends.
     cross: f64,
+    /// The vertex beyond. It is looked up when the edge is met and used when it is due, so that
+    /// the loads have time: 5 % of the whole.
+    apex: Ray,
 }
 
 /// A triangle in conflict, as seen from the new point.
@@ -134,6 +138,17 @@ impl<'a> Kernel<'a> {
         }
     }
 
+    #[inline]
+    fn rim(&self, across: Code, end: Ray, cross: f64, origin: Point2) -> Rim {
+        let apex = self.ray(self.mesh.vertex(across), origin);
+        Rim {
+            across,
+            end,
+            cross,
+            apex,
+        }
+    }
+
     /// Inserts vertex `p`, which is none yet, and looks for its place from triangle `near` on.
     /// Returns the new triangle that points towards `aim`.
     pub fn insert(&mut self, p: u32, near: u32, aim: Point2) -> u32 {
@@ -150,21 +165,11 @@ impl<'a> Kernel<'a> {
         self.free.extend_from_slice(&spare);
         self.free.push(triangle(e));
         self.work += 1;
-        self.rim.push(Rim {
-            across: self.mesh.opposite(next(e)),
-            end: a,
-            cross: ca,
-        });
-        self.rim.push(Rim {
-            across: self.mesh.opposite(e),
-            end: c,
-            cross: bc,
-        });
-        let mut edge = Rim {
-            across: self.mesh.opposite(prev(e)),
-            end: b,
-            cross: ab,
-        };
+        let last_edge = self.rim(self.mesh.opposite(next(e)), a, ca, origin);
+        self.rim.push(last_edge);
+        let middle = self.rim(self.mesh.opposite(e), c, bc, origin);
+        self.rim.push(middle);
+        let mut edge = self.rim(self.mesh.opposite(prev(e)), b, ab, origin);
         let mut from = a;
         let mut side = cross(a.d, aim);
         let (mut first, mut last, mut hint) = (u32::MAX, u32::MAX, u32::MAX);
@@ -173,7 +178,7 @@ impl<'a> Kernel<'a> {
             //      /   \          beyond it is in conflict, its edges u w and w v take
             //     v ---- u        the place of u v.
             //         p
-            let apex = self.ray(self.mesh.vertex(edge.across), origin);
+            let apex = edge.apex;
             let right = cross(from.d, apex.d);
             let left = cross(apex.d, edge.end.d);
             let (u, v, w) = (from.lift, edge.end.lift, apex.lift);
@@ -188,17 +193,10 @@ impl<'a> Kernel<'a> {
                 let e = edge.across;
                 self.free.push(triangle(e));
                 self.work += 1;
-                let beyond_left = self.mesh.opposite(prev(e));
-                self.rim.push(Rim {
-                    across: beyond_left,
-                    end: edge.end,
-                    cross: left,
-                });
-                edge = Rim {
-                    across: self.mesh.opposite(next(e)),
-                    end: apex,
-                    cross: right,
-                };
+                let beyond = [self.mesh.opposite(prev(e)), self.mesh.opposite(next(e))];
+                let second = self.rim(beyond[0], edge.end, left, origin);
+                self.rim.push(second);
+                edge = self.rim(beyond[1], apex, right, origin);
                 continue;
             }
             let t = self.spoke([p, from.vertex, edge.end.vertex], edge.across);

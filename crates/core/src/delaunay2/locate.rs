@@ -4,6 +4,9 @@
 //! first start is the best of a sample (E. P. Mücke, I. Saias and B. Zhu, "Fast randomized point
 //! location without preprocessing", 1996). Visibility walks end on Delaunay triangulations (see
 //! `walk`); on other arrays a budget of steps ends them.
+//!
+//! A query on an edge or a vertex is in several triangles. The first of them is the answer, so that
+//! it depends neither on where a walk came from nor, thereby, on the other queries and the threads.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -51,11 +54,15 @@ fn find_part(given: Given, queries: &[Point2], part: &[u32], watch: &Watch) -> R
         return Ok(found);
     };
     let mut near = sample(given, queries[head as usize]);
+    let mut star = Star {
+        vertex: -1,
+        first: 0,
+    };
     for (i, &row) in part.iter().enumerate() {
         if i % WATCH_EVERY == 0 {
             watch.check()?;
         }
-        let triangle = walk(given, near, queries[row as usize])?;
+        let triangle = walk(given, near, queries[row as usize], &mut star)?;
         found.push(triangle.map_or(-1, |t| t as i32));
         near = triangle.unwrap_or(near);
     }
@@ -76,7 +83,7 @@ fn sample(given: Given, q: Point2) -> usize {
         .unwrap_or(0)
 }
 
-fn walk(given: Given, from: usize, q: Point2) -> Result<Option<usize>> {
+fn walk(given: Given, from: usize, q: Point2, star: &mut Star) -> Result<Option<usize>> {
     let mut t = from;
     let mut came_from = -1;
     for _ in 0..=given.simplices.len() {
@@ -90,7 +97,7 @@ fn walk(given: Given, from: usize, q: Point2) -> Result<Option<usize>> {
                         == Sign::Negative
             });
         match step {
-            None => return Ok(Some(t)),
+            None => return first_holder(given, t, q, star).map(Some),
             Some((_, -1)) => return Ok(None),
             Some((_, beyond)) => {
                 came_from = t as i32;
@@ -99,4 +106,68 @@ fn walk(given: Given, from: usize, q: Point2) -> Result<Option<usize>> {
         }
     }
     Err(Error::Internal(format!("the walk to {q:?} does not end")))
+}
+
+/// The first triangle around the vertex that was asked for last: equal queries follow each other
+/// along the curve, and a vertex may have very many triangles.
+struct Star {
+    vertex: i32,
+    first: usize,
+}
+
+/// The first of the triangles that hold `q`, of which `t` is one.
+fn first_holder(given: Given, t: usize, q: Point2, star: &mut Star) -> Result<usize> {
+    let corners = given.simplices[t].map(|v| given.points[v as usize]);
+    let on =
+        [0, 1, 2].map(|k| orient2d(corners[(k + 1) % 3], corners[(k + 2) % 3], q) == Sign::Zero);
+    let corner = match on {
+        [false, false, false] => return Ok(t),
+        [true, true, _] => 2,
+        [true, _, true] => 1,
+        [_, true, true] => 0,
+        _ => {
+            let across = (0..3)
+                .find(|&k| on[k])
+                .map_or(-1, |k| given.neighbors[t][k]);
+            return Ok(if across < 0 {
+                t
+            } else {
+                t.min(across as usize)
+            });
+        }
+    };
+    let vertex = given.simplices[t][corner];
+    if star.vertex != vertex {
+        *star = Star {
+            vertex,
+            first: first_around(given, t, vertex)?,
+        };
+    }
+    Ok(star.first)
+}
+
+/// The first of the triangles around a vertex of `t`.
+fn first_around(given: Given, t: usize, vertex: i32) -> Result<usize> {
+    let lost = || Error::Internal(format!("the triangles around vertex {vertex} do not end"));
+    let mut first = t;
+    // Counter-clockwise until the turn is complete; where the boundary is met, clockwise from `t`.
+    for side in [1, 2] {
+        let mut now = t;
+        for _ in 0..=given.simplices.len() {
+            let corner = given.simplices[now]
+                .iter()
+                .position(|&v| v == vertex)
+                .ok_or_else(lost)?;
+            let beyond = given.neighbors[now][(corner + side) % 3];
+            if beyond == t as i32 {
+                return Ok(first);
+            }
+            if beyond < 0 {
+                break;
+            }
+            now = beyond as usize;
+            first = first.min(now);
+        }
+    }
+    Ok(first)
 }

@@ -7,6 +7,8 @@
 mod bowyer_watson;
 mod cavity;
 mod divide_conquer;
+mod incremental;
+pub mod lawson;
 pub mod locate;
 mod merge;
 mod triangulate;

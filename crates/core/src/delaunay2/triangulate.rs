@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use delone_predicates::Point2;
 
 use super::merge::merge;
-use super::{bowyer_watson, divide_conquer};
+use super::{bowyer_watson, divide_conquer, incremental};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::mesh2::{Code, Mesh2, Patch, export};
@@ -23,14 +23,17 @@ pub enum Method {
     BowyerWatson,
     /// Halves, quarters and so on, merged.
     DivideConquer,
+    /// Randomised insertion and flips.
+    Incremental,
 }
 
 impl Method {
     /// The names by which callers ask for methods.
-    pub const NAMES: [(&'static str, Self); 3] = [
+    pub const NAMES: [(&'static str, Self); 4] = [
         ("auto", Self::Auto),
         ("bowyer-watson", Self::BowyerWatson),
         ("divide-and-conquer", Self::DivideConquer),
+        ("incremental", Self::Incremental),
     ];
 
     /// The method of a name.
@@ -39,6 +42,11 @@ impl Method {
             .iter()
             .find(|(n, _)| *n == name)
             .map(|&(_, m)| m)
+    }
+
+    /// Whether it works on blocks that are merged; the others take all points at once.
+    fn in_blocks(self) -> bool {
+        matches!(self, Self::Auto | Self::BowyerWatson | Self::DivideConquer)
     }
 }
 
@@ -102,7 +110,7 @@ fn build(
     // Merges want two vertices on either side. Blocks of fewer come from duplicates alone.
     let few = |w: &[usize]| w[1] - w[0] < 2;
     let whole = [0, mesh.vertices()];
-    let one = arranged.starts.windows(2).any(few);
+    let one = !method.in_blocks() || arranged.starts.windows(2).any(few);
     let starts = if one { &whole } else { &arranged.starts[..] };
     let tasks = patches(mesh, starts, 1);
     let mut ghosts = parallel::map(workers, tasks, |(i, mesh)| {
@@ -157,11 +165,16 @@ fn block(
     method: Method,
     watch: &Watch,
 ) -> Result<Code> {
-    if method != Method::DivideConquer {
-        let ghost = bowyer_watson::build(points, block.clone(), mesh.reborrow(), watch)?;
-        if let Some(ghost) = ghost {
-            return Ok(ghost);
+    let own = block.clone();
+    let ghost = match method {
+        Method::Auto | Method::BowyerWatson => {
+            bowyer_watson::build(points, own, mesh.reborrow(), watch)?
         }
+        Method::Incremental => incremental::build(points, own, mesh.reborrow(), watch)?,
+        Method::DivideConquer => None,
+    };
+    if let Some(ghost) = ghost {
+        return Ok(ghost);
     }
     let mut vertices: Vec<u32> = with_room(block.len())?;
     vertices.extend(block);

@@ -9,7 +9,7 @@ use crate::parallel;
 
 /// Stands for the other side of a hull edge once the ghosts are gone; shifted like a code it
 /// gives -1.
-const OUTSIDE: Code = Code::MAX;
+pub(super) const OUTSIDE: Code = Code::MAX;
 
 /// Triangles that one task writes.
 const SHARE: usize = 1 << 14;

@@ -11,7 +11,9 @@
 //! threads fill them side by side; two adjacent ones join to one.
 
 pub mod export;
+mod flip;
 mod hull;
+pub mod import;
 mod storage;
 
 pub use storage::{Code, Mesh2, Patch, next, prev, triangle};

@@ -157,6 +157,12 @@ impl<'a> Patch<'a> {
         t
     }
 
+    /// The records taken so far.
+    pub fn taken(&self) -> std::ops::Range<u32> {
+        let start = triangle(self.base);
+        start..start + self.used
+    }
+
     /// Writes the corners of triangle `t`.
     #[inline]
     pub fn set(&mut self, t: u32, corners: [u32; 3]) {

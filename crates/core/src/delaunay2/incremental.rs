@@ -1,0 +1,190 @@
+//! Randomised incremental insertion: find the triangle of the next point, split it, flip.
+//!
+//! L. J. Guibas, D. E. Knuth and M. Sharir, "Randomized incremental construction of Delaunay and
+//! Voronoi diagrams", Algorithmica 7 (1992): with the points in random order the flips are O(n) and
+//! the work is O(n log n), both expected, whatever the points. N. Amenta, S. Choi and G. Rote,
+//! "Incremental constructions con BRIO" (2003): a biased randomised order keeps the expectation.
+//! Each point falls in the last round by the toss of a coin, else in the one before by the next
+//! toss, and so on; within a round the order is free, and follows the curve, so that the walk from
+//! one point to the next is short. The coin is a hash of the point's place along the curve: the
+//! order hangs on the coordinates alone.
+//!
+//! The kernel differs from that of `cavity` in what it keeps true: here every step leaves a
+//! triangulation of the points so far.
+
+use std::ops::Range;
+
+use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
+
+use super::walk::walk;
+use crate::error::{Error, Result};
+use crate::memory::filled;
+use crate::mesh2::{Code, Patch, next, prev, triangle};
+use crate::watch::Watch;
+
+/// Insertions between two looks at the watch.
+const WATCH_EVERY: usize = 4096;
+
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
+/// block is collinear. `points` end with NaN for infinity.
+pub fn build(
+    points: &[Point2],
+    block: Range<u32>,
+    mut mesh: Patch,
+    watch: &Watch,
+) -> Result<Option<Code>> {
+    let order = brio(block.clone())?;
+    let Some(first) = first_triangle(points, &order) else {
+        return Ok(None);
+    };
+    let ghost = mesh.triangle(first);
+    let mut flipper = Flipper {
+        points,
+        mesh,
+        stack: Vec::new(),
+    };
+    let mut near = triangle(ghost);
+    let others = order.iter().filter(|v| !first.contains(v));
+    for (i, &p) in others.enumerate() {
+        if i % WATCH_EVERY == 0 {
+            watch.check()?;
+        }
+        near = flipper.insert(p, near)?;
+    }
+    ghost_of(&flipper.mesh).map(Some)
+}
+
+/// The vertices of a block in a biased randomised order: a counting sort by round.
+fn brio(block: Range<u32>) -> Result<Vec<u32>> {
+    // One round more for each doubling: the first holds about one point.
+    let last = block.len().max(1).ilog2();
+    let round = |v: u32| last - hash(v - block.start).trailing_zeros().min(last);
+    let mut ends = vec![0u32; last as usize + 2];
+    for v in block.clone() {
+        ends[round(v) as usize + 1] += 1;
+    }
+    for r in 0..=last as usize {
+        ends[r + 1] += ends[r];
+    }
+    let mut order = filled(block.len(), 0u32)?;
+    for v in block.clone() {
+        let at = &mut ends[round(v) as usize];
+        order[*at as usize] = v;
+        *at += 1;
+    }
+    Ok(order)
+}
+
+/// A bijection of the 64-bit numbers whose low bits serve as coins: the finaliser of S. Vigna's
+/// splitmix64, with Stafford's thirteenth set of constants.
+fn hash(i: u32) -> u64 {
+    let h = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let h = (h ^ h >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let h = (h ^ h >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    h ^ h >> 31
+}
+
+/// The first two points of the order and the first that is not in line with them, turned left.
+fn first_triangle(points: &[Point2], order: &[u32]) -> Option<[u32; 3]> {
+    let &[a, b, ref rest @ ..] = order else {
+        return None;
+    };
+    let at = |v: u32| points[v as usize];
+    rest.iter()
+        .find_map(|&c| match orient2d(at(a), at(b), at(c)) {
+            Sign::Positive => Some([a, b, c]),
+            Sign::Negative => Some([b, a, c]),
+            Sign::Zero => None,
+        })
+}
+
+/// The infinite corner of some ghost.
+fn ghost_of(mesh: &Patch) -> Result<Code> {
+    let inf = mesh.infinite();
+    let infinite_corner = |t| {
+        let k = mesh.corners(t).iter().position(|&v| v == inf)?;
+        Some(8 * t + k as u32)
+    };
+    let ghost = mesh.taken().find_map(infinite_corner);
+    ghost.ok_or_else(|| Error::Internal("the mesh has no ghost".into()))
+}
+
+/// A Delaunay triangulation that grows by one point at a time.
+struct Flipper<'a> {
+    points: &'a [Point2],
+    mesh: Patch<'a>,
+    stack: Vec<Code>,
+}
+
+impl Flipper<'_> {
+    /// Inserts vertex `p`, which is none yet, and looks for its place from triangle `near` on.
+    /// Returns one of its triangles.
+    fn insert(&mut self, p: u32, near: u32) -> Result<u32> {
+        let (home, _) = walk(&self.mesh, self.points, near, self.at(p));
+        let on = self.edge_under(p, home)?;
+        self.stack.clear();
+        match on {
+            None => self.stack.extend(self.mesh.split_triangle(home, p)),
+            Some(e) => self.stack.extend(self.mesh.split_edge(e, p)),
+        }
+        // Each flip adds an edge at p and takes none away, so there are fewer than vertices. The
+        // edges on the stack are opposite p and no flip but their own moves them.
+        while let Some(e) = self.stack.pop() {
+            if self.conflicts(e, p) {
+                let other = self.mesh.flip(e);
+                self.stack.extend([e, other]);
+            }
+        }
+        Ok(home)
+    }
+
+    fn at(&self, v: u32) -> Point2 {
+        self.points[v as usize]
+    }
+
+    /// The edge of triangle `home` on which `p` lies, where it lies on one; a ghost holds p
+    /// strictly beyond its hull edge.
+    fn edge_under(&self, p: u32, home: u32) -> Result<Option<Code>> {
+        if self.mesh.corners(home).contains(&self.mesh.infinite()) {
+            return Ok(None);
+        }
+        let mut on = None;
+        for e in 8 * home..8 * home + 3 {
+            let ends = [next(e), prev(e)].map(|c| self.at(self.mesh.vertex(c)));
+            let side = orient2d(ends[0], ends[1], self.at(p));
+            if side == Sign::Negative || side == Sign::Zero && on.is_some() {
+                return Err(Error::Internal(format!("vertex {p} is in no triangle")));
+            }
+            on = if side == Sign::Zero { Some(e) } else { on };
+        }
+        Ok(on)
+    }
+
+    /// Whether the triangle beyond `e`, an edge opposite `p`, is in conflict with p.
+    ///
+    /// Then e may be flipped. What the circle of the triangle beyond holds on the side of p lies
+    /// within the angle at its apex q, so the quadrilateral is strictly convex, on a tie, too. A
+    /// ghost beyond another is in conflict where p sees its hull edge, which makes a left turn with
+    /// p; a ghost beyond a triangle never is, since p lies on the inner side.
+    fn conflicts(&self, e: Code, p: u32) -> bool {
+        //        p
+        //      /   \
+        //     u --- v
+        //      \   /
+        //        q
+        let inf = self.mesh.infinite();
+        let q = self.mesh.vertex(self.mesh.opposite(e));
+        let [u, v] = [next(e), prev(e)].map(|c| self.mesh.vertex(c));
+        let [at_u, at_v, at_q, at_p] = [u, v, q, p].map(|v| self.at(v));
+        let turn = |a, b| orient2d(a, b, at_p) == Sign::Positive;
+        if q == inf {
+            false
+        } else if u == inf {
+            turn(at_q, at_v)
+        } else if v == inf {
+            turn(at_u, at_q)
+        } else {
+            incircle_canonical(at_v, at_u, at_q, at_p) == Sign::Positive
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Arrays of triangles as a mesh: the neighbours found and the ghosts put round them.
+
+use super::export::OUTSIDE;
+use super::{Code, Mesh2, next, prev};
+use crate::error::{Error, Result};
+use crate::memory::{filled, with_room};
+
+/// Most triangles: their codes must fit in 32 bits and leave [`OUTSIDE`] free.
+const LIMIT: usize = 1 << 29;
+
+/// The triangle across the edge opposite each corner, -1 outside, by a sort of the edges: O(m log m),
+/// less where no vertex has many. Corners must lie below `vertices`.
+pub fn adjacency(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[i32; 3]>> {
+    let opposites = opposites(simplices, vertices)?;
+    let mut neighbors = with_room(simplices.len())?;
+    neighbors.extend(opposites.iter().map(|codes| codes.map(|e| e as i32 >> 3)));
+    Ok(neighbors)
+}
+
+/// The mesh of triangles that tile the hull of `vertices` vertices, all of which they use, with
+/// one of its ghosts. Triangle t becomes record t.
+pub fn mesh(simplices: &[[i32; 3]], vertices: usize) -> Result<(Mesh2, Code)> {
+    let broken = || Error::Internal("the triangles do not tile a hull".into());
+    let opposites = opposites(simplices, vertices)?;
+    let mut mesh = Mesh2::with_vertices(vertices)?;
+    let outside = opposites.iter().flatten().filter(|&&e| e == OUTSIDE);
+    if simplices.len() + outside.count() + 2 != 2 * vertices {
+        return Err(broken());
+    }
+    let mut patch = mesh.patch();
+    for s in simplices {
+        let t = patch.fresh();
+        patch.set(t, s.map(|v| v as u32));
+    }
+    // The ghost whose hull edge begins at a vertex.
+    let mut begins = filled(vertices, OUTSIDE)?;
+    let mut hull: Vec<Code> = Vec::new();
+    for (t, codes) in (0u32..).zip(&opposites) {
+        for (e, &across) in (8 * t..).zip(codes) {
+            if across != OUTSIDE {
+                patch.link(e, across);
+                continue;
+            }
+            let (tail, head) = (patch.vertex(next(e)), patch.vertex(prev(e)));
+            let g = patch.fresh();
+            patch.set(g, [patch.infinite(), head, tail]);
+            patch.link(8 * g, e);
+            // The boundary of a hull leaves each of its vertices once.
+            if std::mem::replace(&mut begins[tail as usize], 8 * g) != OUTSIDE {
+                return Err(broken());
+            }
+            hull.push(8 * g);
+        }
+    }
+    for &g in &hull {
+        let after = begins[patch.head(g) as usize];
+        if after == OUTSIDE {
+            return Err(broken());
+        }
+        patch.link(prev(g), next(after));
+    }
+    let ghost = hull.first().copied().ok_or_else(broken)?;
+    Ok((mesh, ghost))
+}
+
+/// The code on the other side of each edge: edges go by a counting sort to their smaller end, and
+/// there the two sides meet in a sort by the larger.
+fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> {
+    if simplices.len() > LIMIT {
+        let found = simplices.len();
+        return Err(Error::Shape(format!(
+            "{found} simplices are more than {LIMIT}"
+        )));
+    }
+    let mut start = filled(vertices + 1, 0u32)?;
+    for (t, s) in simplices.iter().enumerate() {
+        for [u, v] in [0, 1, 2].map(|k| edge(*s, k)) {
+            if u == v {
+                return Err(Error::Shape(format!(
+                    "simplices[{t}] = {s:?} has vertex {u} twice"
+                )));
+            }
+            start[u.min(v) as usize + 1] += 1;
+        }
+    }
+    for v in 0..vertices {
+        start[v + 1] += start[v];
+    }
+    let mut sides = filled(3 * simplices.len(), 0u64)?;
+    for (t, s) in (0u64..).zip(simplices) {
+        for k in 0..3 {
+            let [u, v] = edge(*s, k);
+            let at = &mut start[u.min(v) as usize];
+            // By the larger end, then by direction.
+            sides[*at as usize] =
+                (u.max(v) as u64) << 33 | u64::from(u > v) << 32 | 8 * t | k as u64;
+            *at += 1;
+        }
+    }
+    let mut opposites = filled(simplices.len(), [OUTSIDE; 3])?;
+    let mut from = 0;
+    for &to in &start[..vertices] {
+        let list = &mut sides[from as usize..to as usize];
+        list.sort_unstable();
+        pair(list, simplices, &mut opposites)?;
+        from = to;
+    }
+    Ok(opposites)
+}
+
+/// The ends of edge k, counter-clockwise.
+fn edge(s: [i32; 3], k: usize) -> [i32; 2] {
+    [s[(k + 1) % 3], s[(k + 2) % 3]]
+}
+
+/// Joins the two sides of each edge in the sorted `list` of one smaller end.
+fn pair(list: &[u64], simplices: &[[i32; 3]], opposites: &mut [[Code; 3]]) -> Result<()> {
+    for w in list.windows(2) {
+        let [e, f] = [w[0] as Code, w[1] as Code];
+        let [[t, j], [s, k]] = [e, f].map(|e| [(e >> 3) as usize, (e & 7) as usize]);
+        if w[0] >> 32 == w[1] >> 32 {
+            let [u, v] = edge(simplices[t], j);
+            return Err(Error::Shape(format!(
+                "the directed edge {u} -> {v} occurs twice: in simplices[{t}] and simplices[{s}]"
+            )));
+        }
+        if w[0] >> 33 == w[1] >> 33 {
+            opposites[t][j] = f;
+            opposites[s][k] = e;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[i32; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
+
+    #[test]
+    fn neighbours_share_their_edge() {
+        let neighbors = adjacency(&SQUARE, 4).unwrap();
+        assert_eq!(neighbors, [[1, -1, -1], [-1, 0, -1]]);
+        assert!(adjacency(&[], 0).unwrap().is_empty());
+        // Triangles that touch in a vertex alone are no neighbours.
+        let neighbors = adjacency(&[[0, 1, 2], [2, 3, 4]], 5).unwrap();
+        assert_eq!(neighbors, [[-1; 3]; 2]);
+    }
+
+    #[test]
+    fn an_edge_used_twice_is_named() {
+        let fold = [[0, 1, 3], [1, 2, 3], [4, 3, 1]];
+        assert_eq!(
+            adjacency(&fold, 5).unwrap_err(),
+            Error::Shape(
+                "the directed edge 3 -> 1 occurs twice: in simplices[1] and simplices[2]".into()
+            )
+        );
+        let flat = adjacency(&[[0, 1, 1]], 2).unwrap_err();
+        assert_eq!(
+            flat,
+            Error::Shape("simplices[0] = [0, 1, 1] has vertex 1 twice".into())
+        );
+    }
+
+    #[test]
+    fn a_mesh_has_ghosts_all_round() {
+        let (mut mesh, ghost) = mesh(&SQUARE, 4).unwrap();
+        let patch = mesh.patch();
+        patch.check(6).unwrap();
+        let ring: Vec<_> = (0..4)
+            .scan(ghost, |at, _| Some(std::mem::replace(at, patch.after(*at))))
+            .collect();
+        assert_eq!(patch.after(ring[3]), ghost);
+        let mut heads: Vec<_> = ring.iter().map(|&g| patch.head(g)).collect();
+        heads.sort_unstable();
+        assert_eq!(heads, [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn what_tiles_no_hull_is_no_mesh() {
+        assert!(mesh(&[[0, 1, 2], [2, 3, 4]], 5).is_err());
+    }
+}

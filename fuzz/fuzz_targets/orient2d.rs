@@ -1,0 +1,7 @@
+//! All stages of `orient2d` against integers without limit.
+
+#![no_main]
+
+use delone_fuzz::{check, oracle};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| check(&oracle::ORIENT2D, None, bytes));
