@@ -35,7 +35,7 @@
 use std::cmp::Ordering;
 
 use crate::sign::Sign;
-use crate::{Point2, Point3, incircle, insphere, orient2d, orient3d};
+use crate::{Point2, Point3, incircle, incircle_exact, insphere, orient2d, orient3d};
 
 /// Compares by x, then y (then z). `-0.0` equals `0.0`; NaN equals everything.
 ///
@@ -96,6 +96,16 @@ fn smaller(a: Point2, b: Point2) -> Point2 {
 #[must_use]
 pub fn incircle_canonical(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
     match incircle(a, b, c, d) {
+        Sign::Zero => incircle_tie([a, b, c, d]),
+        sign => sign,
+    }
+}
+
+/// As [`incircle_canonical`], without the floating-point filter: for callers that have tried one.
+#[inline]
+#[must_use]
+pub fn incircle_canonical_exact(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
+    match incircle_exact(a, b, c, d) {
         Sign::Zero => incircle_tie([a, b, c, d]),
         sign => sign,
     }

@@ -18,7 +18,7 @@
 //! A record is free once its two outer edges are on the stack; a cavity of k triangles
 //! gives its k records and two fresh ones to the k + 2 triangles of the star.
 
-use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
+use delone_predicates::{Point2, Sign, incircle_canonical_exact, lexicographic, orient2d};
 
 use super::walk::walk;
 
@@ -303,7 +303,7 @@ impl<'a> Kernel<'a> {
         let inf = self.mesh.infinite();
         let (a, b) = match (u == inf, v == inf, w == inf) {
             (false, false, false) => {
-                return incircle_canonical(at(v), at(u), at(w), at(p)) == Sign::Positive;
+                return incircle_canonical_exact(at(v), at(u), at(w), at(p)) == Sign::Positive;
             }
             (true, ..) => (w, v),
             (_, true, _) => (u, w),
