@@ -3,6 +3,7 @@
 
 mod arrays;
 mod errors;
+mod lawson;
 mod predicates;
 mod signals;
 mod triangulation;
@@ -21,5 +22,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::find_simplex2, m)?)?;
+    m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;
+    m.add_function(wrap_pyfunction!(lawson::neighbors2, m)?)?;
     Ok(())
 }

@@ -15,7 +15,10 @@ use crate::errors::{detached, raise};
 use crate::signals::Signals;
 
 /// Runs `work` without the GIL under a watch on Python's signals.
-fn watched<T: Send>(py: Python<'_>, work: impl FnOnce(&Watch) -> Result<T> + Send) -> PyResult<T> {
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
     let signals = Signals::new();
     let outcome = detached(py, || work(&Watch::new(&|| signals.stop())));
     match signals.exception() {
@@ -65,7 +68,7 @@ pub fn triangulate2(
     ))
 }
 
-/// Borrowed arrays whose indices have been checked.
+/// Borrowed arrays. An index in them that is out of range is an `InternalError` when it is used.
 fn given<'a>(
     points: &'a PyReadonlyArray2<'_, f64>,
     simplices: &'a PyReadonlyArray2<'_, i32>,
@@ -81,6 +84,16 @@ fn given<'a>(
             "neighbors and simplices differ in length".into(),
         ));
     }
+    Ok(given)
+}
+
+/// Borrowed arrays whose indices have been checked, which takes a look at each.
+fn checked<'a>(
+    points: &'a PyReadonlyArray2<'_, f64>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    neighbors: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<Given<'a>> {
+    let given = given(points, simplices, neighbors)?;
     in_range(given.simplices, 0, given.points.len(), "simplices")?;
     in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
     Ok(given)
@@ -94,7 +107,7 @@ pub fn validate2<'py>(
     simplices: PyReadonlyArray2<'py, i32>,
     neighbors: PyReadonlyArray2<'py, i32>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let given = given(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+    let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| validate(given, watch))?;
     let Findings {
         orientation,

@@ -17,13 +17,13 @@ const WINDOW_HIGH: i32 = 189;
 
 /// The exponent field: 0 for subnormals, 2047 for what is not finite.
 #[inline]
-fn exponent_field(value: f64) -> i32 {
+pub fn exponent_field(value: f64) -> i32 {
     ((value.to_bits() & ABS) >> 52) as i32
 }
 
 /// 2^exponent, for exponents from -1022 to 1023.
 #[inline]
-fn power_of_two(exponent: i32) -> f64 {
+pub const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((BIAS + exponent) as u64) << 52)
 }
 

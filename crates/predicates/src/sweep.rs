@@ -21,17 +21,33 @@
 //!
 //! # The bound of the estimate
 //!
-//! Let e = 2^-53. Rounded differences err by a factor 1 + e, |u|^2 by 4 e, sqrt l by 8 e, a term of
-//! n by 6 e and n by 7 e M in all, M = |u|^2 |vy| + |v|^2 |uy|; the numerator N = n + sqrt l then
-//! by less than f = 10 e (M + sqrt l) with room for what is of second order. d errs by less than
-//! g = 8 e (|ux vy| + |uy vx|), which is twice what is needed. If g < d / 4, N / 2d errs by at most
-//! 2/3 (f + |N| g / d) / d; the third that is left holds the roundings of the division and of the
-//! bound. Adding bx errs by e of the sum. Squared lengths between 2^-300 and 2^300 exclude overflow,
-//! and make what underflow adds vanish before f; in d it is at most 2^-1073, which g gets.
+//! Let e = 2^-53. Rounded differences err by a factor 1 + e, |u|^2 by 4 e, |u| by 3 e, their product
+//! sqrt l by 11 e, a term of n by 6 e and n by 7 e M in all, M = |u|^2 |vy| + |v|^2 |uy|; the
+//! numerator N = n + sqrt l then by less than f = 14 e (M + sqrt l) with room for what is of second
+//! order. d errs by less than g = 8 e (|ux vy| + |uy vx|), which is twice what is needed. If
+//! g < d / 4, N / 2d errs by at most 2/3 (f + |N| g / d) / d; the third that is left holds the
+//! roundings of the division and of the bound. Adding bx errs by e of the sum.
+//!
+//! Where n < 0 the two parts of N cancel, which is bad for great circles that end near their points.
+//! Since l - n^2 = m^2, m = |u|^2 vx - |v|^2 ux, which is the centre's ordinate times 2 d, then
+//! N = m^2 / t, t = sqrt l - n. m errs by less than h = 8 e (|u|^2 |vx| + |v|^2 |ux|), t by less than
+//! f, and if f < t / 4, then N by less than 4/3 ((2 |m| + h) h + N f) / t; 2 is taken for 4/3, and 14 e N
+//! holds the roundings.
+//!
+//! Squared lengths between 2^-300 and 2^300 exclude overflow, and what underflow adds to N vanishes
+//! before f; to d it adds 2^-1073 at most, which g gets. Other triples are scaled by a power of two
+//! to coordinates below 1, off by at most 2^-1074 each, the largest of which has its last bit at 2^-53
+//! or is a multiple of 2^-52. The triple is not collinear, so two points differ in that coordinate,
+//! by 2^-54 at least, and two of the lengths exceed 2^-56. Then squared lengths from 2^-1000 on
+//! suffice: sqrt l exceeds 2^-612, and what underflow adds vanishes as before. In m it matters only
+//! where the larger of the two terms is subnormal; m^2 then errs by less than `FLOOR`, as it does
+//! where it underflows itself.
+
+use std::ops::RangeInclusive;
 
 use crate::Point2;
 use crate::integer::{FULL, Integer, by_width, differences};
-use crate::range::lattice;
+use crate::range::{exponent_field, lattice, power_of_two};
 use crate::sign::Sign;
 
 /// Half the distance from 1.0 to the next double.
@@ -39,18 +55,23 @@ const U: f64 = f64::EPSILON / 2.0;
 /// Relative bound of [`front`]: each of two positive terms passes 6 roundings, their difference one
 /// that changes no sign; the rest is for terms of second order and for the bound.
 const BOUND_FRONT: f64 = 8.0 * U;
-/// Bounds f and g of the estimate.
-const BOUND_NUMERATOR: f64 = 10.0 * U;
-/// See [`BOUND_NUMERATOR`].
+/// Bound f of the estimate.
+const BOUND_NUMERATOR: f64 = 14.0 * U;
+/// Bound of n and m alone.
+const BOUND_WEIGHTED: f64 = 8.0 * U;
+/// Bound g of the estimate.
 const BOUND_CROSS: f64 = 8.0 * U;
 /// Above any error of underflow.
 const FLOOR: f64 = f64::MIN_POSITIVE;
+/// More than four roundings of subnormal numbers.
+const UNDERFLOW: f64 = f64::from_bits(4);
 /// Squared lengths for which the estimate is bounded: 2^-300 to 2^300.
-const LENGTHS: std::ops::RangeInclusive<f64> = {
-    let hundred = (1_u128 << 100) as f64;
-    let top = hundred * hundred * hundred;
+const LENGTHS: RangeInclusive<f64> = {
+    let top = power_of_two(300);
     1.0 / top..=top
 };
+/// [`LENGTHS`] of scaled triples.
+const LENGTHS_SCALED: RangeInclusive<f64> = power_of_two(-1000)..=8.0;
 /// Most bits of differences for a 128-bit [`front`]: below 4 * 2^3b.
 const BITS_FRONT: u32 = 41;
 /// Most bits of differences within a triple for which P and Q stay below 2^117.
@@ -130,28 +151,68 @@ impl CircleEnd {
     /// The end of the circle through three points, which turn right.
     #[inline]
     #[must_use]
-    pub fn of([a, b, c]: [Point2; 3]) -> Self {
+    pub fn of(triple: [Point2; 3]) -> Self {
+        let end = Self::within(&LENGTHS, triple);
+        if end.error < f64::INFINITY {
+            end
+        } else {
+            Self::scaled(triple)
+        }
+    }
+
+    /// The end, if the squared lengths are `allowed`.
+    #[inline]
+    fn within(allowed: &RangeInclusive<f64>, [a, b, c]: [Point2; 3]) -> Self {
         let minus = |p: Point2, q: Point2| [p[0] - q[0], p[1] - q[1]];
         let (u, v, w) = (minus(a, b), minus(c, b), minus(c, a));
-        let [uu, vv, ww] = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
+        let lengths = [u, v, w].map(|p| p[0] * p[0] + p[1] * p[1]);
+        let [uu, vv, _] = lengths;
         let (left, right) = (u[0] * v[1], u[1] * v[0]);
-        let (d, g) = (
-            left - right,
-            BOUND_CROSS * (left.abs() + right.abs()) + FLOOR,
-        );
-        let root = (uu * vv * ww).sqrt();
-        let (first, second) = (uu * v[1], vv * u[1]);
-        let numerator = first - second + root;
-        let f = BOUND_NUMERATOR * (first.abs() + second.abs() + root);
+        let d = left - right;
+        let g = BOUND_CROSS * (left.abs() + right.abs()) + FLOOR;
+        let root = lengths.iter().map(|l| l.sqrt()).product::<f64>();
+        let (n, n_size) = weighted(uu, v[1], vv, u[1]);
+        let mut numerator = n + root;
+        let mut f = BOUND_NUMERATOR * (n_size + root);
+        let mut sound = true;
+        if n < 0.0 {
+            let (m, m_size) = weighted(uu, v[0], vv, u[0]);
+            let (t, h) = (root - n, BOUND_WEIGHTED * m_size);
+            sound = f < 0.25 * t;
+            numerator = m * m / t;
+            let square = (2.0 * m.abs() + h) * h + numerator * f;
+            f = (2.0 * square + FLOOR) / t + BOUND_NUMERATOR * numerator;
+        }
         let value = b[0] + 0.5 * numerator / d;
         let error = (f + numerator.abs() * g / d) / d + 2.0 * U * value.abs();
-        let known = LENGTHS.contains(&uu)
-            && LENGTHS.contains(&vv)
-            && LENGTHS.contains(&ww)
-            && g < 0.25 * d
-            && value.is_finite();
-        let error = if known { error } else { f64::INFINITY };
+        let known = sound && g < 0.25 * d && lengths.iter().all(|l| allowed.contains(l));
+        Self::bounded(value, if known { error } else { f64::INFINITY })
+    }
+
+    /// What is not finite is not known.
+    #[inline]
+    fn bounded(value: f64, error: f64) -> Self {
+        let error = if value.is_finite() && error.is_finite() {
+            error
+        } else {
+            f64::INFINITY
+        };
         Self { value, error }
+    }
+
+    /// The end, by way of coordinates below 1.
+    #[cold]
+    #[inline(never)]
+    fn scaled(triple: [Point2; 3]) -> Self {
+        let fields = triple.as_flattened().iter().map(|&x| exponent_field(x));
+        // From 0 to 2046 for finite numbers; the largest goes to 1022, that of 1/2.
+        let shift = 1022 - fields.fold(0, i32::max).min(2046);
+        let [first, second] = [shift / 2, shift - shift / 2];
+        let there = triple.map(|p| p.map(|x| x * power_of_two(first) * power_of_two(second)));
+        let end = Self::within(&LENGTHS_SCALED, there);
+        let back = |x: f64| x * power_of_two(-first) * power_of_two(-second);
+        // On the way back, too, underflow may take a little.
+        Self::bounded(back(end.value), back(end.error) + UNDERFLOW)
     }
 
     /// The sign of this end minus another, where the bounds prove it.
@@ -169,6 +230,13 @@ impl CircleEnd {
         let difference = self.value - x;
         (difference.abs() > self.error).then(|| Sign::of(difference))
     }
+}
+
+/// `p x - q y` and the sum of the magnitudes of its terms, for `p` and `q` not negative.
+#[inline]
+fn weighted(p: f64, x: f64, q: f64, y: f64) -> (f64, f64) {
+    let (left, right) = (p * x, q * y);
+    (left - right, left.abs() + right.abs())
 }
 
 /// The sign of the right end of the circle through `s` minus that of the circle through `t`; exact.

@@ -188,3 +188,75 @@ impl Flipper<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_names_each_vertex_once_in_rounds_along_the_curve() {
+        for n in [0, 1, 2, 3, 100, 4096] {
+            let order = brio(7..7 + n).unwrap();
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert!(sorted.into_iter().eq(7..7 + n));
+            // A round ends where the order falls back.
+            let falls = order.windows(2).filter(|w| w[0] > w[1]).count();
+            assert!(falls <= n.max(1).ilog2() as usize);
+        }
+    }
+
+    #[test]
+    fn about_half_of_the_points_come_in_the_last_round() {
+        let order = brio(0..4096).unwrap();
+        let last = order.windows(2).rposition(|w| w[0] > w[1]).unwrap();
+        let share = (order.len() - last - 1) as f64 / order.len() as f64;
+        assert!((0.45..0.55).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn every_step_leaves_a_mesh() {
+        // Points outside, on hull edges, beyond their ends, inside and on inner edges.
+        let points = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [0.0, 4.0],
+            [2.0, 0.0],
+            [6.0, 0.0],
+            [-3.0, 0.0],
+            [1.0, 1.0],
+            [2.0, 2.0],
+            [9.0, -9.0],
+            [3.0, 1.0],
+            [f64::NAN; 2],
+        ];
+        let mut mesh = crate::mesh2::Mesh2::with_vertices(10).unwrap();
+        let mut mesh = mesh.patch();
+        mesh.triangle([0, 1, 2]);
+        let (points, stack) = (&points[..], Vec::new());
+        let mut flipper = Flipper {
+            points,
+            mesh,
+            stack,
+        };
+        let mut near = 0;
+        for p in 3..10 {
+            near = flipper.insert(p, near).unwrap();
+            let taken = flipper.mesh.taken();
+            assert_eq!(taken.end, 2 * (p + 1) - 2);
+            flipper.mesh.check(taken.end as usize).unwrap();
+            assert!(flipper.mesh.corners(near).contains(&p));
+            for t in taken {
+                let corners = flipper.mesh.corners(t);
+                if !corners.contains(&10) {
+                    let [a, b, c] = corners.map(|v| points[v as usize]);
+                    assert_eq!(orient2d(a, b, c), Sign::Positive);
+                }
+            }
+        }
+        assert!(
+            flipper.insert(0, near).is_err(),
+            "vertex 0 is there already"
+        );
+    }
+}

@@ -301,6 +301,32 @@ mod tests {
     }
 
     #[test]
+    fn a_stretched_triangulation_comes_back() {
+        // What tiles the hull of points tiles that of their image under a stretch.
+        let mut state = 1u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let points: Vec<Point2> = (0..500).map(|_| [random(), random()]).collect();
+        let made = |points: &[Point2]| {
+            let made = triangulate(points, Method::BowyerWatson, 1, &Watch::idle()).unwrap();
+            made.arrays.simplices
+        };
+        let right = made(&points);
+        for stretch in [2.0, 8.0, 1024.0] {
+            let stretched: Vec<Point2> = points.iter().map(|&[x, y]| [stretch * x, y]).collect();
+            let back = flipped(&points, &made(&stretched));
+            assert_eq!(sorted(&back.arrays.simplices), sorted(&right));
+            assert!(back.flips > 100);
+            let neighbors = import::adjacency(&back.arrays.simplices, 500).unwrap();
+            assert_eq!(back.arrays.neighbors, neighbors);
+        }
+    }
+
+    #[test]
     fn vertices_are_the_rows_given() {
         // Row 0 is the same point as row 4; the triangles have row 4.
         let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, -0.0]];

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use delone_predicates::Point2;
 
 use super::merge::merge;
-use super::{bowyer_watson, divide_conquer, incremental};
+use super::{bowyer_watson, divide_conquer, incremental, lifting, sweep};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::mesh2::{Code, Mesh2, Patch, export};
@@ -25,15 +25,21 @@ pub enum Method {
     DivideConquer,
     /// Randomised insertion and flips.
     Incremental,
+    /// Fortune's sweep line.
+    Sweep,
+    /// The lower hull of the lifted points.
+    Lifting,
 }
 
 impl Method {
     /// The names by which callers ask for methods.
-    pub const NAMES: [(&'static str, Self); 4] = [
+    pub const NAMES: [(&'static str, Self); 6] = [
         ("auto", Self::Auto),
         ("bowyer-watson", Self::BowyerWatson),
         ("divide-and-conquer", Self::DivideConquer),
         ("incremental", Self::Incremental),
+        ("sweep", Self::Sweep),
+        ("lifting", Self::Lifting),
     ];
 
     /// The method of a name.
@@ -171,6 +177,8 @@ fn block(
             bowyer_watson::build(points, own, mesh.reborrow(), watch)?
         }
         Method::Incremental => incremental::build(points, own, mesh.reborrow(), watch)?,
+        Method::Sweep => sweep::build(points, own, mesh.reborrow(), watch)?,
+        Method::Lifting => lifting::build(points, own, mesh.reborrow(), watch)?,
         Method::DivideConquer => None,
     };
     if let Some(ghost) = ghost {

@@ -92,8 +92,8 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> 
             let [u, v] = edge(*s, k);
             let at = &mut start[u.min(v) as usize];
             // By the larger end, then by direction.
-            sides[*at as usize] =
-                (u.max(v) as u64) << 33 | u64::from(u > v) << 32 | 8 * t | k as u64;
+            let key = 2 * u.max(v) as u64 + u64::from(u > v);
+            sides[*at as usize] = key << 32 | (8 * t + k as u64);
             *at += 1;
         }
     }

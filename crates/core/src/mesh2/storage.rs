@@ -79,6 +79,12 @@ impl<'a> Patch<'a> {
         self.infinite
     }
 
+    /// The first record of the patch.
+    #[inline]
+    pub fn first(&self) -> u32 {
+        triangle(self.base)
+    }
+
     /// Cuts the patch behind its first `vertices` vertices.
     pub fn split_at(self, vertices: usize) -> (Patch<'a>, Patch<'a>) {
         let cut = RECORD * PER_VERTEX * vertices;

@@ -1,0 +1,249 @@
+//! Fortune's sweep: a vertical line moves over the points from left to right.
+//!
+//! S. Fortune, "A sweepline algorithm for Voronoi diagrams", Algorithmica 2 (1987), by way of the
+//! dual: where a Voronoi vertex is found, a triangle is made. O(n log n) in the worst case: n points
+//! and at most 2 n triangles, each with a search in a splay tree and a few changes of a heap.
+//!
+//! # The front
+//!
+//! A place left of the line is *settled* when it is nearer to some point than to the line. The
+//! settled places end in the beach line, arcs of parabolas, each belonging to a point and all places
+//! on it having that point nearest; from below to above they name a sequence of points, the *front*.
+//! Two points that follow each other there have an empty circle which touches the line between
+//! them: their edge is Delaunay. The front is the right boundary of what is triangulated so far, an
+//! edge without a triangle being passed twice.
+//!
+//! ```text
+//!        c                 c            The line reaches q at the height of b's arc: b, q, b.
+//!        |                 |            The line reaches the right end of the circle a b c, whose
+//!        b     q    ->     b----q       arc b has shrunk to nothing: b goes and the triangle
+//!       /                 /             a c b is made.
+//!      a                 a
+//! ```
+//!
+//! # Order and ties
+//!
+//! Points go lexicographically; ends of circles are compared exactly, square root and all (see
+//! `delone_predicates::sweep`), so each stop is made in the state that the paper proves right.
+//! Equal stops may come in any order:
+//!
+//! - Points with one abscissa come from below to above. Those that are leftmost of all follow each
+//!   other in the front from the start: their arcs are rays. For any later one the arc at its height
+//!   is found as for others, since a point on the line has its ray there, below.
+//! - Circles that end together: an arc that has shrunk to nothing at the end of the circle a b c has
+//!   a, b, c on an empty circle through its place. Taking b away leaves the front as it is but for
+//!   arcs of no length; a further point of that circle, d, still ends with a, c at the same abscissa,
+//!   as three points of a circle turn strictly. So the order picks one triangulation of the polygon of
+//!   cocircular points, and all are Delaunay.
+//! - A circle that ends on the abscissa of a point goes first. If the point is its right end, it
+//!   meets two arcs at once, and splits either: the arc of no length between it and the other is
+//!   the circle's again, and its end, the present abscissa, comes next.
+//!
+//! `ties` makes the result canonical.
+//!
+//! # Ends
+//!
+//! Each point is met once, and each circle takes away one arc of those that points have made, two
+//! a point.
+
+mod beach;
+mod events;
+
+use std::ops::Range;
+
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+
+use self::beach::{Beach, NONE};
+use self::events::Events;
+use super::ties;
+use crate::error::{Error, Result};
+use crate::memory::with_room;
+use crate::mesh2::{Code, Patch};
+use crate::watch::Watch;
+
+/// Stops between two looks at the watch.
+const WATCH_EVERY: usize = 4096;
+
+/// A point and its number as a vertex.
+type Site = (Point2, u32);
+
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
+/// block is collinear. `points` end with NaN for infinity.
+pub fn build(
+    points: &[Point2],
+    block: Range<u32>,
+    mut mesh: Patch,
+    watch: &Watch,
+) -> Result<Option<Code>> {
+    let own = &points[block.start as usize..block.end as usize];
+    let straight = |w: &[Point2]| orient2d(own[0], own[1], w[0]).is_zero();
+    if own.windows(1).skip(2).all(straight) {
+        return Ok(None);
+    }
+    let mut sites: Vec<Site> = with_room(own.len())?;
+    sites.extend(own.iter().copied().zip(block.clone()));
+    sites.sort_unstable_by(|p, q| lexicographic(p.0, q.0));
+    watch.check()?;
+    let mut sweep = Sweep::start(&sites, mesh.reborrow(), watch)?;
+    for &site in &sites[sweep.column..] {
+        while sweep.circle(Some(site.0))? {}
+        sweep.site(site)?;
+    }
+    while sweep.circle(None)? {}
+    let ghost = sweep.close()?;
+    let triangles = 2 * block.len() - 2;
+    ties::fan(&mut mesh, points, triangles, watch)?;
+    Ok(Some(ghost))
+}
+
+/// The line's state.
+struct Sweep<'a> {
+    mesh: Patch<'a>,
+    watch: &'a Watch<'a>,
+    stops: usize,
+    /// Records left for triangles and ghosts.
+    room: usize,
+    beach: Beach,
+    events: Events,
+    /// How many points are leftmost.
+    column: usize,
+    /// The ghosts left of them, from below to above.
+    left: Vec<Code>,
+}
+
+/// A mesh of n vertices has 2 n - 2 triangles; a bug that makes more ends here.
+fn broken() -> Error {
+    Error::Internal("the sweep's front is broken".into())
+}
+
+impl<'a> Sweep<'a> {
+    /// The state when the line has met the leftmost points.
+    fn start(sites: &[Site], mesh: Patch<'a>, watch: &'a Watch<'a>) -> Result<Self> {
+        let leftmost = sites[0].0[0];
+        let column = sites.partition_point(|s| s.0[0] == leftmost);
+        let mut sweep = Self {
+            mesh,
+            watch,
+            stops: 0,
+            room: 2 * sites.len() - 2,
+            beach: Beach::default(),
+            events: Events::default(),
+            column,
+            left: with_room(column)?,
+        };
+        let mut below = NONE;
+        for &site in &sites[..column] {
+            let arc = sweep.beach.insert_after(below, site);
+            if below != NONE {
+                // Left of the edge from the one below to this: its hull edge runs down.
+                let inf = sweep.mesh.infinite();
+                let ghost =
+                    sweep.triangle([inf, sweep.beach.arcs[below as usize].vertex, site.1])?;
+                sweep.left.push(ghost);
+                sweep.beach.arcs[below as usize].across = ghost;
+            }
+            below = arc;
+        }
+        Ok(sweep)
+    }
+
+    /// A new triangle.
+    fn triangle(&mut self, corners: [u32; 3]) -> Result<Code> {
+        self.room = self.room.checked_sub(1).ok_or_else(broken)?;
+        let t = self.mesh.fresh();
+        self.mesh.set(t, corners);
+        Ok(8 * t)
+    }
+
+    /// Counts a stop of the line.
+    fn count(&mut self) -> Result<()> {
+        self.stops += 1;
+        if self.stops.is_multiple_of(WATCH_EVERY) {
+            self.watch.check()?;
+        }
+        Ok(())
+    }
+
+    /// The line meets a point: it splits the arc at its height.
+    fn site(&mut self, site: Site) -> Result<()> {
+        self.count()?;
+        let arc = self.beach.find(site.0).ok_or_else(broken)?;
+        self.events.remove(&mut self.beach, arc);
+        let split = self.beach.split(arc, site);
+        for side in split {
+            self.events.renew(&mut self.beach, side);
+        }
+        Ok(())
+    }
+
+    /// The next circle, if it ends before the line meets `site`: its arc goes, its triangle comes.
+    fn circle(&mut self, site: Option<Point2>) -> Result<bool> {
+        let Some(arc) = self.events.first_until(&self.beach, site.map(|p| p[0])) else {
+            return Ok(false);
+        };
+        self.count()?;
+        let [below, above] = [
+            self.beach.arcs[arc as usize].below,
+            self.beach.arcs[arc as usize].above,
+        ];
+        let corners = [below, above, arc].map(|i| self.beach.arcs[i as usize].vertex);
+        let t = self.triangle(corners)?;
+        self.settle(arc, t);
+        self.settle(below, t + 1);
+        for gone in [arc, below, above] {
+            self.events.remove(&mut self.beach, gone);
+        }
+        self.beach.remove(arc);
+        let edge = &mut self.beach.arcs[below as usize];
+        (edge.across, edge.twin) = (t + 2, NONE);
+        for side in [below, above] {
+            self.events.renew(&mut self.beach, side);
+        }
+        Ok(true)
+    }
+
+    /// The edge above `arc` gets the triangle's side `code` on its right.
+    fn settle(&mut self, arc: u32, code: Code) {
+        let edge = self.beach.arcs[arc as usize];
+        if edge.twin == NONE {
+            self.mesh.link(edge.across, code);
+        } else {
+            let twin = &mut self.beach.arcs[edge.twin as usize];
+            (twin.across, twin.twin) = (code, NONE);
+        }
+    }
+
+    /// The line is past all: the front is the right side of the hull. Returns a ghost.
+    fn close(mut self) -> Result<Code> {
+        let mut ring: Vec<Code> = Vec::new();
+        let mut arc = self.beach.lowest();
+        loop {
+            let edge = self.beach.arcs[arc as usize];
+            if edge.above == NONE {
+                break;
+            }
+            if edge.twin != NONE {
+                return Err(broken());
+            }
+            let head = self.beach.arcs[edge.above as usize].vertex;
+            let ghost = self.triangle([self.mesh.infinite(), head, edge.vertex])?;
+            self.mesh.link(ghost, edge.across);
+            ring.push(ghost);
+            arc = edge.above;
+        }
+        ring.extend(self.left.iter().rev());
+        if self.room != 0 {
+            return Err(broken());
+        }
+        for (i, &ghost) in ring.iter().enumerate() {
+            // A ghost and the one that begins where it ends share the edge to that end.
+            self.mesh.link(ghost + 2, ring[(i + 1) % ring.len()] + 1);
+        }
+        Ok(ring[0])
+    }
+}
+
+/// Whether three points of the front turn right: then their middle arc shrinks.
+fn shrinks([a, b, c]: [Point2; 3]) -> bool {
+    orient2d(a, b, c) == Sign::Negative
+}
