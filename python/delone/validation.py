@@ -1,7 +1,7 @@
 """What an exact check of a triangulation found: nothing, or the culprits by number.
 
 The checks themselves run in the core; this module only gives their answer a name for each kind of
-fault and words that a person can read.
+fault and words that a person can read. `validate` takes triangles from anywhere.
 """
 
 from __future__ import annotations
@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core, topology
+from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
 from delone.errors import InternalError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ValidationReport"]
+__all__ = ["ValidationReport", "validate"]
 
 _SHOWN = 5
 
@@ -87,6 +89,8 @@ class ValidationReport:
     def __post_init__(self) -> None:
         for each in fields(self):
             array = np.array(getattr(self, each.name), dtype=np.int64)
+            if each.name == "count":
+                array = array.reshape(-1)  # the core gives a table of one row
             array.flags.writeable = False
             object.__setattr__(self, each.name, array)
 
@@ -140,6 +144,58 @@ class ValidationReport:
         if self.count.size:
             lines.append(f"  count: {self.count[1]} triangles, {self.count[0]} expected")
         return "\n".join(lines)
+
+
+def validate(
+    points: ArrayLike, simplices: ArrayLike, *, neighbors: ArrayLike | None = None
+) -> ValidationReport:
+    """Prove that any triangles are the canonical Delaunay triangulation, or name the culprits.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Finite coordinates.
+    simplices : array_like of int, shape (m, 3)
+        Vertices of the triangles, as rows of `points`.
+    neighbors : array_like of int, shape (m, 3), optional
+        The triangle opposite each vertex, -1 outside. By default they follow from the triangles.
+
+    Returns
+    -------
+    ValidationReport
+        Truthy when all is right. Only `ties` filled means Delaunay, but fanned in another way.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        The arrays are not of these kinds.
+    InputError
+        An index is out of range.
+    NonFiniteError
+        A coordinate is NaN or infinite.
+
+    Notes
+    -----
+    Exact. Linear time, and O(m log m) where neighbours are to be found.
+
+    Examples
+    --------
+    >>> from delone.validation import validate
+    >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    >>> bool(validate(square, [(0, 1, 2), (0, 2, 3)]))
+    True
+    >>> print(validate(square, [(0, 1, 3), (1, 2, 3)]))
+    not a canonical Delaunay triangulation:
+      ties: 1 pair of cocircular triangles is not canonical: 0-1
+    """
+    rows = as_points(points, ndim=2)
+    require_finite(rows)
+    triangles = as_simplices(simplices, len(rows), 2)
+    if neighbors is None:
+        beyond = topology.neighbors(triangles, len(rows))
+    else:
+        beyond = as_neighbors(neighbors, len(triangles), 2)
+    return ValidationReport.from_culprits(_core.validate2(rows, triangles, beyond))
 
 
 _SENTENCES = {

@@ -1,0 +1,277 @@
+"""What follows from the arrays of triangles alone: edges, boundary, incidences.
+
+No coordinate and no predicate is needed here. Assumed is a triangulation as the core exports it:
+triangles counter-clockwise, `neighbors[t, k]` across the edge opposite vertex k, -1 outside, and a
+boundary that is one cycle. All functions are linear in the number of triangles, apart from sorting.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Indices = NDArray[np.int32]
+
+__all__ = [
+    "boundary_edges",
+    "boundary_next",
+    "edges",
+    "is_mutual",
+    "neighbors",
+    "vertex_neighbor_vertices",
+    "vertex_to_simplex",
+]
+
+# Tail and head of the half-edge opposite vertex k, counter-clockwise.
+_TAIL = [1, 2, 0]
+_HEAD = [2, 0, 1]
+
+
+def edges(simplices: Indices, neighbors: Indices, npoints: int) -> Indices:
+    """Return every edge once.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each vertex.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        The smaller vertex first, rows ascending.
+
+    Notes
+    -----
+    O(m log m).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import edges
+    >>> edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]]), 3).tolist()
+    [[0, 1], [0, 2], [1, 2]]
+    """
+    # Of the two half-edges of an inner edge, the one in the later triangle counts.
+    once = neighbors < np.arange(len(simplices), dtype=np.int32)[:, None]
+    tail, head = simplices[:, _TAIL][once], simplices[:, _HEAD][once]
+    keys = np.minimum(tail, head).astype(np.int64)
+    keys *= npoints
+    keys += np.maximum(tail, head)
+    keys.sort()
+    return _unpack(keys, npoints)
+
+
+def _unpack(keys: NDArray[np.int64], npoints: int) -> Indices:
+    pairs = np.empty((len(keys), 2), dtype=np.int32)
+    np.floor_divide(keys, npoints, out=pairs[:, 0], casting="unsafe")
+    pairs[:, 1] = keys - pairs[:, 0].astype(np.int64) * npoints
+    return pairs
+
+
+def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
+    """Return the edges that have a triangle on one side only.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each vertex.
+
+    Returns
+    -------
+    ndarray of int32, shape (h, 2)
+        Directed, the triangle to the left, in the order of the triangles.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import boundary_edges
+    >>> boundary_edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]])).tolist()
+    [[1, 2], [2, 0], [0, 1]]
+    """
+    outside = neighbors < 0
+    return np.column_stack((simplices[:, _TAIL][outside], simplices[:, _HEAD][outside]))
+
+
+def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
+    """Follow boundary edges from a vertex until they come back to it.
+
+    Parameters
+    ----------
+    boundary : ndarray of int32, shape (h, 2)
+        Directed edges; no vertex begins two of them.
+    start : int
+        A vertex of the boundary.
+
+    Returns
+    -------
+    ndarray of int64, shape (k,)
+        The vertices from `start` on. k is h exactly where the edges form one cycle.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import boundary_next
+    >>> boundary_next(np.array([[1, 2], [2, 0], [0, 1]]), 2).tolist()
+    [2, 0, 1]
+    """
+    after = dict(boundary.tolist())
+    cycle = [start]
+    # Each step leaves a fresh vertex or comes to one seen before; h steps are enough for both.
+    for _ in range(len(boundary) - 1):
+        vertex = after.get(cycle[-1], start)
+        if vertex == start:
+            break
+        cycle.append(vertex)
+    return np.array(cycle, dtype=np.int64)
+
+
+def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
+    """Return one triangle of each vertex.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    ndarray of int32, shape (npoints,)
+        The first triangle that has the vertex; -1 where there is none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import vertex_to_simplex
+    >>> vertex_to_simplex(np.array([[0, 1, 3], [1, 4, 3]]), 5).tolist()
+    [0, 0, -1, 0, 1]
+    """
+    found = np.full(npoints, -1, dtype=np.int32)
+    # Where an index is repeated, the last value is the one that stays.
+    triangles = np.arange(len(simplices) - 1, -1, -1, dtype=np.int32)
+    found[simplices[::-1]] = triangles[:, None]
+    return found
+
+
+def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Indices]:
+    """Return the neighbours of all vertices as compressed rows.
+
+    Parameters
+    ----------
+    edges : ndarray of int32, shape (k, 2)
+        Every edge once, in either direction.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    indptr : ndarray of int32, shape (npoints + 1,)
+        Where the neighbours of each vertex begin.
+    indices : ndarray of int32, shape (2 k,)
+        The neighbours of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, ascending.
+
+    Notes
+    -----
+    O(k log k).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import vertex_neighbor_vertices
+    >>> indptr, indices = vertex_neighbor_vertices(np.array([[0, 1], [0, 2], [1, 2]]), 3)
+    >>> indices[indptr[1]:indptr[2]].tolist()
+    [0, 2]
+    """
+    both = np.concatenate((edges, edges[:, ::-1])).astype(np.int64)
+    keys = both[:, 0] * npoints + both[:, 1]
+    keys.sort()
+    pairs = _unpack(keys, npoints)
+    indptr = np.zeros(npoints + 1, dtype=np.int32)
+    np.cumsum(np.bincount(pairs[:, 0], minlength=npoints), out=indptr[1:])
+    return indptr, np.ascontiguousarray(pairs[:, 1])
+
+
+def neighbors(simplices: Indices, npoints: int) -> Indices:
+    """Return the triangle opposite each vertex.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles, all of one orientation; no directed edge is used twice.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    ndarray of int32, shape (m, 3)
+        Triangles, -1 where there is none.
+
+    Notes
+    -----
+    O(m log m).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import neighbors
+    >>> neighbors(np.array([[0, 1, 2], [0, 2, 3]]), 4).tolist()
+    [[-1, 1, -1], [-1, -1, 0]]
+    """
+    tail = simplices[:, _TAIL].ravel().astype(np.int64)
+    head = simplices[:, _HEAD].ravel().astype(np.int64)
+    keys, reverse = tail * npoints + head, head * npoints + tail
+    order = np.argsort(keys)
+    place = np.minimum(np.searchsorted(keys, reverse, sorter=order), max(len(keys) - 1, 0))
+    partner = order[place]
+    found = np.where(keys[partner] == reverse, partner // 3, -1)
+    return found.astype(np.int32).reshape(-1, 3)
+
+
+def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
+    """Tell for each triangle whether its row of neighbours is right.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each vertex, in range.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+        Whether each neighbour has the common edge in the other direction, and this triangle
+        across it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import is_mutual
+    >>> simplices = np.array([[0, 1, 2], [0, 2, 3]])
+    >>> is_mutual(simplices, np.array([[-1, 1, -1], [-1, -1, 0]]))
+    array([ True,  True])
+    >>> is_mutual(simplices, np.array([[-1, 1, -1], [0, -1, -1]]))
+    array([False, False])
+    """
+    here = np.arange(len(simplices), dtype=neighbors.dtype)
+    right = np.ones(len(simplices), dtype=bool)
+    for k in range(3):
+        beyond = neighbors[:, k]
+        inner = beyond >= 0
+        back = (neighbors[beyond] == here[:, None]) & (
+            (simplices[beyond][:, _TAIL] == simplices[:, _HEAD[k], None])
+            & (simplices[beyond][:, _HEAD] == simplices[:, _TAIL[k], None])
+        )
+        right &= back.any(axis=1) | ~inner
+    return right

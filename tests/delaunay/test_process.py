@@ -1,0 +1,212 @@
+"""How long calls live with signals, limits and other processes; each in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+posix = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
+
+
+def start(code: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def finish(process: subprocess.Popen[str]) -> str:
+    try:
+        out, err = process.communicate(timeout=120)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        raise
+    assert process.returncode == 0, err
+    return out
+
+
+@posix
+@pytest.mark.parametrize(
+    "call",
+    ["Delaunay(points)", "mesh.validate()", "mesh.find_simplex(queries)"],
+    ids=["triangulate", "validate", "find_simplex"],
+)
+def test_ctrl_c_ends_a_long_call(call: str) -> None:
+    # The calls go on for ever if nothing stops them.
+    process = start(
+        f"""
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((200_000, 2))
+        queries = np.tile(points, (5, 1))
+        mesh = Delaunay(points)
+        print("ready", flush=True)
+        try:
+            while True:
+                {call}
+        except KeyboardInterrupt:
+            print("stopped", flush=True)
+        # Nothing is broken: the next call is right.
+        again = Delaunay(points)
+        assert np.array_equal(again.simplices, mesh.simplices)
+        print(bool(again.validate()), flush=True)
+        """
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    assert finish(process).split() == ["stopped", "True"]
+
+
+@posix
+def test_ctrl_c_ends_one_call() -> None:
+    # One call that takes many seconds, so that the signal must come through from within.
+    process = start(
+        """
+        import time
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((6_000_000, 2))
+        print("ready", flush=True)
+        try:
+            Delaunay(points, workers=1)
+        except KeyboardInterrupt:
+            print("stopped")
+        else:
+            print("finished")
+        """
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.4)
+    process.send_signal(signal.SIGINT)
+    assert finish(process).strip() == "stopped"
+
+
+@posix
+def test_another_handler_is_heard() -> None:
+    # What a handler raises comes out of the call; a handler that returns lets it go on.
+    process = start(
+        """
+        import os, signal, threading
+        import numpy as np
+        from delone import Delaunay
+
+        class Alarm(Exception):
+            pass
+
+        heard = []
+        def handler(number, frame):
+            heard.append(number)
+            if len(heard) > 1:
+                raise Alarm
+        signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
+        points = np.random.default_rng(0).random((200_000, 2))
+        try:
+            while True:
+                Delaunay(points)
+        except Alarm:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            print(len(heard))
+        """
+    )
+    assert finish(process).strip() == "2"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
+def test_memory_that_cannot_be_had() -> None:
+    # The points and a little more fit into the limit, the triangulation does not.
+    process = start(
+        """
+        import resource
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((1_000_000, 2))
+        expected = Delaunay(points[:1000])
+        size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (size + 60_000_000,) * 2)
+        for workers in (1, 2):
+            try:
+                Delaunay(points, workers=workers)
+            except MemoryError as error:
+                print("refused")
+        # The process goes on.
+        again = Delaunay(points[:1000])
+        print(np.array_equal(again.simplices, expected.simplices))
+        """
+    )
+    assert finish(process).split() == ["refused", "refused", "True"]
+
+
+@posix
+def test_a_forked_process_uses_what_its_parent_made() -> None:
+    process = start(
+        """
+        import os
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((50_000, 2))
+        mesh = Delaunay(points)
+        expected = mesh.find_simplex(points)
+        child = os.fork()
+        if child == 0:
+            good = np.array_equal(mesh.find_simplex(points), expected)
+            good = good and np.array_equal(Delaunay(points).simplices, mesh.simplices)
+            good = good and len(mesh.edges) > 0
+            os._exit(0 if good else 1)
+        print(os.waitpid(child, 0)[1], bool(mesh.validate()))
+        """
+    )
+    assert finish(process).split() == ["0", "True"]
+
+
+@posix
+def test_processes_of_a_pool_get_and_give_triangulations() -> None:
+    process = start(
+        """
+        import multiprocessing
+        import numpy as np
+        from delone import Delaunay, datasets
+
+        if __name__ == "__main__":
+            sets = [datasets.uniform(500, seed=seed) for seed in range(6)]
+            with multiprocessing.get_context("fork").Pool(2) as pool:
+                meshes = pool.map(Delaunay, sets)
+            print(all(np.array_equal(m.simplices, Delaunay(s).simplices)
+                      for m, s in zip(meshes, sets)))
+        """
+    )
+    assert finish(process).strip() == "True"
+
+
+def test_the_interpreter_lock_is_released() -> None:
+    # Another thread counts while one call runs; with the lock held it could not count at all.
+    process = start(
+        """
+        import threading
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((500_000, 2))
+        count, done = 0, threading.Event()
+        def work():
+            Delaunay(points, workers=1)
+            done.set()
+        thread = threading.Thread(target=work)
+        thread.start()
+        while not done.wait(0.001):
+            count += 1
+        thread.join()
+        print(count > 3)
+        """
+    )
+    assert finish(process).strip() == "True"
