@@ -1,0 +1,497 @@
+"""The place of ``scipy.spatial.Delaunay`` taken by delone, in the plane.
+
+>>> from delone.compat.scipy import Delaunay
+>>> tri = Delaunay([(0, 0), (0, 1.1), (1, 0), (1, 1)])
+>>> tri.simplices.shape, tri.simplices.dtype
+((2, 3), dtype('int32'))
+>>> sorted(map(sorted, tri.simplices.tolist()))
+[[0, 1, 3], [0, 2, 3]]
+
+The signature, attributes, dtypes, errors and the mutability of arrays are SciPy's. What differs:
+
+* Every distinct point is a vertex, so `coplanar` lists duplicates alone.
+* Among the triangulations of cocircular points it is delone's canonical one, and triangles come in
+  delone's order.
+* `find_simplex` is exact: `tol` has no effect, and a point outside by a rounding error is outside.
+* `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
+* Furthest-site triangles are counter-clockwise, too.
+* Complex numbers, masked queries, and integers which float64 does not hold, are refused rather than
+  rounded or unmasked.
+* `add_points` triangulates anew, which takes the time of a triangulation, not of an insertion.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import delaunay, topology
+from delone._arrays import as_points, as_vectors
+from delone.compat.furthest import furthest_site as furthest_triangles
+from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+    class QhullError(RuntimeError):
+        """Degenerate input or an unknown option: ``scipy.spatial.QhullError``."""
+
+else:
+    try:
+        from scipy.spatial import QhullError
+    except ImportError:
+
+        class QhullError(RuntimeError):
+            """Degenerate input or an unknown option; SciPy's own class where it is installed."""
+
+
+__all__ = ["Delaunay", "DimensionError", "QhullError", "tsearch"]
+
+# SciPy's bound on the reciprocal condition number below which a transform is not given.
+_ILL_CONDITIONED = 1000 * np.finfo(np.float64).eps
+# How far above the highest point Qhull's option Qz lifts its point at infinity.
+_INFINITE_POINT = 1.1
+
+
+class DimensionError(InputError, NotImplementedError):
+    """The points are not in the plane."""
+
+
+class Delaunay:
+    """Delaunay triangulation with the interface of ``scipy.spatial.Delaunay``.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2)
+        Coordinates.
+    furthest_site : bool, optional
+        Whether to compute the furthest-site triangulation: that of the extreme points, whose
+        circles hold all points.
+    incremental : bool, optional
+        Whether `add_points` may be called.
+    qhull_options : str, optional
+        As in SciPy. Options about rounding have no effect, for nothing is rounded; ``QJ`` is among
+        them, so that duplicates stay duplicates. Without ``Qc``, `coplanar` is empty. The default
+        is ``"Qbb Qc Qz Q12"``; without the ``Qbb`` and ``Qz`` in incremental mode.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, 2)
+        Coordinates; the array given where it is of this dtype and layout, as in SciPy.
+    simplices : ndarray of int32, shape (nsimplex, 3)
+        Triangles, counter-clockwise.
+    neighbors : ndarray of int32, shape (nsimplex, 3)
+        The triangle opposite each vertex, -1 outside.
+    equations : ndarray of float64, shape (nsimplex, 4)
+        Normal and offset of the plane through the lifted corners of each triangle.
+    paraboloid_scale, paraboloid_shift : float
+        Points are lifted to ``scale * (x**2 + y**2) + shift``.
+    transform : ndarray of float64, shape (nsimplex, 3, 2)
+        Affine maps to barycentric coordinates; NaN for nearly flat triangles, as in SciPy.
+    vertex_to_simplex : ndarray of int32, shape (npoints,)
+        A triangle of each point, -1 where there is none.
+    convex_hull : ndarray of int32, shape (nfaces, 2)
+        Edges of the convex hull.
+    coplanar : ndarray of int32, shape (ncoplanar, 3)
+        Each duplicate, a triangle of its vertex, and its vertex.
+    vertex_neighbor_vertices : tuple of two ndarrays of int32
+        ``indices[indptr[k]:indptr[k + 1]]`` are the neighbours of vertex k.
+    good : ndarray of int32, shape (nsimplex,)
+        Ones.
+    furthest_site : bool
+        As given.
+    ndim, npoints, nsimplex : int
+        Sizes.
+    min_bound, max_bound : ndarray of float64, shape (2,)
+        The least and the greatest coordinates.
+
+    Raises
+    ------
+    QhullError
+        Fewer than three points are distinct, or all lie on one line; a coordinate is infinite; an
+        option is unknown. ``scipy.spatial.QhullError`` where SciPy is installed.
+    ValueError
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for other
+        triangles.
+    DimensionError
+        The points have more than two coordinates. (A NotImplementedError and a ValueError.)
+
+    Notes
+    -----
+    The module's documentation lists what differs from SciPy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.compat.scipy import Delaunay
+    >>> tri = Delaunay(np.array([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]))
+    >>> t = tri.find_simplex((2, 0.5))
+    >>> b = tri.transform[t, :2] @ (np.array([2, 0.5]) - tri.transform[t, 2])
+    >>> weights = dict(zip(tri.simplices[t].tolist(), [*b.tolist(), 1 - b.sum()]))
+    >>> [float(weights[vertex]) for vertex in (0, 1, 4)]
+    [0.25, 0.25, 0.5]
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        furthest_site: bool = False,
+        incremental: bool = False,
+        qhull_options: str | None = None,
+    ) -> None:
+        self.furthest_site = bool(furthest_site)
+        self._open = bool(incremental)
+        try:
+            self._options = QhullOptions.parse(qhull_options, incremental=self._open)
+        except UnknownOptionError as error:
+            raise QhullError(str(error)) from error
+        self._set(_as_plane_points(points))
+
+    def _set(self, points: Floats) -> None:
+        """Triangulate; nothing changes where that fails."""
+        mesh = _triangulate(points, self.furthest_site)
+        self._points = points
+        self._mesh = mesh
+        for name in _FOLLOWING:
+            self.__dict__.pop(name, None)
+        self.ndim, self.npoints, self.nsimplex = 2, mesh.npoints, mesh.nsimplex
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Add points and triangulate anew.
+
+        Parameters
+        ----------
+        points : array_like, shape (k, 2)
+            What to append to `points`.
+        restart : bool, optional
+            Accepted as in SciPy. The result is the same.
+
+        Raises
+        ------
+        RuntimeError
+            `incremental` was not set, or `close` has been called.
+        QhullError, ValueError
+            As in the constructor; then nothing has changed.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import Delaunay
+        >>> tri = Delaunay([(0, 0), (1, 0), (0, 1)], incremental=True)
+        >>> tri.add_points([(1, 1)])
+        >>> tri.nsimplex
+        2
+        """
+        if not self._open:
+            raise RuntimeError("points can be added with incremental=True only, and before close()")
+        self._set(np.concatenate((self._points, _as_plane_points(points))))
+
+    def close(self) -> None:
+        """End incremental mode; `add_points` is refused from then on."""
+        self._open = False
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates."""
+        return self._points
+
+    @cached_property
+    def simplices(self) -> Indices:
+        """Triangles, counter-clockwise."""
+        return self._mesh.simplices.copy()
+
+    @cached_property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex."""
+        return self._mesh.neighbors.copy()
+
+    @cached_property
+    def convex_hull(self) -> Indices:
+        """Edges of the convex hull."""
+        return self._mesh.convex_hull.copy()
+
+    @cached_property
+    def vertex_to_simplex(self) -> Indices:
+        """A triangle of each point."""
+        found = self._mesh.vertex_to_simplex.copy()
+        if not self._options.coplanar:
+            found[self._mesh.coplanar[:, 0]] = -1
+        return found
+
+    @cached_property
+    def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
+        """Neighbours of vertices as compressed rows (indptr, indices)."""
+        indptr, indices = self._mesh.vertex_neighbor_vertices
+        return indptr.copy(), indices.copy()
+
+    @cached_property
+    def coplanar(self) -> Indices:
+        """Rows that are no vertices, a triangle of their vertex, and their vertex."""
+        if self._options.coplanar:
+            return self._mesh.coplanar.copy()
+        return np.empty((0, 3), dtype=np.int32)
+
+    @cached_property
+    def good(self) -> Indices:
+        """Ones: no option leaves a triangle out."""
+        return np.ones(self._mesh.nsimplex, dtype=np.int32)
+
+    @cached_property
+    def min_bound(self) -> Floats:
+        """The least coordinates."""
+        return self._mesh.min_bound.copy()
+
+    @cached_property
+    def max_bound(self) -> Floats:
+        """The greatest coordinates."""
+        return self._mesh.max_bound.copy()
+
+    @cached_property
+    def transform(self) -> Floats:
+        """Affine maps to barycentric coordinates, NaN for nearly flat triangles.
+
+        Nearly flat is what SciPy takes for it: the reciprocal condition number of the matrix of
+        edge vectors, in the 1-norm, is below 1000 eps. The maps of these triangles are in
+        ``delone.Delaunay.transform``.
+        """
+        maps = self._mesh.transform.copy()
+        corners = self._mesh.points[self._mesh.simplices]
+        with np.errstate(all="ignore"):
+            vectors = np.abs(corners[:, :2] - corners[:, 2:]).sum(axis=2).max(axis=1)
+            inverse = np.abs(maps[:, :2]).sum(axis=1).max(axis=1)
+            condition = vectors * inverse
+        maps[~(condition <= 1 / _ILL_CONDITIONED)] = np.nan
+        return maps
+
+    @cached_property
+    def _paraboloid(self) -> tuple[float, float]:
+        """Scale and shift, as Qhull's options Qbb and Qz define them."""
+        if not self._options.scaled:
+            return 1.0, 0.0
+        points = self._mesh.points
+        with np.errstate(over="ignore"):
+            heights = (points * points).sum(axis=1)
+        low, high = float(heights.min()), float(heights.max())
+        if self._options.infinite_point and not self.furthest_site:
+            high *= _INFINITE_POINT
+        scale = float(np.abs(points).max()) / (high - low)
+        return scale, -low * scale
+
+    @cached_property
+    def paraboloid_scale(self) -> float:
+        """Factor of the lifted coordinate."""
+        return self._paraboloid[0]
+
+    @cached_property
+    def paraboloid_shift(self) -> float:
+        """What is added to the lifted coordinate."""
+        return self._paraboloid[1]
+
+    @cached_property
+    def _normals(self) -> tuple[Floats, Floats]:
+        """Horizontal parts of the normals before they are made unit vectors, and their lengths.
+
+        The plane over a circle with centre c is z = s (2 c x + r² - c²) + t, so that its normal is
+        (2 s c, -1), which points down, as the outside of the lower side of the lifted hull.
+        """
+        horizontal = 2 * self.paraboloid_scale * self._mesh.circumcenters
+        return horizontal, np.hypot(np.hypot(*horizontal.T), 1.0)
+
+    @cached_property
+    def equations(self) -> Floats:
+        """Normal and offset of the plane through the lifted corners of each triangle."""
+        horizontal, length = self._normals
+        corner = self._mesh.points[self._mesh.simplices[:, 0]]
+        # The offset is what makes the equation 0 at a lifted corner.
+        offset = self.lift_points(corner)[:, 2] - (horizontal * corner).sum(axis=1)
+        down = np.column_stack((horizontal, -np.ones(len(length)), offset)) / length[:, None]
+        return -down if self.furthest_site else down
+
+    def lift_points(self, x: ArrayLike) -> Floats:
+        """Lift points to the paraboloid.
+
+        Parameters
+        ----------
+        x : array_like, shape (..., 2)
+            Points.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., 3)
+            Their coordinates and ``paraboloid_scale * (x**2 + y**2) + paraboloid_shift``.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)], qhull_options="Qc").lift_points((2, 3))
+        array([ 2.,  3., 13.])
+        """
+        x = _as_queries(x)
+        height = self.paraboloid_scale * (x * x).sum(axis=-1) + self.paraboloid_shift
+        return np.concatenate((x, height[..., None]), axis=-1)
+
+    def plane_distance(self, xi: ArrayLike) -> Floats:
+        """Return how far lifted points are from the planes of all triangles.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., nsimplex)
+            Positive where the lifted point is on the outer side of the plane: for a point inside
+            the circle of a triangle, or outside it in a furthest-site triangulation.
+
+        Notes
+        -----
+        Computed from differences to a corner, so that nothing is lost far from the origin.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import Delaunay
+        >>> tri = Delaunay([(0, 0), (1, 0), (0, 1)])
+        >>> tri.plane_distance([(0.5, 0.5), (2, 2)]) > 0
+        array([[ True],
+               [False]])
+        """
+        xi = _as_queries(xi)
+        _, length = self._normals
+        corner = self._mesh.points[self._mesh.simplices[:, 0]]
+        center = self._mesh.circumcenters
+        x = xi[..., None, :]
+        # r² - |x - c|² with r² = |v - c|² of a corner v is (v - x) (v + x - 2 c).
+        power = ((corner - x) * ((corner - center) + (x - center))).sum(axis=-1)
+        distance: Floats = self.paraboloid_scale * power / length
+        return -distance if self.furthest_site else distance
+
+    def find_simplex(
+        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
+    ) -> Indices:
+        """Tell which triangles hold points, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points.
+        bruteforce, tol
+            Accepted as in SciPy, without effect.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Triangles, -1 outside.
+
+        Raises
+        ------
+        IndexError
+            `xi` is a number.
+        ValueError
+            `xi` has another number of coordinates.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (1, 1)])
+        array([ 0, -1], dtype=int32)
+        """
+        return self._mesh.find_simplex(_as_queries(xi))
+
+
+# What is computed from the triangulation on first use.
+_FOLLOWING = [name for name, value in vars(Delaunay).items() if isinstance(value, cached_property)]
+
+
+def tsearch(tri: Any, xi: ArrayLike) -> Indices:
+    """Tell which triangles hold points: ``tri.find_simplex(xi)``.
+
+    Parameters
+    ----------
+    tri : Delaunay
+        A triangulation.
+    xi : array_like, shape (..., 2)
+        Points.
+
+    Returns
+    -------
+    ndarray of int32, shape (...)
+        Triangles, -1 outside.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import Delaunay, tsearch
+    >>> tsearch(Delaunay([(0, 0), (1, 0), (0, 1)]), (0.25, 0.25))
+    array(0, dtype=int32)
+    """
+    found: Indices = tri.find_simplex(xi)
+    return found
+
+
+def _triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
+    if len(points) == 0:
+        raise ShapeError("no points given")
+    try:
+        mesh = delaunay.Delaunay(points)
+    except DegenerateInputError as error:
+        raise QhullError(str(error)) from error
+    except NonFiniteError as error:
+        # SciPy looks for NaN itself and leaves infinity to Qhull.
+        if np.isnan(points).any():
+            raise
+        raise QhullError(str(error)) from error
+    if not furthest:
+        return mesh
+    simplices = furthest_triangles(mesh.points, mesh.hull)
+    arrays: dict[str, NDArray[Any]] = {
+        "points": mesh.points,
+        "simplices": simplices,
+        "neighbors": topology.neighbors(simplices, mesh.npoints),
+        "duplicates": np.empty((0, 2), dtype=np.int32),
+    }
+    return delaunay.Delaunay._from_arrays(arrays, {}, None)
+
+
+def _as_plane_points(points: ArrayLike) -> Floats:
+    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors."""
+    if isinstance(points, np.ma.MaskedArray):
+        return as_points(points, ndim=2)  # which refuses it by name
+    try:
+        array = np.asarray(points)
+    except ValueError:
+        return as_points(points, ndim=2)
+    if array.ndim != 2:
+        raise ShapeError(f"points must have two dimensions (npoints, ndim), got {array.shape}")
+    if array.shape[1] < 2:
+        raise ShapeError(f"points must have at least two coordinates, got shape {array.shape}")
+    if array.shape[1] > 2:
+        raise DimensionError(
+            f"delone.compat.scipy.Delaunay triangulates points in the plane; for "
+            f"{array.shape[1]} coordinates use scipy.spatial.Delaunay"
+        )
+    if array.dtype.kind in "bO":
+        return _unboxed(array)
+    return as_points(points, ndim=2)
+
+
+def _unboxed(array: NDArray[Any]) -> Floats:
+    """Booleans and Python objects as numbers, if these are the same numbers."""
+    numbers = array.astype(np.float64)
+    if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
+        wrong = array[(numbers != array) & ~np.isnan(numbers)]
+        raise DtypeError(f"points hold {wrong.flat[0]!r}, which float64 cannot")
+    return numbers
+
+
+def _as_queries(xi: ArrayLike) -> Floats:
+    array = np.asanyarray(xi)
+    if array.ndim == 0:
+        raise IndexError("points to locate need a last axis of coordinates, got a single value")
+    if array.shape[-1] != 2:
+        raise ShapeError(f"points must have 2 coordinates, got shape {array.shape}")
+    return _unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, 2, name="xi")
