@@ -5,8 +5,9 @@
 //! the dice: every 64th point along the curve, then every 8th, then the rest. Early points
 //! spread over the plane keep cavities small; the curve keeps each round in the cache.
 //!
-//! An order that is fixed in advance has inputs that make it quadratic. A budget of triangles met,
-//! O(n log n), ends such a block early, and `divide_conquer` takes it.
+//! An order that is fixed in advance has inputs that make it quadratic: two lines that nearly
+//! coincide do, whose triangles are so thin that each point meets most of them. A budget of
+//! triangles met, O(n log n), ends such a block early, and `divide_conquer` takes it.
 
 use std::ops::Range;
 
@@ -25,9 +26,10 @@ const STRIDES: [u32; 3] = [64, 8, 1];
 /// Insertions between two looks at the watch.
 const WATCH_EVERY: usize = 4096;
 
-/// Work that an insertion may cost on average, in triangles met, times the logarithm of the number
-/// of points. Points that spread cost about 6 in all.
-const BUDGET: usize = 8;
+/// Triangles that an insertion may meet on average, and how many more for each doubling of the
+/// number of points: of the generators and the corpus, none but near lines needs more than 10.
+const BUDGET: usize = 16;
+const BUDGET_DOUBLING: usize = 2;
 
 /// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
 /// block is collinear or the budget did not suffice. `points` end with NaN for infinity.
@@ -48,7 +50,9 @@ pub fn build(
     let mut order = Rounds::over(n as u32)
         .map(|i| block.start + i)
         .filter(|v| !first.contains(v));
-    let budget = BUDGET * n * (n.ilog2() as usize + 1);
+    let share = BUDGET + BUDGET_DOUBLING * n.ilog2() as usize;
+    // The budget grows as points go in, from that of an eighth of them: a hopeless block ends early.
+    let mut budget = share * (n / 8 + WATCH_EVERY);
     let mut near = triangle(kernel.ghost());
     let mut until_watch = WATCH_EVERY;
     let mut next = order.next();
@@ -60,9 +64,10 @@ pub fn build(
         if until_watch == 0 {
             watch.check()?;
             until_watch = WATCH_EVERY;
-            if kernel.work() > budget {
-                return Ok(None);
-            }
+        }
+        budget += share;
+        if kernel.work() > budget {
+            return Ok(None);
         }
     }
     Ok(Some(kernel.ghost()))
@@ -118,6 +123,30 @@ impl Iterator for Rounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh2::Mesh2;
+    use crate::order::arrange;
+
+    /// What `build` makes of `points`; `None` where it gives up.
+    fn built(points: &[Point2]) -> Option<Code> {
+        let mut arranged = arrange(points, 1, &Watch::idle()).unwrap();
+        let n = arranged.points.len();
+        arranged.points.push([f64::NAN; 2]);
+        let mut mesh = Mesh2::with_vertices(n).unwrap();
+        build(&arranged.points, 0..n as u32, mesh.patch(), &Watch::idle()).unwrap()
+    }
+
+    #[test]
+    fn two_lines_that_nearly_coincide_exceed_the_budget() {
+        let lines = |apart: f64| -> Vec<Point2> {
+            let point = |i| {
+                let t = f64::from(i) / 1e5;
+                [t, f64::from(i % 2) * (apart + t * apart / 100.0)]
+            };
+            (0..100_000).map(point).collect()
+        };
+        assert!(built(&lines(1e-7)).is_none());
+        assert!(built(&lines(1e-3)).is_some());
+    }
 
     #[test]
     fn rounds_name_each_number_once() {
