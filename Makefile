@@ -1,0 +1,114 @@
+# The commands of this repository; `make help` lists them.
+#
+# Everything is installed into .venv beside this file. A stamp in .venv/stamps stands for one set of
+# requirements; it is renewed when pyproject.toml or a Rust source changes, so a second call of a
+# target builds and installs nothing. `make PYTHON=python3.12 ...` chooses the interpreter.
+
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
+RUST_MINOR := 88
+FUZZ_SECONDS ?= 20
+BENCH ?=
+DEMO_DATA := examples/data/ahn3_crop_100m.laz
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/stamps
+SOURCES := pyproject.toml Cargo.toml $(wildcard Cargo.lock) $(wildcard crates/*/Cargo.toml) \
+	$(shell find crates -name '*.rs' 2>/dev/null)
+# The bindings crate is a Python extension: its tests are those of the Python package.
+CARGO_TEST := cargo test --workspace --exclude delone-bindings
+
+# What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
+NEEDS_build :=
+NEEDS_demo := -E cli,las,mesh,plot
+NEEDS_test := -E all -G test
+NEEDS_docs := -E all -G test,docs
+NEEDS_bench := -E all -G bench
+
+.PHONY: help need build demo test lint docs bench fuzz clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo 'make demo    triangulate the lidar tile in examples/data: report, picture, mesh file'
+	@echo 'make test    every test: Rust, Python, doctests, documentation examples, layers'
+	@echo 'make lint    clippy, rustfmt, ruff, mypy, and the stub against the built module'
+	@echo 'make docs    the documentation, into docs/_build/html'
+	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
+	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
+	@echo 'make build   the package alone, installed into .venv in development mode'
+	@echo 'make clean   remove everything that these made'
+
+# Says all that is missing at once, then stops.
+need:
+	@missing=0; say() { echo "delone: $$*" >&2; missing=1; }; \
+	rust=$$(rustc --version 2>/dev/null | sed -n 's/^rustc 1\.\([0-9]*\).*/\1/p'); \
+	if ! command -v cargo >/dev/null || [ -z "$$rust" ]; then \
+		say 'Rust is missing. Install Rust 1.$(RUST_MINOR) or later: https://rustup.rs'; \
+	elif [ "$$rust" -lt $(RUST_MINOR) ]; then \
+		say "Rust 1.$$rust is too old. Install 1.$(RUST_MINOR) or later: rustup update stable"; \
+	fi; \
+	if ! command -v cc >/dev/null; then \
+		say 'A C compiler is missing: Rust links with it. Install gcc or clang' \
+			'(Debian, Ubuntu: apt install gcc; macOS: xcode-select --install)'; \
+	fi; \
+	if [ -z "$(PYTHON)" ]; then \
+		say 'Python is missing. Install Python 3.11 or later: https://www.python.org/downloads'; \
+	elif ! $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
+		say '$(PYTHON) is not Python 3.11 or later: https://www.python.org/downloads'; \
+	elif ! $(PYTHON) -c 'import venv, ensurepip' 2>/dev/null; then \
+		say "Python's venv module is missing (Debian, Ubuntu: apt install python3-venv)"; \
+	fi; \
+	exit $$missing
+
+$(STAMPS)/tools: | need
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.9,<2'
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/%: $(SOURCES) $(STAMPS)/tools | need
+	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release $(NEEDS_$*)
+	@touch $@
+
+build: $(STAMPS)/build
+
+demo: $(STAMPS)/demo
+	@mkdir -p demo
+	$(BIN)/delone triangulate $(DEMO_DATA) -o demo/ahn3.png -o demo/ahn3.vtu
+	@echo 'The picture: $(abspath demo/ahn3.png)'
+	@echo 'The mesh (open it in ParaView): $(abspath demo/ahn3.vtu)'
+
+test: $(STAMPS)/test
+	$(CARGO_TEST)
+	$(BIN)/pytest
+	$(BIN)/pytest --doctest-modules python/delone
+	$(BIN)/pytest --doctest-glob='*.rst' docs
+	for example in examples/*.py; do $(BIN)/python $$example || exit 1; done
+
+lint: $(STAMPS)/test
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	cargo fmt --manifest-path benchmarks/peers/Cargo.toml --check
+	cargo clippy --manifest-path benchmarks/peers/Cargo.toml -- -D warnings
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	cd python && ../$(BIN)/python -m mypy.stubtest delone._core
+
+docs: $(STAMPS)/docs
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo 'The documentation: $(abspath docs/_build/html/index.html)'
+
+bench: $(STAMPS)/bench
+	$(BIN)/python benchmarks/wheels.py $(BENCH)
+	$(BIN)/python benchmarks/crates.py $(BENCH)
+	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
+
+fuzz: need
+	fuzz/run.sh $(FUZZ_SECONDS)
+
+clean:
+	rm -rf $(VENV) target demo build dist docs/_build docs/generated
+	rm -rf benchmarks/peers/target fuzz/target .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find python tests docs benchmarks -name __pycache__ -type d -exec rm -rf {} +
+	rm -f python/delone/_core*.so python/delone/_core*.pyd

@@ -1,0 +1,40 @@
+"""The point sets of the benchmarks: generators of `delone.datasets` at one seed.
+
+A set is named by its generator, with the number of points behind a colon: ``uniform:1000000``.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from delone.datasets import GENERATORS
+
+Points = NDArray[np.float64]
+
+SEED = 2026
+
+DEFAULT = (
+    "uniform:10000",
+    "uniform:100000",
+    "uniform:1000000",
+    "utm_millimetres:1000000",
+    "grid:1000000",
+    "circle:100000",
+    "kuzmin:1000000",
+    "gaussian_clusters:1000000",
+)
+
+
+def make(name: str) -> Points:
+    """Return the set that `name` names, such as ``"kuzmin:1000000"``."""
+    generator, _, number = name.partition(":")
+    if generator not in GENERATORS or not number.isdigit():
+        known = ", ".join(GENERATORS)
+        raise SystemExit(f"no point set {name!r}: one of {known}, then a colon and a number")
+    return np.ascontiguousarray(GENERATORS[generator](int(number), seed=SEED))
+
+
+def with_number(names: tuple[str, ...], number: int | None) -> tuple[str, ...]:
+    """Replace the number of points of each set by `number`; each set is then named once."""
+    if number is None:
+        return names
+    return tuple(dict.fromkeys(f"{name.partition(':')[0]}:{number}" for name in names))
