@@ -1,12 +1,12 @@
-//! Comparisons of Fortune's sweep: a vertical line moves to the right and stops at points and at the
-//! right ends of circles. S. Fortune, "A sweepline algorithm for Voronoi diagrams", Algorithmica 2
-//! (1987).
+//! Comparisons of Fortune's sweep: a vertical line moves to the right and stops at points and at
+//! the right ends of circles. S. Fortune, "A sweepline algorithm for Voronoi diagrams",
+//! Algorithmica 2 (1987).
 //!
 //! # Which of two parabolas is in front
 //!
 //! The circle that touches the vertical line through q in q and passes through a has the radius
-//! |a - q|^2 / (2 (qx - ax)). So the parabola of b is in front of that of a, at the height of q, where
-//! |a - q|^2 (qx - bx) - |b - q|^2 (qx - ax) > 0: degree 3.
+//! |a - q|^2 / (2 (qx - ax)). So the parabola of b is in front of that of a, at the height of q,
+//! where |a - q|^2 (qx - bx) - |b - q|^2 (qx - ax) > 0: degree 3.
 //!
 //! # Right ends of circles
 //!
@@ -21,27 +21,27 @@
 //!
 //! # The bound of the estimate
 //!
-//! Let e = 2^-53. Rounded differences err by a factor 1 + e, |u|^2 by 4 e, |u| by 3 e, their product
-//! sqrt l by 11 e, a term of n by 6 e and n by 7 e M in all, M = |u|^2 |vy| + |v|^2 |uy|; the
-//! numerator N = n + sqrt l then by less than f = 14 e (M + sqrt l) with room for what is of second
-//! order. d errs by less than g = 8 e (|ux vy| + |uy vx|), which is twice what is needed. If
+//! Let e = 2^-53. Rounded differences err by a factor 1 + e, |u|^2 by 4 e, |u| by 3 e, their
+//! product sqrt l by 11 e, a term of n by 6 e and n by 7 e M in all, M = |u|^2 |vy| + |v|^2 |uy|;
+//! the numerator N = n + sqrt l then by less than f = 14 e (M + sqrt l) with room for what is of
+//! second order. d errs by less than g = 8 e (|ux vy| + |uy vx|), which is twice what is needed. If
 //! g < d / 4, N / 2d errs by at most 2/3 (f + |N| g / d) / d; the third that is left holds the
 //! roundings of the division and of the bound. Adding bx errs by e of the sum.
 //!
-//! Where n < 0 the two parts of N cancel, which is bad for great circles that end near their points.
-//! Since l - n^2 = m^2, m = |u|^2 vx - |v|^2 ux, which is the centre's ordinate times 2 d, then
-//! N = m^2 / t, t = sqrt l - n. m errs by less than h = 8 e (|u|^2 |vx| + |v|^2 |ux|), t by less than
-//! f, and if f < t / 4, then N by less than 4/3 ((2 |m| + h) h + N f) / t; 2 is taken for 4/3, and 14 e N
-//! holds the roundings.
+//! Where n < 0 the two parts of N cancel, which is bad for great circles that end near their
+//! points. Since l - n^2 = m^2, m = |u|^2 vx - |v|^2 ux, which is the centre's ordinate times 2 d,
+//! then N = m^2 / t, t = sqrt l - n. m errs by less than h = 8 e (|u|^2 |vx| + |v|^2 |ux|), t by
+//! less than f, and if f < t / 4, then N by less than 4/3 ((2 |m| + h) h + N f) / t; 2 is taken for
+//! 4/3, and 14 e N holds the roundings.
 //!
 //! Squared lengths between 2^-300 and 2^300 exclude overflow, and what underflow adds to N vanishes
 //! before f; to d it adds 2^-1073 at most, which g gets. Other triples are scaled by a power of two
-//! to coordinates below 1, off by at most 2^-1074 each, the largest of which has its last bit at 2^-53
-//! or is a multiple of 2^-52. The triple is not collinear, so two points differ in that coordinate,
-//! by 2^-54 at least, and two of the lengths exceed 2^-56. Then squared lengths from 2^-1000 on
-//! suffice: sqrt l exceeds 2^-612, and what underflow adds vanishes as before. In m it matters only
-//! where the larger of the two terms is subnormal; m^2 then errs by less than `FLOOR`, as it does
-//! where it underflows itself.
+//! to coordinates below 1, off by at most 2^-1074 each, the largest of which has its last bit at
+//! 2^-53 or is a multiple of 2^-52. The triple is not collinear, so two points differ in that
+//! coordinate, by 2^-54 at least, and two of the lengths exceed 2^-56. Then squared lengths from
+//! 2^-1000 on suffice: sqrt l exceeds 2^-612, and what underflow adds vanishes as before. In m it
+//! matters only where the larger of the two terms is subnormal; m^2 then errs by less than `FLOOR`,
+//! as it does where it underflows itself.
 
 use std::ops::RangeInclusive;
 
@@ -252,8 +252,8 @@ pub fn circle_ends(s: [Point2; 3], t: [Point2; 3]) -> Sign {
 }
 
 /// Whether the circles are equal but for their height, seen without arithmetic on big numbers: the
-/// middle points have one abscissa, and the others lie about them alike or mirrored in a horizontal.
-/// Differences that are not exact prove nothing.
+/// middle points have one abscissa, and the others lie about them alike or mirrored in a
+/// horizontal. Differences that are not exact prove nothing.
 fn mirrored(s: [Point2; 3], t: [Point2; 3]) -> bool {
     if s[1][0] != t[1][0] {
         return false;
@@ -415,7 +415,8 @@ fn circle<const D: usize, const D2: usize, const D3: usize, const D4: usize, con
 
 /// The sign of A + sqrt P - sqrt Q for u, v, w of both triples and x.
 ///
-/// A < 3 W^5 / 128, P and Q < W^10 / 2^15, U < W^10 / 2^10, and 4 A^2 P < W^20 / 2^22: all have room.
+/// A < 3 W^5 / 128, P and Q < W^10 / 2^15, U < W^10 / 2^10, and 4 A^2 P < W^20 / 2^22: all have
+/// room.
 fn wide_ends<
     const D: usize,
     const D2: usize,

@@ -11,29 +11,30 @@
 //!
 //! # The lifted hull
 //!
-//! The hull has one more vertex: a point so high above the others that its facets are vertical
-//! as far as any sign can tell. Those are the ghosts; what is not one is a lower facet. A point *sees* a
-//! facet if it lies on its outer side: below the plane, for a lower facet, which is the orientation
-//! of four lifted points and is the in-circle determinant, with heights perturbed as for ties; or beyond the
-//! hull edge of a ghost. No height is ever computed, so none is rounded. All perturbed points are
-//! extreme and no four in one plane: the hull is simplicial and has every point as a vertex.
+//! The hull has one more vertex: a point so high above the others that its facets are vertical as
+//! far as any sign can tell. Those are the ghosts; what is not one is a lower facet. A point *sees*
+//! a facet if it lies on its outer side: below the plane, for a lower facet, which is the
+//! orientation of four lifted points and is the in-circle determinant, with heights perturbed as
+//! for ties; or beyond the hull edge of a ghost. No height is ever computed, so none is rounded.
+//! All perturbed points are extreme and no four in one plane: the hull is simplicial and has every
+//! point as a vertex.
 //!
 //! # Conflicts
 //!
 //! A point outside the hull so far is in conflict with the facets that it sees. Each keeps one of
-//! them, and each facet the list of points that keep it. When p is inserted, the facets that it sees
-//! are a disc; they go, and a cone of new ones comes, from p to the horizon. The points x that kept
-//! what goes get a facet of the cone:
+//! them, and each facet the list of points that keep it. When p is inserted, the facets that it
+//! sees are a disc; they go, and a cone of new ones comes, from p to the horizon. The points x that
+//! kept what goes get a facet of the cone:
 //!
-//! - Each sees one. x sees a connected set of facets, and saw one that goes. If all that it saw goes,
-//!   it sees new ones, since it lies outside the new hull. If not, it saw the facets g and h on
-//!   either side of an edge of the horizon, p seeing g alone. The plane of the new facet on
-//!   that edge is a combination of the planes of g and h with positive factors, as p lies on both
-//!   sides: so x, outside both, is outside it.
-//! - It sees the one in whose angle round p it lies. The lower facets of the cone are the
-//!   graph, near p, of a convex function; each plane lies below the cone but where its own facet is. So if
-//!   x is below any plane, then below the one in whose angle it is. On the border of two
-//!   angles both planes agree. Outside the angles of all lower facets, where p is on the hull of the
+//! - Each sees one. x sees a connected set of facets, and saw one that goes. If all that it saw
+//!   goes, it sees new ones, since it lies outside the new hull. If not, it saw the facets g and h
+//!   on either side of an edge of the horizon, p seeing g alone. The plane of the new facet on that
+//!   edge is a combination of the planes of g and h with positive factors, as p lies on both sides:
+//!   so x, outside both, is outside it.
+//! - It sees the one in whose angle round p it lies. The lower facets of the cone are the graph,
+//!   near p, of a convex function; each plane lies below the cone but where its own facet is. So if
+//!   x is below any plane, then below the one in whose angle it is. On the border of two angles
+//!   both planes agree. Outside the angles of all lower facets, where p is on the hull of the
 //!   plane, x is beyond an edge at p and sees a ghost.
 //!
 //! The angle is found by a binary search round p with orientations in the plane.
@@ -42,8 +43,8 @@
 //!
 //! A point changes its facet only when a facet that it sees goes: O(n log n) times in all, expected
 //! over the random rounds, for every input (the theorem of Clarkson and Shor). A search takes the
-//! logarithm of the degree of p, which is 6 on average: O(n log n) in all, and O(n log^2 n) where
-//! degrees are adverse.
+//! logarithm of the degree of p, below 6 on average over the vertices: O(n log n) in all where
+//! degrees are bounded, and O(n log^2 n) where points crowd round vertices of high degree.
 
 use std::ops::Range;
 

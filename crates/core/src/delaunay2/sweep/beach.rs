@@ -1,6 +1,6 @@
 //! The beach line: arcs from below to above in a linked list, and a splay tree over them to find
-//! the arc at a height. D. D. Sleator and R. E. Tarjan, "Self-adjusting binary search trees", Journal
-//! of the ACM 32 (1985): O(log n) a search, amortised, with no balance to keep.
+//! the arc at a height. D. D. Sleator and R. E. Tarjan, "Self-adjusting binary search trees",
+//! Journal of the ACM 32 (1985): O(log n) a search, amortised, with no balance to keep.
 
 use delone_predicates::sweep::front;
 use delone_predicates::{Point2, Sign};
@@ -49,10 +49,10 @@ impl Default for Beach {
 /// Whether `q`, which the line has just met, is at or above the end of a's arc and the beginning of
 /// b's, the next one above.
 ///
-/// Of two parabolas the one whose point is nearer to the line is narrower and in front between their
-/// two crossings, its own height among them. If that is b's, this is the lower crossing: q is above it
-/// if it is above b or if b is in front at its height. If it is a's, this is the upper crossing.
-/// If neither is nearer there is but one crossing.
+/// Of two parabolas the one whose point is nearer to the line is narrower and in front between
+/// their two crossings, its own height among them. If that is b's, this is the lower crossing: q is
+/// above it if it is above b or if b is in front at its height. If it is a's, this is the upper
+/// crossing. If neither is nearer there is but one crossing.
 fn beyond(a: Point2, b: Point2, q: Point2) -> bool {
     if a[0] < b[0] {
         q[1] >= b[1] || front(a, b, q) != Sign::Negative

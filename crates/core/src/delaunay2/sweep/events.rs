@@ -1,5 +1,5 @@
-//! The circles to come, in a binary heap by their right ends. Each arc knows the place of its circle,
-//! so circles that come to nothing leave at once and the heap is no longer than the front.
+//! The circles to come, in a binary heap by their right ends. Each arc knows the place of its
+//! circle, so circles that come to nothing leave at once and the heap is no longer than the front.
 
 use delone_predicates::Sign;
 use delone_predicates::sweep::{CircleEnd, circle_end_abscissa, circle_ends};
@@ -56,7 +56,8 @@ impl Events {
         }
     }
 
-    /// Takes the circle of `arc` out, if it has one. Its neighbours must be those it was added with.
+    /// Takes the circle of `arc` out, if it has one. Its neighbours must be those it was added
+    /// with.
     pub fn remove(&mut self, beach: &mut Beach, arc: u32) {
         let slot = std::mem::replace(&mut beach.arcs[arc as usize].slot, NONE);
         if slot == NONE {

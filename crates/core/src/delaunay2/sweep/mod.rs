@@ -1,17 +1,18 @@
 //! Fortune's sweep: a vertical line moves over the points from left to right.
 //!
 //! S. Fortune, "A sweepline algorithm for Voronoi diagrams", Algorithmica 2 (1987), by way of the
-//! dual: where a Voronoi vertex is found, a triangle is made. O(n log n) in the worst case: n points
-//! and at most 2 n triangles, each with a search in a splay tree and a few changes of a heap.
+//! dual: where a Voronoi vertex is found, a triangle is made. O(n log n) in the worst case: n
+//! points and at most 2 n triangles, each with a search in a splay tree and a few changes of a
+//! heap.
 //!
 //! # The front
 //!
 //! A place left of the line is *settled* when it is nearer to some point than to the line. The
-//! settled places end in the beach line, arcs of parabolas, each belonging to a point and all places
-//! on it having that point nearest; from below to above they name a sequence of points, the *front*.
-//! Two points that follow each other there have an empty circle which touches the line between
-//! them: their edge is Delaunay. The front is the right boundary of what is triangulated so far, an
-//! edge without a triangle being passed twice.
+//! settled places end in the beach line, arcs of parabolas, each belonging to a point and all
+//! places on it having that point nearest; from below to above they name a sequence of points, the
+//! *front*. Two points that follow each other there have an empty circle which touches the line
+//! between them: their edge is Delaunay. The front is the right boundary of what is triangulated so
+//! far, an edge without a triangle being passed twice.
 //!
 //! ```text
 //!        c                 c            The line reaches q at the height of b's arc: b, q, b.
@@ -28,13 +29,13 @@
 //! Equal stops may come in any order:
 //!
 //! - Points with one abscissa come from below to above. Those that are leftmost of all follow each
-//!   other in the front from the start: their arcs are rays. For any later one the arc at its height
-//!   is found as for others, since a point on the line has its ray there, below.
-//! - Circles that end together: an arc that has shrunk to nothing at the end of the circle a b c has
-//!   a, b, c on an empty circle through its place. Taking b away leaves the front as it is but for
-//!   arcs of no length; a further point of that circle, d, still ends with a, c at the same abscissa,
-//!   as three points of a circle turn strictly. So the order picks one triangulation of the polygon of
-//!   cocircular points, and all are Delaunay.
+//!   other in the front from the start: their arcs are rays. For any later one the arc at its
+//!   height is found as for others, since a point on the line has its ray there, below.
+//! - Circles that end together: an arc that has shrunk to nothing at the end of the circle a b c
+//!   has a, b, c on an empty circle through its place. Taking b away leaves the front as it is but
+//!   for arcs of no length; a further point of that circle, d, still ends with a, c at the same
+//!   abscissa, as three points of a circle turn strictly. So the order picks one triangulation of
+//!   the polygon of cocircular points, and all are Delaunay.
 //! - A circle that ends on the abscissa of a point goes first. If the point is its right end, it
 //!   meets two arcs at once, and splits either: the arc of no length between it and the other is
 //!   the circle's again, and its end, the present abscissa, comes next.
