@@ -1,0 +1,9 @@
+"""The command ``delone``: it reads, calls the public interface, and reports.
+
+`app` has the commands and their options, `report` the figures, `show` what they look like, `exits`
+the exit codes. Needs typer and rich (extra ``cli``).
+"""
+
+from delone.cli.app import run
+
+__all__ = ["run"]

@@ -1,0 +1,300 @@
+"""The three commands, their options, and the way from an error to one line and an exit code."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from delone import Delaunay, __version__
+from delone.cli.check import check_mesh
+from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
+from delone.cli.info import describe
+from delone.cli.report import Stopwatch, peak_memory, summary
+from delone.cli.show import (
+    memory_text,
+    print_json,
+    print_rows,
+    print_stages,
+    print_text,
+    spinner,
+    triangulation_rows,
+)
+from delone.errors import NonFiniteError
+from delone.io import input_suffixes, output_suffixes, read_points
+from delone.io.atomic import check_target, replacing
+from delone.io.registry import writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from delone.io import PointSet
+
+__all__ = ["app", "run"]
+
+# The mark \b keeps the lines of a paragraph as they are.
+_CODES = "\b\nExit codes:\n" + "\n".join(
+    f"  {code.value:>3}  {text}" for code, text in MEANINGS.items()
+)
+
+app = typer.Typer(
+    name="delone",
+    help="Exact, canonical and fast Delaunay triangulation of the points in a file.",
+    epilog=_CODES,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Input = Annotated[
+    Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
+]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        help="Columns of x, y and z, by name or by number from 0: lon,lat,depth or 0,1,2."
+    ),
+]
+Classes = Annotated[
+    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
+]
+Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"delone {__version__}")
+        raise typer.Exit
+
+
+def _options(
+    *,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which version.")
+    ] = False,
+) -> None:
+    """Exact, canonical and fast Delaunay triangulation of the points in a file."""
+
+
+def triangulate(
+    source: Input,
+    *,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(output_suffixes()),
+        ),
+    ] = None,
+    classes: Classes = None,
+    columns: Columns = None,
+    layer: Layer = None,
+    method: Annotated[
+        str, typer.Option(help="How to compute it; the answer is the same.")
+    ] = "auto",
+    workers: Annotated[
+        int | None, typer.Option(help="Threads; by default one for each core.")
+    ] = None,
+    edges: Annotated[
+        bool, typer.Option("--edges", help="Write edges in place of triangles.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Triangulate the points of a file, report, and write meshes and pictures."""
+    with writing():
+        writers = {path: _ready(path) for path in output or ()}
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            survey = read_points(
+                source, columns=_split(columns), classes=_numbers(classes), layer=layer
+            )
+        say(f"triangulating {len(survey):,} points")
+        mesh, z, crs = _triangulated(survey, method, workers)
+        del survey
+        watch.seconds |= mesh.stages
+        _write(writers, mesh, {"z": z, "crs": crs, "edges": edges}, watch, say)
+        say("reporting")
+        figures: dict[str, Any] = {
+            "delone": __version__,
+            "input": str(source),
+            "crs": crs,
+            **summary(mesh),
+            "stages": watch.rows(mesh.npoints),
+            "outputs": [str(path) for path in writers],
+            "peak_memory_bytes": peak_memory(),
+        }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        rows = triangulation_rows(figures)
+        rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
+        rows += [("written", str(path)) for path in writers]
+        print_rows(str(source), rows)
+        print_stages(figures["stages"])
+
+
+def check(
+    mesh: Annotated[
+        Path,
+        typer.Argument(metavar="MESH", help="File of triangles: .npz .vtu .ply .obj .stl .msh"),
+    ],
+    *,
+    canonical: Annotated[
+        bool,
+        typer.Option("--canonical", help="Cocircular points must be fanned as delone does it."),
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Prove exactly that triangles are Delaunay, or name the culprits and exit with 1."""
+    with spinner(quiet or as_json) as say:
+        figures, lines = check_mesh(mesh, canonical=canonical, say=say)
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in ("points", "triangles")])
+        print_text("\n".join(lines))
+    if not figures["ok"]:
+        raise typer.Exit(Exit.NOT_DELAUNAY)
+
+
+def info(
+    source: Input,
+    *,
+    classes: Classes = None,
+    columns: Columns = None,
+    layer: Layer = None,
+    as_json: Json = False,
+) -> None:
+    """Say what a file of points holds, without triangulating it."""
+    with spinner(as_json) as say:
+        say(f"reading {source.name}")
+        figures, rows = describe(
+            source, columns=_split(columns), classes=_numbers(classes), layer=layer
+        )
+    if as_json:
+        print_json(figures)
+    else:
+        print_rows(str(source), rows)
+
+
+# Called, not used as decorators: the functions above stay what they are.
+app.callback()(_options)
+for _command in (triangulate, check, info):
+    app.command(epilog="The table of exit codes is in: delone --help")(_command)
+
+
+def _ready(path: Path) -> Callable[..., None]:
+    """Make sure that a file can be written before any work is spent on it."""
+    write = writer(path)
+    check_target(path)
+    return write
+
+
+def _triangulated(
+    survey: PointSet, method: str, workers: int | None
+) -> tuple[Delaunay, Any, str | None]:
+    mesh = Delaunay(survey.points, method=method, workers=workers)
+    return mesh, survey.z, survey.crs
+
+
+def _write(
+    writers: Mapping[Path, Callable[..., None]],
+    mesh: Delaunay,
+    what: Mapping[str, Any],
+    watch: Stopwatch,
+    say: Callable[[str], None],
+) -> None:
+    """Write all files beside their targets, and rename them when the last one is whole."""
+    with writing(), ExitStack() as stack:
+        for path, write in writers.items():
+            say(f"writing {path.name}")
+            with watch.stage(f"write {path.name}"):
+                write(stack.enter_context(replacing(path)), mesh, **what)
+
+
+def _split(text: str | None) -> list[str] | None:
+    return None if text is None else [part.strip() for part in text.split(",")]
+
+
+def _numbers(text: str | None) -> list[int] | None:
+    try:
+        return None if text is None else [int(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(f"--classes takes numbers, as 2 or 2,6; got {text!r}", Exit.USAGE) from None
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        What stands behind ``delone`` on the command line.
+
+    Returns
+    -------
+    int
+        The exit code. Whatever went wrong has been said in one line on standard error.
+    """
+    # Only the main thread may say what signals do.
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGTERM, _terminated) if main else None
+    try:
+        # typer says what is wrong with a command line itself, and Ctrl-C must not be its Abort.
+        code = typer.main.get_command(app).main(
+            args=list(arguments), prog_name="delone", standalone_mode=False
+        )
+        # typer turns Ctrl-C into this code.
+        if code == Exit.INTERRUPTED:
+            return _said(KeyboardInterrupt())
+        return code if isinstance(code, int) else Exit.OK
+    except BaseException as error:
+        return _said(error)
+    finally:
+        if before is not None:
+            signal.signal(signal.SIGTERM, before)
+
+
+def _said(error: BaseException) -> int:
+    """Say what went wrong, and return the exit code."""
+    if isinstance(error, SystemExit):
+        return error.code if isinstance(error.code, int) else Exit.USAGE
+    usage = getattr(error, "format_message", None)
+    if usage is not None:
+        message, code = usage(), Exit(getattr(error, "exit_code", Exit.USAGE))
+    elif isinstance(error, KeyboardInterrupt | typer.Abort):
+        message, code = "interrupted", Exit.INTERRUPTED
+    elif isinstance(error, Failure):
+        message, code = str(error), error.code
+    elif isinstance(error, MemoryError):
+        message, code = str(error) or "there is not enough memory", Exit.MEMORY
+    else:
+        code = code_of(error)
+        message = str(error)
+        if isinstance(error, NonFiniteError):
+            more = ", ..." if error.count > len(error.rows) else ""
+            message += f" (rows {', '.join(map(str, error.rows.tolist()))}{more})"
+        if code == Exit.INTERNAL:
+            message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
+    if message:
+        print(f"delone: {' '.join(message.split())}", file=sys.stderr)
+    return code
+
+
+def _terminated(number: int, frame: object) -> NoReturn:
+    # As an exception, so that temporary files are removed on the way out.
+    raise SystemExit(Exit.TERMINATED)

@@ -1,0 +1,107 @@
+"""Exact proof or refutation of a mesh file: the figures of ``delone check``."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.cli.exits import Exit, Failure, reading
+from delone.cli.report import Stopwatch, geometry
+from delone.errors import InputError
+from delone.io import read_mesh
+from delone.validation import ValidationReport, validate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from delone.io import MeshFile
+
+__all__ = ["check_mesh"]
+
+_FIRST = 10
+
+
+def check_mesh(
+    path: Path, *, canonical: bool, say: Callable[[str], None]
+) -> tuple[dict[str, Any], list[str]]:
+    """Read triangles and prove that they are Delaunay, or name the culprits.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    canonical : bool
+        Whether another choice among cocircular points is a fault.
+    say : callable
+        Is told what is being done.
+
+    Returns
+    -------
+    figures : dict
+        For machines; ``figures["ok"]`` is the verdict.
+    lines : list of str
+        For people.
+    """
+    watch = Stopwatch()
+    say(f"reading {path.name}")
+    with reading(), watch.stage("read"):
+        mesh = read_mesh(path)
+    say(f"checking {len(mesh.simplices):,} triangles")
+    with watch.stage("check"):
+        report = _checked(mesh)
+    faults = {each.name: getattr(report, each.name) for each in fields(ValidationReport)}
+    faults = {name: culprits for name, culprits in faults.items() if culprits.size}
+    delaunay = set(faults) <= {"ties"}
+    figures = {
+        "input": str(path),
+        "ok": delaunay and not (canonical and faults),
+        "delaunay": delaunay,
+        "canonical": not faults,
+        **geometry(mesh.points, mesh.simplices),
+        "faults": {name: _fault(name, culprits) for name, culprits in faults.items()},
+        "stages": watch.rows(len(mesh.points)),
+    }
+    return figures, _lines(report, mesh, delaunay)
+
+
+def _checked(mesh: MeshFile) -> ValidationReport:
+    try:
+        return validate(mesh.points, mesh.simplices, neighbors=mesh.neighbors)
+    except InputError as error:
+        raise Failure(f"{mesh.source}: {error}", Exit.INPUT) from error
+
+
+def _fault(name: str, culprits: NDArray[np.int64]) -> dict[str, Any]:
+    if name == "count":
+        return {"expected": int(culprits[0]), "found": int(culprits[1])}
+    return {"count": len(culprits), "first": culprits[:_FIRST].tolist()}
+
+
+def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str]:
+    if report.ok:
+        return [f"{report}, proven exactly"]
+    if delaunay:
+        ties = f"{len(report.ties):,} pairs of triangles share a circle and are fanned otherwise"
+        return ["a Delaunay triangulation, proven exactly, but not the canonical one:", f"  {ties}"]
+    lines = str(report).replace("a canonical", "a", 1).splitlines()
+    return lines + _coordinates(report, mesh)
+
+
+def _coordinates(report: ValidationReport, mesh: MeshFile) -> list[str]:
+    """Say where the first culprits are, by the coordinates of their corners."""
+    triangles = np.concatenate(
+        (report.delaunay[:3].reshape(-1), report.orientation[:3], report.neighbors[:3])
+    )
+    seen = list(dict.fromkeys(triangles.tolist()))[:6]
+    return [
+        f"  triangle {t}: "
+        + ", ".join(
+            f"{v} ({mesh.points[v, 0]!s}, {mesh.points[v, 1]!s})" for v in mesh.simplices[t]
+        )
+        for t in seen
+    ]

@@ -1,0 +1,124 @@
+"""Exit codes, and which error leads to which."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import contextmanager
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+from delone.errors import (
+    DegenerateInputError,
+    FileFormatError,
+    InputError,
+    InternalError,
+    MissingExtraError,
+    NonFiniteError,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["MEANINGS", "Exit", "Failure", "code_of", "reading", "writing"]
+
+
+class Exit(IntEnum):
+    """What the command tells the shell."""
+
+    OK = 0
+    NOT_DELAUNAY = 1
+    USAGE = 2
+    INPUT = 3
+    DEGENERATE = 4
+    OUTPUT = 5
+    MISSING_EXTRA = 6
+    MEMORY = 7
+    INTERNAL = 70
+    INTERRUPTED = 130
+    TERMINATED = 143
+
+
+MEANINGS = {
+    Exit.OK: "all is well",
+    Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation",
+    Exit.USAGE: "the command line is wrong",
+    Exit.INPUT: "the input is missing, torn or of unknown format",
+    Exit.DEGENERATE: "the points have no triangulation: too few, all on one line, NaN or infinity",
+    Exit.OUTPUT: "the output cannot be written; nothing was",
+    Exit.MISSING_EXTRA: "an optional library is not installed",
+    Exit.MEMORY: "there is not enough memory",
+    Exit.INTERNAL: "a bug in delone; please report it",
+    Exit.INTERRUPTED: "interrupted by Ctrl-C; nothing was written",
+    Exit.TERMINATED: "terminated; nothing was written",
+}
+
+
+class Failure(Exception):  # noqa: N818
+    """The end of a command: a line for the user and the exit code.
+
+    Parameters
+    ----------
+    message : str
+        One line.
+    code : Exit
+        The exit code.
+    """
+
+    def __init__(self, message: str, code: Exit) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+def code_of(error: BaseException) -> Exit:
+    """Return the exit code of an error that did not come from a file.
+
+    Parameters
+    ----------
+    error : BaseException
+        What was raised.
+
+    Returns
+    -------
+    Exit
+        Its code; that of a bug for everything unexpected.
+    """
+    codes: tuple[tuple[type[BaseException], Exit], ...] = (
+        (KeyboardInterrupt, Exit.INTERRUPTED),
+        (MissingExtraError, Exit.MISSING_EXTRA),
+        (DegenerateInputError, Exit.DEGENERATE),
+        (NonFiniteError, Exit.DEGENERATE),
+        (InternalError, Exit.INTERNAL),
+        (FileFormatError, Exit.INPUT),
+        (InputError, Exit.USAGE),
+        (MemoryError, Exit.MEMORY),
+    )
+    return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
+
+
+@contextmanager
+def reading() -> Iterator[None]:
+    """Take errors of files for errors of the input."""
+    with _blaming(Exit.INPUT):
+        yield
+
+
+@contextmanager
+def writing() -> Iterator[None]:
+    """Take errors of files for errors of the output."""
+    with _blaming(Exit.OUTPUT), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
+@contextmanager
+def _blaming(code: Exit) -> Iterator[None]:
+    try:
+        yield
+    except FileFormatError as error:
+        raise Failure(str(error), code) from error
+    except (MissingExtraError, BlockingIOError):
+        raise
+    except OSError as error:
+        # OSErrors that delone words itself have no number.
+        message = str(error) if error.errno is None else f"{error.filename}: {error.strerror}"
+        raise Failure(message, code) from error

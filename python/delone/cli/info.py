@@ -1,0 +1,138 @@
+"""What a file of points holds: the figures of ``delone info``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.cli.exits import reading
+from delone.cli.report import finite_or_none
+from delone.io import read_points
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from delone.cli.show import Row
+    from delone.io import PointSet
+
+__all__ = ["describe"]
+
+_CLASSES = {
+    0: "never classified",
+    1: "unclassified",
+    2: "ground",
+    3: "low vegetation",
+    4: "medium vegetation",
+    5: "high vegetation",
+    6: "building",
+    7: "low noise",
+    9: "water",
+    10: "rail",
+    11: "road",
+    17: "bridge",
+    18: "high noise",
+}
+
+
+def describe(
+    source: Path, *, columns: list[str] | None, classes: list[int] | None, layer: str | None
+) -> tuple[dict[str, Any], list[Row]]:
+    """Read a file of points and say what is in it.
+
+    Parameters
+    ----------
+    source : Path
+        The file.
+    columns, classes, layer
+        As `delone.io.read_points` takes them.
+
+    Returns
+    -------
+    figures : dict
+        For machines.
+    rows : list of tuple of str
+        For people.
+    """
+    las = source.suffix.lower() in (".las", ".laz")
+    with reading():
+        survey = read_points(
+            source,
+            columns=columns,
+            classes=classes,
+            layer=layer,
+            attributes=("classification",) if las else (),
+        )
+        header = _las_header(source) if las else {}
+    figures = _figures(survey) | header
+    figures["file_bytes"] = source.stat().st_size
+    return figures, _rows(figures)
+
+
+def _las_header(source: Path) -> dict[str, Any]:
+    from delone.io.las import describe as header
+
+    return header(source)
+
+
+def _figures(survey: PointSet) -> dict[str, Any]:
+    finite = np.isfinite(survey.points).all(axis=1)
+    figures: dict[str, Any] = {
+        "input": survey.source,
+        "crs": survey.crs,
+        "points": len(survey),
+        "not_finite": int(np.count_nonzero(~finite)),
+        "x": _range(survey.points[:, 0]),
+        "y": _range(survey.points[:, 1]),
+        "z": None if survey.z is None else _range(survey.z),
+    }
+    if "classification" in survey.attributes:
+        found, counts = np.unique(survey.attributes["classification"], return_counts=True)
+        figures["classes"] = {
+            str(number): count
+            for number, count in zip(found.tolist(), counts.tolist(), strict=True)
+        }
+    return figures
+
+
+def _range(values: NDArray[np.float64]) -> list[float] | None:
+    known = values[np.isfinite(values)] if not np.isfinite(values).all() else values
+    if not len(known):
+        return None
+    return [float(known.min()), float(known.max())]
+
+
+def _rows(figures: dict[str, Any]) -> list[Row]:
+    rows = [
+        ("size", f"{figures['file_bytes']:,} bytes"),
+        ("points", f"{figures['points']:,}"),
+        ("reference system", (figures["crs"] or "not told").partition("\n")[0][:100]),
+    ]
+    if figures["not_finite"]:
+        rows.append(("NaN or infinity", f"{figures['not_finite']:,} rows"))
+    for axis in "xyz":
+        if figures[axis] is not None:
+            low, high = figures[axis]
+            rows.append((axis, f"{low!r} to {high!r}"))
+    if figures["x"] and figures["y"] and (density := _density(figures)) is not None:
+        rows.append(("mean density", f"{density:.4g} points per unit of area of the box"))
+    if "classes" in figures:
+        named = [
+            f"{number} {_CLASSES.get(int(number), '')}".strip() + f": {count:,}"
+            for number, count in figures["classes"].items()
+        ]
+        rows.append(("classes", "\n".join(named)))
+    if "las_version" in figures:
+        rows.append(
+            ("LAS", f"version {figures['las_version']}, point format {figures['point_format']}")
+        )
+        rows.append(("dimensions", ", ".join(figures["dimensions"])))
+    return rows
+
+
+def _density(figures: dict[str, Any]) -> float | None:
+    (left, right), (bottom, top) = figures["x"], figures["y"]
+    area = (right - left) * (top - bottom)
+    return finite_or_none(figures["points"] / area) if area > 0 else None

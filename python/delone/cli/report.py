@@ -1,0 +1,226 @@
+"""The figures of a triangulation, as plain numbers that JSON can hold.
+
+Counts are taken from the arrays, not from formulas, so that comparing them with 2n - h - 2 and
+3n - h - 3 tells something. Triangles are gone through in blocks: what a report needs beyond the
+triangulation stays small whatever its size.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from delone.delaunay import Delaunay
+
+__all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "summary"]
+
+_BLOCK = 1 << 18
+_FIRST_DUPLICATES = 5
+
+
+class Stopwatch:
+    """Seconds of the stages of a command, in their order."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Measure what happens inside.
+
+        Parameters
+        ----------
+        name : str
+            What it is called.
+        """
+        start = time.perf_counter()
+        yield
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+
+    def rows(self, points: int) -> list[dict[str, Any]]:
+        """Return a row for each stage.
+
+        Parameters
+        ----------
+        points : int
+            How many points were worked on.
+
+        Returns
+        -------
+        list of dict
+            Name, seconds and points per second.
+        """
+        return [
+            {
+                "name": name,
+                "seconds": round(seconds, 6),
+                "points_per_second": round(points / seconds) if seconds > 0 else None,
+            }
+            for name, seconds in self.seconds.items()
+        ]
+
+
+def summary(triangulation: Delaunay) -> dict[str, Any]:
+    """Return the counts and measures of a triangulation.
+
+    Parameters
+    ----------
+    triangulation : Delaunay
+        What to report upon.
+
+    Returns
+    -------
+    dict
+        Counts, duplicates, what Euler's formula expects, mean degree, smallest angle, area.
+    """
+    n, m = triangulation.npoints, triangulation.nsimplex
+    coplanar = triangulation.coplanar
+    distinct = n - len(coplanar)
+    h = int(np.count_nonzero(triangulation.neighbors < 0))
+    edges = (3 * m - h) // 2 + h
+    angle = smallest_angle(triangulation.points, triangulation.simplices)
+    return {
+        "points": n,
+        "distinct": distinct,
+        "duplicates": {"count": len(coplanar), "first": _first(triangulation, coplanar)},
+        "hull_vertices": h,
+        "triangles": {"count": m, "expected": 2 * distinct - h - 2},
+        "edges": {"count": edges, "expected": 3 * distinct - h - 3},
+        "mean_degree": 2 * edges / distinct,
+        "smallest_angle_degrees": finite_or_none(angle),
+        "area": finite_or_none(hull_area(triangulation)),
+        "bounds": [*triangulation.min_bound.tolist(), *triangulation.max_bound.tolist()],
+    }
+
+
+def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
+    """Return the measures of any triangles.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+
+    Returns
+    -------
+    dict
+        Counts and the smallest angle.
+    """
+    return {
+        "points": len(points),
+        "triangles": len(simplices),
+        "smallest_angle_degrees": finite_or_none(smallest_angle(points, simplices)),
+    }
+
+
+def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> float:
+    """Return the smallest angle of all triangles in degrees.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+
+    Returns
+    -------
+    float
+        180 where there is no triangle.
+
+    Notes
+    -----
+    The cross product of two sides is the same at each corner, so the smallest angle is where the
+    dot product is largest. Each triangle is scaled to its own size, so that no square overflows.
+    """
+    smallest = math.pi
+    for start in range(0, len(simplices), _BLOCK):
+        corners = points[simplices[start : start + _BLOCK]] * 0.5
+        sides = np.roll(corners, -1, axis=1) - corners
+        size = np.abs(sides).max(axis=(1, 2), keepdims=True)
+        with np.errstate(all="ignore"):
+            sides /= size
+        (ax, bx, cx), (ay, by, cy) = sides[..., 0].T, sides[..., 1].T
+        dots = np.array((ax * bx + ay * by, bx * cx + by * cy, cx * ax + cy * ay))
+        crosses = np.array((ax * by - ay * bx, bx * cy - by * cx, cx * ay - cy * ax))
+        # All three are twice the area; the one of the two shorter sides is rounded least.
+        lengths = np.hypot((ax, bx, cx), (ay, by, cy))
+        best = (lengths * np.roll(lengths, -1, axis=0)).argmin(axis=0)
+        twice = np.abs(np.take_along_axis(crosses, best[None], axis=0)[0])
+        angles = np.arctan2(twice, (-dots).max(axis=0))
+        smallest = min(smallest, float(np.nanmin(angles, initial=math.pi)))
+    return math.degrees(smallest)
+
+
+def hull_area(triangulation: Delaunay) -> float:
+    """Return the area of the convex hull, which is that of all triangles.
+
+    Parameters
+    ----------
+    triangulation : Delaunay
+        The triangulation.
+
+    Returns
+    -------
+    float
+        In the square of the unit of the points.
+    """
+    ring = triangulation.points[triangulation.hull]
+    with np.errstate(all="ignore"):
+        x, y = (ring - ring[0]).T
+        return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+
+
+def _first(triangulation: Delaunay, coplanar: NDArray[np.int32]) -> list[dict[str, Any]]:
+    return [
+        {"row": row, "same_as": same, "x": x, "y": y}
+        for (row, _, same), (x, y) in zip(
+            coplanar[:_FIRST_DUPLICATES].tolist(),
+            triangulation.points[coplanar[:_FIRST_DUPLICATES, 0]].tolist(),
+            strict=True,
+        )
+    ]
+
+
+def peak_memory() -> int | None:
+    """Return the most memory that this process has held, in bytes.
+
+    Returns
+    -------
+    int or None
+        None where the system does not tell.
+    """
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return int(peak) if sys.platform == "darwin" else int(peak) * 1024
+
+
+def finite_or_none(value: float) -> float | None:
+    """Return a number that JSON can hold.
+
+    Parameters
+    ----------
+    value : float
+        Any number.
+
+    Returns
+    -------
+    float or None
+        None for NaN and infinity.
+    """
+    return value if math.isfinite(value) else None

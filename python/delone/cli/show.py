@@ -1,0 +1,190 @@
+"""What the command prints: tables for people, one JSON object for machines, a spinner meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+
+from delone.cli.exits import Exit, Failure
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+__all__ = [
+    "print_json",
+    "print_rows",
+    "print_stages",
+    "print_text",
+    "spinner",
+    "triangulation_rows",
+]
+
+Row = tuple[str, str]
+
+
+def print_json(figures: dict[str, Any]) -> None:
+    """Print one JSON object on standard output.
+
+    Parameters
+    ----------
+    figures : dict
+        What to print; no NaN and no infinity.
+    """
+    print_text(json.dumps(figures, indent=2, allow_nan=False))
+
+
+def print_rows(title: str, rows: list[Row]) -> None:
+    """Print a table of two columns on standard output.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the table.
+    rows : list of tuple of str
+        Names and values.
+    """
+    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column()
+    for name, value in rows:
+        table.add_row(name, value)
+    print_text(_rendered(table))
+
+
+def print_stages(stages: list[dict[str, Any]]) -> None:
+    """Print seconds and points per second on standard output.
+
+    Parameters
+    ----------
+    stages : list of dict
+        As `Stopwatch.rows` returns them.
+    """
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("stage", no_wrap=True)
+    table.add_column("seconds", justify="right")
+    table.add_column("points per second", justify="right")
+    for stage in stages:
+        speed = stage["points_per_second"]
+        table.add_row(
+            stage["name"], f"{stage['seconds']:.3f}", "" if speed is None else f"{speed:,}"
+        )
+    print_text("\n" + _rendered(table))
+
+
+def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
+    """Return the rows of the report of a triangulation.
+
+    Parameters
+    ----------
+    figures : dict
+        As `report.summary` returns them.
+
+    Returns
+    -------
+    list of tuple of str
+        Names and values.
+    """
+    angle, area = figures["smallest_angle_degrees"], figures["area"]
+    return [
+        ("points read", f"{figures['points']:,}"),
+        ("distinct", f"{figures['distinct']:,}"),
+        ("duplicates", _duplicates(figures["duplicates"])),
+        ("hull vertices", f"{figures['hull_vertices']:,}"),
+        ("triangles", _against(figures["triangles"], "2n - h - 2")),
+        ("edges", _against(figures["edges"], "3n - h - 3")),
+        ("mean degree", f"{figures['mean_degree']:.4f}"),
+        ("smallest angle", "beyond range" if angle is None else f"{angle:.6g} degrees"),
+        (
+            "area",
+            "beyond range" if area is None else f"{area:,.6g}" if area < 1e6 else f"{area:,.0f}",
+        ),
+    ]
+
+
+def memory_text(size: int | None) -> str:
+    """Return a number of bytes for people.
+
+    Parameters
+    ----------
+    size : int or None
+        Bytes.
+
+    Returns
+    -------
+    str
+        In MiB.
+    """
+    return "unknown" if size is None else f"{size / 2**20:,.0f} MiB"
+
+
+def _against(counted: dict[str, int], formula: str) -> str:
+    count, expected = counted["count"], counted["expected"]
+    verdict = "=" if count == expected else f"IS NOT {expected:,} ="
+    return f"{count:,} {verdict} {formula}"
+
+
+def _duplicates(duplicates: dict[str, Any]) -> str:
+    count, first = duplicates["count"], duplicates["first"]
+    lines = [f"{count:,}"]
+    lines += [f"row {d['row']} is row {d['same_as']} at ({d['x']!r}, {d['y']!r})" for d in first]
+    if count > len(first):
+        lines.append("...")
+    return "\n".join(lines)
+
+
+def print_text(text: str) -> None:
+    """Print on standard output.
+
+    Parameters
+    ----------
+    text : str
+        One line or more.
+
+    Raises
+    ------
+    Failure
+        Nobody reads any more. The message is empty: there is nobody to be told either.
+    """
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        # Python flushes once more at its end, and would complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise Failure("", Exit.OUTPUT) from None
+
+
+def _rendered(table: Table) -> str:
+    # Reports are read from files and pipes too: those are not to be cut at 80 columns.
+    width = None if sys.stdout.isatty() else 160
+    console = Console(highlight=False, markup=False, width=width)
+    with console.capture() as captured:
+        console.print(table)
+    return "\n".join(line.rstrip() for line in captured.get().splitlines())
+
+
+@contextmanager
+def spinner(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show on standard error what is being done, where that is a terminal.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show nothing.
+
+    Yields
+    ------
+    callable
+        Takes what is being done now.
+    """
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("") as status:
+        yield lambda text: status.update(f"{text} ...")

@@ -1,0 +1,240 @@
+"""Points and triangles in NumPy's own files, npy and npz.
+
+A header is believed only where the bytes it speaks of are there: its shape is compared with the
+size of the file or of the member of the archive, and that with what deflate can expand to. Pickled
+objects are never loaded.
+"""
+
+from __future__ import annotations
+
+import tokenize
+import zipfile
+import zlib
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_points, as_simplices
+from delone.errors import FileFormatError, InputError
+from delone.io.heights import as_values
+from delone.io.pointset import PointSet, choose_columns, find_column
+from delone.io.registry import MeshFile
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+
+__all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
+
+# Deflate expands one byte to at most 1032; small members have headers of their own.
+_EXPANSION, _SLACK = 1032, 1 << 16
+
+
+def read_points(
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+) -> PointSet:
+    """Read points from an npy or npz file; see `delone.io.read_points`."""
+    source = str(path)
+    with _torn_is_an_error(source):
+        if path.suffix.lower() == ".npy":
+            if layer is not None:
+                raise FileFormatError(f"{source}: an npy file has one array and no layers")
+            with path.open("rb") as file:
+                _check_claim(file, path.stat().st_size, source)
+            return _from_table(np.load(path, mmap_mode="r"), columns, attributes, source)
+        with zipfile.ZipFile(path) as archive:
+            return _from_archive(archive, columns, attributes, layer, source)
+
+
+def read_mesh(path: Path) -> MeshFile:
+    """Read triangles from an npz file; see `delone.io.read_mesh`."""
+    source = str(path)
+    with _torn_is_an_error(source), zipfile.ZipFile(path) as archive:
+        names = _names(archive)
+        if not {"points", "simplices"} <= names:
+            raise FileFormatError(f"{source} holds no triangles: arrays points and simplices")
+        points = as_points(_member(archive, "points"), ndim=2, name="points")
+        simplices = as_simplices(_member(archive, "simplices"), len(points), 2)
+        neighbors = _member(archive, "neighbors") if "neighbors" in names else None
+        z = _member(archive, "z") if "z" in names else None
+    return MeshFile(points=points, simplices=simplices, neighbors=neighbors, z=z, source=source)
+
+
+def require_libraries() -> None:
+    """Need nothing: NumPy writes these files."""
+
+
+def write_mesh(
+    path: Path,
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write a triangulation, and heights beside it, to an npz file."""
+    if edges:
+        raise FileFormatError(f"{path.suffix} files hold the whole triangulation, not edges alone")
+    heights = as_values(z, triangulation.npoints)
+    triangulation.save(path)
+    further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    if heights is not None:
+        further["z"] = heights
+    if crs is not None:
+        further["crs"] = np.array(crs)
+    taken = {"format", "version", "points", "simplices", "neighbors", "duplicates"} & set(further)
+    if taken:
+        raise FileFormatError(f"an npz file has its own {taken.pop()!r}; rename the attribute")
+    with zipfile.ZipFile(path, "a") as archive:
+        for name, array in further.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, array, allow_pickle=False)
+
+
+@contextmanager
+def _torn_is_an_error(source: str) -> Iterator[None]:
+    try:
+        yield
+    except (FileFormatError, FileNotFoundError, PermissionError):
+        raise
+    except InputError as error:
+        raise FileFormatError(f"{source}: {error}") from error
+    # NumPy's headers are parsed by Python's own parser, which has errors of its own; sizes beyond
+    # what a mapping can have overflow; an encrypted member is a RuntimeError.
+    except (
+        ValueError, OverflowError, EOFError, OSError, SyntaxError, TypeError, RuntimeError,
+        KeyError, MemoryError, tokenize.TokenError, zipfile.BadZipFile, zlib.error,
+    ) as error:  # fmt: skip
+        reason = str(error).partition("\n")[0]
+        if "allow_pickle" in reason or "Python objects" in reason:
+            reason = "it holds Python objects, which are not loaded"
+        raise FileFormatError(f"{source} is torn or no NumPy file: {reason}") from error
+
+
+def _from_table(
+    table: NDArray[Any],
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    source: str,
+) -> PointSet:
+    """Take points from one array: (n, 2 or more), or records with named fields."""
+    named = table.dtype.names
+    if named is None and (table.ndim != 2 or table.shape[1] < 2):
+        raise FileFormatError(f"{source} holds an array of shape {table.shape}, not (n, 2) or more")
+    names = list(named or map(str, range(table.shape[1])))
+    chosen = choose_columns(names, columns, source, named=named is not None)
+
+    def column(i: int) -> NDArray[Any]:
+        return table[names[i]] if named else table[:, i]
+
+    # Without names and choice, one slice keeps a wide table's rows from being touched twice.
+    plain = named is None and chosen[:2] == [0, 1]
+    xy = table[:, :2] if plain else np.column_stack([column(i) for i in chosen[:2]])
+    z = as_values(column(chosen[2]), len(table)) if len(chosen) == 3 else None
+    further = {name: np.array(column(find_column(names, name, source))) for name in attributes}
+    # A mapped file may be replaced while the points are in use: they are copied.
+    points = np.array(as_points(xy), subok=False)
+    return PointSet(points=points, z=z, attributes=further, source=source)
+
+
+def _from_archive(
+    archive: zipfile.ZipFile,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+    source: str,
+) -> PointSet:
+    names = _names(archive)
+    if layer is not None or "points" in names:
+        wanted = layer if layer is not None else "points"
+        if wanted not in names:
+            raise FileFormatError(f"{source} has no array {wanted!r}: {_listed(names)}")
+        survey = _from_table(_member(archive, wanted), columns, (), source)
+        z = survey.z
+        if z is None and "z" in names and columns is None and layer is None:
+            z = as_values(_member(archive, "z"), len(survey))
+        further = {name: _member(archive, name) for name in attributes}
+        crs = _member(archive, "crs") if "crs" in names else None
+        return PointSet(
+            points=survey.points,
+            z=z,
+            attributes=further,
+            crs=str(crs) if crs is not None and crs.dtype.kind == "U" else None,
+            source=source,
+        )
+    ordered = _ordered_names(archive)
+    if len(ordered) == 1:
+        return _from_table(_member(archive, ordered[0]), columns, attributes, source)
+    chosen = choose_columns(ordered, columns, source, named=True)
+    arrays = [_member(archive, ordered[i]).reshape(-1) for i in chosen]
+    if len({len(array) for array in arrays}) != 1:
+        raise FileFormatError(f"{source}: the arrays of coordinates have different lengths")
+    return PointSet(
+        points=as_points(np.column_stack(arrays[:2])),
+        z=as_values(arrays[2], len(arrays[0])) if len(arrays) == 3 else None,
+        attributes={name: _member(archive, name) for name in attributes},
+        source=source,
+    )
+
+
+def _ordered_names(archive: zipfile.ZipFile) -> list[str]:
+    return [name[:-4] for name in archive.namelist() if name.endswith(".npy")]
+
+
+def _names(archive: zipfile.ZipFile) -> set[str]:
+    return set(_ordered_names(archive))
+
+
+def _listed(names: set[str]) -> str:
+    return "its arrays are " + ", ".join(sorted(names)) if names else "it holds no arrays"
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Read one array after its header has been compared with the bytes that are there."""
+    try:
+        entry = archive.getinfo(f"{name}.npy")
+    except KeyError:
+        raise FileFormatError(
+            f"{archive.filename} has no array {name!r}: {_listed(_names(archive))}"
+        ) from None
+    if entry.file_size > _EXPANSION * entry.compress_size + _SLACK:
+        raise FileFormatError(f"{archive.filename}: array {name!r} claims more than is there")
+    with archive.open(entry) as file:
+        _check_claim(file, entry.file_size, f"{archive.filename}: array {name!r}")
+    with archive.open(entry) as file:
+        array: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
+    return array
+
+
+def _check_claim(file: IO[bytes], size: int, what: str) -> None:
+    """Compare the shape in a header with the bytes that follow it."""
+    shape, dtype = _header(file)
+    claimed, there = dtype.itemsize, size - file.tell()
+    for length in shape:  # Python's integers do not overflow
+        claimed *= length
+    if not 0 <= claimed <= there:
+        raise FileFormatError(
+            f"{what} announces shape {shape}, {claimed} bytes, and holds {there}: it is cut short"
+        )
+
+
+def _header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[Any]]:
+    version = np.lib.format.read_magic(file)
+    # Version 3 differs from 2 in the encoding of field names only.
+    read = (
+        np.lib.format.read_array_header_1_0
+        if version == (1, 0)
+        else np.lib.format.read_array_header_2_0
+    )
+    shape, _, dtype = read(file)
+    return shape, dtype

@@ -1,0 +1,46 @@
+"""Optional libraries: imported when they are needed, asked for by the name of the extra."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from delone.errors import MissingExtraError
+
+__all__ = ["require"]
+
+
+def require(module: str, *, extra: str, what: str) -> Any:
+    """Import an optional library, or say how to install it.
+
+    Parameters
+    ----------
+    module : str
+        Dotted name of the module.
+    extra : str
+        The extra of delone that brings it.
+    what : str
+        What needs it, as the beginning of a sentence: ``"reading LAZ"``.
+
+    Returns
+    -------
+    module
+        The module.
+
+    Raises
+    ------
+    MissingExtraError
+        The library, or one that it needs itself, is not installed.
+
+    Examples
+    --------
+    >>> from delone.io.extras import require
+    >>> require("json", extra="las", what="this example").__name__
+    'json'
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        library = (error.name or module).partition(".")[0]
+        message = f'{what} needs {library}, which is not installed: pip install "delone[{extra}]"'
+        raise MissingExtraError(message, extra=extra) from error

@@ -1,0 +1,232 @@
+"""Airborne laser points: LAS and LAZ by laspy and lazrs (extra ``las``).
+
+Records are read in blocks, and of each block only what is wanted is kept, so that memory beyond the
+coordinates is that of one block. Coordinates are scaled exactly as laspy scales them.
+"""
+
+from __future__ import annotations
+
+import struct
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import DeloneError, FileFormatError
+from delone.io.extras import require
+from delone.io.pointset import PointSet
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["describe", "read_points"]
+
+_BLOCK = 1 << 19
+# Writers put 50,000 points into a chunk; the decoder sets memory aside for the whole of it.
+_LONGEST_CHUNK = 10_000_000
+# Layers of the kinds of items that LAZ has for formats from 6 on: points, colours, near infrared,
+# waves. Extra bytes have one layer each.
+_LAYERED = 3
+_LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
+# Sizes in bytes by the LAS specification 1.4, R15.
+_LONGEST_HEADER, _RECORD_HEADER, _LONG_RECORD_HEADER = 375, 54, 60
+
+
+def read_points(
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    classes: Sequence[int] | None,
+) -> PointSet:
+    """Read points from a LAS or LAZ file; see `delone.io.read_points`."""
+    if columns is not None:
+        raise FileFormatError(f"{path}: coordinates in LAS files are x, y and z, not to be chosen")
+    laspy = _laspy(path)
+    _check_records(path)
+    with _torn_is_an_error(path), laspy.open(path) as file:
+        _check_claim(path, file)
+        known = set(file.header.point_format.dimension_names)
+        unknown = [name for name in attributes if name not in known]
+        if unknown:
+            raise FileFormatError(
+                f"{path} has no {unknown[0]!r}; it has {', '.join(sorted(known))}"
+            )
+        points, z, further = _read(file, classes, attributes)
+        crs = _crs(file.header)
+    if not len(points) and classes is not None:
+        wanted = ", ".join(map(str, classes))
+        raise FileFormatError(f"{path} holds no points of class {wanted}; delone info shows which")
+    return PointSet(points=points, z=z, attributes=further, crs=crs, source=str(path))
+
+
+def describe(path: Path) -> dict[str, Any]:
+    """Return what the header says: version, point format, scales, names of dimensions."""
+    laspy = _laspy(path)
+    _check_records(path)
+    with _torn_is_an_error(path), laspy.open(path) as file:
+        header = file.header
+        return {
+            "las_version": str(header.version),
+            "point_format": int(header.point_format.id),
+            "scales": [float(scale) for scale in header.scales],
+            "dimensions": list(header.point_format.dimension_names),
+        }
+
+
+def _laspy(path: Path) -> Any:
+    laspy = require("laspy", extra="las", what="reading LAS")
+    if path.suffix.lower() == ".laz":
+        require("lazrs", extra="las", what="reading LAZ")
+    return laspy
+
+
+@contextmanager
+def _torn_is_an_error(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (DeloneError, FileNotFoundError, PermissionError, KeyboardInterrupt, MemoryError):
+        raise
+    except BaseException as error:
+        # A panic of the Rust decoder is no Exception; nothing else may be swallowed.
+        if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
+            raise
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise FileFormatError(f"{path} is torn or no LAS file: {reason}") from error
+
+
+def _check_records(path: Path) -> None:
+    """Compare the numbers of records before and behind the points with the room for them.
+
+    A reader that believes four billion records goes through nothing for minutes.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        head = file.read(_LONGEST_HEADER).ljust(_LONGEST_HEADER, b"\0")
+        if head[:4] != b"LASF":
+            raise FileFormatError(f"{path} is no LAS file: it does not begin with LASF")
+        before, count = struct.unpack_from("<II", head, 96)
+        wrong = before > size or count * _RECORD_HEADER > before
+        if head[25] >= 4:
+            start, count = struct.unpack_from("<QI", head, 235)
+            wrong = wrong or _end_of_records(file, start, count, size) > size
+    if wrong:
+        raise FileFormatError(f"{path} is torn: it has no room for the records it announces")
+
+
+def _end_of_records(file: IO[bytes], start: int, count: int, size: int) -> int:
+    """Follow the long records behind the points, as far as they are in the file."""
+    for _ in range(count):
+        if start + _LONG_RECORD_HEADER > size:
+            return size + 1
+        file.seek(start + 20)
+        start += _LONG_RECORD_HEADER + int.from_bytes(file.read(8), "little")
+    return start if count else 0
+
+
+def _check_claim(path: Path, file: Any) -> None:
+    """Compare the number of records in the header with what the file can hold."""
+    header = file.header
+    count, size = int(header.point_count), path.stat().st_size
+    if header.are_points_compressed:
+        held = _compressed_records(path, header)
+    else:
+        record = int(header.point_format.size)
+        held = max(0, size - int(header.offset_to_point_data)) // record
+    if count > held:
+        raise FileFormatError(
+            f"{path} announces {count} points and has room for {held}: it is cut short"
+        )
+
+
+def _compressed_records(path: Path, header: Any) -> int:
+    """Return how many records the chunks of a LAZ file can hold."""
+    lazrs = require("lazrs", extra="las", what="reading LAZ")
+    record = header.vlrs.get("LasZipVlr")[0].record_data
+    vlr = lazrs.LazVlr(record)
+    if not vlr.uses_variable_size_chunks() and vlr.chunk_size() > _LONGEST_CHUNK:
+        raise FileFormatError(f"{path} is torn: chunks of {vlr.chunk_size()} points")
+    with path.open("rb") as file:
+        size = path.stat().st_size
+        file.seek(int(header.offset_to_point_data))
+        (table,) = struct.unpack("<q", file.read(8))
+        if not header.offset_to_point_data < table <= size - 8:
+            raise FileFormatError(f"{path} is cut short: its table of chunks is missing")
+        file.seek(table)
+        _, chunks = struct.unpack("<II", file.read(8))
+        # A chunk begins with one record as it is.
+        if chunks > size // vlr.item_size() + 1:
+            raise FileFormatError(f"{path} is torn: it announces {chunks} chunks")
+        file.seek(int(header.offset_to_point_data))
+        held = lazrs.read_chunk_table(file, vlr)
+        # The decoder sets memory aside for these sizes.
+        if sum(int(length) for _, length in held) > size:
+            raise FileFormatError(f"{path} is torn: its chunks are longer than the file")
+        start = int(header.offset_to_point_data) + 8
+        _check_layers(file, record, start, [int(length) for _, length in held])
+    if vlr.uses_variable_size_chunks():
+        return sum(int(points) for points, _ in held)
+    return int(chunks * vlr.chunk_size())
+
+
+def _check_layers(file: IO[bytes], record: bytes, start: int, lengths: Sequence[int]) -> None:
+    """Compare the sizes of layers at the head of each chunk with the chunk's length.
+
+    Formats from 6 on keep dimensions apart, in layers of which the decoder believes the sizes.
+    """
+    compressor, items = struct.unpack_from("<H30xH", record)
+    if compressor != _LAYERED:
+        return
+    kinds = [struct.unpack_from("<HH", record, 34 + 6 * i) for i in range(items)]
+    layers = sum(_LAYERS.get(kind, size) for kind, size in kinds)
+    # One record as it is, the number of records, the sizes.
+    before = sum(size for _, size in kinds) + 4
+    for length in lengths:
+        file.seek(start + before)
+        sizes = np.frombuffer(file.read(4 * layers), dtype="<u4")
+        if before + 4 * layers + int(sizes.sum(dtype=np.int64)) > length:
+            raise FileFormatError(f"{file.name} is torn: a chunk is shorter than its layers")
+        start += length
+
+
+def _read(
+    file: Any, classes: Sequence[int] | None, attributes: Sequence[str]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, NDArray[Any]]]:
+    # Pages of these arrays that are not written cost nothing, so that no second copy is needed.
+    count = int(file.header.point_count)
+    points, z = np.empty((count, 2)), np.empty(count)
+    further: dict[str, list[NDArray[Any]]] = {name: [] for name in attributes}
+    end = 0
+    for block in file.chunk_iterator(_BLOCK):
+        keep: Any = slice(None)
+        if classes is not None:
+            keep = np.isin(np.asarray(block["classification"]), list(classes))
+        x = np.asarray(block.x)[keep]
+        start, end = end, end + len(x)
+        points[start:end, 0] = x
+        points[start:end, 1] = np.asarray(block.y)[keep]
+        z[start:end] = np.asarray(block.z)[keep]
+        for name, parts in further.items():
+            parts.append(np.array(block[name])[keep])
+    if classes is None and end != count:
+        raise FileFormatError(f"the header announces {count} points, {end} are there")
+    points.resize((end, 2), refcheck=False)
+    z.resize(end, refcheck=False)
+    return points, z, {name: np.concatenate(parts) for name, parts in further.items()}
+
+
+def _crs(header: Any) -> str | None:
+    """Return the reference system as authority and code, or in WKT; None where there is none."""
+    try:
+        crs = header.parse_crs()
+    except Exception:  # pyproj is not needed for the points, and records are often odd
+        crs = None
+    if crs is not None:
+        return str(crs.to_string())
+    for record in header.vlrs:
+        if type(record).__name__ == "WktCoordinateSystemVlr" and record.string:
+            return str(record.string).rstrip("\0")
+    return None

@@ -1,0 +1,223 @@
+"""Meshes of triangles: VTU, PLY, OBJ, STL and MSH by meshio (extra ``mesh``).
+
+What meshio would set memory aside for is compared with the size of the file first. Doubles stay
+doubles: a binary STL file has single precision only, so it is written where that is exact, and as
+text with all digits where it is not.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import re
+import warnings
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_points, as_simplices
+from delone.errors import DeloneError, FileFormatError, InputError
+from delone.io.extras import require
+from delone.io.heights import as_values, split_attributes, with_heights
+from delone.io.pointset import PointSet
+from delone.io.registry import MeshFile
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+
+__all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
+
+_MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
+_HEAD, _TAIL = 1 << 16, 1 << 12
+
+
+def read_points(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    """Read the vertices of a mesh; see `delone.io.read_points`."""
+    if columns is not None:
+        raise FileFormatError(f"{path}: coordinates of a mesh are x, y and z, not to be chosen")
+    mesh = _read(path)
+    missing = [name for name in attributes if name not in mesh.point_data]
+    if missing:
+        raise FileFormatError(f"{path} has no values {missing[0]!r} of points")
+    points, z = _coordinates(mesh, path)
+    further = {name: np.asarray(mesh.point_data[name]) for name in attributes}
+    return PointSet(points=points, z=z, attributes=further, source=str(path))
+
+
+def read_mesh(path: Path) -> MeshFile:
+    """Read the triangles of a mesh; see `delone.io.read_mesh`."""
+    mesh = _read(path)
+    points, z = _coordinates(mesh, path)
+    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "triangle"]
+    others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
+    if others:
+        raise FileFormatError(f"{path} holds {', '.join(sorted(others))} cells, not only triangles")
+    if not blocks:
+        raise FileFormatError(f"{path} holds no triangles")
+    try:
+        # uint64 does not mix with int32, and indices are small anyway.
+        simplices = as_simplices(np.concatenate(blocks).astype(np.int64), len(points), 2)
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+    return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
+
+
+def _coordinates(mesh: Any, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    points = np.asarray(mesh.points)
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or not len(points):
+        raise FileFormatError(f"{path} holds no points")
+    try:
+        plane = as_points(np.ascontiguousarray(points[:, :2]))
+        z = as_values(points[:, 2], len(points)) if points.shape[1] == 3 else None
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+    return plane, z
+
+
+def _read(path: Path) -> Any:
+    suffix = path.suffix.lower()
+    require("meshio", extra="mesh", what=f"reading {suffix}")
+    # The module of the format: the general reader prints, and ends the interpreter on an error.
+    module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
+    _check_claim(path, suffix)
+    try:
+        # meshio speaks to the user itself, by rich, where it should raise or warn.
+        quiet = io.StringIO()
+        with (
+            contextlib.redirect_stdout(quiet),
+            contextlib.redirect_stderr(quiet),
+            warnings.catch_warnings(),
+        ):
+            warnings.simplefilter("ignore")
+            return module.read(path)
+    except (DeloneError, FileNotFoundError, PermissionError):
+        raise
+    except (Exception, SystemExit) as error:
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise FileFormatError(f"{path} is torn or no {suffix} file: {reason}") from error
+
+
+def _check_claim(path: Path, suffix: str) -> None:
+    """Refuse a header that announces more items than the file has bytes."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        claims = _claims(file, suffix, size)
+        file.seek(max(0, size - _TAIL))
+        ended = suffix != ".stl" or not _is_text_stl(path) or b"endsolid" in file.read()
+    if not ended:
+        raise FileFormatError(f"{path} has no endsolid at its end: it is cut short")
+    worst = max(claims, default=0)
+    if worst > size:
+        raise FileFormatError(
+            f"{path} announces {worst} items and has only {size} bytes: it is cut short"
+        )
+
+
+def _claims(file: IO[bytes], suffix: str, size: int) -> list[int]:
+    head = file.read(_HEAD)
+    if suffix == ".ply":
+        return [int(n) for n in re.findall(rb"^element +\w+ +(\d+)", head, re.MULTILINE)]
+    if suffix == ".vtu":
+        return [int(n) for n in re.findall(rb'NumberOf(?:Points|Cells)="\s*(\d+)', head)]
+    if suffix == ".stl" and not head.lstrip().startswith(b"solid") and len(head) >= 84:
+        count = int.from_bytes(head[80:84], "little")
+        return [0 if 84 + 50 * count <= size else max(count, size + 1)]
+    if suffix == ".msh":
+        return _gmsh_claims(head, file)
+    return []
+
+
+def _is_text_stl(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(_HEAD).lstrip().startswith(b"solid")
+
+
+def _gmsh_claims(head: bytes, file: IO[bytes]) -> list[int]:
+    """Return the counts behind $Nodes and $Elements, and the largest number of a node.
+
+    meshio sets memory aside for both.
+    """
+    binary = re.match(rb"\s*\$MeshFormat\s+[\d.]+\s+1\s", head) is not None
+    claims: list[int] = []
+    for section in re.finditer(rb"\$(?:Nodes|Elements)\r?\n", head):
+        rest = head[section.end() : section.end() + 32]
+        if binary and len(rest) == 32:
+            claims += [int(n) for n in np.frombuffer(rest, "<u8", 2)]
+            if section[0].startswith(b"$Nodes"):
+                file.seek(0)
+                claims.append(_largest_node(file.read(), section.end()))
+        elif not binary:
+            claims += [int(n) for n in rest.split(b"\n")[0].split()[:2] if n.isdigit()]
+    return claims
+
+
+def _largest_node(content: bytes, at: int) -> int:
+    """Return the largest number of a node in a binary MSH file of version 4.1."""
+    largest = 0
+    blocks, at = int.from_bytes(content[at : at + 8], "little"), at + 32
+    for _ in range(blocks):
+        # Three integers, the number of nodes, their numbers, their coordinates.
+        count, at = int.from_bytes(content[at + 12 : at + 20], "little"), at + 20
+        # Beyond the end, where bytes are missing and count as zero, the loop ends too.
+        if at + 32 * count > len(content):
+            return max(count, len(content) + 1)
+        if count:
+            largest = max(largest, int(np.frombuffer(content, "<u8", count, at).max()))
+        at += 32 * count
+    return largest
+
+
+def require_libraries() -> None:
+    """Import what writing needs."""
+    require("meshio", extra="mesh", what="writing meshes")
+
+
+def write_mesh(
+    path: Path,
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write triangles, or edges as lines, with heights as the third coordinate."""
+    meshio = require("meshio", extra="mesh", what="writing meshes")
+    suffix = path.suffix.lower()
+    if edges and suffix in (".stl", ".ply", ".obj"):
+        raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
+    cells = triangulation.edges if edges else triangulation.simplices
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
+    if given and suffix in (".obj", ".stl"):
+        raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .ply")
+    heights = as_values(z, triangulation.npoints)
+    if heights is not None and suffix == ".vtu":
+        of_points = {"z": heights, **of_points}
+    mesh = meshio.Mesh(
+        with_heights(triangulation.points, heights),
+        [("line" if edges else "triangle", cells)],
+        point_data=of_points,
+        cell_data={name: [values] for name, values in of_cells.items()},
+    )
+    _write(path, suffix, mesh)
+
+
+def _write(path: Path, suffix: str, mesh: Any) -> None:
+    module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
+    with np.errstate(all="ignore"):
+        if suffix == ".stl":
+            single = mesh.points.astype(np.float32)
+            module.write(path, mesh, binary=bool((single == mesh.points).all()))
+        elif suffix == ".msh":
+            module.write(path, mesh, "4.1", binary=True)
+        else:
+            module.write(path, mesh)

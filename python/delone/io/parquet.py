@@ -1,0 +1,112 @@
+"""Points in tables: Parquet, GeoParquet, Arrow and Feather by pyarrow (extra ``geo``).
+
+Only the columns of the coordinates are read. A Parquet file with geometries is read as such.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_points
+from delone.errors import DeloneError, FileFormatError, InputError
+from delone.io.extras import require
+from delone.io.heights import as_values
+from delone.io.pointset import PointSet, choose_columns, find_column
+from delone.io.vector import from_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["read_points"]
+
+
+def read_points(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    """Read points from a table; see `delone.io.read_points`."""
+    require("pyarrow", extra="geo", what=f"reading {path.suffix}")
+    source = str(path)
+    try:
+        if path.suffix.lower() == ".parquet":
+            return _parquet(path, columns, attributes)
+        return _feather(path, columns, attributes)
+    except InputError as error:
+        raise FileFormatError(f"{source}: {error}") from error
+    except (DeloneError, FileNotFoundError, PermissionError):
+        raise
+    except MemoryError as error:
+        # Compressed columns begin with their size, which nothing in the file confirms.
+        raise FileFormatError(f"{source} announces more than memory holds: is it torn?") from error
+    except Exception as error:
+        reason = str(error).partition("\n")[0]
+        raise FileFormatError(f"{source} is torn or no {path.suffix} file: {reason}") from error
+
+
+def _parquet(
+    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
+    with parquet.ParquetFile(path) as file:
+        schema = file.schema_arrow
+        if b"geo" not in (schema.metadata or {}):
+            numbers = _numbers(schema)
+            chosen = choose_columns(numbers, columns, str(path), named=True)
+            kept = [numbers[i] for i in chosen]
+            table = file.read(columns=[*kept, *_known(schema, attributes, path)])
+            return _from_table(table, kept, _known(schema, attributes, path), str(path))
+    geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
+    frame = geopandas.read_parquet(path)
+    return from_frame(frame, columns=columns, attributes=attributes, source=str(path))
+
+
+def _feather(
+    path: Path, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    arrow = require("pyarrow", extra="geo", what="reading Arrow")
+    with arrow.memory_map(str(path)) as mapped:
+        try:
+            reader = arrow.ipc.open_file(mapped)
+            table = reader.read_all()
+        except arrow.ArrowInvalid:
+            mapped.seek(0)
+            table = arrow.ipc.open_stream(mapped).read_all()
+        numbers = _numbers(table.schema)
+        chosen = choose_columns(numbers, columns, str(path), named=True)
+        kept = [numbers[i] for i in chosen]
+        return _from_table(table, kept, _known(table.schema, attributes, path), str(path))
+
+
+def _numbers(schema: Any) -> list[str]:
+    types = require("pyarrow.types", extra="geo", what="reading tables")
+    tests = (types.is_integer, types.is_floating, types.is_decimal)
+    return [field.name for field in schema if any(test(field.type) for test in tests)]
+
+
+def _known(schema: Any, attributes: Sequence[str], path: Path) -> list[str]:
+    names = list(schema.names)
+    return [names[find_column(names, name, str(path))] for name in attributes]
+
+
+def _from_table(table: Any, kept: list[str], attributes: list[str], source: str) -> PointSet:
+    x, y, *z = (_column(table, name) for name in kept)
+    return PointSet(
+        points=as_points(np.column_stack((x, y))),
+        z=as_values(z[0], len(x)) if z else None,
+        attributes={name: np.array(table.column(name).to_numpy()) for name in attributes},
+        source=source,
+    )
+
+
+def _column(table: Any, name: str) -> NDArray[Any]:
+    """Return a column as numbers; what is missing is NaN, so that it is refused by its row."""
+    column = table.column(name)
+    decimal = str(column.type).startswith("decimal")
+    if decimal:
+        column = column.cast("float64")
+    values: NDArray[Any] = column.to_numpy()
+    return values

@@ -1,0 +1,178 @@
+"""What a file of points holds, and which of its columns are the coordinates.
+
+A column is recognised by the usual words of surveying and mapping. Where a header names none of
+them, nothing is guessed: two wrong columns would give a perfect triangulation of nonsense.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from delone.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Column = str | int
+
+__all__ = ["PointSet", "choose_columns", "find_column"]
+
+_WORDS = {
+    "x": {"x", "lon", "long", "lng", "longitude", "easting", "east", "e", "xcoord", "coordx"},
+    "y": {"y", "lat", "latitude", "northing", "north", "n", "ycoord", "coordy"},
+    "z": {
+        "z", "h", "height", "elevation", "elev", "alt", "altitude", "depth", "bathymetry",
+        "topography", "zcoord", "coordz",
+    },
+}  # fmt: skip
+_UNITS = {"m", "ft", "km", "mm", "cm", "deg", "degrees", "degree", "metres", "meters", "feet", "dd"}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PointSet:
+    """Points as a file holds them, row for row.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates, in the units of the file.
+    z : ndarray of float64, shape (n,), optional
+        Heights; None where the file has none.
+    attributes : mapping of str to ndarray, optional
+        Further values of each point, those that were asked for.
+    crs : str, optional
+        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None where the file has none.
+    source : str, optional
+        The file.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.io import PointSet
+    >>> len(PointSet(points=np.zeros((5, 2))))
+    5
+    """
+
+    points: NDArray[np.float64]
+    z: NDArray[np.float64] | None = None
+    attributes: Mapping[str, NDArray[Any]] = field(default_factory=lambda: MappingProxyType({}))
+    crs: str | None = None
+    source: str = ""
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
+    """Return the position of a column that is given by name or by number from 0.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the columns; numbers, where the file has no header.
+    wanted : str or int
+        Name (any case) or number of a column. A string of digits is a number unless it is a name.
+    source : str
+        The file, for the error message.
+
+    Returns
+    -------
+    int
+        Position in `names`.
+
+    Raises
+    ------
+    FileFormatError
+        There is no such column.
+
+    Examples
+    --------
+    >>> from delone.io.pointset import find_column
+    >>> find_column(["id", "East", "North"], "east", "survey.csv")
+    1
+    """
+    text = str(wanted).strip()
+    folded = [name.strip().casefold() for name in names]
+    if not isinstance(wanted, int):
+        if text in names:
+            return list(names).index(text)
+        if folded.count(text.casefold()) == 1:
+            return folded.index(text.casefold())
+    if text.isdecimal() and int(text) < len(names):
+        return int(text)
+    raise FileFormatError(f"{source} has no column {text!r}; its columns are {_listed(names)}")
+
+
+def choose_columns(
+    names: Sequence[str], columns: Sequence[Column] | None, source: str, *, named: bool
+) -> list[int]:
+    """Return the positions of x, of y and, where there is one, of z.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the columns that hold numbers.
+    columns : sequence of str or int or None
+        Two or three columns chosen by the caller; None to recognise them.
+    source : str
+        The file, for error messages.
+    named : bool
+        Whether the names mean something. Otherwise the first columns are x, y and z.
+
+    Returns
+    -------
+    list of int
+        Two or three positions.
+
+    Raises
+    ------
+    FileFormatError
+        A column is missing, or x and y are not recognised.
+
+    Examples
+    --------
+    >>> from delone.io.pointset import choose_columns
+    >>> choose_columns(["id", "lat", "lon", "depth_m"], None, "survey.csv", named=True)
+    [2, 1, 3]
+    """
+    if columns is not None:
+        if len(columns) not in (2, 3):
+            raise FileFormatError(f"{source}: give two or three columns (x,y or x,y,z)")
+        return [find_column(names, column, source) for column in columns]
+    if not named:
+        if len(names) < 2:
+            raise FileFormatError(f"{source} has fewer than two columns of numbers")
+        return list(range(min(len(names), 3)))
+    found = {role: _recognised(names, role) for role in _WORDS}
+    if found["x"] is None or found["y"] is None:
+        raise FileFormatError(
+            f"{source}: which columns are x and y? Choose them (--columns x,y or x,y,z) from "
+            f"{_listed(names)}"
+        )
+    return [position for position in found.values() if position is not None]
+
+
+def _recognised(names: Sequence[str], role: str) -> int | None:
+    words = [_word(name) for name in names]
+    if role in words:  # the plain letter wins over every synonym
+        return words.index(role)
+    return next((i for i, word in enumerate(words) if word in _WORDS[role]), None)
+
+
+def _word(name: str) -> str:
+    """Reduce a name to its word: ``Depth [m]`` to depth, ``X_COORD`` to xcoord."""
+    parts = re.findall(r"[a-z]+|\d+", name.casefold())
+    if len(parts) > 1 and parts[-1] in _UNITS:
+        parts.pop()
+    return "".join(parts)
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:20])
+    return shown + (", ..." if len(names) > 20 else "") if names else "none"

@@ -1,0 +1,348 @@
+"""Which module reads or writes which suffix, and the three functions that ask it.
+
+Modules are named here and imported on use, so that a format costs nothing until it is met.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from delone.errors import FileFormatError
+from delone.io.atomic import replacing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+    from delone.io.pointset import PointSet
+
+__all__ = [
+    "MeshFile",
+    "input_suffixes",
+    "output_suffixes",
+    "read_mesh",
+    "read_points",
+    "write_mesh",
+]
+
+_COMPRESSED = (".gz", ".xz", ".bz2")
+_MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
+_READERS = {
+    **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
+    **dict.fromkeys((".npy", ".npz"), "arrays"),
+    **dict.fromkeys((".las", ".laz"), "las"),
+    **dict.fromkeys((".geojson", ".json", ".gpkg", ".shp", ".fgb"), "vector"),
+    **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
+    **dict.fromkeys(_MESHES, "mesh"),
+}
+_WRITERS = {
+    **dict.fromkeys(_MESHES, "mesh"),
+    **dict.fromkeys((".gpkg", ".geojson"), "vector"),
+    ".npz": "arrays",
+    **dict.fromkeys((".png", ".svg"), "picture"),
+}
+_MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh")}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshFile:
+    """Triangles as a file holds them, not checked.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    neighbors : ndarray of int32, shape (m, 3), optional
+        The triangle opposite each vertex; None where the format has no such thing.
+    z : ndarray of float64, shape (n,), optional
+        Heights.
+    source : str, optional
+        The file.
+    """
+
+    points: NDArray[np.float64]
+    simplices: NDArray[np.int32]
+    neighbors: NDArray[np.int32] | None = None
+    z: NDArray[np.float64] | None = None
+    source: str = ""
+
+
+def input_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of the files that `read_points` reads.
+
+    Returns
+    -------
+    tuple of str
+        With the dot.
+
+    Examples
+    --------
+    >>> from delone.io import input_suffixes
+    >>> ".laz" in input_suffixes()
+    True
+    """
+    return tuple(_READERS)
+
+
+def output_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of the files that `write_mesh` writes.
+
+    Returns
+    -------
+    tuple of str
+        With the dot.
+
+    Examples
+    --------
+    >>> from delone.io import output_suffixes
+    >>> ".vtu" in output_suffixes()
+    True
+    """
+    return tuple(_WRITERS)
+
+
+def read_points(
+    path: str | os.PathLike[str],
+    *,
+    columns: Sequence[str | int] | None = None,
+    classes: Sequence[int] | None = None,
+    layer: str | None = None,
+    attributes: Sequence[str] = (),
+) -> PointSet:
+    r"""Read points from a file; its suffix tells the format.
+
+    Parameters
+    ----------
+    path : str or path-like
+        CSV, TSV, TXT, XYZ, PTS or DAT (also .gz, .xz, .bz2), npy, npz, LAS, LAZ, GeoJSON,
+        GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, or the vertices of a
+        mesh.
+    columns : sequence of str or int, optional
+        Columns of x, y and (if wanted) z, by name or by number from 0. By default columns are
+        recognised by their names; without names the first two or three are taken. For files of
+        geometries: the one attribute that is z.
+    classes : sequence of int, optional
+        Keep the points of these classes (LAS and LAZ).
+    layer : str, optional
+        The layer, for files that have several; the array of an npz file.
+    attributes : sequence of str, optional
+        Further columns to read.
+
+    Returns
+    -------
+    PointSet
+        Points row for row as they are in the file, NaN included.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    FileFormatError
+        Unknown suffix; the file is empty, torn or not what its suffix or header says; a column or
+        layer is missing.
+    MissingExtraError
+        The library for this format is not installed.
+
+    Notes
+    -----
+    Coordinates are the doubles that the file denotes. No memory is set aside for what a header
+    claims before the size of the file has confirmed it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io import read_points
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "survey.csv"
+    ...     _ = file.write_text("id,lat,lon,depth\n1,52.0,4.25,-3\n2,52.5,4.5,-7\n")
+    ...     survey = read_points(file)
+    >>> survey.points
+    array([[ 4.25, 52.  ],
+           [ 4.5 , 52.5 ]])
+    >>> survey.z
+    array([-3., -7.])
+    """
+    file = _existing(path)
+    suffix = _suffix(file)
+    module = _module(_READERS, suffix, file, "read")
+    if classes is not None and suffix not in (".las", ".laz"):
+        raise FileFormatError(f"{file}: only LAS and LAZ files have classes")
+    options: dict[str, Any] = {"columns": columns, "attributes": tuple(attributes)}
+    if module.__name__.endswith(".las"):
+        options["classes"] = classes
+    if module.__name__.endswith((".vector", ".arrays")):
+        options["layer"] = layer
+    elif layer is not None:
+        raise FileFormatError(f"{file}: {suffix} files have no layers")
+    read: Callable[..., PointSet] = module.read_points
+    return read(file, **options)
+
+
+def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
+    """Read triangles from a file, as they are.
+
+    Parameters
+    ----------
+    path : str or path-like
+        An npz file of `Delaunay.save`, or VTU, PLY, OBJ, STL, MSH.
+
+    Returns
+    -------
+    MeshFile
+        Points and triangles in the order of the file. Indices are in range; nothing else has been
+        checked.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    FileFormatError
+        Unknown suffix; the file is torn, or holds no triangles.
+    MissingExtraError
+        The library for this format is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone import Delaunay
+    >>> from delone.io import read_mesh
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     Delaunay([(0, 0), (4, 0), (4, 3)]).save(Path(folder) / "mesh.npz")
+    ...     read_mesh(Path(folder) / "mesh.npz").simplices.shape
+    (1, 3)
+    """
+    file = _existing(path)
+    module = _module(_MESH_READERS, _suffix(file), file, "read triangles from")
+    read: Callable[[Path], MeshFile] = module.read_mesh
+    return read(file)
+
+
+def write_mesh(
+    path: str | os.PathLike[str],
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write a triangulation to a file; its suffix tells the format.
+
+    Parameters
+    ----------
+    path : str or path-like
+        VTU, PLY, OBJ, STL, MSH, GeoPackage, GeoJSON, npz, PNG or SVG. A file that is there is
+        replaced when the new one is whole.
+    triangulation : Delaunay
+        What to write.
+    z : array_like of float, shape (n,), optional
+        Heights, the third coordinate; in pictures the colour.
+    crs : str, optional
+        Coordinate reference system, for GeoPackage, GeoJSON and the labels of pictures.
+    edges : bool, optional
+        Write edges in place of triangles, to VTU, MSH, GeoPackage or GeoJSON; pictures show both.
+    attributes : mapping of str to array_like, optional
+        Values by point (n,) or by triangle (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
+
+    Raises
+    ------
+    FileFormatError
+        Unknown suffix, or something that the format cannot hold.
+    InputError
+        `z` or an attribute has the wrong length.
+    MissingExtraError
+        The library for this format is not installed.
+    OSError
+        The file cannot be written.
+
+    Notes
+    -----
+    Vertex numbers in the file are the rows of ``triangulation.points``; duplicates stay as points
+    that no triangle uses. Coordinates are written as doubles, or with all their digits.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone import Delaunay
+    >>> from delone.io import read_points, write_mesh
+    >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_mesh(Path(folder) / "mesh.npz", mesh)
+    ...     len(read_points(Path(folder) / "mesh.npz"))
+    5
+    """
+    write = writer(path)
+    with replacing(path) as beside:
+        write(beside, triangulation, z=z, crs=crs, edges=edges, attributes=attributes)
+
+
+def writer(path: str | os.PathLike[str]) -> Callable[..., None]:
+    """Return the function that writes files of this suffix, its library at hand.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file to be written.
+
+    Returns
+    -------
+    callable
+        Takes what `write_mesh` takes, and writes in place.
+
+    Raises
+    ------
+    FileFormatError
+        Unknown suffix.
+    MissingExtraError
+        The library for this format is not installed.
+
+    Examples
+    --------
+    >>> from delone.io.registry import writer
+    >>> writer("mesh.npz").__name__
+    'write_mesh'
+    """
+    file = Path(path)
+    module = _module(_WRITERS, file.suffix.lower(), file, "write")
+    module.require_libraries()
+    write: Callable[..., None] = module.write_mesh
+    return write
+
+
+def _suffix(file: Path) -> str:
+    suffixes = [suffix.lower() for suffix in file.suffixes]
+    if suffixes and suffixes[-1] in _COMPRESSED:
+        suffixes.pop()
+        if suffixes and _READERS.get(suffixes[-1]) != "text":
+            raise FileFormatError(f"{file}: only text files are read compressed; decompress it")
+    return suffixes[-1] if suffixes else ""
+
+
+def _module(modules: Mapping[str, str], suffix: str, file: Path, verb: str) -> Any:
+    if suffix not in modules:
+        what = f"files that end in {suffix}" if suffix else "a file without a suffix"
+        raise FileFormatError(f"{file}: cannot {verb} {what}; known are {' '.join(modules)}")
+    return importlib.import_module(f"delone.io.{modules[suffix]}")
+
+
+def _existing(path: str | os.PathLike[str]) -> Path:
+    file = Path(path)
+    if not file.exists():
+        raise FileNotFoundError(f"{file}: no such file")
+    if file.is_dir():
+        raise FileFormatError(f"{file} is a folder; give the name of a file")
+    if file.is_file() and file.stat().st_size == 0:
+        raise FileFormatError(f"{file} is empty")
+    return file

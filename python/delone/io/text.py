@@ -1,0 +1,238 @@
+"""Points in text: CSV, TSV, TXT, XYZ, PTS, DAT, plain or compressed.
+
+The first lines tell the delimiter, the decimal mark and whether there is a header; NumPy's reader
+does the rest, in blocks, so that the memory needed is that of the columns kept. Numbers become the
+nearest doubles. Rows are numbered from 0, without header, comments and blank lines.
+"""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import io
+import itertools
+import lzma
+import re
+import zlib
+from collections import Counter
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import FileFormatError
+from delone.io.pointset import PointSet, choose_columns, find_column
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["read_points"]
+
+_OPENERS: dict[str, Any] = {".gz": gzip.open, ".xz": lzma.open, ".bz2": bz2.open}
+_TORN = (EOFError, gzip.BadGzipFile, lzma.LZMAError, zlib.error)
+_COMMENTS = ("#", "//", "%", "!")
+_SAMPLE_BYTES = 1 << 16
+_SAMPLE_ROWS = 50
+_BLOCK = 1 << 17
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Layout:
+    """How the lines of one file are to be read."""
+
+    delimiter: str | None  # None: any white space
+    decimal: str
+    names: tuple[str, ...]
+    named: bool
+    skip: int  # lines before the first row
+    claimed: int | None  # rows that a line of one integer at the top claims
+
+
+def read_points(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> PointSet:
+    """Read points from a text file; see `delone.io.read_points`."""
+    source = str(path)
+    with _torn_is_an_error(source):
+        layout = _layout(path, source)
+        chosen = choose_columns(layout.names, columns, source, named=layout.named)
+        extra = [find_column(layout.names, name, source) for name in attributes]
+        with _opened(path) as lines:
+            table = _table(lines, layout, chosen + extra, source)
+    if layout.claimed is not None and len(table) < layout.claimed:
+        raise FileFormatError(
+            f"{source} announces {layout.claimed} points and holds {len(table)}: it is cut short"
+        )
+    z = np.ascontiguousarray(table[:, 2]) if len(chosen) == 3 else None
+    further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True))
+    return PointSet(
+        points=np.ascontiguousarray(table[:, :2]), z=z, attributes=further, source=source
+    )
+
+
+@contextmanager
+def _torn_is_an_error(source: str) -> Iterator[None]:
+    try:
+        yield
+    except _TORN as error:
+        raise FileFormatError(
+            f"{source} is torn or not compressed as its name says: {error}"
+        ) from (error)
+    except OSError as error:
+        if error.errno is not None:
+            raise
+        # bz2 has no class of its own for a stream that is none.
+        raise FileFormatError(f"{source} is not compressed as its name says: {error}") from error
+    except UnicodeDecodeError as error:
+        raise FileFormatError(f"{source} is not a text file: {error.reason}") from error
+
+
+def _opened(path: Path) -> IO[str]:
+    opener = _OPENERS.get(path.suffix.lower(), open)
+    binary: IO[bytes] = opener(path, "rb")
+    try:
+        sample = binary.read(_SAMPLE_BYTES)
+        binary.seek(0)
+        return io.TextIOWrapper(binary, encoding=_encoding(sample, path), newline=None)
+    except BaseException:
+        binary.close()
+        raise
+
+
+def _encoding(sample: bytes, path: Path) -> str:
+    if sample[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    if b"\0" in sample:
+        raise FileFormatError(f"{path} is not a text file: it holds zero bytes")
+    try:
+        # The sample may end within a character.
+        sample[: sample.rfind(b"\n") + 1].decode("utf-8")
+    except UnicodeDecodeError:
+        return "latin-1"  # names of columns in an old code page; numbers are the same in all
+    return "utf-8-sig"
+
+
+def _layout(path: Path, source: str) -> _Layout:
+    """Look at the first lines."""
+    with _opened(path) as file:
+        lines = [line.rstrip("\r\n") for line in itertools.islice(file, 200)]
+    comment, start = "", 0
+    while start < len(lines) and (not lines[start].strip() or _is_comment(lines[start])):
+        comment = lines[start].strip().lstrip("".join(_COMMENTS)).strip() or comment
+        start += 1
+    rows = [line for line in lines[start:] if line.strip() and not _is_comment(line)]
+    if not rows:
+        raise FileFormatError(f"{source} holds no rows of numbers")
+    claimed = None
+    if len(rows) > 1 and rows[0].strip().isdecimal() and len(re.split(r"[\s,;]+", rows[1])) > 1:
+        claimed, start, rows = int(rows[0]), lines.index(rows[0], start) + 1, rows[1:]
+    layout = _split(rows[:_SAMPLE_ROWS], source)
+    if layout.named:
+        start = lines.index(rows[0], start) + 1
+    elif comment and len(named := _fields(comment, layout.delimiter)) == len(layout.names):
+        # A header behind a comment mark: # x y z
+        layout = replace(layout, names=tuple(named), named=True)
+    return replace(layout, skip=start, claimed=claimed)
+
+
+def _split(rows: list[str], source: str) -> _Layout:
+    """Find delimiter, decimal mark and header: those with which the rows become numbers."""
+    body = rows[1:] if len(rows) > 1 else rows
+    candidates = [(d, ".") for d in (",", ";", "\t", "|", None)] + [(";", ","), ("\t", ",")]
+    best: tuple[tuple[int, int], str | None, str] | None = None
+    for delimiter, decimal in candidates:
+        split = [_fields(row, delimiter) for row in body]
+        usual = Counter(map(len, split)).most_common(1)[0][0]
+        numbers = sum(_is_number(field, decimal) for fields in split for field in fields)
+        # More numbers win; a delimiter before white space, which is also beside delimiters.
+        score = (numbers, usual)
+        if usual > 1 and numbers and (best is None or score > best[0]):
+            best = score, delimiter, decimal
+    if best is None:
+        raise FileFormatError(f"{source}: its lines are not columns of numbers: {rows[-1][:60]!r}")
+    _, delimiter, decimal = best
+    first = _fields(rows[0], delimiter)
+    named = not any(_is_number(field, decimal) for field in first)
+    names = first if named else [str(i) for i in range(len(first))]
+    return _Layout(
+        delimiter=delimiter, decimal=decimal, names=tuple(names), named=named, skip=0, claimed=None
+    )
+
+
+def _fields(row: str, delimiter: str | None) -> list[str]:
+    fields = row.split() if delimiter is None else row.split(delimiter)
+    return [field.strip().strip('"').strip() for field in fields]
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENTS)
+
+
+def _is_number(field: str, decimal: str) -> bool:
+    if decimal != ".":
+        field = field.replace(decimal, ".")
+    try:
+        float(field)
+    except ValueError:
+        return False
+    return True
+
+
+def _table(file: IO[str], layout: _Layout, columns: list[int], source: str) -> Floats:
+    """Read the chosen columns, block by block."""
+    for _ in range(layout.skip):
+        file.readline()
+    lines: Iterator[str] = (line for line in file if line.strip() and not _is_comment(line))
+    if layout.decimal != ".":
+        lines = (line.replace(layout.decimal, ".") for line in lines)
+    blocks: list[Floats] = []
+    rows = 0
+    while True:
+        block = _block(lines, layout, columns, rows, source)
+        blocks.append(block)
+        rows += len(block)
+        if len(block) < _BLOCK:
+            return np.concatenate(blocks)
+
+
+def _block(
+    lines: Iterator[str], layout: _Layout, columns: list[int], before: int, source: str
+) -> Floats:
+    content = list(itertools.islice(lines, _BLOCK))
+    if not content:
+        return np.empty((0, len(columns)))
+    try:
+        table: Floats = np.loadtxt(
+            content,
+            delimiter=layout.delimiter,
+            usecols=columns,
+            comments=None,
+            quotechar='"',
+            ndmin=2,
+        )
+    except ValueError as error:
+        raise FileFormatError(f"{source}: {_located(str(error), layout, before)}") from None
+    return table
+
+
+def _located(message: str, layout: _Layout, before: int) -> str:
+    """Turn NumPy's complaint about a block into one about the file."""
+    bad = re.search(r"string '(.*)' to float64 at row (\d+), column (\d+)", message)
+    if bad:
+        text, row, column = bad[1], int(bad[2]) + before, int(bad[3]) - 1
+        name = layout.names[column] if layout.named and column < len(layout.names) else str(column)
+        what = "is empty" if not text else f"is {text!r}, not a number"
+        return f"row {row}, column {name} {what}"
+    short = re.search(r"at row (\d+) with (\d+) columns", message)
+    if short:
+        # NumPy counts this row from 1.
+        return (
+            f"row {int(short[1]) + before - 1} has only {short[2]} columns: is the file cut short?"
+        )
+    return message.partition("\n")[0]

@@ -1,0 +1,213 @@
+"""Points, triangles and edges as geometries: GeoJSON, GeoPackage, Shapefile, FlatGeobuf.
+
+By pyogrio, geopandas and shapely (extra ``geo``). Only points are read as points: the vertices of
+lines and areas are another question, and to answer it silently would be wrong.
+"""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import DeloneError, FileFormatError
+from delone.io.extras import require
+from delone.io.heights import as_values, split_attributes
+from delone.io.pointset import PointSet, find_column
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+
+__all__ = ["from_frame", "read_points", "require_libraries", "write_mesh"]
+
+_POINTS = (0, 4)  # shapely's numbers of Point and MultiPoint
+# Layers are written in parts, so that the geometries of one part are in memory at a time.
+_PART = 1 << 18
+
+
+def read_points(
+    path: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+) -> PointSet:
+    """Read points from a file of geometries; see `delone.io.read_points`."""
+    pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
+    require("geopandas", extra="geo", what=f"reading {path.suffix}")
+    source = str(path)
+    with _torn_is_an_error(source):
+        layer = _layer(pyogrio, path, layer)
+        facts = pyogrio.read_info(path, layer=layer, force_feature_count=True)
+        names = list(facts["fields"])
+        kept = [
+            names[find_column(names, name, source)] for name in (*_height(columns), *attributes)
+        ]
+        frame = pyogrio.read_dataframe(path, layer=layer, columns=kept)
+    if len(frame) < facts["features"]:
+        claimed = facts["features"]
+        raise FileFormatError(
+            f"{source} announces {claimed} features and holds {len(frame)}: it is cut short"
+        )
+    return from_frame(frame, columns=columns, attributes=attributes, source=source)
+
+
+def from_frame(
+    frame: Any, *, columns: Sequence[str | int] | None, attributes: Sequence[str], source: str
+) -> PointSet:
+    """Take points from a GeoDataFrame.
+
+    Parameters
+    ----------
+    frame : GeoDataFrame
+        Points or MultiPoints.
+    columns : sequence of str, or None
+        The one column that is z; None for the z of the geometries.
+    attributes : sequence of str
+        Further columns to keep.
+    source : str
+        The file.
+
+    Returns
+    -------
+    PointSet
+        The points; those of a MultiPoint one after the other.
+
+    Raises
+    ------
+    FileFormatError
+        A geometry is missing, empty or no point.
+    """
+    shapely = require("shapely", extra="geo", what="reading geometries")
+    if not hasattr(frame, "geometry") or not len(frame):
+        raise FileFormatError(f"{source} holds no points")
+    geometries = np.asarray(frame.geometry.values)
+    kinds = shapely.get_type_id(geometries)
+    other = ~np.isin(kinds, _POINTS) | shapely.is_empty(geometries)
+    if other.any():
+        row = int(np.flatnonzero(other)[0])
+        kind = getattr(geometries[row], "geom_type", "no geometry")
+        empty = "an empty " if kinds[row] in _POINTS else ""
+        raise FileFormatError(
+            f"{source}: feature {row} is {empty}{kind}; delone reads points. "
+            f"{int(other.sum())} of {len(other)} features are not points"
+        )
+    coordinates, index = shapely.get_coordinates(geometries, include_z=True, return_index=True)
+    z: Any = coordinates[:, 2]
+    chosen = _height(columns)
+    if chosen:
+        z = np.asarray(frame[_same(frame, chosen[0], source)], dtype=np.float64)[index]
+    elif not shapely.has_z(geometries).any():
+        z = None
+    return PointSet(
+        points=np.ascontiguousarray(coordinates[:, :2]),
+        z=as_values(z, len(coordinates)),
+        attributes={
+            name: np.asarray(frame[_same(frame, name, source)])[index] for name in attributes
+        },
+        crs=None if frame.crs is None else str(frame.crs.to_string()),
+        source=source,
+    )
+
+
+def _height(columns: Sequence[str | int] | None) -> list[str | int]:
+    if columns is not None and len(columns) != 1:
+        raise FileFormatError(
+            "geometries have x and y; --columns names the one attribute that is z"
+        )
+    return list(columns or ())
+
+
+def _same(frame: Any, name: str | int, source: str) -> str:
+    names = [str(column) for column in frame.columns]
+    return names[find_column(names, name, source)]
+
+
+def _layer(pyogrio: Any, path: Path, layer: str | None) -> str | None:
+    names = [str(name) for name, _ in pyogrio.list_layers(path)]
+    if layer is not None and layer not in names:
+        raise FileFormatError(f"{path} has no layer {layer!r}; its layers are {', '.join(names)}")
+    if layer is None and len(names) > 1:
+        raise FileFormatError(
+            f"{path} has several layers; choose one (--layer): {', '.join(names)}"
+        )
+    return layer
+
+
+@contextmanager
+def _torn_is_an_error(source: str) -> Iterator[None]:
+    try:
+        with warnings.catch_warnings():
+            # What GDAL merely remarks upon is no matter for whoever reads points.
+            warnings.filterwarnings("ignore", category=RuntimeWarning, module="pyogrio")
+            yield
+    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
+        raise
+    except Exception as error:
+        reason = str(error).partition("\n")[0].removeprefix(source).lstrip(": ")
+        raise FileFormatError(f"{source} cannot be read: {reason}") from error
+
+
+def require_libraries() -> None:
+    """Import what writing needs."""
+    for module in ("shapely", "pyogrio", "geopandas"):
+        require(module, extra="geo", what="writing geometries")
+
+
+def write_mesh(
+    path: Path,
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write triangles as polygons, or edges as lines, with vertices as columns v0, v1 (, v2)."""
+    require_libraries()
+    geopandas = require("geopandas", extra="geo", what="writing geometries")
+    heights = as_values(z, triangulation.npoints)
+    cells = triangulation.edges if edges else triangulation.simplices
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    _, of_cells = split_attributes(given, triangulation.npoints, len(cells))
+    points = triangulation.points
+    # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.
+    part = len(cells) if path.suffix.lower() == ".geojson" else _PART
+    for start in range(0, len(cells), part):
+        rows = cells[start : start + part]
+        columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
+        columns |= {name: values[start : start + part] for name, values in of_cells.items()}
+        frame = geopandas.GeoDataFrame(columns, geometry=_shapes(points, heights, rows), crs=crs)
+        _write_part(path, frame, "edges" if edges else "triangles", append=start > 0)
+
+
+def _shapes(
+    points: NDArray[np.float64], z: NDArray[np.float64] | None, rows: NDArray[np.int32]
+) -> Any:
+    shapely = require("shapely", extra="geo", what="writing geometries")
+    corners = points[rows]
+    if z is not None:
+        corners = np.dstack((corners, z[rows]))
+    return shapely.polygons(corners) if rows.shape[1] == 3 else shapely.linestrings(corners)
+
+
+def _write_part(path: Path, frame: Any, layer: str, *, append: bool) -> None:
+    pyogrio = require("pyogrio", extra="geo", what="writing geometries")
+    options: dict[str, Any] = {"driver": "GPKG", "append": append}
+    if path.suffix.lower() == ".geojson":
+        # Seventeen digits bring back every double.
+        options = {"driver": "GeoJSON", "SIGNIFICANT_FIGURES": 17}
+    with warnings.catch_warnings():
+        # A survey without a reference system is common, and nothing to warn of.
+        warnings.filterwarnings("ignore", message=".*crs.*")
+        try:
+            pyogrio.write_dataframe(frame, path, layer=layer, **options)
+        except pyogrio.errors.DataSourceError as error:
+            raise OSError(str(error).partition("\n")[0]) from error

@@ -1,0 +1,446 @@
+"""Pictures of triangulations by matplotlib (extra ``plot``).
+
+Where triangles can be seen they are drawn; where they are smaller than a few pixels the surface (or
+the density of points) is drawn as an image, so that a million points take a second and the picture
+is no black square. Nothing here needs a display: `save_picture` draws without pyplot.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.io.atomic import replacing
+from delone.io.extras import require
+from delone.io.heights import as_values
+from delone.shading import Raster, facet_light, point_density, rasterize, relief
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["plot", "save_picture"]
+
+# A triangle of fewer pixels than this is no triangle to the eye.
+_VISIBLE = 14.0
+_MOST_CIRCLES = 3000
+_FEW_CIRCLES = 60  # so few that each is to be seen whole, with its centre
+_MOST_DOTS = 2000
+_INK, _RIM, _DOT, _CIRCLE = "#35506b", "#b3372f", "#17324d", "#d98b2b"
+_LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
+_WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
+
+
+def plot(
+    triangulation: Delaunay,
+    ax: Any = None,
+    *,
+    z: ArrayLike | None = None,
+    hull: bool = True,
+    circumcircles: bool = False,
+    vertices: bool | None = None,
+    cmap: Any = None,
+    shade: bool | None = None,
+    colorbar: bool = True,
+    title: str | None = None,
+) -> Any:
+    """Draw a triangulation.
+
+    Parameters
+    ----------
+    triangulation : Delaunay
+        What to draw.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on the axes of a new pyplot figure.
+    z : array_like of float, shape (n,), optional
+        Heights: triangles are coloured by them.
+    hull : bool, optional
+        Draw the convex hull.
+    circumcircles : bool, optional
+        Draw the circle through the corners of each triangle, for up to 3000 triangles.
+    vertices : bool, optional
+        Draw the points. By default where there are few enough to be told apart.
+    cmap : str or matplotlib Colormap, optional
+        Colours of z. By default those of land, or of water where nothing lies above zero.
+    shade : bool, optional
+        Add light and shadow to the colours of z. By default where there are 2000 triangles or more.
+    colorbar : bool, optional
+        Add the scale of the colours.
+    title : str, optional
+        Title of the axes.
+
+    Returns
+    -------
+    matplotlib Axes
+        What was drawn on.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        `z` has the wrong length or no finite value, or there are too many triangles for circles.
+
+    Notes
+    -----
+    Triangles smaller than 14 pixels on average are drawn as an image: the surface of z, or without
+    z the density of points. Colours reach from the first to the last but one hundredth of the
+    values; beyond that they stay.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> matplotlib.use("Agg")
+    >>> from delone import Delaunay
+    >>> from delone.plot import plot
+    >>> ax = plot(Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]), circumcircles=True)
+    >>> ax.get_aspect()
+    1.0
+    """
+    require("matplotlib", extra="plot", what="drawing")
+    if circumcircles and triangulation.nsimplex > _MOST_CIRCLES:
+        raise InputError(
+            f"the circles of {triangulation.nsimplex} triangles would hide each other; "
+            f"circumcircles is for up to {_MOST_CIRCLES}"
+        )
+    heights = as_values(z, triangulation.npoints)
+    if heights is not None and not np.isfinite(heights).any():
+        raise InputError("z holds no finite value to be drawn")
+    if ax is None:
+        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
+    pixels = _pixels(ax, triangulation)
+    if _is_dense(triangulation, pixels):
+        _draw_image(ax, triangulation, heights, pixels=max(pixels), **look)
+    else:
+        _draw_triangles(ax, triangulation, heights, **look)
+    if hull:
+        _draw_hull(ax, triangulation)
+    if circumcircles:
+        _draw_circles(ax, triangulation)
+    if vertices or (vertices is None and triangulation.npoints <= _MOST_DOTS):
+        _draw_dots(ax, triangulation)
+    _finish(ax, triangulation, circumcircles, title)
+    return ax
+
+
+def save_picture(
+    path: str | os.PathLike[str],
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    title: str | None = None,
+    size: float = 10.0,
+    dpi: int = 160,
+    **options: Any,
+) -> None:
+    """Draw a triangulation into a PNG or SVG file, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    triangulation : Delaunay
+        What to draw.
+    z : array_like of float, shape (n,), optional
+        Heights: triangles are coloured by them.
+    crs : str, optional
+        Coordinate reference system, which names the axes where pyproj is installed.
+    title : str, optional
+        By default the numbers of points and triangles.
+    size : float, optional
+        Longer side of the picture in inches.
+    dpi : int, optional
+        Pixels per inch.
+    **options
+        As in `plot`.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        As in `plot`.
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone import Delaunay
+    >>> from delone.plot import save_picture
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "mesh.png"
+    ...     save_picture(file, Delaunay([(0, 0), (4, 0), (4, 3)]))
+    ...     file.read_bytes()[1:4]
+    b'PNG'
+    """
+    with replacing(path) as beside:
+        draw_picture(
+            beside, triangulation, z=z, crs=crs, title=title, size=size, dpi=dpi, **options
+        )
+
+
+def draw_picture(
+    path: Path,
+    triangulation: Delaunay,
+    *,
+    z: ArrayLike | None = None,
+    crs: str | None = None,
+    title: str | None = None,
+    size: float = 10.0,
+    dpi: int = 160,
+    **options: Any,
+) -> None:
+    """Draw into the file itself; `save_picture` is the same by way of a temporary file."""
+    figure_module = require("matplotlib.figure", extra="plot", what="drawing")
+    width, height = _figure_size(triangulation, size, with_bar=z is not None)
+    figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
+    ax = figure.add_subplot()
+    plot(triangulation, ax, z=z, title=title or _numbers(triangulation), **options)
+    xlabel, ylabel = _axis_names(crs)
+    ax.set(xlabel=xlabel, ylabel=ylabel)
+    figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def _numbers(triangulation: Delaunay) -> str:
+    return f"{triangulation.npoints:,} points, {triangulation.nsimplex:,} triangles"
+
+
+def _figure_size(triangulation: Delaunay, size: float, *, with_bar: bool) -> tuple[float, float]:
+    """Return width and height such that the data fill them, labels and colour bar beside."""
+    width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
+    ratio = min(max(width / height, 0.4), 2.5)
+    beside, above = (1.9 if with_bar else 0.9), 0.9
+    inner = size - max(beside, above)
+    if ratio >= 1:
+        return inner + beside, inner / ratio + above
+    return inner * ratio + beside, inner + above
+
+
+def _pixels(ax: Any, triangulation: Delaunay) -> tuple[int, int]:
+    """Return the pixels that the data will have across and up."""
+    box = ax.get_window_extent()
+    width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
+    scale = min(box.width / width, box.height / height)
+    return max(1, round(width * scale)), max(1, round(height * scale))
+
+
+def _is_dense(triangulation: Delaunay, pixels: tuple[int, int]) -> bool:
+    return pixels[0] * pixels[1] < _VISIBLE * triangulation.nsimplex
+
+
+def _colours(values: Floats, cmap: Any) -> Any:
+    """Return a scale of colours that fits the bulk of the values, and says if some are beyond."""
+    colors = require("matplotlib.colors", extra="plot", what="drawing")
+    cm = require("matplotlib.cm", extra="plot", what="drawing")
+    known = values[np.isfinite(values)]
+    low, high = np.quantile(known, [0.01, 0.99]).tolist()
+    if not low < high:
+        low, high = float(known.min()), float(known.max())
+    if not low < high:
+        low, high = low - 0.5, high + 0.5
+    if cmap is None:
+        palette = _WATER if known.max() <= 0 and low < 0 else _LAND
+        cmap = colors.LinearSegmentedColormap.from_list("heights", palette)
+    return cm.ScalarMappable(norm=colors.Normalize(low, high), cmap=cmap)
+
+
+def _shaded(rgb: Floats, light: Floats) -> Floats:
+    """Darken away from the sun, lighten towards it; flat ground keeps its colour nearly."""
+    strength = (0.30 + 0.95 * light)[..., None]
+    return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
+
+
+def _draw_image(
+    ax: Any,
+    triangulation: Delaunay,
+    z: Floats | None,
+    *,
+    pixels: int,
+    cmap: Any,
+    shade: bool | None,
+    colorbar: bool,
+) -> None:
+    if z is None:
+        _draw_density(ax, triangulation, pixels, cmap, colorbar)
+        return
+    raster = rasterize(triangulation, z, pixels)
+    colours = _colours(raster.values, cmap)
+    rgba = colours.to_rgba(raster.values)
+    if shade is not False:
+        rgba[..., :3] = _shaded(rgba[..., :3], relief(raster))
+    rgba[..., 3] = np.isfinite(raster.values)
+    _show(ax, raster, rgba)
+    if colorbar:
+        _add_bar(ax, colours, z, "z")
+
+
+def _draw_density(ax: Any, triangulation: Delaunay, pixels: int, cmap: Any, colorbar: bool) -> None:
+    colors = require("matplotlib.colors", extra="plot", what="drawing")
+    # A coarser grid than the screen's: else most of it would be one point or none.
+    fewer = int(np.clip(np.sqrt(triangulation.npoints / 4), 50, pixels))
+    raster = point_density(triangulation, fewer)
+    image = ax.imshow(
+        raster.values,
+        extent=raster.extent,
+        origin="lower",
+        cmap=cmap or "viridis",
+        norm=colors.LogNorm() if np.nanmin(raster.values) < np.nanmax(raster.values) else None,
+        interpolation="nearest",
+        zorder=0,
+    )
+    if colorbar:
+        ax.figure.colorbar(image, ax=ax, label="points per unit of area", shrink=0.75, pad=0.02)
+
+
+def _show(ax: Any, raster: Raster, rgba: Floats) -> None:
+    image = np.round(rgba * 255).astype(np.uint8)
+    ax.imshow(image, extent=raster.extent, origin="lower", interpolation="auto", zorder=0)
+
+
+def _draw_triangles(
+    ax: Any,
+    triangulation: Delaunay,
+    z: Floats | None,
+    *,
+    cmap: Any,
+    shade: bool | None,
+    colorbar: bool,
+) -> None:
+    collections = require("matplotlib.collections", extra="plot", what="drawing")
+    points, simplices = triangulation.points, triangulation.simplices
+    thin = float(np.clip(30 / np.sqrt(triangulation.nsimplex), 0.15, 1.0))
+    if z is None:
+        lines = collections.LineCollection(
+            points[triangulation.edges], colors=_INK, linewidths=thin, zorder=1
+        )
+        ax.add_collection(lines, autolim=False)
+        return
+    means = z[simplices].mean(axis=1)
+    colours = _colours(means, cmap)
+    rgba = colours.to_rgba(means)
+    if shade or (shade is None and len(simplices) >= 2000):
+        rgba[:, :3] = _shaded(rgba[:, :3], facet_light(points, z, simplices))
+    rgba[~np.isfinite(means)] = 0
+    facets = collections.PolyCollection(
+        points[simplices], facecolors=rgba, edgecolors="#00000055", linewidths=0.5 * thin, zorder=1
+    )
+    ax.add_collection(facets, autolim=False)
+    if colorbar:
+        _add_bar(ax, colours, means, "z")
+
+
+def _add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
+    below = np.nanmin(values) < colours.norm.vmin
+    above = np.nanmax(values) > colours.norm.vmax
+    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
+    bar = ax.figure.colorbar(
+        colours,
+        ax=ax,
+        label=label,
+        extend=extend[int(below), int(above)],
+        shrink=0.75,
+        pad=0.02,
+        aspect=30,
+    )
+    bar.outline.set_visible(False)
+
+
+def _draw_hull(ax: Any, triangulation: Delaunay) -> None:
+    ring = triangulation.points[np.append(triangulation.hull, triangulation.hull[0])]
+    ax.plot(*ring.T, color=_RIM, linewidth=1.4, solid_joinstyle="round", zorder=3)
+
+
+def _draw_circles(ax: Any, triangulation: Delaunay) -> None:
+    collections = require("matplotlib.collections", extra="plot", what="drawing")
+    centres, radii = _circles(triangulation)
+    circles = collections.EllipseCollection(
+        2 * radii,
+        2 * radii,
+        np.zeros(len(radii)),
+        units="xy",
+        offsets=centres,
+        transOffset=ax.transData,
+        facecolors="none",
+        edgecolors=_CIRCLE,
+        linewidths=0.7,
+        alpha=0.8,
+        zorder=2,
+    )
+    ax.add_collection(circles, autolim=False)
+    if len(centres) <= _FEW_CIRCLES:
+        ax.plot(*centres.T, "+", color=_CIRCLE, markersize=5, scalex=False, scaley=False, zorder=2)
+
+
+def _circles(triangulation: Delaunay) -> tuple[Floats, Floats]:
+    centres = triangulation.circumcenters
+    corner = triangulation.points[triangulation.simplices[:, 0]]
+    radii = np.hypot(*(centres - corner).T)
+    drawn = np.isfinite(centres).all(axis=1) & np.isfinite(radii)
+    return centres[drawn], radii[drawn]
+
+
+def _draw_dots(ax: Any, triangulation: Delaunay) -> None:
+    size = float(np.clip(60 / np.sqrt(triangulation.npoints), 0.8, 5.0))
+    ax.plot(*triangulation.points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
+
+
+def _finish(ax: Any, triangulation: Delaunay, circumcircles: bool, title: str | None) -> None:
+    """Set limits, aspect and ticks that say the coordinates as they are."""
+    ticker = require("matplotlib.ticker", extra="plot", what="drawing")
+    low, high = triangulation.min_bound, triangulation.max_bound
+    margin = 0.02 * float((high - low).max())
+    if circumcircles:
+        # Circles of flat triangles may be as large as they like; the points must stay visible.
+        centres, radii = _circles(triangulation)
+        share = 1.0 if len(radii) <= _FEW_CIRCLES else 0.15
+        limit = share * float((high - low).max())
+        low = np.maximum((centres - radii[:, None]).min(axis=0, initial=np.inf), low - limit)
+        high = np.minimum((centres + radii[:, None]).max(axis=0, initial=-np.inf), high + limit)
+        low, high = (
+            np.minimum(low, triangulation.min_bound),
+            np.maximum(high, triangulation.max_bound),
+        )
+    ax.set_xlim(low[0] - margin, high[0] + margin)
+    ax.set_ylim(low[1] - margin, high[1] + margin)
+    ax.set_aspect("equal")
+    largest = float(np.abs((low, high)).max())
+    plain = largest == 0 or 1e-4 < largest < 1e9
+    across, up = _pixels(ax, triangulation)
+    # Side by side a label needs about an inch, so that long coordinates do not run into each other.
+    for axis, pixels, inches in ((ax.xaxis, across, 1.0), (ax.yaxis, up, 0.5)):
+        bins = int(np.clip(pixels / ax.figure.dpi / inches, 1, 7))
+        axis.set_major_locator(ticker.MaxNLocator(nbins=bins, steps=[1, 2, 5, 10]))
+        formatter = ticker.ScalarFormatter(useOffset=False)
+        formatter.set_scientific(not plain)
+        axis.set_major_formatter(formatter)
+    if title:
+        ax.set_title(title, fontsize="medium")
+
+
+def _axis_names(crs: str | None) -> tuple[str, str]:
+    """Return what the axes are called in a reference system, with the unit."""
+    names = {"east": "x", "north": "y"}
+    if crs is None:
+        return names["east"], names["north"]
+    try:
+        import pyproj
+
+        axes = pyproj.CRS.from_user_input(crs).axis_info
+    except Exception:  # a label is not worth an error
+        return names["east"], names["north"]
+    for axis in axes:
+        if axis.direction in names:
+            names[axis.direction] = f"{axis.name} ({axis.unit_name})"
+    return names["east"], names["north"]

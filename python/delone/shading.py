@@ -1,0 +1,268 @@
+"""Triangulated values as pixels: the picture of a surface whose triangles are smaller than pixels.
+
+A pixel shows the mean of the points within it, which is what an eye sees from afar; a pixel
+without points shows the plane of the triangle at its centre; outside of the hull there is nothing.
+Light and shadow follow B. K. P. Horn, "Hill shading and the reflectance map", 1981. NumPy alone is
+needed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.delaunay import Delaunay
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Raster", "facet_light", "point_density", "rasterize", "relief"]
+
+_BLOCK = 1 << 20
+# Below this share of pixels with points, triangles are larger than pixels and show themselves.
+_CROWDED = 0.5
+# From the north-west and above: the eye takes light from below for a hollow.
+_SUN = np.array([-0.5, 0.5, 0.7071067811865476])
+# The steep tenth of a surface is drawn as a slope of this tangent.
+_STEEP = 1.2
+
+
+class Raster(NamedTuple):
+    """Values on square pixels, the first row lowest.
+
+    Parameters
+    ----------
+    values : ndarray of float64, shape (rows, columns)
+        NaN where there is nothing.
+    cell : float
+        Side of a pixel.
+    extent : tuple of float
+        Left, right, bottom, top.
+    """
+
+    values: Floats
+    cell: float
+    extent: tuple[float, float, float, float]
+
+
+def rasterize(triangulation: Delaunay, values: Floats, pixels: int) -> Raster:
+    """Return a surface over a triangulation as pixels.
+
+    Parameters
+    ----------
+    triangulation : Delaunay
+        The triangulation.
+    values : ndarray of float64, shape (n,)
+        A value for each point.
+    pixels : int
+        Number of pixels along the longer side.
+
+    Returns
+    -------
+    Raster
+        The surface.
+
+    Notes
+    -----
+    O(n + pixels²) time, and memory for the pixels and a block of points.
+
+    Examples
+    --------
+    >>> from delone import Delaunay
+    >>> from delone.shading import rasterize
+    >>> import numpy as np
+    >>> mesh = Delaunay([(0, 0), (4, 0), (4, 4), (0, 4)])
+    >>> rasterize(mesh, np.array([0.0, 4.0, 4.0, 0.0]), 4).values[1]
+    array([0.5, 1.5, 2.5, 3.5])
+    """
+    frame = _frame(triangulation, pixels)
+    count, total = _gathered(triangulation.points, values, frame)
+    crowded = (count > 0).mean() >= _CROWDED
+    surface = np.full(count.shape, np.nan)
+    full = count > 0 if crowded else np.zeros(count.shape, dtype=bool)
+    surface[full] = total[full] / count[full]
+    empty = np.flatnonzero(~full)
+    for start in range(0, len(empty), _BLOCK):
+        some = empty[start : start + _BLOCK]
+        surface.flat[some] = _interpolated(triangulation, values, _centres(some, frame))
+    return Raster(surface, frame.cell, frame.extent)
+
+
+def point_density(triangulation: Delaunay, pixels: int) -> Raster:
+    """Return how many points lie on the area of each pixel, per unit of area.
+
+    Parameters
+    ----------
+    triangulation : Delaunay
+        The triangulation.
+    pixels : int
+        Number of pixels along the longer side.
+
+    Returns
+    -------
+    Raster
+        NaN where there are no points.
+
+    Examples
+    --------
+    >>> from delone import Delaunay
+    >>> from delone.shading import point_density
+    >>> mesh = Delaunay([(0, 0), (2, 0), (2, 2), (0, 2)])
+    >>> point_density(mesh, 2).values
+    array([[1., 1.],
+           [1., 1.]])
+    """
+    frame = _frame(triangulation, pixels)
+    count, _ = _gathered(triangulation.points, None, frame)
+    with np.errstate(divide="ignore", over="ignore"):
+        density = np.where(count > 0, count / frame.cell / frame.cell, np.nan)
+    return Raster(density, frame.cell, frame.extent)
+
+
+def relief(raster: Raster) -> Floats:
+    """Return how bright the sun makes each pixel.
+
+    Parameters
+    ----------
+    raster : Raster
+        Heights.
+
+    Returns
+    -------
+    ndarray of float64, shape (rows, columns)
+        From 0 (away from the sun) to 1 (towards it); flat ground has 0.71.
+
+    Notes
+    -----
+    Heights are exaggerated until the steep tenth of the ground is as steep as 50 degrees, so that a
+    plain, a town and metres over degrees all show relief.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.shading import Raster, relief
+    >>> relief(Raster(np.zeros((2, 2)), 1.0, (0, 2, 0, 2))).round(2)
+    array([[0.71, 0.71],
+           [0.71, 0.71]])
+    """
+    if min(raster.values.shape) < 2:
+        return np.full(raster.values.shape, _SUN[2])
+    north, east = np.array(np.gradient(raster.values, raster.cell))
+    # Beside the hull one side of the difference is missing: flat there.
+    inside = np.isfinite(raster.values)
+    return _light(np.nan_to_num(-east), np.nan_to_num(-north), inside)
+
+
+def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floats:
+    """Return how bright the sun makes each triangle.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates.
+    z : ndarray of float64, shape (n,)
+        Heights.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+
+    Returns
+    -------
+    ndarray of float64, shape (m,)
+        As `relief` does for pixels.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.shading import facet_light
+    >>> square = np.array([(0, 0), (1, 0), (0, 1.0)])
+    >>> facet_light(square, np.zeros(3), np.array([[0, 1, 2]])).round(2)
+    array([0.71])
+    """
+    a, b, c = (points[simplices[:, k]] for k in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    uz, vz = z[simplices[:, 1]] - z[simplices[:, 0]], z[simplices[:, 2]] - z[simplices[:, 0]]
+    with np.errstate(all="ignore"):
+        twice = ux * vy - uy * vx
+        east, north = (uz * vy - vz * uy) / twice, (vz * ux - uz * vx) / twice
+    inside = np.ones(len(simplices), dtype=bool)
+    return _light(np.nan_to_num(-east), np.nan_to_num(-north), inside)
+
+
+def _light(x: Floats, y: Floats, inside: NDArray[np.bool_]) -> Floats:
+    """Return the cosine between the sun and the normals (x, y, 1), exaggerated, not below 0."""
+    slope = np.hypot(x, y)
+    steep = float(np.quantile(slope[inside], 0.9)) if inside.any() else 0.0
+    if steep == 0.0:
+        steep = float(slope.max(initial=0.0))
+    scale = _STEEP / steep if 0.0 < steep < np.inf else 0.0
+    with np.errstate(all="ignore"):
+        light = (_SUN[0] * scale * x + _SUN[1] * scale * y + _SUN[2]) / np.hypot(1.0, scale * slope)
+    bright: Floats = np.clip(np.nan_to_num(light), 0.0, 1.0)
+    return bright
+
+
+class _Frame(NamedTuple):
+    """Square pixels over the box of the points."""
+
+    low: Floats
+    cell: float
+    rows: int
+    columns: int
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        x, y = self.low.tolist()
+        return x, x + self.columns * self.cell, y, y + self.rows * self.cell
+
+
+def _frame(triangulation: Delaunay, pixels: int) -> _Frame:
+    low = triangulation.min_bound
+    width, height = (triangulation.max_bound - low).tolist()
+    cell = max(width, height) / pixels
+    columns, rows = (max(1, min(pixels, int(np.ceil(side / cell)))) for side in (width, height))
+    return _Frame(low, cell, rows, columns)
+
+
+def _gathered(points: Floats, values: Floats | None, frame: _Frame) -> tuple[Floats, Floats]:
+    """Return the number of points in each pixel, and the sum of their values."""
+    size = frame.rows * frame.columns
+    count, total = np.zeros(size), np.zeros(size)
+    for start in range(0, len(points), _BLOCK):
+        some = points[start : start + _BLOCK]
+        place = ((some - frame.low) / frame.cell).astype(np.int64)
+        column = np.minimum(place[:, 0], frame.columns - 1)
+        flat = np.minimum(place[:, 1], frame.rows - 1) * frame.columns + column
+        if values is not None:
+            weights = values[start : start + _BLOCK]
+            known = np.isfinite(weights)
+            flat, weights = flat[known], weights[known]
+            total += np.bincount(flat, weights=weights, minlength=size)
+        count += np.bincount(flat, minlength=size)
+    shape = frame.rows, frame.columns
+    return count.reshape(shape), total.reshape(shape)
+
+
+def _centres(flat: NDArray[np.int64], frame: _Frame) -> Floats:
+    row, column = np.divmod(flat, frame.columns)
+    return frame.low + frame.cell * (np.column_stack((column, row)) + 0.5)
+
+
+def _interpolated(triangulation: Delaunay, values: Floats, xi: Floats) -> Floats:
+    """Return the height of the triangles at points, NaN outside."""
+    triangle = triangulation.find_simplex(xi)
+    inside = triangle >= 0
+    corners = triangulation.simplices[triangle[inside]]
+    a, b, c = (triangulation.points[corners[:, k]] for k in range(3))
+    (ux, uy), (vx, vy), (px, py) = (b - a).T, (c - a).T, (xi[inside] - a).T
+    with np.errstate(all="ignore"):
+        twice = ux * vy - uy * vx
+        s, t = (px * vy - py * vx) / twice, (ux * py - uy * px) / twice
+    # A sliver may lose its digits; its values stay between those of its corners.
+    s, t = np.clip(np.nan_to_num(s), 0.0, 1.0), np.clip(np.nan_to_num(t), 0.0, 1.0)
+    za, zb, zc = (values[corners[:, k]] for k in range(3))
+    found = np.full(len(xi), np.nan)
+    found[inside] = za + s * (zb - za) + t * (zc - za)
+    return found

@@ -1,0 +1,173 @@
+"""Each exit code, one line for each error, and no output half written."""
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from delone import InternalError, __version__
+from delone.cli.exits import MEANINGS, Exit
+
+COMMAND = [sys.executable, "-m", "delone"]
+
+
+def process(*arguments, **options):
+    command = [*COMMAND, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+def test_every_code_is_documented(command):
+    code, out, _ = command("--help")
+    assert code == 0
+    assert set(MEANINGS) == set(Exit)
+    for number in Exit:
+        assert f"{number.value:>3}  " in out
+    assert command("--version") == (0, f"delone {__version__}\n", "")
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        (["triangulate"], 2, "INPUT"),
+        (["triangulate", "S", "--nonsense"], 2, "nonsense"),
+        (["nonsense"], 2, "nonsense"),
+        (["triangulate", "S", "--method", "guess"], 2, "bowyer-watson"),
+        (["triangulate", "S", "--workers", "0"], 2, "workers"),
+        (["triangulate", "S", "--classes", "ground"], 2, "classes"),
+        (["triangulate", "missing.csv"], 3, "no such file"),
+        (["triangulate", "S", "--columns", "x,w"], 3, "its columns are x, y, z"),
+        (["triangulate", "unknown.doc"], 3, "known are .csv"),
+        (["info", "empty.csv"], 3, "is empty"),
+        (["info", "torn.laz"], 3, "torn"),
+        (["check", "torn.npz"], 3, "torn"),
+        (["triangulate", "line.csv"], 4, "line"),
+        (["triangulate", "two.csv"], 4, "two|few"),
+        (["triangulate", "nan.csv"], 4, "rows 1"),
+        (["triangulate", "S", "-o", "a.doc"], 5, "known are .vtu"),
+        (["triangulate", "S", "-o", "nowhere/a.vtu"], 5, "does not exist"),
+        (["triangulate", "S", "-o", "a.vtu", "-o", "a.stl", "--edges"], 5, "not edges"),
+    ],
+)
+def test_one_line_and_a_code(survey, command, tmp_path, monkeypatch, case):
+    arguments, code, words = case
+    monkeypatch.chdir(tmp_path)
+    for name, text in {
+        "unknown.doc": "1,2\n", "empty.csv": "", "torn.laz": "LASF", "torn.npz": "PK",
+        "line.csv": "0,0\n1,1\n2,2\n", "two.csv": "0,0\n1,1\n0,0\n", "nan.csv": "0,0\nnan,1\n2,5\n",
+    }.items():  # fmt: skip
+        (tmp_path / name).write_text(text)
+    before = sorted(path.name for path in tmp_path.iterdir())
+    found, out, err = command(*[survey if a == "S" else a for a in arguments])
+    assert (found, out) == (code, "")
+    assert err.startswith("delone: ")
+    assert err.count("\n") == 1
+    assert any(word in err for word in words.split("|"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+
+
+def test_missing_extra(survey, command, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    code, _, err = command("triangulate", survey, "-o", tmp_path / "a.vtu")
+    assert code == 6
+    assert 'pip install "delone[mesh]"' in err
+
+
+@pytest.mark.parametrize("library", ["typer", "rich"])
+def test_without_the_extra_of_the_command(library):
+    code = f"import sys; sys.modules['{library}'] = None; from delone.__main__ import main; main()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 6
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert 'pip install "delone[cli]"' in done.stderr
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        (MemoryError(), 7),
+        (InternalError("a check failed"), 70),
+        (RuntimeError("surprise"), 70),
+        (KeyboardInterrupt(), 130),
+        (OSError(errno.ENOSPC, "No space left on device", "a.vtu"), 5),
+    ],
+)
+def test_errors_while_writing(survey, command, tmp_path, monkeypatch, case):
+    error, code = case
+
+    def write(path, *_, **__):
+        path.write_bytes(b"half")
+        raise error
+
+    monkeypatch.setattr("delone.io.mesh.write_mesh", write)
+    out = tmp_path / "out"
+    out.mkdir()
+    # The first file is whole when the second one fails: neither may appear.
+    found, stdout, err = command("triangulate", survey, "-o", out / "a.npz", "-o", out / "a.vtu")
+    assert (found, stdout) == (code, "")
+    assert err.startswith("delone: ")
+    assert err.count("\n") == 1
+    assert list(out.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_signals_leave_nothing_behind(survey, tmp_path, number, code):
+    out = tmp_path / "out"
+    out.mkdir()
+    script = (
+        "import delone.io.mesh as m, time, sys\n"
+        "def write(path, *a, **k):\n"
+        "    path.write_bytes(b'half'); print('writing', flush=True); time.sleep(60)\n"
+        "m.write_mesh = write\n"
+        "from delone.__main__ import main\n"
+        f"sys.argv = ['delone', 'triangulate', {str(survey)!r}, '-o', {str(out / 'a.vtu')!r}]\n"
+        "main()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        assert child.stdout.readline() == "writing\n"
+        time.sleep(0.05)
+        child.send_signal(number)
+        _, err = child.communicate(timeout=30)
+    assert child.returncode == code
+    assert list(out.iterdir()) == []
+    assert "Traceback" not in err
+
+
+def test_as_a_process(survey, tmp_path):
+    done = process("triangulate", survey, "-o", tmp_path / "a.png")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert "written" in done.stdout
+    done = process("triangulate", tmp_path / "missing.csv")
+    assert done.returncode == 3
+    assert done.stderr == f"delone: {tmp_path / 'missing.csv'}: no such file\n"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX pipes")
+def test_a_reader_that_goes_away(survey):
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as gone:
+        done = subprocess.run(
+            [*COMMAND, "info", str(survey)], stdout=gone, stderr=subprocess.PIPE, check=False
+        )
+    assert done.returncode == 5
+    assert b"Traceback" not in done.stderr
+    assert b"Exception ignored" not in done.stderr
+
+
+def test_nan_rows_are_named(tmp_path, command):
+    points = np.random.default_rng(0).random((50, 2))
+    points[[3, 17, 40]] = np.nan
+    np.save(tmp_path / "a.npy", points)
+    code, _, err = command("triangulate", tmp_path / "a.npy")
+    assert code == 4
+    assert "3, 17, 40" in err

@@ -1,0 +1,88 @@
+"""delone triangulate: the report, the files, and what is refused."""
+
+import numpy as np
+import pytest
+
+from delone import Delaunay
+from delone.io import read_mesh, read_points
+
+
+def test_report_for_machines(survey, figures, tmp_path):
+    out = tmp_path / "mesh.npz"
+    found = figures("triangulate", survey, "-o", out, "-o", tmp_path / "mesh.vtu")
+    mesh = Delaunay(read_points(survey).points)
+    h = len(mesh.hull)
+    assert found["points"] == 10000
+    assert found["distinct"] == 9997
+    assert found["duplicates"]["count"] == 3
+    x, y = mesh.points[9997].tolist()
+    assert found["duplicates"]["first"][0] == {"row": 9997, "same_as": 0, "x": x, "y": y}
+    assert found["hull_vertices"] == h
+    assert found["triangles"] == {"count": mesh.nsimplex, "expected": 2 * 9997 - h - 2}
+    assert found["triangles"]["count"] == found["triangles"]["expected"]
+    assert found["edges"] == {"count": len(mesh.edges), "expected": 3 * 9997 - h - 3}
+    assert found["edges"]["count"] == found["edges"]["expected"]
+    assert found["mean_degree"] == pytest.approx(2 * len(mesh.edges) / 9997)
+    assert found["area"] == pytest.approx(mesh.areas.sum(), rel=1e-12)
+    assert 0 < found["smallest_angle_degrees"] < 1
+    assert found["outputs"] == [str(out), str(tmp_path / "mesh.vtu")]
+    assert found["peak_memory_bytes"] > 1e6
+    names = [stage["name"] for stage in found["stages"]]
+    assert names[0] == "read"
+    assert set(mesh.stages) < set(names)
+    assert names[-2:] == ["write mesh.npz", "write mesh.vtu"]
+    assert all(stage["seconds"] >= 0 for stage in found["stages"])
+    assert np.array_equal(read_mesh(out).simplices, mesh.simplices)
+    assert np.array_equal(read_mesh(tmp_path / "mesh.vtu").z, read_points(survey).z)
+
+
+def test_report_for_people(survey, command):
+    code, out, err = command("triangulate", survey)
+    assert (code, err) == (0, "")
+    words = ("points read", "10,000", "distinct", "9,997", "row 9997 is row 0 at", "hull", "degree")
+    measures = ("= 2n - h - 2", "= 3n - h - 3", "angle", "area", "points per second", "memory")
+    for word in words + measures:
+        assert word in out
+    assert command("triangulate", survey, "--quiet") == (0, "", "")
+
+
+def test_the_smallest_angle(tmp_path, figures):
+    (tmp_path / "a.csv").write_text("0,0\n1,0\n0.5,0.8660254037844386\n")
+    found = figures("triangulate", tmp_path / "a.csv")
+    assert found["smallest_angle_degrees"] == pytest.approx(60)
+    (tmp_path / "a.csv").write_text("-1e300,0\n1e300,0\n-1e300,2e300\n")
+    found = figures("triangulate", tmp_path / "a.csv")
+    assert found["smallest_angle_degrees"] == pytest.approx(45)
+    assert found["area"] is None  # beyond the range of doubles
+
+
+def test_options_reach_the_reader_and_the_writer(tmp_path, figures, command):
+    (tmp_path / "a.csv").write_text("a,b,c\n0,0,1\n4,0,2\n4,3,3\n0,3,4\n")
+    out = tmp_path / "edges.vtu"
+    arguments = ("triangulate", tmp_path / "a.csv", "--columns", "b, a", "-o", out, "--edges",
+                 "--workers", 1, "--method", "bowyer-watson")  # fmt: skip
+    assert figures(*arguments)["edges"]["count"] == 5
+    assert read_points(out).points.tolist() == [[0, 0], [0, 4], [3, 4], [3, 0]]
+    assert command("check", out)[0] == 3
+
+
+def test_chosen_classes(tmp_path, figures):
+    import laspy
+
+    las = laspy.LasData(laspy.LasHeader())
+    las.x, las.y, las.z = [0, 1, 0, 1, 5], [0, 0, 1, 1, 5], [0, 0, 0, 0, 0]
+    las.classification = [2, 2, 2, 6, 7]
+    las.write(tmp_path / "a.las")
+    assert figures("triangulate", tmp_path / "a.las")["points"] == 5
+    assert figures("triangulate", tmp_path / "a.las", "--classes", "2")["points"] == 3
+    assert figures("triangulate", tmp_path / "a.las", "--classes", "2,6")["points"] == 4
+
+
+def test_the_order_of_rows_does_not_matter(tmp_path, figures):
+    points = np.random.default_rng(0).integers(0, 30, (500, 2)).astype(float)
+    found = []
+    for order in (slice(None), slice(None, None, -1)):
+        np.save(tmp_path / "a.npy", points[order])
+        report = figures("triangulate", tmp_path / "a.npy")
+        found.append([report[key] for key in ("triangles", "edges", "smallest_angle_degrees")])
+    assert found[0] == found[1]

@@ -1,0 +1,127 @@
+"""LAS and LAZ: exact coordinates, classes, reference systems, torn files, false counts."""
+
+import contextlib
+import struct
+
+import laspy
+import numpy as np
+import pyproj
+import pytest
+
+from delone import FileFormatError
+from delone.io import read_points
+
+N = 1000
+COUNT_12, COUNT_14 = 107, 247  # where the header has the number of records
+
+
+@pytest.fixture(params=[(".las", 1), (".laz", 1), (".las", 6), (".laz", 6)], ids=str)
+def cloud(request, tmp_path):
+    suffix, point_format = request.param
+    header = laspy.LasHeader(
+        point_format=point_format, version="1.4" if point_format > 5 else "1.2"
+    )
+    header.scales, header.offsets = [0.001, 0.01, 0.1], [84600.0, 447000.5, -3.0]
+    las = laspy.LasData(header)
+    rng = np.random.default_rng(1)
+    for name in "XYZ":
+        las[name] = rng.integers(-(2**30), 2**30, N)
+    las.classification = rng.integers(1, 7, N)
+    file = tmp_path / f"cloud{suffix}"
+    las.write(file)
+    return file, las
+
+
+def test_coordinates_are_those_of_laspy(cloud, monkeypatch):
+    monkeypatch.setattr("delone.io.las._BLOCK", 300)
+    file, las = cloud
+    survey = read_points(file, attributes=["classification"])
+    assert np.array_equal(survey.points, np.column_stack((las.x, las.y)))
+    assert np.array_equal(survey.z, las.z)
+    assert np.array_equal(survey.attributes["classification"], las.classification)
+    assert survey.crs is None
+
+
+def test_classes(cloud):
+    file, las = cloud
+    keep = np.isin(np.asarray(las.classification), [2, 6])
+    survey = read_points(file, classes=[2, 6], attributes=["intensity"])
+    assert np.array_equal(survey.points[:, 0], np.asarray(las.x)[keep])
+    assert len(survey.attributes["intensity"]) == keep.sum() == len(survey.z)
+    with pytest.raises(FileFormatError, match="no points of class 9"):
+        read_points(file, classes=[9])
+
+
+def test_reference_system_is_kept(tmp_path):
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.add_crs(pyproj.CRS.from_epsg(28992))
+    las = laspy.LasData(header)
+    las.x = las.y = las.z = np.arange(5.0)
+    las.write(tmp_path / "a.las")
+    crs = read_points(tmp_path / "a.las").crs
+    assert pyproj.CRS.from_user_input(crs).name == "Amersfoort / RD New"
+
+
+@pytest.mark.parametrize("claim", [N + 60000, 2**31, 2**32 - 1])
+def test_header_that_claims_more_records(cloud, claim):
+    file, las = cloud
+    raw = bytearray(file.read_bytes())
+    if las.header.version.minor == 4:
+        raw[COUNT_14 : COUNT_14 + 8] = struct.pack("<Q", claim * 1000)
+    raw[COUNT_12 : COUNT_12 + 4] = struct.pack("<I", claim)
+    file.write_bytes(raw)
+    with pytest.raises(FileFormatError, match="cut short"):
+        read_points(file)
+
+
+@pytest.mark.parametrize("place", [96, 100, 243])
+def test_header_that_claims_more_records_beside_the_points(cloud, place):
+    file, las = cloud
+    if place == 243 and las.header.version.minor < 4:
+        return
+    raw = bytearray(file.read_bytes())
+    raw[place : place + 4] = struct.pack("<I", 2**32 - 7)
+    file.write_bytes(raw)
+    with pytest.raises(FileFormatError, match="no room for the records"):
+        read_points(file)
+
+
+def test_torn(cloud):
+    file, _ = cloud
+    whole = file.read_bytes()
+    for share in (0.001, 0.01, 0.1, 0.5, 0.9, 0.999):
+        file.write_bytes(whole[: int(len(whole) * share) or 1])
+        with pytest.raises(FileFormatError):
+            read_points(file)
+
+
+def test_garbage(tmp_path, cloud):
+    file, _ = cloud
+    whole = file.read_bytes()
+    start = 400
+    for seed in range(5):
+        noise = np.random.default_rng(seed).bytes(len(whole) - start)
+        file.write_bytes(noise)
+        with pytest.raises(FileFormatError):
+            read_points(file)
+
+
+def test_one_wrong_byte_in_a_compressed_file(cloud):
+    """Whatever it hits: points or an error, but no abort, and no memory for false sizes."""
+    file, _ = cloud
+    whole = np.frombuffer(file.read_bytes(), dtype=np.uint8)
+    rng = np.random.default_rng(0)
+    for place in [*range(96, 500, 3), *rng.integers(500, len(whole), 100).tolist()]:
+        torn = whole.copy()
+        torn[place] ^= 0x80
+        file.write_bytes(torn.tobytes())
+        with contextlib.suppress(FileFormatError):
+            assert len(read_points(file)) <= N + 2**16
+
+
+def test_unknown_attribute_and_columns(cloud):
+    file, _ = cloud
+    with pytest.raises(FileFormatError, match="has no 'colour'"):
+        read_points(file, attributes=["colour"])
+    with pytest.raises(FileFormatError, match="not to be chosen"):
+        read_points(file, columns=["x", "y"])

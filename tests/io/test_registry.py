@@ -1,0 +1,150 @@
+"""Suffixes, missing files, missing libraries, and files that appear whole or not at all."""
+
+import os
+import sys
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, FileFormatError, MissingExtraError
+from delone.io import input_suffixes, output_suffixes, read_mesh, read_points, write_mesh
+from delone.io.atomic import replacing
+
+MESH = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+
+
+def test_unknown_suffixes_name_the_known_ones(tmp_path):
+    (tmp_path / "a.doc").write_text("1")
+    with pytest.raises(FileFormatError) as caught:
+        read_points(tmp_path / "a.doc")
+    assert all(suffix in str(caught.value) for suffix in (".doc", *input_suffixes()))
+    with pytest.raises(FileFormatError) as caught:
+        write_mesh(tmp_path / "b", MESH)
+    assert all(suffix in str(caught.value) for suffix in output_suffixes())
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_empty_and_folder(tmp_path):
+    for read in (read_points, read_mesh):
+        with pytest.raises(FileNotFoundError, match="no such file"):
+            read(tmp_path / "a.npz")
+        (tmp_path / "empty.npz").touch()
+        with pytest.raises(FileFormatError, match="is empty"):
+            read(tmp_path / "empty.npz")
+        with pytest.raises(FileFormatError, match="is a folder"):
+            read(tmp_path)
+
+
+def test_options_that_do_not_apply(tmp_path):
+    (tmp_path / "a.csv").write_text("1,2\n3,4\n")
+    with pytest.raises(FileFormatError, match="classes"):
+        read_points(tmp_path / "a.csv", classes=[2])
+    with pytest.raises(FileFormatError, match="layers"):
+        read_points(tmp_path / "a.csv", layer="a")
+    (tmp_path / "a.npy.gz").write_text("1")
+    with pytest.raises(FileFormatError, match="decompress"):
+        read_points(tmp_path / "a.npy.gz")
+
+
+@pytest.mark.parametrize(
+    ("suffix", "library", "extra"),
+    [
+        (".las", "laspy", "las"),
+        (".laz", "lazrs", "las"),
+        (".gpkg", "pyogrio", "geo"),
+        (".geojson", "geopandas", "geo"),
+        (".parquet", "pyarrow", "geo"),
+        (".vtu", "meshio", "mesh"),
+    ],
+)
+def test_missing_library_to_read(tmp_path, monkeypatch, suffix, library, extra):
+    (tmp_path / f"a{suffix}").write_bytes(b"anything")
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(MissingExtraError, match=rf'pip install "delone\[{extra}\]"') as caught:
+        read_points(tmp_path / f"a{suffix}")
+    assert caught.value.extra == extra
+
+
+@pytest.mark.parametrize(
+    ("suffix", "library", "extra"),
+    [
+        (".vtu", "meshio", "mesh"),
+        (".gpkg", "shapely", "geo"),
+        (".png", "matplotlib.figure", "plot"),
+        (".svg", "matplotlib.figure", "plot"),
+    ],
+)
+def test_missing_library_to_write(tmp_path, monkeypatch, suffix, library, extra):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(MissingExtraError) as caught:
+        write_mesh(tmp_path / f"a{suffix}", MESH)
+    assert caught.value.extra == extra
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", output_suffixes())
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt, OSError])
+def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suffix, error):
+    target = tmp_path / f"a{suffix}"
+    target.write_bytes(b"old")
+
+    def write_half(path, *_, **__):
+        path.write_bytes(b"half")
+        path.with_name(path.name + "-journal").write_bytes(b"half")
+        raise error("disk is full")
+
+    module = {".gpkg": "vector", ".geojson": "vector", ".npz": "arrays"}.get(suffix, "mesh")
+    module = "picture" if suffix in (".png", ".svg") else module
+    monkeypatch.setattr(f"delone.io.{module}.write_mesh", write_half)
+    with pytest.raises(error):
+        write_mesh(target, MESH)
+    assert [path.name for path in tmp_path.iterdir()] == [target.name]
+    assert target.read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("suffix", output_suffixes())
+def test_success_replaces_and_leaves_nothing_else(tmp_path, suffix):
+    target = tmp_path / f"a b{suffix}"
+    target.write_bytes(b"old")
+    write_mesh(target, MESH)
+    assert [path.name for path in tmp_path.iterdir()] == [target.name]
+    assert target.stat().st_size > 100
+
+
+def test_targets_that_cannot_be(tmp_path):
+    with pytest.raises(FileNotFoundError, match="folder"):
+        write_mesh(tmp_path / "nowhere" / "a.npz", MESH)
+    (tmp_path / "a.npz").mkdir()
+    with pytest.raises(IsADirectoryError):
+        write_mesh(tmp_path / "a.npz", MESH)
+    with pytest.raises(OSError, match="not a regular file"):
+        write_mesh_to_null()
+
+
+def write_mesh_to_null():
+    with replacing(os.devnull):
+        raise AssertionError("the target was accepted")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege on Windows")
+def test_a_link_stays_a_link(tmp_path):
+    (tmp_path / "real.npz").touch()
+    (tmp_path / "link.npz").symlink_to(tmp_path / "real.npz")
+    write_mesh(tmp_path / "link.npz", MESH)
+    assert (tmp_path / "link.npz").is_symlink()
+    assert len(read_points(tmp_path / "real.npz")) == 5
+
+
+def test_nothing_written_is_an_error(tmp_path):
+    with pytest.raises(OSError, match="nothing was written"), replacing(tmp_path / "a"):
+        pass
+
+
+def test_numpy_is_enough_for_its_own_files(tmp_path, monkeypatch):
+    for library in ("laspy", "meshio", "pyogrio", "geopandas", "pyarrow", "matplotlib", "typer"):
+        monkeypatch.setitem(sys.modules, library, None)
+    write_mesh(tmp_path / "a.npz", MESH)
+    np.savetxt(tmp_path / "a.csv", MESH.points, delimiter=",")
+    assert np.array_equal(
+        read_points(tmp_path / "a.csv").points, read_points(tmp_path / "a.npz").points
+    )

@@ -1,0 +1,160 @@
+"""Text: delimiters, headers, columns, compression, and files that are not what they seem."""
+
+import bz2
+import gzip
+import lzma
+
+import numpy as np
+import pytest
+
+from delone import FileFormatError, NonFiniteError
+from delone._arrays import require_finite
+from delone.io import read_points
+
+XY = [[4.25, 52.0], [4.5, 52.5], [-1e-3, 1e5]]
+Z = [-3.0, 7.0, 0.1]
+ROWS = [(*xy, z) for xy, z in zip(XY, Z, strict=True)]
+
+
+def written(tmp_path, name, text, encoding="utf-8"):
+    file = tmp_path / name
+    file.write_bytes(text.encode(encoding))
+    return file
+
+
+def lines(delimiter, header=None, rows=ROWS):
+    body = [delimiter.join(map(repr, row)) for row in rows]
+    return "\n".join(([header] if header else []) + body) + "\n"
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", " ", "  ", "|", ", "])
+@pytest.mark.parametrize("named", [False, True])
+def test_each_delimiter_with_and_without_header(tmp_path, delimiter, named):
+    header = delimiter.join("xyz") if named else None
+    survey = read_points(written(tmp_path, "a.csv", lines(delimiter, header)))
+    assert survey.points.tolist() == XY
+    assert survey.z.tolist() == Z
+
+
+def test_every_double_comes_back(tmp_path):
+    rng = np.random.default_rng(3)
+    points = rng.random((2000, 2)) * 10.0 ** rng.integers(-300, 300, (2000, 2))
+    survey = read_points(written(tmp_path, "a.xyz", lines(" ", rows=points.tolist())))
+    assert np.array_equal(survey.points, points)
+    assert survey.z is None
+
+
+@pytest.mark.parametrize(
+    ("header", "xy", "z"),
+    [
+        ("id,lat,lon,depth", [2, 1], 3),
+        ("Easting [m],Northing [m],H,note", [0, 1], 2),
+        ("height,X_COORD,Y_COORD,z", [1, 2], 3),
+        ('"Longitude","Latitude","bathymetry_m","q"', [0, 1], 2),
+        ("x,y,temperature,q", [0, 1], None),
+        ("N,E,Elev (ft),q", [1, 0], 2),
+    ],
+)
+def test_columns_are_recognised_by_their_words(tmp_path, header, xy, z):
+    table = np.arange(12.0).reshape(3, 4)
+    survey = read_points(written(tmp_path, "a.csv", lines(",", header, table.tolist())))
+    assert survey.points.tolist() == table[:, xy].tolist()
+    assert (survey.z is None) if z is None else (survey.z.tolist() == table[:, z].tolist())
+
+
+def test_unknown_names_are_not_guessed(tmp_path):
+    file = written(tmp_path, "a.csv", lines(",", "foo,bar,baz"))
+    with pytest.raises(FileFormatError, match=r"--columns.*foo, bar, baz"):
+        read_points(file)
+    assert read_points(file, columns=["foo", "BAR"]).points.tolist() == XY
+    assert read_points(file, columns=["0", 1, "baz"]).z.tolist() == Z
+    with pytest.raises(FileFormatError, match=r"no column 'qux'"):
+        read_points(file, columns=["foo", "qux"])
+
+
+def test_attributes(tmp_path):
+    survey = read_points(written(tmp_path, "a.csv", lines(",", "x,y,q")), attributes=["q"])
+    assert survey.attributes["q"].tolist() == Z
+
+
+def test_header_behind_a_comment_mark_and_comments_between(tmp_path):
+    text = "# a survey\n# y x z\n\n1 2 3\n# pause\n4 5 6\n\n"
+    survey = read_points(written(tmp_path, "a.txt", text))
+    assert survey.points.tolist() == [[2.0, 1.0], [5.0, 4.0]]
+    assert survey.z.tolist() == [3.0, 6.0]
+
+
+def test_decimal_comma(tmp_path):
+    survey = read_points(written(tmp_path, "a.csv", "x;y;z\n1,5;2,25;3\n4;5,125;6\n"))
+    assert survey.points.tolist() == [[1.5, 2.25], [4.0, 5.125]]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "latin-1"])
+def test_encodings_and_line_ends(tmp_path, encoding):
+    text = "x,y,Höhe\r\n1,2,3\r\n4,5,6\r\n"
+    survey = read_points(written(tmp_path, "a.csv", text, encoding))
+    assert survey.points.tolist() == [[1.0, 2.0], [4.0, 5.0]]
+
+
+@pytest.mark.parametrize(
+    ("suffix", "compress"), [(".gz", gzip.compress), (".xz", lzma.compress), (".bz2", bz2.compress)]
+)
+def test_compressed(tmp_path, suffix, compress):
+    whole = compress(lines(",", "x,y,z", ROWS * 5000).encode())
+    file = tmp_path / f"a.csv{suffix}"
+    file.write_bytes(whole)
+    assert len(read_points(file)) == 15000
+    file.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(FileFormatError, match="torn"):
+        read_points(file)
+    file.write_bytes(b"x,y\n1,2\n")
+    with pytest.raises(FileFormatError):
+        read_points(file)
+
+
+def test_many_blocks(tmp_path, monkeypatch):
+    monkeypatch.setattr("delone.io.text._BLOCK", 7)
+    table = np.arange(300.0).reshape(100, 3)
+    text = lines(",", "x,y,z", table.tolist()).replace("\n", "\n#\n")
+    assert read_points(written(tmp_path, "a.csv", text)).points.tolist() == table[:, :2].tolist()
+    with pytest.raises(FileFormatError, match=r"row 100, column y is 'b', not a number"):
+        read_points(written(tmp_path, "b.csv", text + "1,b,3\n"))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x,y\n1,2\n3,four\n", r"row 1, column y is 'four', not a number"),
+        ("x,y\n1,2\n3,\n", r"row 1, column y is empty"),
+        ("x,y,z\n1,2,3\n3,4,5\n6,7", r"row 2 has only 2 columns: is the file cut short"),
+        ("3\n1 2 3\n4 5 6\n", r"announces 3 points and holds 2"),
+        ("hello\nworld\n", "not columns of numbers"),
+        ("# nothing\n\n", "no rows"),
+        ("x\n1\n2\n", "not columns of numbers"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path, text, message):
+    with pytest.raises(FileFormatError, match=message):
+        read_points(written(tmp_path, "a.csv", text))
+
+
+def test_garbage(tmp_path):
+    file = tmp_path / "a.csv"
+    for seed in range(20):
+        file.write_bytes(np.random.default_rng(seed).bytes(3000))
+        with pytest.raises(FileFormatError):
+            read_points(file)
+
+
+def test_line_with_the_number_of_points(tmp_path):
+    survey = read_points(written(tmp_path, "a.pts", "2\n1 2 3 9\n4 5 6 9\n"))
+    assert survey.z.tolist() == [3.0, 6.0]
+    with pytest.raises(FileFormatError, match="cut short"):
+        read_points(written(tmp_path, "a.pts", "1000000000000\n1 2 3 9\n4 5 6 9\n"))
+
+
+def test_nan_rows_pass_and_can_be_named(tmp_path):
+    survey = read_points(written(tmp_path, "a.csv", "x,y\n1,2\nnan,4\n5,inf\n"))
+    with pytest.raises(NonFiniteError) as caught:
+        require_finite(survey.points)
+    assert caught.value.rows.tolist() == [1, 2]

@@ -1,0 +1,169 @@
+"""Pictures: what is drawn, at which size, and that it is not blank."""
+
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from PIL import Image
+
+from delone import Delaunay, InputError, MissingExtraError, ShapeError, datasets
+from delone.plot import plot, save_picture
+
+FIVE = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+
+
+@pytest.fixture(autouse=True)
+def _close():
+    yield
+    plt.close("all")
+
+
+def axes(size=(6, 5), dpi=100):
+    return Figure(figsize=size, dpi=dpi).add_subplot()
+
+
+def kinds(ax, kind):
+    return [each for each in ax.collections if type(each) is kind]
+
+
+def pixels(path):
+    return np.asarray(Image.open(path).convert("RGB")).astype(int)
+
+
+def test_edges_hull_and_points():
+    ax = plot(FIVE, axes())
+    (edges,) = kinds(ax, LineCollection)
+    assert np.array_equal(edges.get_segments(), FIVE.points[FIVE.edges])
+    hull, dots = ax.lines
+    assert np.array_equal(hull.get_xydata(), FIVE.points[[0, 1, 2, 3, 0]])
+    assert len(dots.get_xydata()) == 5
+    assert not ax.images
+    assert ax.get_aspect() == 1.0
+    assert len(plot(FIVE, axes(), hull=False, vertices=False).lines) == 0
+
+
+def test_circles_pass_through_the_corners():
+    ax = plot(FIVE, axes(), circumcircles=True)
+    (circles,) = kinds(ax, EllipseCollection)
+    assert np.array_equal(circles.get_offsets(), FIVE.circumcenters)
+    assert sorted(circles.get_widths() / 2) == pytest.approx(
+        sorted(np.hypot(*(FIVE.points[FIVE.simplices[:, 0]] - FIVE.circumcenters).T))
+    )
+    with pytest.raises(InputError, match="hide each other"):
+        plot(Delaunay(datasets.uniform(5000)), axes(), circumcircles=True)
+
+
+def test_colours_of_heights():
+    z = np.array([0.0, 0, 10, 10, 5])
+    ax = plot(FIVE, axes(), z=z)
+    (facets,) = kinds(ax, PolyCollection)
+    assert len({tuple(colour) for colour in facets.get_facecolors()}) >= 3
+    assert len(ax.figure.axes) == 2
+    assert len(plot(FIVE, axes(), z=z, colorbar=False).figure.axes) == 1
+    plot(FIVE, axes(), z=np.full(5, 3.0))
+    with pytest.raises(ShapeError):
+        plot(FIVE, axes(), z=z[:3])
+    with pytest.raises(InputError, match="no finite value"):
+        plot(FIVE, axes(), z=np.full(5, np.nan))
+
+
+def test_new_axes_come_from_pyplot():
+    assert FIVE.plot() is plt.gca()
+    ax = axes()
+    assert FIVE.plot(ax) is ax
+
+
+def test_many_triangles_become_an_image():
+    mesh = Delaunay(datasets.uniform(100_000))
+    for z in (None, mesh.points[:, 0]):
+        ax = plot(mesh, axes(), z=z)
+        assert len(ax.images) == 1
+        assert not kinds(ax, LineCollection) and not kinds(ax, PolyCollection)
+
+
+def test_ticks_say_the_coordinates():
+    mesh = Delaunay(datasets.utm_millimetres(200))
+    figure = Figure(figsize=(6, 6))
+    figure.set_layout_engine("constrained")
+    ax = plot(mesh, figure.add_subplot())
+    figure.savefig(sys.modules["os"].devnull, format="png")
+    assert ax.yaxis.get_offset_text().get_text() == ""
+    labels = [label.get_text() for label in ax.get_yticklabels()]
+    assert any(label.startswith("5400") and len(label) >= 7 for label in labels)
+
+
+@pytest.mark.parametrize("width", [0.01, 1, 100])
+def test_size_follows_the_data(tmp_path, width):
+    mesh = Delaunay(datasets.uniform(50) * [width, 1])
+    save_picture(tmp_path / "a.png", mesh, size=4, dpi=50)
+    image = pixels(tmp_path / "a.png")
+    assert max(image.shape[:2]) == pytest.approx(200, abs=2)
+    assert min(image.shape[:2]) >= 80
+    assert image.std() > 5
+
+
+def test_the_surface_is_where_it_belongs(tmp_path):
+    mesh = Delaunay(datasets.uniform(60_000))
+    save_picture(
+        tmp_path / "a.png",
+        mesh,
+        z=mesh.points[:, 0],
+        size=5,
+        dpi=80,
+        cmap="gray",
+        shade=False,
+        hull=False,
+    )
+    image = pixels(tmp_path / "a.png")[..., 0]
+    row = image[image.shape[0] // 2]
+    surface = row[100:260]
+    assert surface[0] < 90
+    assert surface[-1] > 160
+    assert (np.diff(surface[::10]) > 0).all()
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg"])
+@pytest.mark.parametrize("count", [200, 30_000])
+def test_files(tmp_path, suffix, count):
+    mesh = Delaunay(datasets.uniform(count))
+    file = tmp_path / f"a{suffix}"
+    save_picture(file, mesh, z=np.sin(9 * mesh.points[:, 0]), crs="EPSG:28992", size=5, dpi=60)
+    content = file.read_bytes()
+    if suffix == ".png":
+        assert len(np.unique(pixels(file).reshape(-1, 3), axis=0)) > 200
+    else:
+        assert b"<svg" in content and content.rstrip().endswith(b"</svg>")
+    assert [path.name for path in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-9, 1e9, 1e150])
+def test_odd_units(tmp_path, scale):
+    mesh = Delaunay(datasets.uniform(300) * scale)
+    save_picture(tmp_path / "a.png", mesh, z=mesh.points[:, 1], size=4, dpi=50)
+    assert pixels(tmp_path / "a.png").std() > 5
+
+
+def test_heights_with_holes(tmp_path):
+    for count in (500, 50_000):
+        mesh = Delaunay(datasets.uniform(count))
+        z = mesh.points[:, 0].copy()
+        z[::3] = np.nan
+        save_picture(tmp_path / "a.png", mesh, z=z, size=4, dpi=50)
+        assert pixels(tmp_path / "a.png").std() > 5
+
+
+def test_without_matplotlib(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(MissingExtraError, match=r"delone\[plot\]"):
+        FIVE.plot()
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(MissingExtraError):
+        save_picture(tmp_path / "a.png", FIVE)
+    assert list(tmp_path.iterdir()) == []

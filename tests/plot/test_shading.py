@@ -1,0 +1,69 @@
+"""Surfaces as pixels: planes come back exactly, light comes from the north-west."""
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets
+from delone.shading import Raster, facet_light, point_density, rasterize, relief
+
+
+def plane(points):
+    return 3 * points[..., 0] - 2 * points[..., 1] + 7
+
+
+def centres(raster):
+    left, _, bottom, _ = raster.extent
+    rows, columns = raster.values.shape
+    x = left + raster.cell * (np.arange(columns) + 0.5)
+    y = bottom + raster.cell * (np.arange(rows) + 0.5)
+    return np.stack(np.meshgrid(x, y), axis=-1)
+
+
+@pytest.mark.parametrize("offset", [0.0, 5_400_000.0])
+@pytest.mark.parametrize("block", [50, 1 << 20])
+def test_a_plane_seen_through_few_points(monkeypatch, offset, block):
+    monkeypatch.setattr("delone.shading._BLOCK", block)
+    points = datasets.uniform(200) + offset
+    raster = rasterize(Delaunay(points), plane(points - offset), 40)
+    wanted = plane(centres(raster) - offset)
+    inside = np.isfinite(raster.values)
+    assert 0.8 < inside.mean() < 1
+    assert raster.values[inside] == pytest.approx(wanted[inside], abs=1e-7)
+    assert raster.values.shape == (40, 40)
+
+
+def test_outside_is_empty():
+    triangle = Delaunay([(0, 0), (1, 0), (0, 1)])
+    values = rasterize(triangle, np.zeros(3), 20).values
+    assert np.isnan(values[15:, 15:]).all()
+    assert np.isfinite(values[:5, :5]).all()
+
+
+def test_a_crowded_pixel_is_the_mean():
+    points = datasets.uniform(50_000)
+    noise = np.random.default_rng(1).choice([-1.0, 1.0], len(points))
+    raster = rasterize(Delaunay(points), noise, 20)
+    assert np.abs(raster.values).max() < 0.5
+    assert np.isfinite(raster.values).all()
+
+
+def test_density():
+    points = datasets.uniform(40_000)
+    raster = point_density(Delaunay(points), 10)
+    assert np.nansum(raster.values) * raster.cell**2 == pytest.approx(40_000)
+    assert raster.values == pytest.approx(40_000, rel=0.2)
+
+
+def test_light_comes_from_the_north_west():
+    x, y = np.meshgrid(np.arange(20.0), np.arange(20.0))
+
+    def brightness(heights):
+        return relief(Raster(heights, 1.0, (0, 20, 0, 20)))[10, 10]
+
+    towards, away = brightness(x - y), brightness(y - x)
+    assert towards > 0.95
+    assert away < 0.3
+    assert brightness(0 * x) == pytest.approx(np.sqrt(0.5))
+    mesh = Delaunay(datasets.uniform(50))
+    assert (facet_light(mesh.points, mesh.points @ [1.0, -1.0], mesh.simplices) > 0.95).all()
+    assert (facet_light(mesh.points, mesh.points @ [-1.0, 1.0], mesh.simplices) < 0.3).all()
