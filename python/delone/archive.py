@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import tokenize
 import zipfile
 import zlib
 from pathlib import Path
@@ -156,7 +157,8 @@ def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], np.dtype[Any]]
         version = np.lib.format.read_magic(file)
         _require(version == (1, 0), f"{name} is an array file of version {version}")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
-    except ValueError as error:
+    # NumPy parses the header as Python, so a damaged one raises whatever its parser does.
+    except (ValueError, SyntaxError, TypeError, tokenize.TokenError) as error:
         raise _ContradictionError(f"{name}: {error}") from error
     _require(not fortran or len(shape) < 2, f"{name} is in Fortran order")
     return shape, dtype
