@@ -22,9 +22,9 @@ CARGO_TEST := cargo test --workspace --exclude delone-bindings
 # What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
 NEEDS_build :=
 NEEDS_demo := -E cli,las,mesh,plot
-NEEDS_test := -E all -G test
-NEEDS_docs := -E all -G test,docs
-NEEDS_bench := -E all -G bench
+NEEDS_test := -E cli,geo,las,mesh,plot -G test
+NEEDS_docs := -E cli,geo,las,mesh,plot -G test,docs
+NEEDS_bench := -E cli,geo,las,mesh,plot -G bench
 
 .PHONY: help need build demo test lint docs bench fuzz clean
 .DEFAULT_GOAL := help

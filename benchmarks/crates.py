@@ -1,10 +1,12 @@
-"""Delone's core beside the Rust crates spade and delaunator: the same points, one thread.
+"""Delone's core beside the Rust crates spade and delaunator, and beside CGAL: the same points.
 
 Builds benchmarks/peers, hands it each point set as a file, and prints a table of medians. The
-peers take turns run by run inside one process. ``python benchmarks/crates.py --help`` has options.
+crates take turns run by run inside one process; CGAL, where its headers are installed, follows in
+one of its own. ``python benchmarks/crates.py --help`` has options.
 """
 
 import argparse
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -35,6 +37,16 @@ def build() -> Path:
     return CRATE / "target" / "release" / "delone-peers"
 
 
+def build_cgal() -> Path | None:
+    """Build the driver of CGAL and return the program; nothing where CGAL is not installed."""
+    program = CRATE / "target" / "cgal"
+    if shutil.which("g++") is None or not Path("/usr/include/CGAL").exists():
+        return None
+    command = ["g++", "-O3", "-DNDEBUG", "-std=c++17", "cgal.cpp", "-o", str(program), "-lgmp"]
+    subprocess.run(command, cwd=CRATE, check=True)
+    return program
+
+
 def runs_of(output: str) -> dict[str, list[float]]:
     """Return the seconds of each peer's runs; none where it failed."""
     times: dict[str, list[float]] = {}
@@ -44,15 +56,19 @@ def runs_of(output: str) -> dict[str, list[float]]:
     return times
 
 
-def measure(program: Path, name: str, runs: int) -> str:
+def measure(programs: list[Path], name: str, runs: int) -> str:
     """Return the table of one point set."""
     points = sets.make(name)
     with tempfile.TemporaryDirectory() as folder:
         points_file = Path(folder) / "points"
         points.astype("<f8").tofile(points_file)
-        command = [str(program), str(runs), str(points_file)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=LIMIT)
-        times = runs_of(done.stdout)
+        output = ""
+        for program in programs:
+            command = [str(program), str(runs), str(points_file)]
+            output += subprocess.run(
+                command, capture_output=True, text=True, check=True, timeout=LIMIT
+            ).stdout
+        times = runs_of(output)
         answers = {
             peer: rows_of(points, np.fromfile(f"{points_file}.{peer}", "<f8").reshape(-1, 2))
             for peer in times
@@ -68,16 +84,16 @@ def measure(program: Path, name: str, runs: int) -> str:
         middle = report.median(seconds)
         verdict = judge.verdict(points, answers[peer].reshape(-1, 3), expected)
         rows.append([peer, report.seconds(middle), report.ratio(middle / base), verdict])
-    return report.table(["crate", "seconds", "times delone", "result"], rows)
+    return report.table(["peer", "seconds", "times delone", "result"], rows)
 
 
 def main() -> None:
     """Print a table for each point set."""
     arguments = options()
-    program = build()
-    print(f"Rust crates, one thread, {arguments.runs} runs; {report.machine()}\n")
+    programs = [program for program in (build(), build_cgal()) if program]
+    print(f"Compiled peers, {arguments.runs} runs; {report.machine()}\n")
     for name in sets.with_number(tuple(arguments.sets.split(",")), arguments.n):
-        print(f"{name}\n\n{measure(program, name, arguments.runs)}\n", flush=True)
+        print(f"{name}\n\n{measure(programs, name, arguments.runs)}\n", flush=True)
 
 
 if __name__ == "__main__":

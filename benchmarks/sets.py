@@ -21,16 +21,41 @@ DEFAULT = (
     "circle:100000",
     "kuzmin:1000000",
     "gaussian_clusters:1000000",
+    "lines:1000000",
+    "sorted:1000000",
+    "reversed:1000000",
+    "duplicates:1000000",
 )
+
+
+def _lines(n: int, *, seed: int) -> Points:
+    """Return points along a hundred horizontal lines."""
+    rng = np.random.default_rng(seed)
+    return np.column_stack((rng.random(n), rng.integers(0, 100, n) / 100))
+
+
+def _sorted(n: int, *, seed: int) -> Points:
+    """Return uniform points by x, then y."""
+    points = GENERATORS["uniform"](n, seed=seed)
+    return points[np.lexsort((points[:, 1], points[:, 0]))]
+
+
+def _reversed(n: int, *, seed: int) -> Points:
+    """Return the same from the last to the first."""
+    return _sorted(n, seed=seed)[::-1]
+
+
+ORDERS = {"lines": _lines, "sorted": _sorted, "reversed": _reversed}
 
 
 def make(name: str) -> Points:
     """Return the set that `name` names, such as ``"kuzmin:1000000"``."""
     generator, _, number = name.partition(":")
-    if generator not in GENERATORS or not number.isdigit():
-        known = ", ".join(GENERATORS)
+    generators = GENERATORS | ORDERS
+    if generator not in generators or not number.isdigit():
+        known = ", ".join(generators)
         raise SystemExit(f"no point set {name!r}: one of {known}, then a colon and a number")
-    return np.ascontiguousarray(GENERATORS[generator](int(number), seed=SEED))
+    return np.ascontiguousarray(generators[generator](int(number), seed=SEED))
 
 
 def with_number(names: tuple[str, ...], number: int | None) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-//! Delone's core, spade and delaunator on one file of points, in turns, on one thread.
+//! Delone's core, spade and delaunator on one file of points, in turns.
 //!
 //! `delone-peers RUNS FILE` reads the file's little-endian doubles, x and y in turn, and prints a line
 //! for each run: peer, seconds, triangles. Timed is the call from a slice of points to finished
@@ -27,16 +27,17 @@ struct Outcome {
 
 type Call = fn(&Points) -> Result<Outcome, Box<dyn Error>>;
 
-const PEERS: [(&str, Call); 4] = [
-    ("delone", delone),
+const PEERS: [(&str, Call); 5] = [
+    ("delone", |points| delone(points, 1)),
+    ("delone, 2 workers", |points| delone(points, 2)),
     ("spade bulk_load", spade_bulk_load),
     ("spade bulk_load_stable", spade_bulk_load_stable),
     ("delaunator", delaunator_triangulate),
 ];
 
-fn delone(points: &Points) -> Result<Outcome, Box<dyn Error>> {
+fn delone(points: &Points, workers: usize) -> Result<Outcome, Box<dyn Error>> {
     let start = Instant::now();
-    let answer = triangulate(black_box(points), Method::Auto, 1, &Watch::idle())?;
+    let answer = triangulate(black_box(points), Method::Auto, workers, &Watch::idle())?;
     let time = start.elapsed();
     let corners = |t: &[i32; 3]| t.map(|v| points[v as usize]);
     Ok(Outcome {
