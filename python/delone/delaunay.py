@@ -15,7 +15,7 @@ import numpy as np
 
 from delone import _core, geometry, topology
 from delone._arrays import as_points, as_vectors, as_workers
-from delone.errors import InputError
+from delone.errors import InputError, InternalError
 from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
@@ -164,7 +164,11 @@ class Delaunay:
             raise InputError(f"method must be one of {names}, got {method!r}")
         threads = as_workers(workers)
         own = _own_copy(points)
-        simplices, neighbors, duplicates, stages = _core.triangulate2(own, method, threads)
+        try:
+            simplices, neighbors, duplicates, stages = _core.triangulate2(own, method, threads)
+        except InternalError as error:
+            error.points = own
+            raise
         arrays: dict[str, NDArray[Any]] = {
             "points": own,
             "simplices": simplices,

@@ -136,8 +136,14 @@ class InternalError(DeloneError, RuntimeError):
     ----------
     message : str
         What went wrong.
+
+    Attributes
+    ----------
+    points : ndarray of float64 or None
+        The points with which it went wrong, to be sent along: ``np.save("report.npy", e.points)``.
     """
 
+    points: NDArray[np.float64] | None = None
     REQUEST = "This is a bug in delone; please report it together with the input."
 
     def __init__(self, message: str = "an internal check failed") -> None:

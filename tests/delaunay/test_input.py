@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from delone import (
     DeloneError,
     DtypeError,
     InputError,
+    InternalError,
     NonFiniteError,
     ShapeError,
     datasets,
@@ -177,3 +179,15 @@ def test_workers_must_be_a_number_of_threads(workers: Any) -> None:
 def test_options_are_named() -> None:
     with pytest.raises(TypeError):
         Delaunay(POINTS, "auto")  # type: ignore[misc]
+
+
+def test_a_bug_of_the_core_hands_its_points_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise InternalError("the hull does not close")
+
+    monkeypatch.setattr("delone._core.triangulate2", broken)
+    points = datasets.uniform(10)
+    with pytest.raises(InternalError, match="report") as caught:
+        Delaunay(points)
+    assert np.array_equal(caught.value.points, points)
+    assert np.array_equal(pickle.loads(pickle.dumps(caught.value)).points, points)

@@ -46,9 +46,13 @@ fn methods() -> impl Iterator<Item = Method> {
 /// All methods agree on `points`, or all refuse it.
 fn agree(points: &[Point2]) -> Result<(), TestCaseError> {
     let mut sets = Vec::new();
-    let reversed: Vec<Point2> = points.iter().rev().copied().collect();
+    let mut shuffled: Vec<(u64, Point2)> = (0..).map(hash).zip(points.iter().copied()).collect();
+    shuffled.sort_unstable_by_key(|&(key, _)| key);
+    let shuffled: Vec<Point2> = shuffled.into_iter().map(|(_, p)| p).collect();
+    // Each point twice: backwards, then in any order.
+    let twice: Vec<Point2> = points.iter().rev().chain(&shuffled).copied().collect();
     for method in methods() {
-        for points in [points, &reversed] {
+        for points in [points, &shuffled, &twice] {
             match triangulate(points, method, 1, &Watch::idle()) {
                 Ok(made) => {
                     prop_assert_eq!(findings(points, &made), Findings::default());
@@ -64,16 +68,20 @@ fn agree(points: &[Point2]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
     fn lattices_where_ties_are_everywhere(
-        side in 2..7i32,
+        side in 3..7i32,
         cells in prop::collection::vec((0..6i32, 0..6i32), 0..40),
     ) {
         let point = |(x, y): (i32, i32)| [f64::from(x % side), f64::from(y % side)];
         agree(&cells.into_iter().map(point).collect::<Vec<_>>())?;
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn points_within_ulps_of_a_line(
