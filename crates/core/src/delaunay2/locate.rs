@@ -12,8 +12,9 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::validate::Given;
 use crate::error::{Error, Result};
-use crate::memory::filled;
+use crate::memory::{filled, with_room};
 use crate::order::curve;
+use crate::parallel;
 use crate::watch::Watch;
 
 /// Queries between two looks at the watch.
@@ -27,19 +28,8 @@ pub fn find(given: Given, queries: &[Point2], workers: usize, watch: &Watch) -> 
     }
     let order = curve::order_of(queries)?;
     let share = order.len().div_ceil(workers.max(1)).max(WATCH_EVERY);
-    let parts: Vec<Result<Vec<i32>>> = std::thread::scope(|scope| {
-        let handles: Vec<_> = order
-            .chunks(share)
-            .map(|part| scope.spawn(move || find_part(given, queries, part, watch)))
-            .collect();
-        handles
-            .into_iter()
-            .map(|h| {
-                h.join()
-                    .unwrap_or_else(|_| Err(Error::Internal("a worker panicked".into())))
-            })
-            .collect()
-    });
+    let tasks = order.chunks(share).collect();
+    let parts = parallel::map(workers, tasks, |part| find_part(given, queries, part, watch));
     for (part, rows) in parts.into_iter().zip(order.chunks(share)) {
         for (triangle, &row) in part?.into_iter().zip(rows) {
             found[row as usize] = triangle;
@@ -49,7 +39,7 @@ pub fn find(given: Given, queries: &[Point2], workers: usize, watch: &Watch) -> 
 }
 
 fn find_part(given: Given, queries: &[Point2], part: &[u32], watch: &Watch) -> Result<Vec<i32>> {
-    let mut found = Vec::with_capacity(part.len());
+    let mut found = with_room(part.len())?;
     let Some(&head) = part.first() else {
         return Ok(found);
     };
