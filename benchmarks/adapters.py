@@ -1,4 +1,4 @@
-"""One call per peer: an array of points in, arrays out, on one thread.
+"""One call per peer: an array of points in, arrays out, on one thread unless its name says more.
 
 An adapter imports its library and returns the call to be timed; what the call returns goes, outside
 the timed part, through the adapter's `simplices`, which yields vertex numbers for the judge. Each
@@ -38,12 +38,12 @@ def complex_keys(points: Points) -> NDArray[np.complex128]:
     return np.ascontiguousarray(points + 0.0).view(np.complex128).ravel()
 
 
-def delone() -> Adapter:
+def delone(workers: int = 1) -> Adapter:
     """Delone itself: `simplices` and `neighbors` are there when the constructor returns."""
     import delone as library
 
     return Adapter(
-        lambda points: library.Delaunay(points, workers=1),
+        lambda points: library.Delaunay(points, workers=workers),
         lambda _, answer: np.asarray(answer.simplices),
         library.__version__,
     )
@@ -106,6 +106,7 @@ def shapely() -> Adapter:
 
 PEERS: dict[str, Callable[[], Adapter]] = {
     "delone": delone,
+    "delone-2-workers": lambda: delone(2),
     "scipy": scipy,
     "triangle": triangle,
     "startinpy": startinpy,

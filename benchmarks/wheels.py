@@ -1,4 +1,4 @@
-"""Delone beside the other Python packages: the same array in, arrays out, one thread.
+"""Delone beside the other Python packages: the same array in, arrays out.
 
 Each peer works in a process of its own; the peers take turns run by run; the medians stand in one
 table per point set, with the peak memory of the first run and what exact predicates say of its
@@ -93,7 +93,7 @@ def main() -> None:
     # Ended from outside, the program still ends its workers: see multiprocessing's daemons.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     arguments = options()
-    print(f"Python packages, one thread; {report.machine()}\n")
+    print(f"Python packages; {report.machine()}\n")
     for name in sets.with_number(tuple(arguments.sets.split(",")), arguments.n):
         print(f"{name}\n\n{measure(name, arguments)}\n", flush=True)
 
