@@ -8,7 +8,6 @@ stay inside. What is not checked is whether triangles are Delaunay: ``validate()
 
 from __future__ import annotations
 
-import contextlib
 import os
 import tokenize
 import zipfile
@@ -19,6 +18,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone import predicates
+from delone.atomic import replacing
 from delone.errors import FileFormatError
 from delone.topology import boundary_edges, boundary_next, is_mutual
 
@@ -53,19 +53,11 @@ def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]]) -> N
     Raises
     ------
     OSError
-        The file cannot be written.
+        The file cannot be written, or is no regular file.
     """
-    target = Path(path)
-    beside = target.with_name(f".{target.name}.{os.getpid()}.part")
     columns: dict[str, Any] = {name: arrays[name] for name in _LAYOUT}
-    try:
-        with beside.open("wb") as file:
-            np.savez(file, format=np.array(_FORMAT), version=np.array(_VERSION), **columns)
-        beside.replace(target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            beside.unlink()
-        raise
+    with replacing(path) as beside, beside.open("wb") as file:
+        np.savez(file, format=np.array(_FORMAT), version=np.array(_VERSION), **columns)
 
 
 def read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
@@ -88,19 +80,34 @@ def read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     OSError
         The file cannot be read.
     """
+    with Path(path).open("rb") as file:
+        return _parsed(file, path)
+
+
+def _parsed(file: IO[bytes], path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     try:
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(file) as archive:
             _check_kind(archive)
             arrays = {name: _array(archive, name) for name in _LAYOUT}
         _check(**arrays)
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        # RuntimeError: an encrypted member.
+    except _DAMAGE as error:
         raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from error
     except _ContradictionError as error:
         raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from None
     return arrays
 
 
+# What damage makes zipfile raise: OSError where it seeks below zero, RuntimeError for a
+# member that claims to be encrypted.
+_DAMAGE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    OSError,
+    ValueError,
+)
 _REFUSAL = "no delone triangulation, or a torn one"
 
 

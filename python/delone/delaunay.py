@@ -160,6 +160,8 @@ class Delaunay:
     def __init__(
         self, points: ArrayLike, *, method: str = "auto", workers: int | None = None
     ) -> None:
+        if hasattr(self, "_points"):
+            raise AttributeError("a Delaunay never changes: make another one")
         methods = _core.methods2()
         if method not in methods:
             names = ", ".join(map(repr, methods))

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.atomic import replacing
 from delone.errors import InputError
-from delone.io.atomic import replacing
 from delone.io.extras import require
 from delone.io.heights import as_values
 from delone.shading import Raster, facet_light, point_density, rasterize, relief

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import zipfile
@@ -227,3 +228,35 @@ def test_a_header_that_claims_more_than_there_is(path: Path) -> None:
             archive.writestr(name, content)
     with pytest.raises(FileFormatError, match="points"):
         Delaunay.load(path)
+
+
+def test_every_byte_of_the_directory_may_be_damaged(mesh: Delaunay, path: Path) -> None:
+    whole = path.read_bytes()
+    for at in range(len(whole) - 120, len(whole)):
+        path.write_bytes(whole[:at] + b"\xff" + whole[at + 1 :])
+        with contextlib.suppress(FileFormatError):
+            assert np.array_equal(Delaunay.load(path).simplices, mesh.simplices)
+
+
+def test_a_link_keeps_its_target_and_a_private_file_its_mode(
+    mesh: Delaunay, tmp_path: Path
+) -> None:
+    real, link = tmp_path / "real.npz", tmp_path / "link.npz"
+    real.touch(0o600)
+    link.symlink_to(real)
+    mesh.save(link)
+    assert link.is_symlink()
+    assert real.stat().st_mode & 0o777 == 0o600
+    assert np.array_equal(Delaunay.load(real).simplices, mesh.simplices)
+
+
+def test_only_regular_files_are_replaced(mesh: Delaunay, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.npz"
+    os.mkfifo(pipe)
+    with pytest.raises(OSError, match="not a regular file"):
+        mesh.save(pipe)
+    assert pipe.is_fifo()
+    with pytest.raises(FileNotFoundError, match=r"nowhere"):
+        mesh.save(tmp_path / "nowhere" / "mesh.npz")
+    with pytest.raises(TypeError):
+        Delaunay.load(None)  # type: ignore[arg-type]

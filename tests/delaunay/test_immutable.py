@@ -156,3 +156,10 @@ def test_the_same_input_gives_the_same_arrays() -> None:
     one, two = Delaunay(points), Delaunay(points.tolist())
     for name in ARRAYS:
         assert np.array_equal(getattr(one, name), getattr(two, name)), name
+
+
+def test_the_constructor_does_not_run_twice() -> None:
+    mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
+    with pytest.raises(AttributeError, match="never changes"):
+        mesh.__init__([(0, 0), (2, 0), (0, 2)])  # type: ignore[misc]
+    assert mesh.points[1, 0] == 1

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, FileFormatError, MissingExtraError
+from delone.atomic import replacing
 from delone.io import input_suffixes, output_suffixes, read_mesh, read_points, write_mesh
-from delone.io.atomic import replacing
 
 MESH = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
 

@@ -32,7 +32,8 @@ PYTHON: dict[str, set[str]] = {
     "geometry": set(),
     "predicates": {"_core"} | FOUNDATION,
     "lawson": {"_core"} | FOUNDATION,
-    "archive": {"predicates", "topology", "errors"},
+    "atomic": set(),
+    "archive": {"atomic", "predicates", "topology", "errors"},
     "delaunay": {"_core", "archive", "geometry", "plot", "topology", "validation"} | FOUNDATION,
     "compat": {"delaunay", "predicates", "topology"} | FOUNDATION,
     "reference": FOUNDATION,
@@ -40,11 +41,11 @@ PYTHON: dict[str, set[str]] = {
     "samples": FOUNDATION,
     "datasets": {"samples"} | FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"plot", "_arrays"},
+    "io": PUBLIC | {"atomic", "plot", "_arrays"},
     "shading": PUBLIC,
-    "plot": PUBLIC | {"io", "shading"},
+    "plot": PUBLIC | {"atomic", "io", "shading"},
     "report": PUBLIC | {"io"},
-    "cli": PUBLIC | {"io", "plot", "report"},
+    "cli": PUBLIC | {"atomic", "io", "plot", "report"},
     "__main__": PUBLIC | {"cli"},
     # The package itself re-exports.
     "delone": {

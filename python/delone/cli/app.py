@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from delone import Delaunay, __version__
+from delone.atomic import check_target, replacing
 from delone.cli.check import check_mesh
 from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
 from delone.cli.info import describe
@@ -27,7 +28,6 @@ from delone.cli.show import (
 )
 from delone.errors import NonFiniteError
 from delone.io import input_suffixes, output_suffixes, read_points
-from delone.io.atomic import check_target, replacing
 from delone.io.registry import writer
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import stat
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,7 +35,7 @@ def check_target(path: str | os.PathLike[str]) -> Path:
 
     Examples
     --------
-    >>> from delone.io.atomic import check_target
+    >>> from delone.atomic import check_target
     >>> check_target("mesh.vtu").name
     'mesh.vtu'
     """
@@ -79,7 +80,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from delone.io.atomic import replacing
+    >>> from delone.atomic import replacing
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with replacing(Path(folder) / "a.txt") as beside:
     ...         _ = beside.write_text("whole")
@@ -93,6 +94,9 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         yield beside
         if not beside.exists():
             raise OSError(f"{path}: nothing was written")
+        if target.exists():
+            # A private file stays private.
+            beside.chmod(stat.S_IMODE(target.stat().st_mode))
         # Windows refuses to rename over a file that is open elsewhere; that error says so.
         os.replace(beside, target)
     finally:
