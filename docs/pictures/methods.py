@@ -1,148 +1,223 @@
 """A picture for each of the five methods, drawn from what delone itself computes."""
 
+import itertools
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
 
 import delone
 from delone import Delaunay, predicates
 
-BLUE, ORANGE, GREY = "#2f6f9f", "#d9822b", "#8a8a8a"
+BLUE, ORANGE, GREY, PALE, INK = "#2f6f9f", "#d9742b", "#9a9a9a", "#dcdcdc", "#303030"
 
 Points = NDArray[np.float64]
+Rows = NDArray[np.int32]
 
 
-def _axes(n: int) -> list[Axes]:
-    _, axes = plt.subplots(1, n, figsize=(3.4 * n, 3.4), layout="constrained", squeeze=False)
-    for ax in axes[0]:
-        ax.set_aspect("equal")
+def _spread(n: int, seed: int) -> Points:
+    """Draw points of the unit square that keep apart: each is the best of twenty, by distance."""
+    random = np.random.default_rng(seed)
+    points = [random.random(2)]
+    while len(points) < n:
+        candidates = random.random((20, 2))
+        apart = np.hypot(*(candidates[:, None] - np.array(points)).T).min(axis=0)
+        points.append(candidates[apart.argmax()])
+    return np.array(points)
+
+
+def _axes(rows: int, columns: int, width: float) -> list[Axes]:
+    size = (width * columns, (width + 0.35) * rows)
+    _, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    for ax in grid.flat:
+        ax.set(aspect="equal", xlim=(-0.05, 1.05), ylim=(-0.05, 1.05))
         ax.set_axis_off()
-    return list(axes[0])
+    return list(grid.flat)
 
 
-def _edges(ax: Axes, points: Points, simplices: NDArray[np.int32], color: str = GREY) -> None:
-    ax.triplot(*points.T, simplices, color=color, linewidth=0.9)
+def _edges(ax: Axes, points: Points, simplices: Rows, color: str = GREY) -> None:
+    ax.triplot(*points.T, simplices, color=color, linewidth=1)
 
 
-def _fill(ax: Axes, points: Points, simplices: NDArray[np.int32], color: str) -> None:
+def _fill(ax: Axes, points: Points, simplices: Rows, color: str, alpha: float = 0.25) -> None:
     for triangle in simplices:
-        ax.fill(*points[triangle].T, color=color, alpha=0.28, linewidth=0)
+        ax.fill(*points[triangle].T, color=color, alpha=alpha, linewidth=0)
 
 
-def _dots(ax: Axes, points: Points, color: str = "black", size: float = 14) -> None:
+def _lines(ax: Axes, points: Points, pairs: Rows, **style: object) -> None:
+    ax.add_collection(LineCollection(list(points[pairs]), **style))
+
+
+def _dots(ax: Axes, points: Points, color: str = INK, size: float = 12) -> None:
     ax.scatter(*points.T, s=size, color=color, zorder=3)
+
+
+def _rim(simplices: Rows) -> Rows:
+    """The edges that only one of the triangles has."""
+    pairs = simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    inner = {(v, u) for u, v in pairs.tolist()}
+    return np.array([pair for pair in pairs.tolist() if tuple(pair) not in inner], np.int32)
 
 
 def cavity() -> None:
     """Bowyer-Watson: the circles that hold the new point, the hole, the star."""
-    points = np.random.default_rng(12).random((28, 2))
-    new = np.array([0.52, 0.5])
+    points = _spread(34, 2)
+    new = np.array([0.5, 0.5])
     before, after = Delaunay(points), Delaunay(np.vstack((points, new)))
     corners = [points[before.simplices[:, k]] for k in range(3)]
     conflict = predicates.incircle(*corners, new) > 0
-    left, middle, right = _axes(3)
+    left, middle, right = _axes(1, 3, 3.3)
     _edges(left, points, before.simplices)
     _fill(left, points, before.simplices[conflict], ORANGE)
     for centre, corner in zip(before.circumcenters[conflict], corners[0][conflict], strict=True):
         radius = np.hypot(*(centre - corner))
-        left.add_patch(plt.Circle(centre, radius, fill=False, color=ORANGE, linewidth=0.8))
+        left.add_patch(plt.Circle(centre, radius, fill=False, color=ORANGE, linewidth=1))
     _edges(middle, points, before.simplices[~conflict])
-    _edges(right, after.points, after.simplices)
+    _lines(middle, points, _rim(before.simplices[conflict]), color=ORANGE, linewidth=2)
     star = (after.simplices == len(points)).any(axis=1)
+    _edges(right, after.points, after.simplices)
     _fill(right, after.points, after.simplices[star], BLUE)
-    titles = "circles that hold the point", "the cavity", "its star"
+    _edges(right, after.points, after.simplices[star], BLUE)
+    titles = "the circles that hold the point", "the cavity", "the star that fills it"
     for ax, title in zip((left, middle, right), titles, strict=True):
         _dots(ax, points)
-        _dots(ax, new[None], ORANGE, 34)
-        ax.set(xlim=(-0.06, 1.06), ylim=(-0.06, 1.06), title=title)
+        _dots(ax, new[None], ORANGE, 40)
+        ax.set_title(title)
 
 
 def flips() -> None:
-    """Incremental: Lawson's flips, from a bad triangulation to Delaunay's."""
-    points = np.random.default_rng(5).random((14, 2))
-    skewed = points * [1.0, 0.05]
-    result = delone.lawson(points, Delaunay(skewed).simplices, record=True)
-    assert result.sequence is not None
-    left, middle, right = _axes(3)
-    u, v, p, q = result.sequence[0]
-    _edges(left, points, Delaunay(skewed).simplices)
-    left.plot(*points[[u, v]].T, color=ORANGE, linewidth=2.5)
-    left.plot(*points[[p, q]].T, color=BLUE, linewidth=2.5, linestyle="--")
-    left.set_title("the first flip: the orange edge\nbecomes the blue one")
-    _edges(middle, points, Delaunay(skewed).simplices, "#d0d0d0")
-    for u, v, p, q in result.sequence:
-        middle.plot(*points[[u, v]].T, color=ORANGE, linewidth=0.9, alpha=0.6)
-        middle.plot(*points[[p, q]].T, color=BLUE, linewidth=0.9, alpha=0.6)
-    middle.set_title(f"all {result.flips} flips")
-    _edges(right, points, result.simplices, BLUE)
-    right.set_title("no edge is left to flip")
-    for ax in (left, middle, right):
+    """Incremental: a triangle is split at the new point, and edges flip until none is wrong."""
+    points = np.vstack((_spread(14, 8), (0.47, 0.55)))
+    new = len(points) - 1
+    before = Delaunay(points[:new])
+    home = int(before.find_simplex(points[new]))
+    a, b, c = before.simplices[home]
+    split = np.array([(new, a, b), (new, b, c), (new, c, a)], np.int32)
+    start = np.vstack((np.delete(before.simplices, home, axis=0), split))
+    sequence = delone.lawson(points, start, record=True).sequence
+    assert sequence is not None
+    axes = _axes(2, 3, 3.1)
+    titles = ["the triangle is split; the orange edge\nis wrong, and becomes the dashed one"]
+    titles += [f"after flip {k}" for k in range(1, len(sequence))] + ["no edge is wrong any more"]
+    triangles = [set(t) for t in start.tolist()]
+    for ax, title, flip in itertools.zip_longest(axes, titles, sequence.tolist()):
+        now = np.array([sorted(t) for t in triangles], np.int32)
+        _edges(ax, points, now)
+        at_new = now[(now == new).any(axis=1)]
+        _fill(ax, points, at_new, BLUE)
         _dots(ax, points)
+        _dots(ax, points[new:], ORANGE, 40)
+        ax.set_title(title, fontsize=10)
+        if flip is not None:
+            u, v, p, q = flip
+            ax.plot(*points[[u, v]].T, color=ORANGE, linewidth=2.6)
+            ax.plot(*points[[p, q]].T, color=BLUE, linewidth=2, linestyle=(0, (2, 1.5)))
+            triangles = [t for t in triangles if t not in ({u, v, p}, {u, v, q})]
+            triangles += [{u, p, q}, {v, p, q}]
 
 
 def seam() -> None:
-    """Divide and conquer: two triangulations and what the merge puts between them."""
-    points = np.random.default_rng(3).random((60, 2))
-    left_half = points[:, 0] < np.median(points[:, 0])
-    halves = [points[left_half] - [0.06, 0], points[~left_half] + [0.06, 0]]
+    """Divide and conquer: two triangulations, what the merge takes away, what it puts between."""
+    points = _spread(44, 6)
+    is_left = points[:, 0] < np.median(points[:, 0])
     whole = Delaunay(points)
-    sides = left_half[whole.simplices].sum(axis=1)
-    before, after = _axes(2)
-    for half, color in zip(halves, (BLUE, ORANGE), strict=True):
-        _edges(before, half, Delaunay(half).simplices, color)
-        _dots(before, half)
-    before.set_title("two halves")
-    for count, color in ((3, BLUE), (0, ORANGE)):
-        _edges(after, points, whole.simplices[sides == count], color)
-    between = whole.simplices[(sides > 0) & (sides < 3)]
-    _fill(after, points, between, GREY)
-    _edges(after, points, between, "black")
-    _dots(after, points)
-    after.set_title("merged: the seam in black")
+    kept = set(map(tuple, np.sort(whole.edges).tolist()))
+    apart, merged = _axes(1, 2, 4.2)
+    crossing = whole.edges[is_left[whole.edges].sum(axis=1) == 1]
+    sides = is_left[whole.simplices].sum(axis=1)
+    between = (sides > 0) & (sides < 3)
+    _fill(merged, points, whole.simplices[between], GREY, 0.3)
+    for rows, shift, color in (
+        (np.flatnonzero(is_left), -0.05, BLUE),
+        (np.flatnonzero(~is_left), 0.05, ORANGE),
+    ):
+        half = points[rows]
+        edges = rows[Delaunay(half).edges].astype(np.int32)
+        stays = np.array([tuple(sorted(edge)) in kept for edge in edges.tolist()])
+        moved = points + [shift, 0]
+        _lines(apart, moved, edges[stays], color=color, linewidth=1.1)
+        _lines(apart, moved, edges[~stays], color=color, linewidth=1.4, linestyle=(0, (2, 2)))
+        _lines(merged, points, edges[stays], color=color, linewidth=1.1)
+        _dots(apart, half + [shift, 0])
+    _lines(merged, points, crossing, color=INK, linewidth=1.4)
+    _dots(merged, points)
+    apart.set(title="two halves; dashed edges will go", xlim=(-0.1, 1.1))
+    merged.set(title="merged; the bridge has left the black edges", xlim=(-0.1, 1.1))
 
 
 def beach() -> None:
-    """Fortune's sweep: the beach line, and the triangles that are final."""
-    points = np.random.default_rng(8).random((24, 2))
-    mesh = Delaunay(points)
-    line = 0.62
+    """Fortune's sweep: the beach line, the triangles that are final, the circle that ends next."""
+    points = _spread(26, 4)
+    mesh = Delaunay(points, method="sweep")
+    line = 0.66
     behind = points[points[:, 0] < line]
-    y = np.linspace(-0.15, 1.15, 800)
-    # x of the points as far from a site as from the line: a parabola a site; the rightmost counts.
-    arcs = (line + behind[:, :1]) / 2 - (y - behind[:, 1:]) ** 2 / (2 * (line - behind[:, :1]))
+    y = np.linspace(-0.06, 1.06, 2000)
+    # x of the places as far from a point as from the line: a parabola a point; the foremost counts.
+    room = line - behind[:, :1]
+    arcs = (line + behind[:, :1]) / 2 - (y - behind[:, 1:]) ** 2 / (2 * room)
+    shore = arcs.max(axis=0)
     radius = np.hypot(*(mesh.circumcenters - points[mesh.simplices[:, 0]]).T)
-    final = mesh.circumcenters[:, 0] + radius < line
-    (ax,) = _axes(1)
-    ax.figure.set_size_inches(5.2, 4.6)
-    _edges(ax, points, mesh.simplices, "#dddddd")
+    ends = mesh.circumcenters[:, 0] + radius
+    final = ends < line
+    known = (points[mesh.simplices, 0] < line).all(axis=1) & ~final
+    coming = np.flatnonzero(known)[ends[known].argmin()]
+    (ax,) = _axes(1, 1, 5.6)
+    ax.fill_betweenx(y, -0.05, shore, color=ORANGE, alpha=0.09, linewidth=0)
+    _edges(ax, points, mesh.simplices, PALE)
     _fill(ax, points, mesh.simplices[final], BLUE)
     _edges(ax, points, mesh.simplices[final], BLUE)
-    for arc in arcs:
-        ax.plot(arc, y, color=ORANGE, linewidth=0.5, alpha=0.45)
-    ax.plot(arcs.max(axis=0), y, color=ORANGE, linewidth=2.2)
-    ax.axvline(line, color="black", linewidth=1.2)
+    nearest = arcs.argmax(axis=0)
+    for k in np.unique(nearest):
+        ax.plot(arcs[k], y, color=ORANGE, linewidth=0.7, alpha=0.45)
+    ax.plot(shore, y, color=ORANGE, linewidth=2.4)
+    circle = plt.Circle(
+        mesh.circumcenters[coming], radius[coming], fill=False, color=INK, linestyle=(0, (3, 2))
+    )
+    ax.add_patch(circle)
+    ax.plot([line, line], [-0.05, 1.05], color=INK, linewidth=1.4)
+    ax.annotate(
+        "", (line + 0.11, 1.02), (line, 1.02), arrowprops={"arrowstyle": "->", "color": INK}
+    )
     _dots(ax, points)
-    ax.set(xlim=(-0.1, 1.08), ylim=(-0.08, 1.08), title="sweep line, beach line, final triangles")
+    _dots(ax, np.array([[ends[coming], mesh.circumcenters[coming, 1]]]), ORANGE, 34)
+    ax.set_xlim(-0.05, 1.1)
 
 
 def paraboloid() -> None:
-    """Lifting: the lower hull of the lifted points, and its shadow in the plane."""
-    points = np.random.default_rng(4).random((40, 2)) * 2 - 1
+    """Lifting: the lower hull of the lifted points, its shadow, and a circle of the plane lifted."""
+    points = _spread(40, 5) * 2 - 1
     mesh = Delaunay(points, method="lifting")
-    heights = (points**2).sum(axis=1)
-    figure = plt.figure(figsize=(5.6, 5.0), layout="constrained")
-    ax = figure.add_subplot(projection="3d")
-    ax.plot_trisurf(
-        *points.T, heights, triangles=mesh.simplices, color=ORANGE, edgecolor="black",
-        linewidth=0.5, alpha=0.75,
-    )  # fmt: skip
-    floor = -1.3
-    for triangle in mesh.simplices:
-        ring = points[[*triangle, triangle[0]]]
-        ax.plot(*ring.T, floor, color=BLUE, linewidth=0.8)
-    for (x, y), z in zip(points, heights, strict=True):
-        ax.plot([x, x], [y, y], [floor, z], color=GREY, linewidth=0.3)
-    ax.set(zlim=(floor, 2), title="the lower hull above, Delaunay below")
+    floor = -1.5
+    lifted = np.column_stack((points, (points**2).sum(axis=1)))
+    shadow = np.column_stack((points, np.full(len(points), floor)))
+    chosen = int(mesh.find_simplex((0.15, -0.45)))
+    others = np.delete(mesh.simplices, chosen, axis=0)
+    figure = plt.figure(figsize=(6.4, 6.2))
+    ax = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
+    posts = np.stack((shadow, lifted), axis=1)
+    one = mesh.simplices[chosen]
+    ax.add_collection3d(
+        Poly3DCollection(shadow[others], facecolor="#e4edf4", edgecolor=BLUE, linewidth=0.8)
+    )
+    ax.add_collection3d(Poly3DCollection(shadow[[one]], facecolor=ORANGE, edgecolor=BLUE))
+    turn = np.linspace(0, 2 * np.pi, 200)
+    centre = mesh.circumcenters[chosen]
+    radius = np.hypot(*(centre - points[one[0]]))
+    ring = centre + radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    ax.plot(*ring.T, floor, color=ORANGE, linewidth=1.8)
+    ax.add_collection3d(Line3DCollection(posts[mesh.hull], color=GREY, linewidth=0.5))
+    ax.add_collection3d(Line3DCollection(posts[one], color=ORANGE, linewidth=1.1))
+    bowl = Poly3DCollection(
+        lifted[others], facecolor=BLUE, edgecolor="#1d4766", linewidth=0.8, alpha=0.3
+    )
+    ax.add_collection3d(bowl)
+    ax.add_collection3d(Poly3DCollection(lifted[[one]], facecolor=ORANGE, edgecolor=INK, alpha=0.9))
+    ax.plot(*ring.T, (ring**2).sum(axis=1), color=ORANGE, linewidth=1.8)
+    ax.scatter(*lifted.T, color=INK, s=7, depthshade=False)
+    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(floor, 1.6))
+    ax.set_box_aspect((1, 1, 1.25), zoom=1.35)
     ax.set_axis_off()
-    ax.view_init(elev=16, azim=-62)
+    ax.view_init(elev=20, azim=-62)

@@ -158,3 +158,16 @@ def test_nan_rows_pass_and_can_be_named(tmp_path):
     with pytest.raises(NonFiniteError) as caught:
         require_finite(survey.points)
     assert caught.value.rows.tolist() == [1, 2]
+
+
+@pytest.mark.parametrize(
+    "text", ["x,y\n0,5,1,5\n2,5,3,0\n7,1,2,2\n", "x y\n0 1\n2 3 4\n5 6\n", "1,2\n3,4\n5,6,7\n"]
+)
+def test_rows_longer_than_the_first_are_not_cut(tmp_path, text):
+    with pytest.raises(FileFormatError, match=r"row \d has \d columns, the first line 2"):
+        read_points(written(tmp_path, "a.csv", text))
+
+
+def test_a_delimiter_at_the_end_of_rows_is_no_column(tmp_path):
+    survey = read_points(written(tmp_path, "a.csv", "x,y\n0,1,\n2,3,\n4,5,\n"))
+    assert survey.points.tolist() == [[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]]

@@ -207,6 +207,7 @@ def _block(
     content = list(itertools.islice(lines, _BLOCK))
     if not content:
         return np.empty((0, len(columns)))
+    _refuse_long_rows(content, layout, before, source)
     try:
         table: Floats = np.loadtxt(
             content,
@@ -219,6 +220,21 @@ def _block(
     except ValueError as error:
         raise FileFormatError(f"{source}: {_located(str(error), layout, before)}") from None
     return table
+
+
+def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, source: str) -> None:
+    """Refuse what NumPy would cut without a word: fields beyond those of the first line."""
+    width, delimiter = len(layout.names), layout.delimiter
+    for row, line in enumerate(lines, before):
+        if delimiter is not None and line.count(delimiter) < width:
+            continue
+        fields = line.split(delimiter)
+        # A delimiter at the end makes an empty field; one in quotes makes none.
+        if any(field.strip() for field in fields[width:]) and '"' not in line:
+            raise FileFormatError(
+                f"{source}: row {row} has {len(fields)} columns, the first line {width}: "
+                "are there decimal commas, or another delimiter?"
+            )
 
 
 def _located(message: str, layout: _Layout, before: int) -> str:
