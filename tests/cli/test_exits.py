@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -171,3 +172,28 @@ def test_nan_rows_are_named(tmp_path, command):
     code, _, err = command("triangulate", tmp_path / "a.npy")
     assert code == 4
     assert "3, 17, 40" in err
+
+
+def _shell(line: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    program = f"{sys.executable} -m delone"
+    return subprocess.run(
+        ["sh", "-c", line.replace("delone", program, 1)],
+        cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_output_that_cannot_be_printed_is_no_bug(tmp_path: Path) -> None:
+    for name in ("ok.csv", "ü.csv"):
+        (tmp_path / name).write_text("x,y\n0,0\n1,0\n0,1\n")
+    if Path("/dev/full").is_char_device():
+        for command in ("triangulate ok.csv -o a.npz", "info ok.csv --json", "--help"):
+            done = _shell(f"delone {command} > /dev/full", tmp_path)
+            assert (done.returncode, done.stderr.count("\n")) == (5, 1)
+            assert "cannot be printed" in done.stderr
+        assert (tmp_path / "a.npz").exists()
+    done = _shell("delone triangulate ok.csv -o b.npz >&-", tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "b.npz").exists()
+    done = _shell("delone triangulate ü.csv -o c.npz", tmp_path, PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "?.csv" in done.stdout

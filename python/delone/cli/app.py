@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import os
 import signal
 import sys
 import threading
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -26,7 +28,7 @@ from delone.cli.show import (
     spinner,
     triangulation_rows,
 )
-from delone.errors import NonFiniteError
+from delone.errors import MissingExtraError, NonFiniteError
 from delone.io import input_suffixes, output_suffixes, read_points
 from delone.io.registry import writer
 
@@ -219,7 +221,7 @@ def _write(
     say: Callable[[str], None],
 ) -> None:
     """Write all files beside their targets, and rename them when the last one is whole."""
-    with writing(), ExitStack() as stack:
+    with writing(), contextlib.ExitStack() as stack:
         for path, write in writers.items():
             say(f"writing {path.name}")
             with watch.stage(f"write {path.name}"):
@@ -253,11 +255,13 @@ def run(arguments: Sequence[str]) -> int:
     # Only the main thread may say what signals do.
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGTERM, _terminated) if main else None
+    _prepare_streams()
     try:
         # typer says what is wrong with a command line itself, and Ctrl-C must not be its Abort.
         code = typer.main.get_command(app).main(
             args=list(arguments), prog_name="delone", standalone_mode=False
         )
+        sys.stdout.flush()
         # typer turns Ctrl-C into this code.
         if code == Exit.INTERRUPTED:
             return _said(KeyboardInterrupt())
@@ -269,8 +273,29 @@ def run(arguments: Sequence[str]) -> int:
             signal.signal(signal.SIGTERM, before)
 
 
+def _prepare_streams() -> None:
+    """Make standard output one that always exists and takes every character."""
+    if sys.stdout is None:
+        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def _dropped_stdout() -> None:
+    """Drop what cannot be printed, or the interpreter tries again when it ends."""
+    with contextlib.suppress(OSError):
+        sys.stdout.close()
+    sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
+
+
 def _said(error: BaseException) -> int:
     """Say what went wrong, and return the exit code."""
+    if isinstance(error, OSError) and not isinstance(error, BrokenPipeError | MissingExtraError):
+        # Files have been blamed for their own errors: this one is of standard output.
+        _dropped_stdout()
+        why = f"the report cannot be printed: {error.strerror}; files of -o are whole"
+        error = Failure(why, Exit.OUTPUT)
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else Exit.USAGE
     usage = getattr(error, "format_message", None)
