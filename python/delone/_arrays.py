@@ -259,6 +259,44 @@ def as_neighbors(
     return array
 
 
+def as_count(n: int, *, name: str = "n") -> int:
+    """Return a number of things as a Python integer.
+
+    Parameters
+    ----------
+    n : int
+        At least 0.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    InputError
+        A ValueError: negative, or not an integer (then a TypeError, too).
+
+    Examples
+    --------
+    >>> from delone._arrays import as_count
+    >>> as_count(3)
+    3
+    """
+    wanted = f"{name} must be an integer of at least 0"
+    if isinstance(n, bool | np.bool_):
+        raise DtypeError(f"{wanted}, got {n}")
+    try:
+        number = operator.index(n)
+    except TypeError:
+        raise DtypeError(f"{wanted}, got {n!r}") from None
+    if number < 0:
+        raise InputError(f"{wanted}, got {number}")
+    return number
+
+
 def as_workers(workers: int | None) -> int:
     """Return how many threads to use.
 

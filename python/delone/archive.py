@@ -8,7 +8,7 @@ stay inside. What is not checked is whether triangles are Delaunay: ``validate()
 
 from __future__ import annotations
 
-import os
+import struct
 import tokenize
 import zipfile
 import zlib
@@ -23,6 +23,7 @@ from delone.errors import FileFormatError
 from delone.topology import boundary_edges, boundary_next, is_mutual
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
@@ -56,7 +57,7 @@ def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]]) -> N
         The file cannot be written, or is no regular file.
     """
     columns: dict[str, Any] = {name: arrays[name] for name in _LAYOUT}
-    with replacing(path) as beside, beside.open("wb") as file:
+    with replacing(_path(path)) as beside, beside.open("wb") as file:
         np.savez(file, format=np.array(_FORMAT), version=np.array(_VERSION), **columns)
 
 
@@ -80,11 +81,23 @@ def read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     OSError
         The file cannot be read.
     """
-    with Path(path).open("rb") as file:
-        return _parsed(file, path)
+    source = _path(path)
+    # Opening a pipe would wait for whoever writes to it.
+    if source.exists() and not source.is_file() and not source.is_dir():
+        raise OSError(f"{source} is not a regular file")
+    with source.open("rb") as file:
+        return _parsed(file, source)
 
 
-def _parsed(file: IO[bytes], path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+def _path(path: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(path)
+    except TypeError:
+        kind = type(path).__name__
+        raise TypeError(f"path must be a string or a path-like object, got {kind}") from None
+
+
+def _parsed(file: IO[bytes], path: Path) -> dict[str, NDArray[Any]]:
     try:
         with zipfile.ZipFile(file) as archive:
             _check_kind(archive)
@@ -107,6 +120,9 @@ _DAMAGE = (
     RuntimeError,
     OSError,
     ValueError,
+    ArithmeticError,
+    LookupError,
+    struct.error,
 )
 _REFUSAL = "no delone triangulation, or a torn one"
 

@@ -1,8 +1,9 @@
 """Point sets to try, test and measure with: seeded generators, and two real surveys.
 
 Every generator is a function of the number of points and a seed, and returns float64 points of
-shape (n, 2). Each is here because it breaks something: a float predicate, a sort, a tolerance, a
-super-triangle. `GENERATORS` lists them by name. The surveys live in `delone.samples`.
+shape (n, 2); n must be an integer of at least 0, or InputError is raised. Each is here because it
+breaks something: a float predicate, a sort, a tolerance, a super-triangle. `GENERATORS` lists them
+by name. The surveys live in `delone.samples`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone._arrays import as_count
 from delone.errors import InputError
 from delone.samples import Sample, ahn3, baja
 
@@ -68,6 +70,7 @@ def uniform(n: int, *, seed: int = 0, ndim: int = 2) -> Points:
     >>> uniform(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     return np.random.default_rng(seed).random((n, ndim))
 
 
@@ -98,6 +101,7 @@ def gaussian_clusters(n: int, *, seed: int = 0, clusters: int = 11) -> Points:
     >>> gaussian_clusters(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     rng = np.random.default_rng(seed)
     centres, widths = rng.random((clusters, 2)), np.logspace(0, -10, clusters)
     of = rng.integers(clusters, size=n)
@@ -131,6 +135,7 @@ def kuzmin(n: int, *, seed: int = 0) -> Points:
     >>> kuzmin(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     rng = np.random.default_rng(seed)
     outside = 1.0 - rng.random(n)  # in (0, 1], so that the radius is finite
     radius = np.sqrt((1.0 - outside) * (1.0 + outside)) / outside
@@ -162,6 +167,7 @@ def grid(n: int, *, seed: int | None = 0) -> Points:
     >>> grid(4, seed=None).tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
     """
+    n = as_count(n)
     width = isqrt(n - 1) + 1 if n else 1
     y, x = np.divmod(np.arange(n), width)
     return _shuffled(np.column_stack((x, y)).astype(np.float64), seed)
@@ -222,6 +228,7 @@ def circle(n: int, *, seed: int | None = 0, radius: float = 1.0) -> Points:
     >>> circle(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     angle = 2 * pi * np.arange(n) / max(n, 1)
     return _shuffled(_polar(np.full(n, radius), angle), seed)
 
@@ -253,6 +260,7 @@ def spiral(n: int, *, seed: int | None = 0, turns: float = 10.0) -> Points:
     >>> spiral(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     share = np.arange(1, n + 1) / max(n, 1)
     return _shuffled(_polar(share, 2 * pi * turns * share), seed)
 
@@ -280,6 +288,7 @@ def near_collinear(n: int, *, seed: int = 0, ulps: int = 2) -> Points:
     >>> near_collinear(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     rng = np.random.default_rng(seed)
     x = rng.random(n)
     y = x / 3 + 1
@@ -310,6 +319,7 @@ def duplicates(n: int, *, seed: int = 0, distinct: int | None = None) -> Points:
     >>> len(np.unique(duplicates(1000, distinct=50), axis=0))
     50
     """
+    n = as_count(n)
     places = uniform(max(3, n // 4) if distinct is None else distinct, seed=seed)
     return places[np.random.default_rng([seed, 1]).integers(len(places), size=n)]
 
@@ -337,6 +347,7 @@ def collinear_lines(n: int, *, seed: int = 0, lines: int = 5) -> Points:
     >>> collinear_lines(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     rng = np.random.default_rng(seed)
     starts = rng.integers(-(2**20), 2**20, size=(lines, 2))
     steps = rng.integers(-20, 21, size=(lines, 2)) * 2 + 1  # odd, so that no step is zero
@@ -410,6 +421,7 @@ def pythagorean_circle(n: int, *, seed: int = 0) -> Points:
     >>> set((x * x + y * y).tolist())
     {25.0}
     """
+    n = as_count(n)
     x, y = np.array([1, 0, -1, 0]), np.array([0, 1, 0, -1])
     for a, b in _GAUSSIAN_PRIMES:
         if len(x) >= n:
@@ -458,6 +470,7 @@ def mixed_exponents(n: int, *, seed: int = 0) -> Points:
     >>> mixed_exponents(1000).shape
     (1000, 2)
     """
+    n = as_count(n)
     rng = np.random.default_rng(seed)
     values = 10.0 ** rng.uniform(-300, 300, (n, 2))
     kind = rng.random((n, 2))
@@ -490,6 +503,7 @@ def integer_lattice(n: int, *, seed: int = 0, side: int = 32) -> Points:
     >>> integer_lattice(1000, side=4).max()
     np.float64(3.0)
     """
+    n = as_count(n)
     return np.random.default_rng(seed).integers(side, size=(n, 2)).astype(np.float64)
 
 

@@ -50,12 +50,11 @@ def _kept(compute: Callable[[Delaunay], T]) -> Callable[[Delaunay], T]:
 
 
 def _sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Make memory of ours read-only, and return a view that nobody can make writeable."""
-    owner: object = array
-    while isinstance(owner, np.ndarray):
-        owner.flags.writeable = False
-        owner = owner.base
-    return array.view()
+    """Return an array over memory of ours that neither it nor its base can make writeable."""
+    # The owner of memory may always ask for writing again, and a view leads to it by its base; the
+    # base of this array is a memoryview, which cannot.
+    array.flags.writeable = False
+    return np.asarray(array.data)
 
 
 class Delaunay:
@@ -119,10 +118,24 @@ class Delaunay:
     Whatever is not listed above is computed on first use and kept.
 
     Time is O(n log n) with a small constant, most of it linear. ``"auto"`` picks cavity insertion
-    along a Hilbert curve, in blocks that are merged: it was the fastest wherever it was measured.
-    A block whose triangles are so thin that insertion exceeds its budget goes to divide and
-    conquer. The insertion is that of A. Bowyer, "Computing Dirichlet tessellations", and D. F.
-    Watson, "Computing the n-dimensional Delaunay tessellation", both 1981.
+    along a Hilbert curve, in blocks of a k-d tree that are merged: it was the fastest wherever it
+    was measured. A block whose triangles are so thin that insertion exceeds its budget of work, as
+    on two lines that nearly coincide, goes to divide and conquer.
+
+    ========================  =========================================  =======================
+    `method`                  paper                                      time
+    ========================  =========================================  =======================
+    ``"bowyer-watson"``       Bowyer; Watson (both 1981)                 O(n log n), by a budget
+    ``"divide-and-conquer"``  Guibas and Stolfi (1985); Dwyer (1987)     O(n log n)
+    ``"incremental"``         Lawson (1977); Guibas, Knuth and Sharir    O(n log n) expected
+                              (1992)
+    ``"sweep"``               Fortune (1987)                             O(n log n)
+    ``"lifting"``             Brown (1979); Clarkson and Shor (1989)     O(n log n) expected,
+                                                                         O(n log² n) where
+                                                                         degrees are high
+    ========================  =========================================  =======================
+
+    The first two work with all `workers`; the others find their triangles on one thread.
 
     Examples
     --------
@@ -450,7 +463,13 @@ class Delaunay:
         Raises
         ------
         OSError
-            The file cannot be written; what was there before is as it was.
+            The file cannot be written, or is no regular file; what was there before is as it was.
+        TypeError
+            `path` is no path. File objects are refused.
+
+        Notes
+        -----
+        Of a symbolic link the target is written. A file that is there keeps its permissions.
 
         See Also
         --------
@@ -489,7 +508,9 @@ class Delaunay:
         FileFormatError
             The file is torn or of another kind, or its arrays contradict each other.
         OSError
-            The file cannot be read.
+            The file cannot be read, or is no regular file.
+        TypeError
+            `path` is no path. File objects are refused.
 
         Notes
         -----
@@ -532,6 +553,8 @@ class Delaunay:
         raise AttributeError(f"a Delaunay triangulation cannot be changed: {name}")
 
     def __repr__(self) -> str:
+        if not hasattr(self, "_points"):  # the constructor failed, or has not run
+            return "<Delaunay of nothing yet>"
         points = _counted(self.npoints, "point")
         duplicates = len(self._duplicates)
         if duplicates:

@@ -33,6 +33,7 @@ __all__ = ["plot", "save_picture"]
 _VISIBLE = 14.0
 _MOST_CIRCLES = 3000
 _FEW_CIRCLES = 60  # so few that each is to be seen whole, with its centre
+_DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to a hundred
 _MOST_DOTS = 2000
 _INK, _RIM, _DOT, _CIRCLE = "#35506b", "#b3372f", "#17324d", "#d98b2b"
 _LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
@@ -112,8 +113,7 @@ def plot(
             f"circumcircles is for up to {_MOST_CIRCLES}"
         )
     heights = as_values(z, triangulation.npoints)
-    if heights is not None and not np.isfinite(heights).any():
-        raise InputError("z holds no finite value to be drawn")
+    _require_drawable(triangulation, heights)
     if ax is None:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
     look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
@@ -204,6 +204,7 @@ def draw_picture(
 ) -> None:
     """Draw into the file itself; `save_picture` is the same by way of a temporary file."""
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
+    _require_drawable(triangulation, as_values(z, triangulation.npoints))
     width, height = _figure_size(triangulation, size, with_bar=z is not None)
     figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
     ax = figure.add_subplot()
@@ -211,6 +212,22 @@ def draw_picture(
     xlabel, ylabel = _axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def _require_drawable(triangulation: Delaunay, heights: Floats | None) -> None:
+    """Refuse what matplotlib's transforms overflow on, and heights of which nothing shows."""
+    if heights is not None and not (finite := np.isfinite(heights)).all():
+        rows = np.flatnonzero(~finite)
+        if not finite[triangulation.simplices].all(axis=1).any():
+            raise InputError(f"no triangle has a finite z at each corner; row {rows[0]} has none")
+    far = max(np.abs(triangulation.min_bound).max(), np.abs(triangulation.max_bound).max())
+    # Halves, since the extent itself may overflow.
+    near = (triangulation.max_bound / 2 - triangulation.min_bound / 2).max()
+    if far > _DRAWABLE[1] or near < _DRAWABLE[0]:
+        raise InputError(
+            "a picture cannot hold coordinates beyond 1e305 or an extent below 1e-305; "
+            "multiply the points by a power of two first, which changes no triangle"
+        )
 
 
 def _numbers(triangulation: Delaunay) -> str:

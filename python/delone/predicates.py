@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     Signs = NDArray[np.int8]
     Ties = Literal["zero", "canonical"]
 
+# NumPy broadcasts no more than this in every release.
+_MOST_AXES = 32
+
 __all__ = ["incircle", "insphere", "orient2d", "orient3d"]
 
 
@@ -209,6 +212,8 @@ def _broadcast(ndim: int, *points: ArrayLike) -> tuple[list[NDArray[np.float64]]
     arrays = []
     for name, values in zip("abcde", points, strict=False):
         array = as_vectors(values, ndim, name=name)
+        if array.ndim > _MOST_AXES:
+            raise ShapeError(f"{name} has {array.ndim} axes, more than {_MOST_AXES}; reshape it")
         require_finite(array.reshape(-1, ndim), name=name)
         arrays.append(array)
     try:

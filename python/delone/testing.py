@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._arrays import as_points, require_finite
+from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -108,16 +109,18 @@ def triangle_set(simplices: ArrayLike) -> set[tuple[int, int, int]]:
         Two arrays give the same set when they hold the same triangles with the same orientation,
         in whatever order and from whichever vertex on.
 
+    Raises
+    ------
+    ShapeError, DtypeError
+        `simplices` is no array of integers of shape (m, 3), nor empty.
+
     Examples
     --------
     >>> from delone.testing import triangle_set
     >>> sorted(triangle_set([(3, 2, 0), (1, 2, 3)]))
     [(0, 3, 2), (1, 2, 3)]
     """
-    triangles = np.asarray(simplices).reshape(-1, 3)
-    start = triangles.argmin(axis=1)[:, None]
-    turned = np.take_along_axis(triangles, (start + np.arange(3)) % 3, axis=1)
-    return {(a, b, c) for a, b, c in turned.tolist()}
+    return set(_turned(simplices, "simplices"))
 
 
 def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
@@ -131,7 +134,12 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
     Returns
     -------
     bool
-        False also where one of them holds a triangle more than once and the other does not.
+        False also where one of them holds a triangle more often than the other.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `a` or `b` is no array of integers of shape (m, 3), nor empty.
 
     Examples
     --------
@@ -139,7 +147,24 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
     >>> same_triangles([(0, 1, 2), (0, 2, 3)], [(2, 3, 0), (1, 2, 0)])
     True
     """
-    return len(np.asarray(a)) == len(np.asarray(b)) and triangle_set(a) == triangle_set(b)
+    return sorted(_turned(a, "a")) == sorted(_turned(b, "b"))
+
+
+def _turned(simplices: ArrayLike, name: str) -> list[tuple[int, int, int]]:
+    """Triangles as triples, each from its smallest vertex on."""
+    try:
+        triangles = np.asarray(simplices)
+    except ValueError as error:
+        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+    if triangles.shape in ((0,), (0, 3)):
+        return []
+    if triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise ShapeError(f"{name} must have shape (m, 3), got {triangles.shape}")
+    if triangles.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers, got dtype {triangles.dtype}")
+    start = triangles.argmin(axis=1)[:, None]
+    turned = np.take_along_axis(triangles, (start + np.arange(3)) % 3, axis=1)
+    return [(a, b, c) for a, b, c in turned.tolist()]
 
 
 class _Mesh(NamedTuple):

@@ -51,6 +51,8 @@ class ValidationReport:
         Boundary edges that are no part of the convex hull's cycle, or have a point outside.
     missing : ndarray of int, shape (k,)
         Rows of distinct points that no triangle uses.
+    repeats : ndarray of int, shape (k,)
+        Rows that triangles use in spite of an earlier row with the same coordinates.
     delaunay : ndarray of int, shape (k, 2)
         Pairs of adjacent triangles of which one has the other's far vertex inside its circle.
     ties : ndarray of int, shape (k, 2)
@@ -82,6 +84,7 @@ class ValidationReport:
     neighbors: NDArray[np.integer] = field(default_factory=_none)
     hull: NDArray[np.integer] = field(default_factory=_no_pairs)
     missing: NDArray[np.integer] = field(default_factory=_none)
+    repeats: NDArray[np.integer] = field(default_factory=_none)
     delaunay: NDArray[np.integer] = field(default_factory=_no_pairs)
     ties: NDArray[np.integer] = field(default_factory=_no_pairs)
     count: NDArray[np.integer] = field(default_factory=_none)
@@ -163,7 +166,8 @@ def validate(
     Returns
     -------
     ValidationReport
-        Truthy when all is right. Only `ties` filled means Delaunay, but fanned in another way.
+        Truthy when all is right. Only `ties` filled means Delaunay, but fanned in another way; only
+        `repeats`, that of equal points another one than the first is the vertex.
 
     Raises
     ------
@@ -204,6 +208,10 @@ _SENTENCES = {
     "neighbors": ("triangle has wrong neighbours", "triangles have wrong neighbours"),
     "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
     "missing": ("point is no vertex", "points are no vertices"),
+    "repeats": (
+        "vertex repeats an earlier row of points",
+        "vertices repeat earlier rows of points",
+    ),
     "delaunay": (
         "pair of triangles is not locally Delaunay",
         "pairs of triangles are not locally Delaunay",

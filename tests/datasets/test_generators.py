@@ -24,6 +24,18 @@ def test_returns_n_finite_points(name: str, n: int) -> None:
 
 
 @ALL
+@pytest.mark.parametrize("n", [-1, 2.5, "3", None, True])
+def test_a_bad_number_is_an_input_error(name: str, n: object) -> None:
+    with pytest.raises(InputError, match="n must be an integer of at least 0"):
+        datasets.GENERATORS[name](n)
+
+
+@ALL
+def test_a_number_of_numpy_will_do(name: str) -> None:
+    assert len(datasets.GENERATORS[name](np.int64(7))) == 7
+
+
+@ALL
 def test_seed_decides(name: str) -> None:
     generate = datasets.GENERATORS[name]
     np.testing.assert_array_equal(generate(200, seed=5), generate(200, seed=5))

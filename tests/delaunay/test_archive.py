@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import struct
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -258,5 +259,32 @@ def test_only_regular_files_are_replaced(mesh: Delaunay, tmp_path: Path) -> None
     assert pipe.is_fifo()
     with pytest.raises(FileNotFoundError, match=r"nowhere"):
         mesh.save(tmp_path / "nowhere" / "mesh.npz")
-    with pytest.raises(TypeError):
-        Delaunay.load(None)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("path", [None, 3, io.BytesIO(), b"mesh.npz"])
+def test_what_is_no_path_is_a_type_error(mesh: Delaunay, path: Any) -> None:
+    with pytest.raises(TypeError, match="path must be a string or a path-like object, got"):
+        Delaunay.load(path)
+    with pytest.raises(TypeError, match="path must be a string or a path-like object, got"):
+        mesh.save(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are of POSIX")
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.npz")
+    with pytest.raises(OSError, match="not a regular file"):
+        Delaunay.load(tmp_path / "pipe.npz")
+
+
+def test_whatever_parsing_raises_is_a_format_error(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for error in (OSError(22, "Invalid argument"), OverflowError(), KeyError(), struct.error()):
+
+        def fail(*_: object, error: Exception = error, **__: object) -> None:
+            raise error
+
+        with monkeypatch.context() as patch:
+            patch.setattr(zipfile.ZipFile, "open", fail)
+            with pytest.raises(FileFormatError, match=r"mesh\.npz"):
+                Delaunay.load(path)

@@ -163,3 +163,19 @@ def test_the_constructor_does_not_run_twice() -> None:
     with pytest.raises(AttributeError, match="never changes"):
         mesh.__init__([(0, 0), (2, 0), (0, 2)])  # type: ignore[misc]
     assert mesh.points[1, 0] == 1
+
+
+def test_the_base_of_an_array_cannot_be_made_writeable_either(mesh: Delaunay) -> None:
+    loaded = pickle.loads(pickle.dumps(mesh))
+    for each in (mesh, loaded):
+        arrays = [getattr(each, name) for name in ARRAYS] + [*each.vertex_neighbor_vertices]
+        for array in arrays:
+            assert not isinstance(array.base, np.ndarray)
+            with pytest.raises((AttributeError, ValueError)):
+                array.base.flags.writeable = True
+            with pytest.raises(TypeError):
+                array.base[(0,) * array.ndim] = 0
+
+
+def test_what_has_no_triangles_yet_has_a_repr() -> None:
+    assert repr(Delaunay.__new__(Delaunay)) == "<Delaunay of nothing yet>"

@@ -70,7 +70,7 @@ def test_colours_of_heights():
     plot(FIVE, axes(), z=np.full(5, 3.0))
     with pytest.raises(ShapeError):
         plot(FIVE, axes(), z=z[:3])
-    with pytest.raises(InputError, match="no finite value"):
+    with pytest.raises(InputError, match="finite z"):
         plot(FIVE, axes(), z=np.full(5, np.nan))
 
 
@@ -167,3 +167,22 @@ def test_without_matplotlib(monkeypatch, tmp_path):
     with pytest.raises(MissingExtraError):
         save_picture(tmp_path / "a.png", FIVE)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(-1e308, -1e308), (1e308, -1e308), (0, 1.5e308)],
+        [(0, 0), (5e-324, 0), (0, 5e-324)],
+        [(1.7e308, 0), (0, 1e308), (1, 1)],
+    ],
+)
+@pytest.mark.parametrize("suffix", ["png", "svg"])
+def test_what_no_picture_can_hold_is_refused(tmp_path, points, suffix):
+    with pytest.raises(InputError, match="power of two"):
+        save_picture(tmp_path / f"a.{suffix}", Delaunay(points))
+
+
+def test_heights_of_which_nothing_shows_are_refused(tmp_path):
+    with pytest.raises(InputError, match="row 2"):
+        save_picture(tmp_path / "a.png", Delaunay([(0, 0), (1, 0), (0, 1)]), z=[1, 2, np.nan])

@@ -237,3 +237,16 @@ def test_what_has_no_exact_meaning_is_refused() -> None:
 
 def test_the_module_offers_four_predicates() -> None:
     assert sorted(predicates.__all__) == ["incircle", "insphere", "orient2d", "orient3d"]
+
+
+@pytest.mark.parametrize("axes", [33, 40, 64, 70])
+def test_too_many_axes_are_a_shape_error(axes: int) -> None:
+    points: Any = (0.0, 0.0)
+    for _ in range(axes - 1):
+        points = [points]
+    with pytest.raises(ShapeError, match=r"^b has"):
+        orient2d((0, 0), points, (1, 1))
+
+
+def test_as_many_axes_as_numpy_broadcasts() -> None:
+    assert orient2d(np.zeros((1,) * 31 + (2,)), (0, 0), (1, 1)).ndim == 31

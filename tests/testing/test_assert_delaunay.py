@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from delone import datasets
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.reference import bowyer_watson, incircle
 from delone.testing import assert_delaunay, same_triangles, triangle_set
 
@@ -248,3 +248,32 @@ def test_triangle_set_forgets_order_and_rotation(order: list[int], turns: list[i
     order = [k for k in order if k < len(triangles)]
     turned = [np.roll(triangles[k], turn) for k, turn in zip(order, turns, strict=False)]
     assert same_triangles(triangles, turned)
+
+
+def test_same_triangles_counts_them() -> None:
+    one, two = (0, 1, 2), (0, 2, 3)
+    assert same_triangles([one, two, one], [one, one, two])
+    assert not same_triangles([one, two, one], [one, two, two])
+    assert same_triangles([], np.empty((0, 3), dtype=np.int32))
+
+
+@pytest.mark.parametrize(
+    ("simplices", "error"),
+    [
+        ([(0.0, 1.0, 2.0)], DtypeError),
+        ([(True, False, True)], DtypeError),
+        ([("0", "1", "2")], DtypeError),
+        ([0, 1, 2], ShapeError),
+        ([(0, 1), (2, 3), (4, 5)], ShapeError),
+        ([(0, 1, 2), (3, 4)], ShapeError),
+        (np.empty((0, 2)), ShapeError),
+        (7, ShapeError),
+    ],
+)
+def test_what_is_no_array_of_triangles_is_refused(
+    simplices: object, error: type[InputError]
+) -> None:
+    with pytest.raises(error, match="simplices"):
+        triangle_set(simplices)  # type: ignore[arg-type]
+    with pytest.raises(error, match=r"^b "):
+        same_triangles([(0, 1, 2)], simplices)  # type: ignore[arg-type]

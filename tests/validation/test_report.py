@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from delone.errors import InternalError
-from delone.validation import ValidationReport
+from delone.testing import assert_delaunay
+from delone.validation import ValidationReport, validate
 
 CULPRITS = {
     "orientation": [4],
@@ -15,6 +16,7 @@ CULPRITS = {
     "neighbors": [3, 5, 6, 7, 8, 9],
     "hull": [[0, 9]],
     "missing": [7],
+    "repeats": [8, 9],
     "delaunay": [[10, 11]],
     "ties": [[12, 13]],
     "count": [20, 19],
@@ -64,3 +66,14 @@ def test_is_immutable_and_pickles() -> None:
 def test_an_unknown_fault_is_a_bug() -> None:
     with pytest.raises(InternalError, match="colour"):
         ValidationReport.from_culprits({"colour": np.array([1])})
+
+
+def test_of_equal_points_the_first_is_the_vertex() -> None:
+    points = [(0, 0), (1, 0), (0, 1), (-0.0, 0)]
+    assert validate(points, [(0, 1, 2)])
+    assert_delaunay(points, [(0, 1, 2)])
+    report = validate(points, [(3, 1, 2)])
+    assert not report
+    assert report.repeats.tolist() == [3] and report.missing.size == 0
+    with pytest.raises(AssertionError, match="earlier equal row"):
+        assert_delaunay(points, [(3, 1, 2)])

@@ -115,6 +115,7 @@ pub fn validate2<'py>(
         neighbors,
         hull,
         missing,
+        repeats,
         delaunay,
         ties,
         count,
@@ -124,6 +125,7 @@ pub fn validate2<'py>(
         ("orientation", orientation),
         ("neighbors", neighbors),
         ("missing", missing),
+        ("repeats", repeats),
     ];
     for (name, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
         report.set_item(

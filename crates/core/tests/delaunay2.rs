@@ -252,3 +252,25 @@ fn validation_finds_each_kind_of_fault() {
     let found = validate(given, &Watch::idle()).expect("a report");
     assert_eq!((found.missing, found.ties), (vec![4], vec![[0, 1]]));
 }
+
+#[test]
+fn validation_names_vertices_that_repeat_an_earlier_row() {
+    let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-0.0, 0.0]];
+    let with = |first: i32| {
+        let given = Given {
+            points: &points,
+            simplices: &[[first, 1, 2]],
+            neighbors: &[[-1; 3]],
+        };
+        validate(given, &Watch::idle()).expect("a report")
+    };
+    assert_eq!(with(0), Findings::default());
+    let repeats = vec![3];
+    assert_eq!(
+        with(3),
+        Findings {
+            repeats,
+            ..Findings::default()
+        }
+    );
+}

@@ -56,7 +56,9 @@ def check_mesh(
         report = _checked(mesh)
     faults = {each.name: getattr(report, each.name) for each in fields(ValidationReport)}
     faults = {name: culprits for name, culprits in faults.items() if culprits.size}
-    delaunay = set(faults) <= {"ties"}
+    # Which of equal rows is the vertex, and which diagonal of a cocircular polygon, is delone's
+    # own choice: others may choose otherwise.
+    delaunay = set(faults) <= {"ties", "repeats"}
     figures = {
         "input": str(path),
         "ok": delaunay and not (canonical and faults),
@@ -86,8 +88,12 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
     if report.ok:
         return [f"{report}, proven exactly"]
     if delaunay:
-        ties = f"{len(report.ties):,} pairs of triangles share a circle and are fanned otherwise"
-        return ["a Delaunay triangulation, proven exactly, but not the canonical one:", f"  {ties}"]
+        lines = ["a Delaunay triangulation, proven exactly, but not the canonical one:"]
+        if ties := len(report.ties):
+            lines.append(f"  {ties:,} pairs of triangles share a circle and are fanned otherwise")
+        if repeats := len(report.repeats):
+            lines.append(f"  {repeats:,} vertices are not the first row with their coordinates")
+        return lines
     lines = str(report).replace("a canonical", "a", 1).splitlines()
     return lines + _coordinates(report, mesh)
 

@@ -29,7 +29,9 @@ pub fn find(given: Given, queries: &[Point2], workers: usize, watch: &Watch) -> 
     let order = curve::order_of(queries)?;
     let share = order.len().div_ceil(workers.max(1)).max(WATCH_EVERY);
     let tasks = order.chunks(share).collect();
-    let parts = parallel::map(workers, tasks, |part| find_part(given, queries, part, watch));
+    let parts = parallel::map(workers, tasks, |part| {
+        find_part(given, queries, part, watch)
+    });
     for (part, rows) in parts.into_iter().zip(order.chunks(share)) {
         for (triangle, &row) in part?.into_iter().zip(rows) {
             found[row as usize] = triangle;

@@ -30,6 +30,8 @@ pub struct Findings {
     pub hull: Vec<[u32; 2]>,
     /// Distinct points that are no vertex.
     pub missing: Vec<u32>,
+    /// Vertices that are not the first row with their coordinates.
+    pub repeats: Vec<u32>,
     /// Adjacent triangles of which one has the other's apex in its circle.
     pub delaunay: Vec<[u32; 2]>,
     /// Adjacent cocircular triangles whose common edge is not the canonical one.
@@ -165,14 +167,17 @@ fn repeated_edges(given: Given) -> Result<Vec<[u32; 2]>> {
     Ok(repeated)
 }
 
-/// Distinct points of which no row is a vertex.
+/// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
 fn missing(given: Given, ordered: &Arranged, found: &mut Findings) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
     for &v in given.simplices.iter().flatten() {
         used[v as usize] = true;
     }
     for &[row, first] in &ordered.duplicates {
-        used[first as usize] |= used[row as usize];
+        if used[row as usize] {
+            found.repeats.push(row);
+            used[first as usize] = true;
+        }
     }
     found.missing = ordered
         .rows
