@@ -13,6 +13,8 @@ import delone
 from delone import Delaunay, predicates
 
 BLUE, ORANGE, GREY, PALE, INK = "#2f6f9f", "#d9742b", "#9a9a9a", "#dcdcdc", "#303030"
+# Degrees from which the paraboloid is looked at.
+ELEVATION, AZIMUTH = 16, -62
 
 Points = NDArray[np.float64]
 Rows = NDArray[np.int32]
@@ -64,8 +66,8 @@ def _rim(simplices: Rows) -> Rows:
 
 def cavity() -> None:
     """Bowyer-Watson: the circles that hold the new point, the hole, the star."""
-    points = _spread(34, 2)
-    new = np.array([0.5, 0.5])
+    points = _spread(34, 38)
+    new = np.array([0.59, 0.45])
     before, after = Delaunay(points), Delaunay(np.vstack((points, new)))
     corners = [points[before.simplices[:, k]] for k in range(3)]
     conflict = predicates.incircle(*corners, new) > 0
@@ -90,7 +92,7 @@ def cavity() -> None:
 
 def flips() -> None:
     """Incremental: a triangle is split at the new point, and edges flip until none is wrong."""
-    points = np.vstack((_spread(14, 8), (0.47, 0.55)))
+    points = np.vstack((_spread(17, 13), (0.5, 0.5)))
     new = len(points) - 1
     before = Delaunay(points[:new])
     home = int(before.find_simplex(points[new]))
@@ -131,21 +133,21 @@ def seam() -> None:
     between = (sides > 0) & (sides < 3)
     _fill(merged, points, whole.simplices[between], GREY, 0.3)
     for rows, shift, color in (
-        (np.flatnonzero(is_left), -0.05, BLUE),
-        (np.flatnonzero(~is_left), 0.05, ORANGE),
+        (np.flatnonzero(is_left), np.array([-0.05, 0]), BLUE),
+        (np.flatnonzero(~is_left), np.array([0.05, 0]), ORANGE),
     ):
         half = points[rows]
         edges = rows[Delaunay(half).edges].astype(np.int32)
         stays = np.array([tuple(sorted(edge)) in kept for edge in edges.tolist()])
-        moved = points + [shift, 0]
+        moved = points + shift
         _lines(apart, moved, edges[stays], color=color, linewidth=1.1)
         _lines(apart, moved, edges[~stays], color=color, linewidth=1.4, linestyle=(0, (2, 2)))
         _lines(merged, points, edges[stays], color=color, linewidth=1.1)
-        _dots(apart, half + [shift, 0])
+        _dots(apart, half + shift)
     _lines(merged, points, crossing, color=INK, linewidth=1.4)
     _dots(merged, points)
     apart.set(title="two halves; dashed edges will go", xlim=(-0.1, 1.1))
-    merged.set(title="merged; the bridge has left the black edges", xlim=(-0.1, 1.1))
+    merged.set(title="merged; the black edges are new", xlim=(-0.1, 1.1))
 
 
 def beach() -> None:
@@ -187,37 +189,42 @@ def beach() -> None:
 
 
 def paraboloid() -> None:
-    """Lifting: the lower hull of the lifted points, its shadow, and a circle of the plane lifted."""
-    points = _spread(40, 5) * 2 - 1
+    """Lifting: the lower hull of the lifted points, its shadow, and one circle with its lift."""
+    square = _spread(80, 5) * 2 - 1
+    points = square[np.hypot(*square.T) < 1]
     mesh = Delaunay(points, method="lifting")
-    floor = -1.5
+    floor = -1.0
     lifted = np.column_stack((points, (points**2).sum(axis=1)))
     shadow = np.column_stack((points, np.full(len(points), floor)))
-    chosen = int(mesh.find_simplex((0.15, -0.45)))
-    others = np.delete(mesh.simplices, chosen, axis=0)
-    figure = plt.figure(figsize=(6.4, 6.2))
-    ax = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
-    posts = np.stack((shadow, lifted), axis=1)
-    one = mesh.simplices[chosen]
-    ax.add_collection3d(
-        Poly3DCollection(shadow[others], facecolor="#e4edf4", edgecolor=BLUE, linewidth=0.8)
-    )
-    ax.add_collection3d(Poly3DCollection(shadow[[one]], facecolor=ORANGE, edgecolor=BLUE))
+    chosen = int(mesh.find_simplex((0.36, -0.5)))
+    one, others = mesh.simplices[chosen], np.delete(mesh.simplices, chosen, axis=0)
     turn = np.linspace(0, 2 * np.pi, 200)
     centre = mesh.circumcenters[chosen]
     radius = np.hypot(*(centre - points[one[0]]))
     ring = centre + radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    posts = np.stack((shadow, lifted), axis=1)
+
+    figure = plt.figure(figsize=(6.4, 5.6))
+    ax = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
+    ax.add_collection3d(Poly3DCollection(shadow[others], facecolor="#e4edf4", edgecolor="none"))
+    ax.add_collection3d(Line3DCollection(shadow[mesh.edges], color=BLUE, linewidth=0.8))
+    ax.add_collection3d(Poly3DCollection(shadow[[one]], facecolor=ORANGE, edgecolor=BLUE))
     ax.plot(*ring.T, floor, color=ORANGE, linewidth=1.8)
     ax.add_collection3d(Line3DCollection(posts[mesh.hull], color=GREY, linewidth=0.5))
+    # The plane of a lifted triangle rises by twice the centre of its circle. So this tells which
+    # are seen from above and lie behind, and which from below.
+    up, round_ = np.radians(ELEVATION), np.radians(AZIMUTH)
+    sight = np.cos(up) * np.array([np.cos(round_), np.sin(round_)])
+    below = 2 * mesh.circumcenters @ sight > np.sin(up)
+    for side, color in ((~below, "#e4edf4"), (below, "#8db2cf")):
+        facets = mesh.simplices[side]
+        bowl = {"facecolor": color, "edgecolor": "#1d4766", "linewidth": 0.8, "alpha": 0.92}
+        ax.add_collection3d(Poly3DCollection(lifted[facets], **bowl))
+        ax.scatter(*lifted[np.unique(facets)].T, color=INK, s=6, depthshade=False)
     ax.add_collection3d(Line3DCollection(posts[one], color=ORANGE, linewidth=1.1))
-    bowl = Poly3DCollection(
-        lifted[others], facecolor=BLUE, edgecolor="#1d4766", linewidth=0.8, alpha=0.3
-    )
-    ax.add_collection3d(bowl)
-    ax.add_collection3d(Poly3DCollection(lifted[[one]], facecolor=ORANGE, edgecolor=INK, alpha=0.9))
+    ax.add_collection3d(Poly3DCollection(lifted[[one]], facecolor=ORANGE, edgecolor=INK))
     ax.plot(*ring.T, (ring**2).sum(axis=1), color=ORANGE, linewidth=1.8)
-    ax.scatter(*lifted.T, color=INK, s=7, depthshade=False)
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(floor, 1.6))
-    ax.set_box_aspect((1, 1, 1.25), zoom=1.35)
+    ax.set(xlim=(-0.9, 0.9), ylim=(-0.9, 0.9), zlim=(floor, 1))
+    ax.set_box_aspect((1, 1, 1), zoom=1.25)
     ax.set_axis_off()
-    ax.view_init(elev=20, azim=-62)
+    ax.view_init(elev=ELEVATION, azim=AZIMUTH)
