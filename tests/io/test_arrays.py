@@ -151,3 +151,11 @@ def test_mesh_with_an_index_out_of_range(tmp_path):
     np.savez(tmp_path / "a.npz", points=TABLE[:, :2])
     with pytest.raises(FileFormatError, match="no triangles"):
         read_mesh(tmp_path / "a.npz")
+
+
+def test_bytes_behind_the_array(tmp_path):
+    np.save(tmp_path / "a.npy", TABLE)
+    with (tmp_path / "a.npy").open("ab") as file:
+        np.save(file, TABLE)  # a second array, which would be left out
+    with pytest.raises(FileFormatError, match="more follow"):
+        read_points(tmp_path / "a.npy")

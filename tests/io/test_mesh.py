@@ -124,3 +124,15 @@ def test_index_out_of_range(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
     with pytest.raises(FileFormatError, match="outside the range"):
         read_mesh(tmp_path / "a.obj")
+
+
+def test_obj_counts_back_from_the_last_vertex(tmp_path):
+    text = (
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"
+        "v 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nf -3/-1 -1/-1 -2/-1\nf 2//1 4//1 3//1\n"
+    )
+    (tmp_path / "a.obj").write_text(text)
+    assert read_mesh(tmp_path / "a.obj").simplices.tolist() == [[0, 1, 2], [1, 3, 2], [1, 3, 2]]
+    (tmp_path / "a.obj").write_text(text.replace("-3 -2 -1", "-4 -2 -1"))
+    with pytest.raises(FileFormatError, match="outside the range"):
+        read_mesh(tmp_path / "a.obj")

@@ -3,6 +3,8 @@
 import bz2
 import gzip
 import lzma
+import os
+import sys
 
 import numpy as np
 import pytest
@@ -171,3 +173,30 @@ def test_rows_longer_than_the_first_are_not_cut(tmp_path, text):
 def test_a_delimiter_at_the_end_of_rows_is_no_column(tmp_path):
     survey = read_points(written(tmp_path, "a.csv", "x,y\n0,1,\n2,3,\n4,5,\n"))
     assert survey.points.tolist() == [[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]]
+
+
+@pytest.mark.parametrize("header", ["x,y,x", "X,y,x [m]", "lon,lat,lon", "x,y,z,z"])
+def test_a_column_that_is_named_twice(tmp_path, header):
+    row = ",".join("1234"[: header.count(",") + 1])
+    file = written(tmp_path, "a.csv", f"{header}\n{row}\n")
+    with pytest.raises(FileFormatError, match="2 are named"):
+        read_points(file)
+    assert read_points(file, columns=[0, 1]).points.tolist() == [[1, 2]]
+
+
+def test_a_choice_that_fits_two_columns(tmp_path):
+    file = written(tmp_path, "a.csv", "x,y,x\n1,2,3\n")
+    with pytest.raises(FileFormatError, match="2 columns 'x'"):
+        read_points(file, columns=["x", "y"])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="pipes of 64 KiB that open both ways")
+def test_a_pipe_is_refused(tmp_path):
+    os.mkfifo(tmp_path / "a.csv")
+    pipe = os.open(tmp_path / "a.csv", os.O_RDWR)
+    try:
+        os.write(pipe, b"1,2,3,4\n" * (1 << 13))  # full: whoever reads it does not wait
+        with pytest.raises(FileFormatError, match="pipe or device"):
+            read_points(tmp_path / "a.csv")
+    finally:
+        os.close(pipe)

@@ -105,3 +105,11 @@ def test_no_reference_system(tmp_path, recwarn):
     write_mesh(tmp_path / "a.gpkg", Delaunay(XY))
     assert geopandas.read_file(tmp_path / "a.gpkg").crs is None
     assert not [warning for warning in recwarn if "crs" in str(warning.message)]
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
+@pytest.mark.parametrize("crs", ["EPSG:99999999", "\0", "nonsense"])
+def test_a_reference_system_that_nobody_knows(tmp_path, suffix, crs):
+    with pytest.raises(FileFormatError, match="cannot hold the reference system"):
+        write_mesh(tmp_path / f"a{suffix}", Delaunay(XY), crs=crs)
+    assert list(tmp_path.iterdir()) == []

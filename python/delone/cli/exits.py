@@ -44,7 +44,7 @@ MEANINGS = {
     Exit.USAGE: "the command line is wrong",
     Exit.INPUT: "the input is missing, torn or of unknown format",
     Exit.DEGENERATE: "the points have no triangulation: too few, all on one line, NaN or infinity",
-    Exit.OUTPUT: "the output cannot be written; nothing was",
+    Exit.OUTPUT: "the output cannot be written; no file was, unless the message says so",
     Exit.MISSING_EXTRA: "an optional library is not installed",
     Exit.MEMORY: "there is not enough memory",
     Exit.INTERNAL: "a bug in delone; please report it",

@@ -226,6 +226,12 @@ def _check_claim(file: IO[bytes], size: int, what: str) -> None:
         raise FileFormatError(
             f"{what} announces shape {shape}, {claimed} bytes, and holds {there}: it is cut short"
         )
+    # Pickled objects, which are refused later by that name, have a size of their own.
+    if claimed < there and not dtype.hasobject:
+        raise FileFormatError(
+            f"{what} announces shape {shape}, {claimed} bytes, and {there - claimed} more follow: "
+            "one array is read, and nothing is left out silently"
+        )
 
 
 def _header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[Any]]:

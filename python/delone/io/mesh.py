@@ -35,6 +35,7 @@ __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
 _HEAD, _TAIL = 1 << 16, 1 << 12
+_RELATIVE = re.compile(rb"^[ \t]*f[ \t][^\r\n]*-\d", re.MULTILINE)
 
 
 def read_points(
@@ -97,12 +98,33 @@ def _read(path: Path) -> Any:
             warnings.catch_warnings(),
         ):
             warnings.simplefilter("ignore")
-            return module.read(path)
+            return module.read(_absolute(path) if suffix == ".obj" else path)
     except (DeloneError, FileNotFoundError, PermissionError):
         raise
     except (Exception, SystemExit) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise FileFormatError(f"{path} is torn or no {suffix} file: {reason}") from error
+
+
+def _absolute(path: Path) -> Path | IO[str]:
+    """Return an OBJ file whose faces count vertices from the first, as meshio takes them.
+
+    A negative index counts back from the last vertex above its face.
+    """
+    content = path.read_bytes()
+    if not _RELATIVE.search(content):
+        return path
+    lines, vertices = content.decode("utf-8", errors="replace").splitlines(), 0
+    for number, line in enumerate(lines):
+        word, *fields = line.split() or [""]
+        if word == "v":
+            vertices += 1
+        elif word == "f":
+            # Of vertex/texture/normal the vertex alone is read.
+            corners = [int(field.partition("/")[0]) for field in fields]
+            counted = [i + vertices + 1 if i < 0 else i for i in corners]
+            lines[number] = " ".join(["f", *map(str, counted)])
+    return io.StringIO("\n".join(lines) + "\n")
 
 
 def _check_claim(path: Path, suffix: str) -> None:

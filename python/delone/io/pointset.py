@@ -89,7 +89,7 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
     Raises
     ------
     FileFormatError
-        There is no such column.
+        There is no such column, or several have this name.
 
     Examples
     --------
@@ -100,6 +100,10 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
     text = str(wanted).strip()
     folded = [name.strip().casefold() for name in names]
     if not isinstance(wanted, int):
+        if names.count(text) > 1:
+            raise FileFormatError(
+                f"{source} has {names.count(text)} columns {text!r}: choose one by number from 0"
+            )
         if text in names:
             return list(names).index(text)
         if folded.count(text.casefold()) == 1:
@@ -133,7 +137,7 @@ def choose_columns(
     Raises
     ------
     FileFormatError
-        A column is missing, or x and y are not recognised.
+        A column is missing, x and y are not recognised, or one of them is named twice.
 
     Examples
     --------
@@ -149,7 +153,7 @@ def choose_columns(
         if len(names) < 2:
             raise FileFormatError(f"{source} has fewer than two columns of numbers")
         return list(range(min(len(names), 3)))
-    found = {role: _recognised(names, role) for role in _WORDS}
+    found = {role: _recognised(names, role, source) for role in _WORDS}
     if found["x"] is None or found["y"] is None:
         raise FileFormatError(
             f"{source}: which columns are x and y? Choose them (--columns x,y or x,y,z) from "
@@ -158,11 +162,18 @@ def choose_columns(
     return [position for position in found.values() if position is not None]
 
 
-def _recognised(names: Sequence[str], role: str) -> int | None:
+def _recognised(names: Sequence[str], role: str, source: str) -> int | None:
     words = [_word(name) for name in names]
-    if role in words:  # the plain letter wins over every synonym
-        return words.index(role)
-    return next((i for i, word in enumerate(words) if word in _WORDS[role]), None)
+    # The plain letter wins over every synonym.
+    wins = role if role in words else next((word for word in words if word in _WORDS[role]), None)
+    if wins is None:
+        return None
+    if words.count(wins) > 1:
+        raise FileFormatError(
+            f"{source}: which column is {role}? {words.count(wins)} are named {wins}; choose "
+            f"(--columns) by number from 0 among {_listed(names)}"
+        )
+    return words.index(wins)
 
 
 def _word(name: str) -> str:

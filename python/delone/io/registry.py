@@ -343,6 +343,9 @@ def _existing(path: str | os.PathLike[str]) -> Path:
         raise FileNotFoundError(f"{file}: no such file")
     if file.is_dir():
         raise FileFormatError(f"{file} is a folder; give the name of a file")
-    if file.is_file() and file.stat().st_size == 0:
+    if not file.is_file():
+        # Formats are recognised, and claims compared with sizes, before a file is read: twice over.
+        raise FileFormatError(f"{file} is a pipe or device; write what it gives to a file first")
+    if file.stat().st_size == 0:
         raise FileFormatError(f"{file} is empty")
     return file

@@ -178,14 +178,28 @@ def write_mesh(
     given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     _, of_cells = split_attributes(given, triangulation.npoints, len(cells))
     points = triangulation.points
+    system = _system(crs, path.suffix.lower())
     # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.
     part = len(cells) if path.suffix.lower() == ".geojson" else _PART
     for start in range(0, len(cells), part):
         rows = cells[start : start + part]
         columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
         columns |= {name: values[start : start + part] for name, values in of_cells.items()}
-        frame = geopandas.GeoDataFrame(columns, geometry=_shapes(points, heights, rows), crs=crs)
+        frame = geopandas.GeoDataFrame(columns, geometry=_shapes(points, heights, rows), crs=system)
         _write_part(path, frame, "edges" if edges else "triangles", append=start > 0)
+
+
+def _system(crs: str | None, suffix: str) -> Any:
+    """Return a reference system that geopandas takes."""
+    if not crs:
+        return None
+    pyproj = require("pyproj", extra="geo", what="writing a reference system")
+    try:
+        return pyproj.CRS.from_user_input(crs)
+    except (pyproj.exceptions.CRSError, ValueError) as error:
+        raise FileFormatError(
+            f"{suffix} files cannot hold the reference system {crs!r}: pyproj does not know it"
+        ) from error
 
 
 def _shapes(
