@@ -11,9 +11,10 @@
 
 use std::ops::Range;
 
-use delone_predicates::{Point2, Sign, orient2d};
+use delone_predicates::Point2;
 
 use super::cavity::Kernel;
+use super::first::first_triangle;
 use crate::error::Result;
 use crate::mesh2::{Code, Patch, triangle};
 use crate::points::Extent;
@@ -40,7 +41,7 @@ pub fn build(
     watch: &Watch,
 ) -> Result<Option<Code>> {
     let own = &points[block.start as usize..block.end as usize];
-    let Some(first) = first_triangle(own) else {
+    let Some(first) = first_triangle(own, Rounds::over(block.len() as u32)) else {
         return Ok(None);
     };
     let first = first.map(|v| block.start + v);
@@ -71,19 +72,6 @@ pub fn build(
         }
     }
     Ok(Some(kernel.ghost()))
-}
-
-/// The first two points of the order and the first that is not in line with them, turned left.
-fn first_triangle(points: &[Point2]) -> Option<[u32; 3]> {
-    let mut order = Rounds::over(points.len() as u32);
-    let (a, b) = (order.next()?, order.next()?);
-    order.find_map(
-        |c| match orient2d(points[a as usize], points[b as usize], points[c as usize]) {
-            Sign::Positive => Some([a, b, c]),
-            Sign::Negative => Some([b, a, c]),
-            Sign::Zero => None,
-        },
-    )
 }
 
 /// The numbers below n in rounds of falling stride, each once.

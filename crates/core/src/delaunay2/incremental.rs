@@ -16,6 +16,7 @@ use std::ops::Range;
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
+use super::first::first_triangle;
 use super::walk::walk;
 use crate::error::{Error, Result};
 use crate::memory::filled;
@@ -34,7 +35,7 @@ pub fn build(
     watch: &Watch,
 ) -> Result<Option<Code>> {
     let order = brio(block.clone())?;
-    let Some(first) = first_triangle(points, &order) else {
+    let Some(first) = first_triangle(points, order.iter().copied()) else {
         return Ok(None);
     };
     let ghost = mesh.triangle(first);
@@ -82,20 +83,6 @@ fn hash(i: u32) -> u64 {
     let h = (h ^ h >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let h = (h ^ h >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     h ^ h >> 31
-}
-
-/// The first two points of the order and the first that is not in line with them, turned left.
-fn first_triangle(points: &[Point2], order: &[u32]) -> Option<[u32; 3]> {
-    let &[a, b, ref rest @ ..] = order else {
-        return None;
-    };
-    let at = |v: u32| points[v as usize];
-    rest.iter()
-        .find_map(|&c| match orient2d(at(a), at(b), at(c)) {
-            Sign::Positive => Some([a, b, c]),
-            Sign::Negative => Some([b, a, c]),
-            Sign::Zero => None,
-        })
 }
 
 /// The infinite corner of some ghost.

@@ -50,6 +50,7 @@ use std::ops::Range;
 
 use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
 
+use super::first::first_triangle;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room, zeroed};
 use crate::mesh2::{Code, Patch, next, prev, triangle};
@@ -70,7 +71,7 @@ pub fn build(
     watch: &Watch,
 ) -> Result<Option<Code>> {
     let order = rounds(block.clone())?;
-    let Some(first) = first_triangle(points, &order) else {
+    let Some(first) = first_triangle(points, order.iter().copied()) else {
         return Ok(None);
     };
     let mut hull = Hull::start(points, block, mesh, first)?;
@@ -110,18 +111,6 @@ fn random(v: u32) -> u64 {
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ x >> 31
-}
-
-/// The first two points of the order and the first that is not in line with them, turned left.
-fn first_triangle(points: &[Point2], order: &[u32]) -> Option<[u32; 3]> {
-    let at = |v: u32| points[v as usize];
-    let (&[a, b], rest) = order.split_first_chunk()?;
-    rest.iter()
-        .find_map(|&c| match orient2d(at(a), at(b), at(c)) {
-            Sign::Positive => Some([a, b, c]),
-            Sign::Negative => Some([b, a, c]),
-            Sign::Zero => None,
-        })
 }
 
 /// A new facet, from the inserted point to `vertex` and to that of the next one round the point.

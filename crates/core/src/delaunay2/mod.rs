@@ -7,6 +7,7 @@
 mod bowyer_watson;
 mod cavity;
 mod divide_conquer;
+mod first;
 mod incremental;
 pub mod lawson;
 mod lifting;
