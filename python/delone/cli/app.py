@@ -294,7 +294,7 @@ def _said(error: BaseException) -> int:
     if isinstance(error, OSError) and not isinstance(error, BrokenPipeError | MissingExtraError):
         # Files have been blamed for their own errors: this one is of standard output.
         _dropped_stdout()
-        why = f"the report cannot be printed: {error.strerror}; files named by -o, if any, are whole"
+        why = f"the report cannot be printed: {error.strerror}; files of -o, if any, are whole"
         error = Failure(why, Exit.OUTPUT)
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else Exit.USAGE
