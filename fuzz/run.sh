@@ -6,6 +6,8 @@
 # sanitizer is used, as the code has no `unsafe` for one to watch. `cargo fuzz run --sanitizer none`
 # works as well, where it is installed.
 #
+# FUZZ_SEED (default 1) makes two runs from the same corpus alike; 0 takes a random one.
+#
 # What the fuzzer learns stays in fuzz/corpus; an input that fails is written to fuzz/artifacts, and
 # runs again as  fuzz/target/<host>/release/<target> fuzz/artifacts/<target>/<file>
 set -euo pipefail
@@ -33,6 +35,7 @@ for target in "${targets[@]}"; do
     echo "fuzz: $target for $seconds s"
     log=$(mktemp)
     if "target/$host/release/$target" "corpus/$target" -artifact_prefix="artifacts/$target/" \
+        -seed="${FUZZ_SEED:-1}" \
         -max_total_time="$seconds" -max_len=1024 -timeout=20 -rss_limit_mb=2048 \
         -print_final_stats=1 >"$log" 2>&1; then
         grep -E 'number_of_executed_units|average_exec_per_sec' "$log"

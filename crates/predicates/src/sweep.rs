@@ -35,8 +35,10 @@
 //! 4/3, and 14 e N holds the roundings.
 //!
 //! Squared lengths between 2^-300 and 2^300 exclude overflow, and what underflow adds to N vanishes
-//! before f; to d it adds 2^-1073 at most, which g gets. Other triples are scaled by a power of two
-//! to coordinates below 1, off by at most 2^-1074 each, the largest of which has its last bit at
+//! before f; to d it adds 2^-1073 at most, which g gets. m^2 / t may be far below all doubles and
+//! yet count, as d may be small, too: so `FLOOR` is added after that division, and g / d, which
+//! exceeds 2^-51, is taken first; `UNDERFLOW` is what N / 2d and the bound itself may lose. Other
+//! triples are scaled by a power of two to coordinates below 1, off by at most 2^-1074 each, the largest of which has its last bit at
 //! 2^-53 or is a multiple of 2^-52. The triple is not collinear, so two points differ in that
 //! coordinate, by 2^-54 at least, and two of the lengths exceed 2^-56. Then squared lengths from
 //! 2^-1000 on suffice: sqrt l exceeds 2^-612, and what underflow adds vanishes as before. In m it
@@ -63,7 +65,7 @@ const BOUND_WEIGHTED: f64 = 8.0 * U;
 const BOUND_CROSS: f64 = 8.0 * U;
 /// Above any error of underflow.
 const FLOOR: f64 = f64::MIN_POSITIVE;
-/// More than four roundings of subnormal numbers.
+/// Eight roundings of subnormal numbers.
 const UNDERFLOW: f64 = f64::from_bits(4);
 /// Squared lengths for which the estimate is bounded: 2^-300 to 2^300.
 const LENGTHS: RangeInclusive<f64> = {
@@ -181,10 +183,10 @@ impl CircleEnd {
             sound = f < 0.25 * t;
             numerator = m * m / t;
             let square = (2.0 * m.abs() + h) * h + numerator * f;
-            f = (2.0 * square + FLOOR) / t + BOUND_NUMERATOR * numerator;
+            f = (2.0 * square + FLOOR) / t + BOUND_NUMERATOR * numerator + FLOOR;
         }
         let value = b[0] + 0.5 * numerator / d;
-        let error = (f + numerator.abs() * g / d) / d + 2.0 * U * value.abs();
+        let error = (f + numerator.abs() * (g / d)) / d + (2.0 * U * value.abs() + UNDERFLOW);
         let known = sound && g < 0.25 * d && lengths.iter().all(|l| allowed.contains(l));
         Self::bounded(value, if known { error } else { f64::INFINITY })
     }

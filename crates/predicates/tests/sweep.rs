@@ -8,6 +8,7 @@ use delone_predicates::sweep::{
 use delone_predicates::{Point2, Sign, orient2d};
 use num_bigint::BigInt;
 use num_traits::{Signed, Zero};
+use oracle::points::power_of_two;
 use oracle::{integers, sign_of};
 use proptest::prelude::*;
 
@@ -152,16 +153,37 @@ proptest! {
 
     #[test]
     fn ends_and_abscissas([a, b, c, q] in points::<4>()) {
-        if let Some(s) = right([a, b, c]) {
-            let all = integers(&[s[0], s[1], s[2], q]);
-            let (d, n, l) = circle(&all[..3]);
-            let right = sum(&(n - BigInt::from(2) * d * &all[3][0]), &l, &BigInt::zero());
-            prop_assert_eq!(circle_end_abscissa(s, q[0]), right);
-            if let Some(sign) = CircleEnd::of(s).minus_abscissa(q[0]) {
-                prop_assert_eq!(sign, right);
-            }
+        check_abscissa([a, b, c], q[0])?;
+    }
+
+    /// Abscissas of a few subnormal units make ends that are far below the circle's size.
+    #[test]
+    fn ends_in_thin_columns(
+        xs in [-9..=9_i64, -9..=9, -9..=9, -9..=9],
+        ys in points::<3>(),
+        unit in -1074..=-900_i64,
+    ) {
+        let x = |i: usize| xs[i] as f64 * power_of_two(unit);
+        let triple = [0, 1, 2].map(|i| [x(i), ys[i][1]]);
+        check_abscissa(triple, x(3))?;
+        if let (Some(s), Some(t)) = (right(triple), right([0, 1, 2].map(|i| [x(3 - i), ys[i][0]]))) {
+            check_ends(s, t)?;
         }
     }
+}
+
+fn check_abscissa(triple: [Point2; 3], x: f64) -> Result<(), TestCaseError> {
+    let Some(s) = right(triple) else {
+        return Ok(());
+    };
+    let all = integers(&[s[0], s[1], s[2], [x, 0.0]]);
+    let (d, n, l) = circle(&all[..3]);
+    let right = sum(&(n - BigInt::from(2) * d * &all[3][0]), &l, &BigInt::zero());
+    prop_assert_eq!(circle_end_abscissa(s, x), right);
+    if let Some(sign) = CircleEnd::of(s).minus_abscissa(x) {
+        prop_assert_eq!(sign, right);
+    }
+    Ok(())
 }
 
 #[test]
