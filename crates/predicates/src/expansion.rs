@@ -21,7 +21,7 @@ use std::ops::{Add, Mul, Sub};
 
 /// `a + b` rounded, and the error made.
 #[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
     let a_part = sum - b_part;

@@ -3,6 +3,8 @@
 //! | predicate | answers | degree |
 //! |---|---|---|
 //! | [`orient2d()`] | on which side of the line `ab` does `c` lie? | 2 |
+//! | [`angle()`] | is the angle at `p` between `a` and `b` acute? | 2 |
+//! | [`nearer()`] | which of `a`, `b` is nearer to `o`? | 2 |
 //! | [`incircle()`] | does `d` lie inside the circle `abc`? | 4 |
 //! | [`orient3d()`] | on which side of the plane `abc` does `d` lie? | 3 |
 //! | [`insphere()`] | does `e` lie inside the sphere `abcd`? | 5 |
@@ -43,6 +45,8 @@
 //! for Delaunay and weighted Delaunay 3D triangulations", Computational Geometry 44 (2011), for
 //! ties.
 
+mod angle;
+mod distance;
 mod expansion;
 mod incircle;
 mod insphere;
@@ -54,6 +58,8 @@ mod sign;
 pub mod sweep;
 mod ties;
 
+pub use angle::angle;
+pub use distance::nearer;
 pub use incircle::{incircle, incircle_exact};
 pub use insphere::{insphere, insphere_exact};
 pub use orient2d::{orient2d, orient2d_exact};
@@ -68,6 +74,13 @@ pub type Point2 = [f64; 2];
 
 /// A point of space.
 pub type Point3 = [f64; 3];
+
+/// The arithmetic beneath the stages, for constructions on points; not part of the stable interface.
+#[doc(hidden)]
+pub mod arithmetic {
+    pub use crate::expansion::{Pair, two_sum};
+    pub use crate::range::{bit_span, decode_odd, is_safe};
+}
 
 /// Each stage by itself, for tests and measurements; not part of the stable interface.
 #[doc(hidden)]
