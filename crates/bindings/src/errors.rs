@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use delone_core::Point2;
 use delone_core::error::{Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
@@ -53,9 +54,31 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             ("DegenerateInputError", message)
         }
         Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
+        Error::Crossing { pairs, points } => {
+            details.set_item("pairs", pairs)?;
+            details.set_item("points", points)?;
+            ("CrossingSegmentsError", crossing(pairs, points))
+        }
+        Error::Budget { limit, found } => {
+            details.set_item("limit", limit)?;
+            details.set_item("found", found)?;
+            let message = format!("{error}: allow more, or make the input simpler");
+            ("BudgetExceededError", message)
+        }
         Error::Shape(message) => ("ShapeError", message.clone()),
         Error::Internal(message) => ("InternalError", message.clone()),
     };
     let class = py.import("delone.errors")?.getattr(class)?;
     Ok(PyErr::from_value(class.call((message,), Some(&details))?))
+}
+
+/// Names the first pair of segments that cross.
+fn crossing(pairs: &[[u32; 2]], points: &[Point2]) -> String {
+    let (count, [s, t]) = (pairs.len(), pairs.first().copied().unwrap_or_default());
+    let [x, y] = points.first().copied().unwrap_or_default();
+    let what = match count {
+        1 => format!("segments {s} and {t} cross at ({x}, {y})"),
+        _ => format!("{count} pairs of segments cross, first {s} and {t} at ({x}, {y})"),
+    };
+    format!("{what}; crossing=\"split\" makes crossings vertices")
 }

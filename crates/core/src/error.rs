@@ -1,10 +1,12 @@
 //! What can go wrong in the core, each case with the rows that the caller needs to name.
 
+use delone_predicates::Point2;
+
 /// Result of the core.
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Every way in which a call of the core ends without an answer.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Coordinates that are NaN or infinite: the first rows, and how many there are.
     #[error("{count} rows have a coordinate that is NaN or infinite")]
@@ -33,6 +35,22 @@ pub enum Error {
         found: usize,
         /// Points that can be held.
         limit: usize,
+    },
+    /// Segments that cross: the pairs of their rows, and where they do.
+    #[error("{} pairs of segments cross", pairs.len())]
+    Crossing {
+        /// Both rows of each pair, the smaller first; ascending.
+        pairs: Vec<[u32; 2]>,
+        /// The crossing of each, rounded.
+        points: Vec<Point2>,
+    },
+    /// More vertices than the caller allows.
+    #[error("{found} vertices would be added, and the limit is {limit}")]
+    Budget {
+        /// The limit.
+        limit: usize,
+        /// Vertices added when it was passed.
+        found: usize,
     },
     /// An array that does not fit its role, in words that name the row.
     #[error("{0}")]

@@ -49,6 +49,10 @@ mod zero {
     unsafe impl super::Zero for u32 {}
     // SAFETY: an integer.
     unsafe impl super::Zero for u64 {}
+    // SAFETY: an integer.
+    unsafe impl super::Zero for i32 {}
+    // SAFETY: integers without padding.
+    unsafe impl super::Zero for [i32; 2] {}
     // SAFETY: integers without padding.
     unsafe impl super::Zero for [i32; 3] {}
     // SAFETY: doubles, whose zero bytes are 0.0, without padding.

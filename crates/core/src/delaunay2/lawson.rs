@@ -135,7 +135,10 @@ fn fault(found: &Findings) -> Option<String> {
 }
 
 /// The rows that are vertices, ascending, and the triangles in places among them.
-fn compact(points: &[Point2], simplices: &[[i32; 3]]) -> Result<(Vec<u32>, Vec<[i32; 3]>)> {
+pub(crate) fn compact(
+    points: &[Point2],
+    simplices: &[[i32; 3]],
+) -> Result<(Vec<u32>, Vec<[i32; 3]>)> {
     let mut place = filled(points.len(), -1i32)?;
     for &v in simplices.iter().flatten() {
         place[v as usize] = 0;

@@ -11,12 +11,12 @@ mod first;
 mod incremental;
 pub mod lawson;
 mod lifting;
-pub mod locate;
 mod merge;
 mod sweep;
 mod ties;
 mod triangulate;
 pub mod validate;
-mod walk;
+pub(crate) mod walk;
 
+pub(crate) use triangulate::{Built, Clock, mesh};
 pub use triangulate::{Method, Stage, Triangulation, triangulate};

@@ -70,6 +70,21 @@ pub struct Triangulation {
     pub stages: Vec<Stage>,
 }
 
+/// A triangulation as a mesh.
+#[derive(Debug)]
+pub struct Built {
+    /// The mesh of all distinct points.
+    pub mesh: Mesh2,
+    /// One of its ghosts.
+    pub ghost: Code,
+    /// The points as vertices, and one of NaN for infinity.
+    pub points: Vec<Point2>,
+    /// For each vertex, its first row in the input.
+    pub rows: Vec<u32>,
+    /// `[row, first row of the same point]`, ascending.
+    pub duplicates: Vec<[u32; 2]>,
+}
+
 /// The canonical Delaunay triangulation of `input`; the same arrays for any number of workers.
 pub fn triangulate(
     input: &[Point2],
@@ -78,6 +93,25 @@ pub fn triangulate(
     watch: &Watch,
 ) -> Result<Triangulation> {
     let mut clock = Clock::start();
+    let built = mesh(input, method, workers, watch, &mut clock)?;
+    watch.check()?;
+    let arrays = export::arrays(built.mesh, built.ghost, &built.rows, workers)?;
+    clock.lap("export");
+    Ok(Triangulation {
+        arrays,
+        duplicates: built.duplicates,
+        stages: clock.stages,
+    })
+}
+
+/// The same as a mesh; the stages go to `clock`.
+pub fn mesh(
+    input: &[Point2],
+    method: Method,
+    workers: usize,
+    watch: &Watch,
+    clock: &mut Clock,
+) -> Result<Built> {
     points::scan(input)?;
     clock.lap("scan");
     let mut arranged = arrange(input, workers, watch)?;
@@ -90,17 +124,24 @@ pub fn triangulate(
     arranged.points.push([f64::NAN; 2]);
     let mut mesh = Mesh2::with_vertices(n)?;
     let ghost = build(&mut mesh, &arranged, method, workers, watch)?;
-    clock.lap("build");
-    watch.check()?;
-    let arrays = export::arrays(mesh, ghost, &arranged.rows, workers)?;
-    if arrays.simplices.is_empty() {
+    let patch = mesh.patch();
+    if patch.vertex(patch.opposite(ghost)) == patch.infinite() {
+        // Ghosts on both sides of a hull edge: a chain.
         return Err(points::degenerate(&arranged.points[..n], &arranged.rows));
     }
-    clock.lap("export");
-    Ok(Triangulation {
-        arrays,
-        duplicates: arranged.duplicates,
-        stages: clock.stages,
+    clock.lap("build");
+    let Arranged {
+        points,
+        rows,
+        duplicates,
+        ..
+    } = arranged;
+    Ok(Built {
+        mesh,
+        ghost,
+        points,
+        rows,
+        duplicates,
     })
 }
 
@@ -188,21 +229,26 @@ fn block(
     vertices.extend(block);
     divide_conquer::build(points, &mut vertices, &mut mesh, watch)
 }
+
 /// Times the stages one after the other.
-struct Clock {
+#[derive(Debug)]
+pub struct Clock {
     last: Instant,
-    stages: Vec<Stage>,
+    /// The stages so far.
+    pub stages: Vec<Stage>,
 }
 
 impl Clock {
-    fn start() -> Self {
+    /// A clock that starts now.
+    pub fn start() -> Self {
         Self {
             last: Instant::now(),
             stages: Vec::with_capacity(4),
         }
     }
 
-    fn lap(&mut self, name: &'static str) {
+    /// Ends the stage `name`.
+    pub fn lap(&mut self, name: &'static str) {
         let now = Instant::now();
         self.stages
             .push((name, now - std::mem::replace(&mut self.last, now)));

@@ -13,6 +13,19 @@ use crate::mesh2::{Patch, next, prev, triangle};
 /// it, walking from triangle `from`; and the number of triangles met on the way.
 #[inline]
 pub fn walk(mesh: &Patch, points: &[Point2], from: u32, q: Point2) -> (u32, usize) {
+    walk_within(mesh, points, from, q, usize::MAX).unwrap_or((from, 0))
+}
+
+/// The same in a triangulation of any kind, where a walk may turn in circles; nothing where more
+/// than `limit` triangles would be met.
+#[inline]
+pub fn walk_within(
+    mesh: &Patch,
+    points: &[Point2],
+    from: u32,
+    q: Point2,
+    limit: usize,
+) -> Option<(u32, usize)> {
     let at = |v: u32| points[v as usize];
     let inf = mesh.infinite();
     // Whether q lies strictly on the outer side of half-edge e.
@@ -28,7 +41,7 @@ pub fn walk(mesh: &Patch, points: &[Point2], from: u32, q: Point2) -> (u32, usiz
             q,
         ) == Sign::Positive
         {
-            return (from, 0);
+            return Some((from, 0));
         }
         start = mesh.opposite(outer);
     }
@@ -36,23 +49,24 @@ pub fn walk(mesh: &Patch, points: &[Point2], from: u32, q: Point2) -> (u32, usiz
     if beyond(start) {
         e = mesh.opposite(start);
         if mesh.vertex(e) == inf {
-            return (triangle(e), 1);
+            return Some((triangle(e), 1));
         }
     }
     let mut steps = 1;
-    loop {
+    while steps < limit {
         // The walk came across e; two edges are left to look at.
         let across = if beyond(next(e)) {
             mesh.opposite(next(e))
         } else if beyond(prev(e)) {
             mesh.opposite(prev(e))
         } else {
-            return (triangle(e), steps);
+            return Some((triangle(e), steps));
         };
         if mesh.vertex(across) == inf {
-            return (triangle(across), steps);
+            return Some((triangle(across), steps));
         }
         e = across;
         steps += 1;
     }
+    None
 }

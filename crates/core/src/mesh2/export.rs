@@ -4,7 +4,7 @@
 use super::storage::{OPPOSITE, RECORD};
 use super::{Code, Mesh2, triangle};
 use crate::error::{Error, Result};
-use crate::memory::zeroed;
+use crate::memory::{with_room, zeroed};
 use crate::parallel;
 
 /// Stands for the other side of a hull edge once the ghosts are gone; shifted like a code it
@@ -23,8 +23,28 @@ pub struct Arrays {
     pub neighbors: Vec<[i32; 3]>,
 }
 
+/// As [`arrays`], and for each triangle and corner whether the edge opposite is marked.
+pub fn marked_arrays(
+    mesh: Mesh2,
+    ghost: Code,
+    rows: &[u32],
+    workers: usize,
+) -> Result<(Arrays, Vec<[bool; 3]>)> {
+    let (mut mesh, out) = write(mesh, ghost, rows, workers)?;
+    let patch = mesh.patch();
+    let count = out.simplices.len();
+    let mut marks = with_room(count)?;
+    marks.extend((0..count as u32).map(|t| patch.marks(t)));
+    Ok((out, marks))
+}
+
 /// Exports `mesh`, one of whose ghosts is `ghost`; vertex v becomes `rows[v]`.
-pub fn arrays(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays> {
+pub fn arrays(mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays> {
+    write(mesh, ghost, rows, workers).map(|(_, arrays)| arrays)
+}
+
+/// The arrays, and the mesh without ghosts.
+fn write(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<(Mesh2, Arrays)> {
     let count = drop_ghosts(&mut mesh, ghost)?;
     let mut out = Arrays {
         simplices: zeroed(count)?,
@@ -50,7 +70,7 @@ pub fn arrays(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Res
             *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
         }
     });
-    Ok(out)
+    Ok((mesh, out))
 }
 
 /// Makes the finite triangles of `mesh` its first records and returns their count.

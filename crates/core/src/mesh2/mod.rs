@@ -2,7 +2,7 @@
 //!
 //! Every edge of the hull carries a *ghost* triangle to one infinite vertex, so each triangle has
 //! three neighbours and a mesh of n vertices has 2 n - 2 triangles. A triangle is a record of eight
-//! `u32`: three vertices counter-clockwise, a pad, three opposite codes, a pad. The *code* of a
+//! `u32`: three vertices counter-clockwise, its marks, three opposite codes, a pad. The *code* of a
 //! half-edge is `8 t + k`: triangle t, the edge opposite its corner k, which runs from corner k + 1
 //! to corner k + 2. So `vertex(code)` is the apex, `opposite(code)` the same edge seen from the
 //! other side, and the apex across an edge is one load away.
@@ -14,6 +14,7 @@ pub mod export;
 mod flip;
 mod hull;
 pub mod import;
+mod marks;
 mod storage;
 
 pub use storage::{Code, Mesh2, Patch, next, prev, triangle};

@@ -57,9 +57,34 @@ impl Mesh2 {
         }
     }
 
+    /// All records as one patch, the first `used` of which are triangles already.
+    #[inline]
+    pub fn resume(&mut self, used: u32) -> Patch<'_> {
+        Patch {
+            used,
+            ..self.patch()
+        }
+    }
+
     /// The number of vertices.
     pub fn vertices(&self) -> usize {
         self.infinite as usize
+    }
+
+    /// Changes the room to that of `vertices` vertices, where the first `used` records are
+    /// triangles: what they call the infinite vertex changes with it.
+    pub fn resize(&mut self, vertices: usize, used: u32) -> Result<()> {
+        let (before, after) = (self.infinite, vertices as u32);
+        let mut records = zeroed(RECORD * PER_VERTEX * vertices)?;
+        let kept = RECORD * used as usize;
+        records[..kept].copy_from_slice(&self.records[..kept]);
+        for r in records[..kept].as_chunks_mut::<RECORD>().0 {
+            for v in &mut r[..3] {
+                *v = if *v == before { after } else { *v };
+            }
+        }
+        (self.records, self.infinite) = (records, after);
+        Ok(())
     }
 }
 
@@ -192,7 +217,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Says what lies across `e`, from this side alone.
-    pub(super) fn set_opposite(&mut self, e: Code, across: Code) {
+    pub fn set_opposite(&mut self, e: Code, across: Code) {
         let i = self.index(e);
         self.records[i + OPPOSITE] = across;
     }
@@ -200,6 +225,7 @@ impl<'a> Patch<'a> {
     /// Moves triangle `from` to record `to`; its neighbours follow, but for those outside.
     pub(super) fn relocate(&mut self, from: u32, to: u32) {
         self.set(to, self.corners(from));
+        self.set_vertex(8 * to + 3, self.vertex(8 * from + 3));
         for k in 0..3 {
             let across = self.opposite(8 * from + k);
             self.set_opposite(8 * to + k, across);

@@ -1,0 +1,349 @@
+//! Constrained Delaunay triangulations: every segment is a chain of edges, and all other edges are
+//! Delaunay as far as the segments let two points see each other; ties go by coordinates, as
+//! everywhere. One set of points and segments has one such triangulation.
+//!
+//! The points are triangulated in bulk; then each segment that is not there makes way for itself.
+
+mod components;
+pub(crate) mod conforming;
+pub mod intersection;
+pub(crate) mod marked;
+pub mod pairs;
+mod polygon;
+mod present;
+mod segment;
+mod split;
+mod subsegments;
+
+use delone_predicates::{Point2, lexicographic, orient2d};
+
+pub use self::components::components;
+pub use self::polygon::{Filled, Rule, polygon};
+pub use self::subsegments::Subsegments;
+
+use self::marked::Marked;
+use self::present::mark_present;
+use self::segment::{Cavity, Step};
+use self::split::Splitter;
+use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
+use crate::error::{Error, Result};
+use crate::memory::{filled, with_room};
+use crate::mesh2::export;
+use crate::watch::Watch;
+
+/// Segments between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 10;
+
+/// What a caller may choose.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Whether segments that cross are split there; else they are an error.
+    pub split: bool,
+    /// Whether vertices are added until the circle on each subsegment is empty.
+    pub conforming: bool,
+    /// Most vertices that may be added.
+    pub max_vertices: usize,
+    /// How the points are triangulated.
+    pub method: Method,
+    /// How many threads may work.
+    pub workers: usize,
+}
+
+/// A constrained Delaunay triangulation in the rows of the input, added vertices behind them.
+#[derive(Debug)]
+pub struct Constrained {
+    /// Vertices that the input does not have.
+    pub added: Vec<Point2>,
+    /// Triangles and their neighbours; they tile the hull.
+    pub arrays: export::Arrays,
+    /// For each triangle and corner, whether the edge opposite is a subsegment.
+    pub constrained: Vec<[bool; 3]>,
+    /// `[row, first row of the same point]`, ascending.
+    pub duplicates: Vec<[u32; 2]>,
+    /// The edges that the segments have become.
+    pub subsegments: Subsegments,
+    /// Segments whose ends are one point.
+    pub zero: Vec<u32>,
+    /// `[row, vertex]`: vertices of the input inside segments, ascending.
+    pub through: Vec<[u32; 2]>,
+    /// `[row, row, vertex]`: segments that crossed, and where they meet now, ascending.
+    pub crossings: Vec<[u32; 3]>,
+    /// Where the time went.
+    pub stages: Vec<Stage>,
+}
+
+/// What becomes of the segments, in vertices of the mesh.
+#[derive(Debug, Default)]
+struct Laid {
+    /// Subsegments as vertices, each with its row and along it; an edge once for each of its rows.
+    pieces: Vec<([u32; 2], u32)>,
+    /// Whether an edge may come more than once.
+    repeated: bool,
+    through: Vec<[u32; 2]>,
+    crossings: Vec<[u32; 3]>,
+}
+
+/// The constrained Delaunay triangulation of `input` with the `segments`, pairs of its rows.
+pub fn constrain(
+    input: &[Point2],
+    segments: &[[u32; 2]],
+    options: Options,
+    watch: &Watch,
+) -> Result<Constrained> {
+    let mut clock = Clock::start();
+    let mut work = Work::start(input, segments, options, watch, &mut clock)?;
+    let laid = work.lay(input, watch)?;
+    clock.lap("segments");
+    work.finish(input.len(), laid, options.workers, clock)
+}
+
+/// A triangulation that gets its segments.
+struct Work<'a> {
+    segments: &'a [[u32; 2]],
+    options: Options,
+    marked: Marked,
+    /// For each vertex its row: the first in the input, or one behind it.
+    rows: Vec<u32>,
+    /// Crossings, which are vertices behind the input.
+    met: Vec<Point2>,
+    duplicates: Vec<[u32; 2]>,
+    /// The segments as vertices.
+    ends: Vec<[u32; 2]>,
+}
+
+impl<'a> Work<'a> {
+    fn start(
+        input: &[Point2],
+        segments: &'a [[u32; 2]],
+        options: Options,
+        watch: &Watch,
+        clock: &mut Clock,
+    ) -> Result<Self> {
+        let built = mesh(input, options.method, options.workers, watch, clock)?;
+        let place = places(&built, input.len())?;
+        let mut ends = with_room(segments.len())?;
+        ends.extend(segments.iter().map(|s| s.map(|row| place[row as usize])));
+        let marked = Marked::new(built.mesh, built.points)?;
+        clock.lap("marks");
+        Ok(Self {
+            segments,
+            options,
+            marked,
+            rows: built.rows,
+            met: Vec::new(),
+            duplicates: built.duplicates,
+            ends,
+        })
+    }
+
+    /// Lays all segments. Where two of them cross, that is an error or starts anew with the crossings
+    /// among the points.
+    fn lay(&mut self, input: &[Point2], watch: &Watch) -> Result<Laid> {
+        let Options {
+            conforming,
+            max_vertices: limit,
+            ..
+        } = self.options;
+        let laid = self.lay_all(watch)?;
+        let mut splitter = match laid {
+            Some(laid) if !conforming => return Ok(laid),
+            Some(laid) => {
+                let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
+                splitter.adopt(laid);
+                splitter
+            }
+            None if !self.options.split => return Err(self.crossing_error(input, watch)?),
+            None => {
+                let found = self.crossings(input, limit, watch)?;
+                let meets = self.start_anew(input, &found, watch)?;
+                let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
+                splitter.run(&found.pairs, &meets, watch)?;
+                splitter
+            }
+        };
+        if conforming {
+            splitter.conform(watch)?;
+        }
+        Ok(splitter.finish())
+    }
+
+    /// Marks the segments that are edges, and lays the others row by row; nothing where one crosses
+    /// another.
+    fn lay_all(&mut self, watch: &Watch) -> Result<Option<Laid>> {
+        let present = mark_present(&mut self.marked, &self.ends)?;
+        watch.check()?;
+        let mut laid = Laid {
+            pieces: with_room(self.ends.len())?,
+            repeated: present.repeated,
+            ..Laid::default()
+        };
+        let mut cavity = Cavity::default();
+        let mut steps = 0;
+        for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
+            if present.holds([a, b]) {
+                laid.pieces.push(([a, b], row));
+                continue;
+            }
+            steps += 1;
+            if steps % WATCH_EVERY == 0 {
+                watch.check()?;
+            }
+            let mut back = Vec::new();
+            while a != b {
+                let Step::Joined { from, to, again } = self.marked.join(a, b, &mut cavity)? else {
+                    return Ok(None);
+                };
+                laid.repeated |= again;
+                if to != a ^ b ^ from {
+                    laid.through.push([row, to]);
+                }
+                if from == a {
+                    laid.pieces.push(([a, to], row));
+                    a = to;
+                } else {
+                    back.push(([to, b], row));
+                    b = to;
+                }
+            }
+            laid.pieces.extend(back.into_iter().rev());
+        }
+        Ok(Some(laid))
+    }
+
+    /// The error that names all pairs that cross.
+    fn crossing_error(&self, input: &[Point2], watch: &Watch) -> Result<Error> {
+        let Crossings { pairs, points } = self.crossings(input, usize::MAX, watch)?;
+        Ok(Error::Crossing { pairs, points })
+    }
+
+    /// All pairs of segments that cross, but for those that do in a point of the input.
+    fn crossings(&self, input: &[Point2], limit: usize, watch: &Watch) -> Result<Crossings> {
+        let pairs = pairs::crossing_pairs_above(input, self.segments, limit, watch)?;
+        if pairs.len() > limit {
+            let found = pairs.len();
+            return Err(Error::Budget { limit, found });
+        }
+        let mut given: Vec<Point2> = with_room(input.len())?;
+        given.extend_from_slice(input);
+        given.sort_unstable_by(|p, q| lexicographic(*p, *q));
+        let at = |row: u32| self.segments[row as usize].map(|v| input[v as usize]);
+        let mut found = Crossings {
+            pairs: with_room(pairs.len())?,
+            points: with_room(pairs.len())?,
+        };
+        for [s, t] in pairs {
+            let ([a, b], [c, d]) = (at(s), at(t));
+            let x = intersection::intersection(a, b, c, d);
+            let exact = orient2d(a, b, x).is_zero() && orient2d(c, d, x).is_zero();
+            if !(exact && given.binary_search_by(|p| lexicographic(*p, x)).is_ok()) {
+                found.pairs.push([s, t]);
+                found.points.push(x);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Triangulates the input and the crossings. Returns the vertex of each crossing.
+    fn start_anew(
+        &mut self,
+        input: &[Point2],
+        found: &Crossings,
+        watch: &Watch,
+    ) -> Result<Vec<u32>> {
+        let Options {
+            method, workers, ..
+        } = self.options;
+        let n = input.len();
+        let all = [input, &found.points].concat();
+        let built = mesh(&all, method, workers, watch, &mut Clock::start())?;
+        let place = places(&built, all.len())?;
+        for (ends, s) in self.ends.iter_mut().zip(self.segments) {
+            *ends = s.map(|row| place[row as usize]);
+        }
+        // Crossings that are no vertex yet come behind the input, without gaps.
+        let mut behind: Vec<u32> = built
+            .rows
+            .iter()
+            .copied()
+            .filter(|r| *r as usize >= n)
+            .collect();
+        behind.sort_unstable();
+        self.met = behind.iter().map(|&row| all[row as usize]).collect();
+        self.rows = built.rows;
+        for row in self.rows.iter_mut().filter(|row| **row as usize >= n) {
+            let rank = behind.partition_point(|r| r < row);
+            *row = (n + rank) as u32;
+        }
+        self.marked = Marked::new(built.mesh, built.points)?;
+        Ok(place[n..].to_vec())
+    }
+
+    /// The vertices behind the `n` points of the input; those that are new get their rows.
+    fn added(&mut self, n: usize) -> Vec<Point2> {
+        let later = &self.marked.points[self.rows.len()..self.marked.count];
+        let added = [&self.met[..], later].concat();
+        let first = (n + self.met.len()) as u32;
+        self.rows.extend((first..).take(later.len()));
+        added
+    }
+
+    /// Everything in rows of the input, of `n` points.
+    fn finish(
+        mut self,
+        n: usize,
+        laid: Laid,
+        workers: usize,
+        mut clock: Clock,
+    ) -> Result<Constrained> {
+        let added = self.added(n);
+        let rows = self.rows;
+        let row_of = |v: u32| rows[v as usize];
+        let ghost = self.marked.close()?;
+        let (arrays, constrained) = export::marked_arrays(self.marked.mesh, ghost, &rows, workers)?;
+        let mut through = laid.through;
+        through.iter_mut().for_each(|t| t[1] = row_of(t[1]));
+        through.retain(|t| (t[1] as usize) < n);
+        through.sort_unstable();
+        through.dedup();
+        let mut crossings = laid.crossings;
+        crossings.iter_mut().for_each(|c| c[2] = row_of(c[2]));
+        crossings.sort_unstable();
+        crossings.dedup();
+        let mut pieces = laid.pieces;
+        pieces.iter_mut().for_each(|p| p.0 = p.0.map(row_of));
+        let zero = (0u32..).zip(&self.ends).filter(|(_, e)| e[0] == e[1]);
+        let zero = zero.map(|(row, _)| row).collect();
+        let subsegments = Subsegments::of(&pieces, laid.repeated)?;
+        clock.lap("export");
+        Ok(Constrained {
+            added,
+            arrays,
+            constrained,
+            duplicates: self.duplicates,
+            subsegments,
+            zero,
+            through,
+            crossings,
+            stages: clock.stages,
+        })
+    }
+}
+
+/// Segments that cross, and where, rounded.
+#[derive(Debug)]
+struct Crossings {
+    pairs: Vec<[u32; 2]>,
+    points: Vec<Point2>,
+}
+
+/// The vertex of each of `n` rows.
+fn places(built: &Built, n: usize) -> Result<Vec<u32>> {
+    let mut place = filled(n, 0u32)?;
+    for (v, &row) in (0..).zip(&built.rows) {
+        place[row as usize] = v;
+    }
+    for &[row, first] in &built.duplicates {
+        place[row as usize] = place[first as usize];
+    }
+    Ok(place)
+}

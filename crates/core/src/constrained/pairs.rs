@@ -1,0 +1,346 @@
+//! All pairs of segments that cross.
+//!
+//! Segments are put in classes by the size of their box, and each class in a tree: eight that follow
+//! each other along the Hilbert curve of their middles are a node, of which eight are a node of the
+//! next level, and so on. The trees are then joined with themselves and with each other, from the
+//! roots down, as far as boxes overlap; a single segment, which may be long and slanted, also as far
+//! as its line meets the box. What remains are pairs of segments, and the predicates decide those.
+//!
+//! For n segments that is O(n log n) for the trees, then time by the boxes that overlap: linear for
+//! what is drawn on maps, where few do. It is quadratic where the boxes of all overlap, say for
+//! long slanted lines side by side. Memory is linear, and that of the pairs.
+//!
+//! Sources: T. Brinkhoff, H.-P. Kriegel and B. Seeger, "Efficient processing of spatial joins using
+//! R-trees", SIGMOD 1993, for the join; I. Kamel and C. Faloutsos, "On packing R-trees", CIKM 1993, for
+//! trees packed along the curve.
+
+use delone_predicates::{Point2, Sign, stages};
+
+use super::intersection::crosses;
+use crate::error::{Error, Result};
+use crate::memory::{filled, with_room};
+use crate::order::curve::{Scratch, along_curve};
+use crate::points::Extent;
+use crate::watch::Watch;
+
+/// Children of a node.
+const FAN: usize = 8;
+/// Binary orders of magnitude of one class of sizes.
+const CLASS: u32 = 3;
+/// Classes; the last has all that is smaller.
+const CLASSES: usize = 8;
+/// More levels than any tree has.
+const LEVELS: usize = 12;
+/// Joins of two nodes between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 12;
+
+/// All pairs of segments that cross in a single point inside both, `[smaller row, larger row]`,
+/// ascending.
+///
+/// Segments that touch at an end of either, overlap along a line or have no length do not cross.
+/// Exact for all finite doubles.
+pub fn crossing_pairs(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    watch: &Watch,
+) -> Result<Vec<[u32; 2]>> {
+    crossing_pairs_above(points, segments, usize::MAX, watch)
+}
+
+/// As [`crossing_pairs`], but ends as soon as more than `limit` pairs are found: these, then.
+pub fn crossing_pairs_above(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    limit: usize,
+    watch: &Watch,
+) -> Result<Vec<[u32; 2]>> {
+    let forest = Forest::grow(points, segments, watch)?;
+    let mut join = Join {
+        forest: &forest,
+        watch,
+        limit,
+        steps: 0,
+        found: Vec::new(),
+    };
+    join.all()?;
+    let mut found = join.found;
+    found.sort_unstable();
+    Ok(found)
+}
+
+/// A segment: its ends, and their rows.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    ends: [Point2; 2],
+    rows: [u32; 2],
+    row: u32,
+}
+
+impl Item {
+    fn extent(&self) -> Extent {
+        Extent::of(self.ends)
+    }
+
+    /// Whether the line may meet the box: all corners may not be proved to lie on one side.
+    #[inline]
+    fn may_meet(&self, e: &Extent) -> bool {
+        let [a, b] = self.ends;
+        // The corners farthest to the left and to the right, as seen along the segment.
+        let (x, y) = (usize::from(b[1] < a[1]), usize::from(b[0] < a[0]));
+        let corners = [e.min, e.max];
+        let left = [corners[x][0], corners[1 - y][1]];
+        let right = [corners[1 - x][0], corners[y][1]];
+        stages::orient2d::filter(a, b, left) != Some(Sign::Negative)
+            && stages::orient2d::filter(a, b, right) != Some(Sign::Positive)
+    }
+
+    #[inline]
+    fn crosses(&self, other: &Self) -> bool {
+        // Segments with a common end have no other point in common, or a line.
+        let [[a, b], [c, d]] = [self.rows, other.rows];
+        if a == c || a == d || b == c || b == d {
+            return false;
+        }
+        let ([a, b], [c, d]) = (self.ends, other.ends);
+        crosses(a, b, c, d)
+    }
+}
+
+#[inline]
+fn overlap(a: &Extent, b: &Extent) -> bool {
+    // Not short-circuited: four comparisons cost less than a branch that is hard to foresee.
+    (a.min[0] <= b.max[0])
+        & (b.min[0] <= a.max[0])
+        & (a.min[1] <= b.max[1])
+        & (b.min[1] <= a.max[1])
+}
+
+fn union(boxes: &[Extent]) -> Extent {
+    Extent::of(boxes.iter().flat_map(|e| [e.min, e.max]))
+}
+
+/// Segments and boxes: those of the segments first, then those of all nodes, tree by tree and
+/// level by level.
+struct Forest {
+    items: Vec<Item>,
+    boxes: Vec<Extent>,
+    trees: Vec<Tree>,
+}
+
+/// Where the boxes of each level start, the segments being level 0. The last level is one node.
+struct Tree {
+    levels: Vec<usize>,
+    /// Boxes of each level.
+    counts: Vec<usize>,
+}
+
+/// A node of a tree, by its level and the place of its box; at level 0 a segment.
+#[derive(Clone, Copy)]
+struct Node {
+    tree: usize,
+    level: usize,
+    place: usize,
+}
+
+impl Forest {
+    fn grow(points: &[Point2], segments: &[[u32; 2]], watch: &Watch) -> Result<Self> {
+        let ends = |row: u32| segments[row as usize].map(|v| points[v as usize]);
+        let (mut rows, starts) = classes(segments.len() as u32, ends)?;
+        let mut scratch = Scratch::default();
+        for w in starts.windows(2) {
+            arrange(&mut rows[w[0]..w[1]], ends, &mut scratch, watch)?;
+        }
+        let mut forest = Self {
+            items: with_room(rows.len())?,
+            boxes: with_room(rows.len() + rows.len() / (FAN - 1) + CLASSES * LEVELS)?,
+            trees: Vec::new(),
+        };
+        forest.items.extend(rows.iter().map(|&row| Item {
+            ends: ends(row),
+            rows: segments[row as usize],
+            row,
+        }));
+        let boxes = forest.items.iter().map(Item::extent);
+        forest.boxes.extend(boxes);
+        for w in starts.windows(2).filter(|w| w[0] < w[1]) {
+            forest.plant(w[0], w[1]);
+        }
+        Ok(forest)
+    }
+
+    /// The tree over the segments from `start` to `end`.
+    fn plant(&mut self, start: usize, end: usize) {
+        let (mut levels, mut counts) = (vec![start], vec![end - start]);
+        let (mut start, mut end) = (start, end);
+        // Also one segment gets a node: roots are not segments.
+        while levels.len() == 1 || end - start > 1 {
+            let next = self.boxes.len();
+            for first in (start..end).step_by(FAN) {
+                let node = union(&self.boxes[first..end.min(first + FAN)]);
+                self.boxes.push(node);
+            }
+            (start, end) = (next, self.boxes.len());
+            levels.push(start);
+            counts.push(end - start);
+        }
+        self.trees.push(Tree { levels, counts });
+    }
+
+    fn root(&self, tree: usize) -> Node {
+        let levels = &self.trees[tree].levels;
+        Node {
+            tree,
+            level: levels.len() - 1,
+            place: levels[levels.len() - 1],
+        }
+    }
+
+    fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
+        let Tree { levels, counts } = &self.trees[node.tree];
+        let level = node.level - 1;
+        let first = FAN * (node.place - levels[node.level]);
+        let last = counts[level].min(first + FAN);
+        let start = levels[level];
+        (start + first..start + last).map(move |place| Node {
+            tree: node.tree,
+            level,
+            place,
+        })
+    }
+}
+
+/// The rows by class, the largest segments first, and where each class starts, and the end. Those of
+/// no length, which may lie on each other in any number, are left out.
+fn classes(n: u32, ends: impl Fn(u32) -> [Point2; 2]) -> Result<(Vec<u32>, [usize; CLASSES + 1])> {
+    // The exponent of the longer side of the box, halved so that it is finite.
+    let size = |row: u32| {
+        let [a, b] = ends(row);
+        let half = |k: usize| (0.5 * a[k] - 0.5 * b[k]).abs();
+        (half(0).max(half(1)).to_bits() >> 52) as u32
+    };
+    let long = || (0..n).filter(|&row| ends(row)[0] != ends(row)[1]);
+    let largest = long().map(size).max().unwrap_or(0);
+    let class = |row: u32| (((largest - size(row)) / CLASS) as usize).min(CLASSES - 1);
+    let mut starts = [0; CLASSES + 1];
+    long().for_each(|row| starts[class(row) + 1] += 1);
+    for k in 0..CLASSES {
+        starts[k + 1] += starts[k];
+    }
+    let (mut rows, mut next) = (filled(starts[CLASSES], 0)?, starts);
+    for row in long() {
+        let place = &mut next[class(row)];
+        rows[*place] = row;
+        *place += 1;
+    }
+    Ok((rows, starts))
+}
+
+/// Puts the `rows` of one class, which ascend, along the curve of the middles of their segments.
+fn arrange(
+    rows: &mut [u32],
+    ends: impl Fn(u32) -> [Point2; 2],
+    scratch: &mut Scratch,
+    watch: &Watch,
+) -> Result<()> {
+    let middle = |&row: &u32| {
+        let [a, b] = ends(row);
+        [0, 1].map(|k| 0.5 * a[k] + 0.5 * b[k])
+    };
+    let mut middles = with_room(rows.len())?;
+    middles.extend(rows.iter().map(middle));
+    let (distinct, others) = along_curve(&mut middles, rows, scratch, watch)?;
+    // Those with the middle of another come along the curve, too.
+    for (row, other) in rows[distinct..].iter_mut().zip(others) {
+        *row = other[0];
+    }
+    Ok(())
+}
+
+/// The join of all trees.
+struct Join<'a> {
+    forest: &'a Forest,
+    watch: &'a Watch<'a>,
+    limit: usize,
+    steps: usize,
+    found: Vec<[u32; 2]>,
+}
+
+impl Join<'_> {
+    fn all(&mut self) -> Result<()> {
+        for a in 0..self.forest.trees.len() {
+            self.within(self.forest.root(a))?;
+            for b in a + 1..self.forest.trees.len() {
+                self.between(self.forest.root(a), self.forest.root(b))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether enough is found.
+    fn done(&self) -> bool {
+        self.found.len() > self.limit
+    }
+
+    fn step(&mut self) -> Result<()> {
+        self.steps += 1;
+        if self.steps.is_multiple_of(WATCH_EVERY) {
+            self.watch.check()?;
+        }
+        Ok(())
+    }
+
+    /// All pairs below one node.
+    fn within(&mut self, node: Node) -> Result<()> {
+        if node.level == 0 || self.done() {
+            return Ok(());
+        }
+        self.step()?;
+        for child in self.forest.children(node) {
+            self.within(child)?;
+            for other in self.forest.children(node).filter(|o| o.place > child.place) {
+                self.between(child, other)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// All pairs of one below `a` and one below `b`, another node.
+    fn between(&mut self, a: Node, b: Node) -> Result<()> {
+        let Forest { boxes, items, .. } = self.forest;
+        if !overlap(&boxes[a.place], &boxes[b.place]) || self.done() {
+            return Ok(());
+        }
+        if a.level == 0 && b.level == 0 {
+            return self.pair(&items[a.place], &items[b.place]);
+        }
+        if a.level == 0 && !items[a.place].may_meet(&boxes[b.place])
+            || b.level == 0 && !items[b.place].may_meet(&boxes[a.place])
+        {
+            return Ok(());
+        }
+        self.step()?;
+        // The larger box goes first, so that few small ones wait for a partner of their size.
+        let larger = boxes[a.place].side() >= boxes[b.place].side();
+        if b.level == 0 || a.level > 0 && larger {
+            for child in self.forest.children(a) {
+                self.between(child, b)?;
+            }
+        } else {
+            for child in self.forest.children(b) {
+                self.between(a, child)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn pair(&mut self, a: &Item, b: &Item) -> Result<()> {
+        if a.crosses(b) {
+            let bytes = 2 * size_of_val(&self.found[..]);
+            self.found
+                .try_reserve(1)
+                .map_err(|_| Error::Memory { bytes })?;
+            self.found.push([a.row.min(b.row), a.row.max(b.row)]);
+        }
+        Ok(())
+    }
+}

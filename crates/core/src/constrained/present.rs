@@ -1,0 +1,78 @@
+//! The segments that are edges of a triangulation already, which most of a coast are: one pass over
+//! the triangles in the order of memory finds them, without a branch that depends on the data.
+//!
+//! Each vertex has two slots for the other ends of its segments, as on a line or ring. Segments
+//! that find them taken are left to be laid one by one.
+
+use super::marked::Marked;
+use crate::error::Result;
+use crate::memory::filled;
+
+/// An empty slot.
+const NONE: u32 = u32::MAX;
+
+/// What the pass has found.
+#[derive(Debug)]
+pub struct Present {
+    slots: Vec<[u32; 2]>,
+    /// A bit for each slot: whether its segment is an edge.
+    hits: Vec<u8>,
+    /// Whether a segment came twice.
+    pub repeated: bool,
+}
+
+impl Present {
+    /// Whether the segment is an edge, which is marked.
+    #[inline]
+    pub fn holds(&self, [u, v]: [u32; 2]) -> bool {
+        bits(self.slots[u as usize], v) & self.hits[u as usize] != 0
+    }
+}
+
+/// The slots that name `v`.
+#[inline]
+fn bits(slots: [u32; 2], v: u32) -> u8 {
+    u8::from(slots[0] == v) | u8::from(slots[1] == v) << 1
+}
+
+/// Marks the edges of triangles that are among the segments `ends`.
+pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]]) -> Result<Present> {
+    let mut present = with_slots(ends, marked.count)?;
+    let (slots, hits) = (&present.slots, &mut present.hits);
+    let triangles = marked.triangles();
+    let mut mesh = marked.patch();
+    for t in 0..triangles {
+        let corners = mesh.corners(t);
+        let mut marks = 0;
+        for k in 0..3 {
+            let [u, v] = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
+            let found = bits(slots[u as usize], v);
+            hits[u as usize] |= found;
+            marks |= u32::from(found != 0) << k;
+        }
+        mesh.set_marks(t, marks);
+    }
+    Ok(present)
+}
+
+fn with_slots(ends: &[[u32; 2]], vertices: usize) -> Result<Present> {
+    // One more for infinity.
+    let mut slots = filled(vertices + 1, [NONE; 2])?;
+    let mut repeated = false;
+    for &[u, v] in ends.iter().filter(|e| e[0] != e[1]) {
+        if bits(slots[u as usize], v) != 0 {
+            repeated = true;
+            continue;
+        }
+        let free = |slots: &[u32; 2]| slots.iter().position(|&s| s == NONE);
+        if let (Some(i), Some(j)) = (free(&slots[u as usize]), free(&slots[v as usize])) {
+            slots[u as usize][i] = v;
+            slots[v as usize][j] = u;
+        }
+    }
+    Ok(Present {
+        slots,
+        hits: filled(vertices + 1, 0)?,
+        repeated,
+    })
+}

@@ -1,0 +1,413 @@
+//! The insertion of a segment: the triangles that it crosses make way for it.
+//!
+//! M. V. Anglada, "An improved incremental algorithm for constructing restricted Delaunay
+//! triangulations", Computers & Graphics 21 (1997), for the cavity; its two halves are then filled
+//! as below. A segment that is an edge costs a turn round one of its ends, whichever is shorter.
+//!
+//! ```text
+//!       x-----x                x-----x
+//!      /|\   /|\              /  ...  \       The triangles on the way of a b go. Each half of the
+//!     a-|-\-/-|-b    ->      a---------b      cavity is a polygon whose vertices all see the
+//!      \|  x  |/              \ \ | / /       segment, along the edges that were crossed.
+//!       x-----x                x--x--x
+//! ```
+//!
+//! Such a polygon is triangulated by a scan in the manner of Graham in linear time (G. T. Toussaint
+//! and D. Avis, "On a convex hull algorithm for polygons and its application to triangulation
+//! problems", Pattern Recognition 15, 1982), also where an edge hangs into it and a vertex comes
+//! twice. Lawson's flips make it Delaunay: O(k^2) for k crossed edges at most, and about k log k
+//! for points that were not chosen to the contrary. What lies outside of the cavity stays as it is,
+//! since the constrained Delaunay triangulation is unique and only a segment takes sight away.
+
+use delone_predicates::{Sign, lexicographic, orient2d};
+
+use super::marked::{Marked, turn};
+use crate::error::{Error, Result};
+use crate::mesh2::{Code, next, prev, triangle};
+
+/// How far a segment came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// `from`, one of its ends, is joined to `to`, the first vertex from there on; the edge may have
+    /// been marked before.
+    Joined {
+        /// The end.
+        from: u32,
+        /// The vertex.
+        to: u32,
+        /// Whether another segment is there, too.
+        again: bool,
+    },
+    /// A marked edge is in the way, the first one from that end on; nothing has changed.
+    Crossed(Code),
+}
+
+/// An edge of the cavity's boundary.
+#[derive(Debug, Clone, Copy)]
+struct Rim {
+    /// The vertex where it ends, on the way from a to b.
+    end: u32,
+    /// The edge in the triangle that goes.
+    inner: Code,
+    /// The edge in the triangle that comes.
+    new: Code,
+    /// Its other side.
+    across: Code,
+    marked: bool,
+    /// The place of the rim that is its other side.
+    twin: Option<u32>,
+}
+
+/// Room for one cavity, kept from one to the next.
+#[derive(Debug, Default)]
+pub struct Cavity {
+    triangles: Vec<u32>,
+    left: Vec<Rim>,
+    right: Vec<Rim>,
+    scan: Vec<(u32, Side)>,
+}
+
+/// An edge of the part of a polygon that is not yet triangulated.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// Of the cavity's boundary, by place.
+    Rim(usize),
+    /// Of a new triangle.
+    Inner(Code),
+}
+
+impl Marked {
+    /// Joins vertices `a` and `b`, which differ, as far as the first vertex or marked edge on the
+    /// way, seen from one of them.
+    pub fn join(&mut self, a: u32, b: u32, cavity: &mut Cavity) -> Result<Step> {
+        let from = match self.search(a, b) {
+            Found::Edge(e) => {
+                let mut mesh = self.patch();
+                let again = mesh.is_marked(e);
+                mesh.mark(e, true);
+                return Ok(Step::Joined {
+                    from: a,
+                    to: b,
+                    again,
+                });
+            }
+            Found::None(from) => from,
+        };
+        let to = a ^ b ^ from;
+        match self.leave(from, to)? {
+            Leave::Along(e, w) => {
+                let mut mesh = self.patch();
+                let again = mesh.is_marked(e);
+                mesh.mark(e, true);
+                Ok(Step::Joined { from, to: w, again })
+            }
+            Leave::Across(e) => self.cut(from, to, e, cavity),
+        }
+    }
+
+    /// The vertices that the segment from `a` to `b` meets, but for its ends, whatever edges are
+    /// marked: those on it, and of those beside it on the way the ones that `near` takes for it. It
+    /// ends as `gather` does.
+    pub fn stops(&mut self, a: u32, b: u32, near: impl Fn(&Self, u32) -> bool) -> Result<Vec<u32>> {
+        let mut stops = Vec::new();
+        let mut from = a;
+        while from != b {
+            from = match self.leave(from, b)? {
+                Leave::Along(_, w) => w,
+                Leave::Across(first) => {
+                    let mut e = first;
+                    let mesh = self.patch();
+                    let mut beside = vec![mesh.vertex(next(e)), mesh.vertex(prev(e))];
+                    let end = loop {
+                        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                        let o = mesh.opposite(e);
+                        let x = mesh.vertex(o);
+                        if x == mesh.infinite() {
+                            let message = format!("the segment {a} {b} leaves the hull");
+                            return Err(Error::Internal(message));
+                        }
+                        let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
+                        e = match orient2d(p, q, at) {
+                            Sign::Positive => next(o),
+                            Sign::Negative => prev(o),
+                            Sign::Zero => break x,
+                        };
+                        beside.push(x);
+                    };
+                    stops.extend(beside.into_iter().filter(|&w| near(self, w)));
+                    end
+                }
+            };
+            stops.push(from);
+        }
+        stops.retain(|&w| w != a && w != b);
+        Ok(stops)
+    }
+
+    /// Looks for the edge from `a` to `b` round both at once, as one of them may have very many.
+    fn search(&mut self, a: u32, b: u32) -> Found {
+        let starts = [self.near[a as usize], self.near[b as usize]];
+        let mesh = self.patch();
+        let mut corners = starts;
+        loop {
+            for (k, other) in [(0, b), (1, a)] {
+                if mesh.vertex(next(corners[k])) == other {
+                    return Found::Edge(prev(corners[k]));
+                }
+                corners[k] = turn(&mesh, corners[k]);
+                if corners[k] == starts[k] {
+                    return Found::None([a, b][k]);
+                }
+            }
+        }
+    }
+
+    /// How the segment from `a` to `b`, which is no edge, leaves a.
+    fn leave(&mut self, a: u32, b: u32) -> Result<Leave> {
+        let start = self.near[a as usize];
+        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+        let inf = mesh.infinite();
+        let side = |v: u32| {
+            let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
+            orient2d(a, b, v)
+        };
+        // Of a vertex on the line, whether it lies on b's side.
+        let ahead = |v: u32| {
+            let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
+            lexicographic(a, b) == lexicographic(a, v)
+        };
+        let mut corner = start;
+        let mut right = None;
+        // One turn more than there are triangles: an edge is seen from both of its sides.
+        let mut met = false;
+        loop {
+            let u = mesh.vertex(next(corner));
+            let here = (u != inf).then(|| side(u));
+            if here == Some(Sign::Zero) && ahead(u) {
+                return Ok(Leave::Along(prev(corner), u));
+            }
+            if let (Some(before), Some(Sign::Positive)) = (right, here) {
+                return Ok(Leave::Across(before));
+            }
+            // The triangle from here on: is its first vertex on the right?
+            right = (here == Some(Sign::Negative)).then_some(corner);
+            if met {
+                let message = format!("the segment from {a} to {b} does not leave its end");
+                return Err(Error::Internal(message));
+            }
+            corner = turn(&mesh, corner);
+            met = corner == start;
+        }
+    }
+
+    /// Makes way from `a` to the first vertex on the way to `b`, across the edge `e` opposite a.
+    fn cut(&mut self, a: u32, b: u32, e: Code, cavity: &mut Cavity) -> Result<Step> {
+        let end = match self.gather(a, b, e, cavity)? {
+            Step::Joined { to, .. } => to,
+            crossed => return Ok(crossed),
+        };
+        if let [_, _] = cavity.triangles[..] {
+            let mut mesh = self.patch();
+            let other = mesh.flip_marked(e);
+            mesh.mark(next(e), true);
+            self.touch(triangle(e));
+            self.touch(triangle(other));
+        } else {
+            self.fill(a, end, cavity)?;
+        }
+        Ok(Step::Joined {
+            from: a,
+            to: end,
+            again: false,
+        })
+    }
+
+    /// Collects what lies on the way. It ends: the crossed edges follow each other along a b.
+    fn gather(&mut self, a: u32, b: u32, first: Code, cavity: &mut Cavity) -> Result<Step> {
+        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+        let rim = |end: u32, inner: Code| Rim {
+            end,
+            inner,
+            new: inner,
+            across: mesh.opposite(inner),
+            marked: mesh.is_marked(inner),
+            twin: None,
+        };
+        let mut e = first;
+        //        w             The edge e runs from u, on the right of a b, to w, on the left.
+        //      / |
+        //   a - -|- -> b
+        //      \ |
+        //        u
+        cavity.triangles.clear();
+        cavity.triangles.push(triangle(e));
+        cavity.left.clear();
+        cavity.left.push(rim(mesh.vertex(prev(e)), next(e)));
+        cavity.right.clear();
+        cavity.right.push(rim(mesh.vertex(next(e)), prev(e)));
+        loop {
+            if mesh.is_marked(e) {
+                return Ok(Step::Crossed(e));
+            }
+            let o = mesh.opposite(e);
+            let x = mesh.vertex(o);
+            if x == mesh.infinite() {
+                return Err(Error::Internal(format!(
+                    "the segment {a} {b} leaves the hull"
+                )));
+            }
+            cavity.triangles.push(triangle(o));
+            let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
+            let side = if x == b {
+                Sign::Zero
+            } else {
+                orient2d(p, q, at)
+            };
+            match side {
+                Sign::Positive => {
+                    cavity.left.push(rim(x, prev(o)));
+                    e = next(o);
+                }
+                Sign::Negative => {
+                    cavity.right.push(rim(x, next(o)));
+                    e = prev(o);
+                }
+                Sign::Zero => {
+                    cavity.left.push(rim(x, prev(o)));
+                    cavity.right.push(rim(x, next(o)));
+                    return Ok(Step::Joined {
+                        from: a,
+                        to: x,
+                        again: false,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Fills a cavity from `a` to `b` of three triangles or more, and marks the edge between them.
+    fn fill(&mut self, a: u32, b: u32, cavity: &mut Cavity) -> Result<()> {
+        let Cavity {
+            triangles,
+            left,
+            right,
+            scan,
+        } = cavity;
+        let halves = left.len();
+        let rims = left;
+        rims.append(right);
+        self.pair(rims);
+        let mut free = triangles.clone();
+        self.stack.clear();
+        // The left half lies on the left of a b, and the right one of b a, so its rims go back.
+        let ahead = (0..halves).map(|i| (i, i));
+        let upper = self.scan([a, b], ahead, rims, &mut free, scan)?;
+        let back = (halves..rims.len()).rev().map(|i| (i.wrapping_sub(1), i));
+        let lower = self.scan([b, a], back, rims, &mut free, scan)?;
+        self.stitch(rims);
+        let mut mesh = self.patch();
+        mesh.link(upper, lower);
+        mesh.mark(upper, true);
+        self.legalise()?;
+        for &t in triangles.iter() {
+            self.patch().release(t);
+            self.touch(t);
+        }
+        Ok(())
+    }
+
+    /// Finds the rims that are two sides of one edge, which hangs into the cavity.
+    fn pair(&mut self, rims: &mut [Rim]) {
+        let mut mesh = self.patch();
+        for (i, r) in (0..).zip(rims.iter()) {
+            mesh.set_opposite(r.inner, i);
+        }
+        for i in 0..rims.len() {
+            let across = rims[i].across;
+            // Outside of the cavity this is some code, which leads to no such rim.
+            let twin = mesh.opposite(across);
+            let is_rim = rims.get(twin as usize).is_some_and(|r| r.inner == across);
+            rims[i].twin = is_rim.then_some(twin);
+        }
+    }
+
+    /// Triangulates the polygon on the left of the edge from `start` to `end`. Its other edges are
+    /// the rims named second by `chain`, on the way from start to end; each leads to the vertex of
+    /// the rim named first, and the last one to `end`. Returns the new side of that edge.
+    fn scan(
+        &mut self,
+        [start, end]: [u32; 2],
+        chain: impl ExactSizeIterator<Item = (usize, usize)>,
+        rims: &mut [Rim],
+        free: &mut Vec<u32>,
+        scan: &mut Vec<(u32, Side)>,
+    ) -> Result<Code> {
+        let broken = || Error::Internal("a cavity is no polygon".into());
+        let last = chain.len();
+        scan.clear();
+        scan.push((start, Side::Rim(usize::MAX)));
+        for (i, (to, place)) in (1..).zip(chain) {
+            let v = if i == last { end } else { rims[to].end };
+            let mut side = Side::Rim(place);
+            //        top
+            //       /   \         An ear: the chain turns right at top, so the triangle lies in the
+            //  below --- v        polygon, and v takes the place of top.
+            while let [.., (below, _), (top, top_side)] = scan[..] {
+                let [p, q, r] = [below, v, top].map(|v| self.at(v));
+                if orient2d(p, q, r) != Sign::Positive {
+                    break;
+                }
+                let t = free.pop().ok_or_else(broken)?;
+                let mut mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                mesh.set(t, [below, v, top]);
+                mesh.clear(t);
+                for (old, new) in [(side, 8 * t), (top_side, 8 * t + 1)] {
+                    match old {
+                        Side::Rim(i) => rims.get_mut(i).ok_or_else(broken)?.new = new,
+                        Side::Inner(e) => {
+                            mesh.link(e, new);
+                            self.stack.push(new);
+                        }
+                    }
+                }
+                side = Side::Inner(8 * t + 2);
+                scan.pop();
+            }
+            scan.push((v, side));
+        }
+        match scan[..] {
+            [_, (_, Side::Inner(e))] => Ok(e),
+            _ => Err(broken()),
+        }
+    }
+
+    /// Joins the new triangles to what lies across their rims, and fixes those.
+    fn stitch(&mut self, rims: &[Rim]) {
+        let mut mesh = self.patch();
+        for r in rims {
+            let twin = r.twin.and_then(|i| rims.get(i as usize));
+            mesh.link(r.new, twin.map_or(r.across, |twin| twin.new));
+        }
+        for r in rims {
+            if r.marked {
+                mesh.mark(r.new, true);
+            }
+            mesh.fix(r.new);
+        }
+    }
+}
+
+/// Whether two vertices are joined.
+enum Found {
+    Edge(Code),
+    /// They are not; the turn round this one was the shorter.
+    None(u32),
+}
+
+/// How a segment leaves its end.
+enum Leave {
+    /// Along an edge to a vertex.
+    Along(Code, u32),
+    /// Across the edge opposite its end.
+    Across(Code),
+}

@@ -1,0 +1,347 @@
+//! Segments that cross: each crossing becomes a vertex.
+//!
+//! A crossing is computed from the two segments as they were given and rounded once; these points
+//! are vertices before the first segment is laid. The places that are rounded to a vertex are its
+//! *pixel*. As in snap rounding (J. D. Hobby, "Practical segment intersection with finite precision
+//! output", Computational Geometry 13, 1999) a segment that crosses others goes through its crossings
+//! and through every vertex to whose pixel it comes, in the order in which it meets them. On a grid
+//! with pixels of one size nothing would cross any more. Doubles lie ever closer towards zero, so two
+//! pieces may: then, as in iterated snap rounding (D. Halperin and E. Packer, Computational Geometry
+//! 23, 2002), they are led through an end of one of them, if the other comes to its pixel, or split
+//! where they cross, until none does.
+//!
+//! # What is guaranteed
+//!
+//! The result is planar at every step, whatever is rounded: a piece is an edge or it waits. And it
+//! ends: where two pieces cross, the point, rounded to the nearest doubles, lies in the box of each,
+//! since the corners of a box are doubles, and so does an end of one to whose pixel the other comes.
+//! It is not both ends of a piece, so of each piece that is parted the parts have strictly smaller
+//! boxes, of finitely many doubles. Each piece stays in the box of its segment, and within a few
+//! units in the last place of it. A limit on vertices ends what takes too many.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use delone_predicates::{Point2, lexicographic, orient2d};
+
+use super::Laid;
+use super::intersection::intersection;
+use super::marked::Marked;
+use super::segment::{Cavity, Step};
+use crate::error::{Error, Result};
+use crate::mesh2::{next, prev};
+use crate::watch::Watch;
+
+/// Pieces between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 10;
+
+/// A segment's place in the order, doubled, and one more where the piece runs against it.
+type Cover = u32;
+
+/// A piece that waits to be laid.
+struct Job {
+    ends: [u32; 2],
+    covers: Vec<Cover>,
+}
+
+/// The loop of splits.
+pub struct Splitter<'a> {
+    pub(super) marked: &'a mut Marked,
+    /// The segments as vertices, by row.
+    given: &'a [[u32; 2]],
+    /// Those with a length and their rows, in an order that hangs on their coordinates.
+    segments: Vec<([u32; 2], u32)>,
+    /// Vertices of the input.
+    own: usize,
+    limit: usize,
+    cavity: Cavity,
+    jobs: Vec<Job>,
+    /// What covers each marked edge, directed from its smaller vertex.
+    pieces: HashMap<[u32; 2], Vec<Cover>>,
+    through: Vec<[u32; 2]>,
+    crossings: Vec<[u32; 3]>,
+}
+
+fn reversed(covers: &[Cover]) -> Vec<Cover> {
+    covers.iter().map(|c| c ^ 1).collect()
+}
+
+impl<'a> Splitter<'a> {
+    /// For the segments `given`, of which `marked` has none yet; `limit` vertices may be added.
+    pub fn new(marked: &'a mut Marked, given: &'a [[u32; 2]], limit: usize) -> Self {
+        Self {
+            own: marked.count,
+            segments: in_order(marked, given),
+            marked,
+            given,
+            limit,
+            cavity: Cavity::default(),
+            jobs: Vec::new(),
+            pieces: HashMap::with_capacity(given.len()),
+            through: Vec::new(),
+            crossings: Vec::new(),
+        }
+    }
+
+    /// Takes over segments that have been laid without a split.
+    pub fn adopt(&mut self, laid: Laid) {
+        let mut place = vec![0; self.given.len()];
+        for (i, (_, row)) in (0..).zip(&self.segments) {
+            place[*row as usize] = i;
+        }
+        for (ends, row) in laid.pieces {
+            let i = place[row as usize];
+            let against = self.segments[i as usize].0 != self.given[row as usize];
+            self.add(ends, &[2 * i + Cover::from(against)]);
+        }
+        self.through = laid.through;
+    }
+
+    /// Lays all of them. Those in `pairs` cross, in the vertices `meets`.
+    pub fn run(&mut self, pairs: &[[u32; 2]], meets: &[u32], watch: &Watch) -> Result<()> {
+        let mut own: Vec<[u32; 2]> = Vec::with_capacity(2 * pairs.len());
+        for (&[s, t], &w) in pairs.iter().zip(meets) {
+            own.extend([[s, w], [t, w]]);
+            self.crossings.push([s, t, w]);
+        }
+        own.sort_unstable();
+        for i in 0..self.segments.len() {
+            let ([a, b], row) = self.segments[i];
+            let first = own.partition_point(|o| o[0] < row);
+            let meets = own[first..].iter().take_while(|o| o[0] == row);
+            let stops = self.way([a, b], row, meets.map(|o| o[1]).collect())?;
+            for pair in stops.windows(2).rev() {
+                self.wait([pair[0], pair[1]], &[2 * i as Cover]);
+            }
+            self.work_off(watch)?;
+        }
+        Ok(())
+    }
+
+    /// The vertices on the way of a segment, in order, its ends with them: where it meets others, the
+    /// vertices that lie on it exactly, and, if it meets any, those to whose pixel it comes.
+    fn way(&mut self, [a, b]: [u32; 2], row: u32, meets: Vec<u32>) -> Result<Vec<u32>> {
+        let [p, q] = [a, b].map(|v| self.marked.at(v));
+        let snaps = !meets.is_empty();
+        let near = |marked: &Marked, w: u32| snaps && passes(p, q, marked.at(w));
+        let mut stops = self.marked.stops(a, b, near)?;
+        for &w in &stops {
+            if orient2d(p, q, self.marked.at(w)).is_zero() {
+                self.through.push([row, w]);
+            }
+        }
+        stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
+        stops.extend([a, b]);
+        // The rounded points of a line keep its order in both coordinates, though perhaps not
+        // strictly; it goes up in the first, or in the second where that stays.
+        let falls = p[1] > q[1];
+        stops.sort_by(|&v, &w| {
+            let [v, w] = [v, w].map(|v| self.marked.at(v));
+            let second = v[1].total_cmp(&w[1]);
+            let second = if falls { second.reverse() } else { second };
+            v[0].partial_cmp(&w[0])
+                .unwrap_or(Ordering::Equal)
+                .then(second)
+        });
+        stops.dedup();
+        Ok(stops)
+    }
+
+    /// Lays what waits.
+    pub(super) fn work_off(&mut self, watch: &Watch) -> Result<()> {
+        let mut steps = 0_usize;
+        while let Some(job) = self.jobs.pop() {
+            steps += 1;
+            if steps.is_multiple_of(WATCH_EVERY) {
+                watch.check()?;
+            }
+            self.lay(job)?;
+        }
+        Ok(())
+    }
+
+    /// What became of the segments.
+    pub fn finish(self) -> Laid {
+        Laid {
+            pieces: self.all_pieces(),
+            repeated: true,
+            through: self.through,
+            crossings: self.crossings,
+        }
+    }
+
+    fn lay(&mut self, job: Job) -> Result<()> {
+        let [a, b] = job.ends;
+        match self.marked.join(a, b, &mut self.cavity)? {
+            Step::Crossed(e) => self.repair(e, job),
+            Step::Joined { from, to, .. } => {
+                let far = a ^ b ^ from;
+                if to != far {
+                    let ends = if from == a { [to, b] } else { [a, to] };
+                    self.jobs.push(Job {
+                        ends,
+                        covers: job.covers.clone(),
+                    });
+                }
+                let ends = if from == a { [a, to] } else { [to, b] };
+                self.add(ends, &job.covers);
+                Ok(())
+            }
+        }
+    }
+
+    fn add(&mut self, [u, v]: [u32; 2], covers: &[Cover]) {
+        let (key, covers) = if u < v {
+            ([u, v], covers.to_vec())
+        } else {
+            ([v, u], reversed(covers))
+        };
+        let all = self.pieces.entry(key).or_default();
+        all.extend(covers);
+        all.sort_unstable();
+        all.dedup();
+    }
+
+    /// Whether an edge is a piece.
+    pub(super) fn is_piece(&self, [u, v]: [u32; 2]) -> bool {
+        self.pieces.contains_key(&[u.min(v), u.max(v)])
+    }
+
+    /// Takes a piece away and says what covers it from `u` to `v`.
+    fn take(&mut self, [u, v]: [u32; 2]) -> Result<Vec<Cover>> {
+        let covers = self.pieces.remove(&[u.min(v), u.max(v)]);
+        let covers = covers.ok_or_else(|| Error::Internal(format!("no piece joins {u} {v}")))?;
+        Ok(if u < v { covers } else { reversed(&covers) })
+    }
+
+    /// Splits a piece that waits and the marked edge `e` in its way: at an end of one to whose pixel
+    /// the other comes, or else where they cross.
+    fn repair(&mut self, e: u32, job: Job) -> Result<()> {
+        let mesh = self.marked.patch();
+        let (u, v) = (mesh.vertex(next(e)), mesh.vertex(prev(e)));
+        let [a, b] = job.ends;
+        let [p, q, r, s] = [a, b, u, v].map(|v| self.marked.at(v));
+        let ends = [(r, s, p), (r, s, q), (p, q, r), (p, q, s)];
+        let passed = ends.into_iter().filter(|&(r, s, p)| passes(r, s, p));
+        let x = passed.map(|e| e.2).min_by(|p, q| lexicographic(*p, *q));
+        let x = x.unwrap_or_else(|| intersection(p, q, r, s));
+        let w = self.part([u, v], x, e)?;
+        for ends in [[w, b], [a, w]] {
+            self.wait(ends, &job.covers);
+        }
+        Ok(())
+    }
+
+    /// Makes the piece u v, which is the edge `e`, pass through the point `x`. Returns the vertex
+    /// there: u or v themselves where x is one of them.
+    pub(super) fn part(&mut self, [u, v]: [u32; 2], x: Point2, e: u32) -> Result<u32> {
+        let (w, parted) = self.marked.vertex_at(x, e)?;
+        let found = self.marked.count - self.own;
+        if found > self.limit {
+            let limit = self.limit;
+            return Err(Error::Budget { limit, found });
+        }
+        if let Some([p, q]) = parted {
+            let covers = self.take([p, q])?;
+            self.add([p, w], &covers);
+            self.add([w, q], &covers);
+        }
+        let same = parted.is_some_and(|other| other == [u, v] || other == [v, u]);
+        if w != u && w != v && !same {
+            let covers = self.take([u, v])?;
+            self.unmark(u, v)?;
+            for ends in [[w, v], [u, w]] {
+                self.wait(ends, &covers);
+            }
+        }
+        Ok(w)
+    }
+
+    fn wait(&mut self, ends: [u32; 2], covers: &[Cover]) {
+        if ends[0] != ends[1] {
+            self.jobs.push(Job {
+                ends,
+                covers: covers.to_vec(),
+            });
+        }
+    }
+
+    /// The edge u v is one like others again.
+    fn unmark(&mut self, u: u32, v: u32) -> Result<()> {
+        let e = self.marked.edge(u, v)?;
+        self.marked.patch().mark(e, false);
+        self.marked.stack.push(e);
+        self.marked.legalise()
+    }
+
+    /// All pieces by row and along it, directed as the row is.
+    fn all_pieces(&self) -> Vec<([u32; 2], u32)> {
+        let mut all = Vec::new();
+        for (&[u, v], covers) in &self.pieces {
+            for cover in covers {
+                let (ends, row) = self.segments[*cover as usize / 2];
+                let with = (cover % 2 == 0) == (ends == self.given[row as usize]);
+                all.push((if with { [u, v] } else { [v, u] }, row));
+            }
+        }
+        let at = |v: u32| self.marked.at(v);
+        all.sort_by(|(s, i), (t, j)| {
+            let [a, b] = self.given[*i as usize].map(at);
+            let up = lexicographic(a, b).is_lt();
+            let by = |k: usize| lexicographic(at(s[k]), at(t[k]));
+            let along = by(0).then_with(|| by(1));
+            i.cmp(j).then(if up { along } else { along.reverse() })
+        });
+        all
+    }
+}
+
+/// The segments that have a length, each from its lexicographically smaller end, sorted by their
+/// ends.
+fn in_order(marked: &Marked, segments: &[[u32; 2]]) -> Vec<([u32; 2], u32)> {
+    let at = |v: u32| marked.at(v);
+    let real = (0u32..).zip(segments).filter(|(_, s)| s[0] != s[1]);
+    let directed = |(row, &[a, b]): (u32, &[u32; 2])| match lexicographic(at(a), at(b)).is_lt() {
+        true => ([a, b], row),
+        false => ([b, a], row),
+    };
+    let mut order: Vec<_> = real.map(directed).collect();
+    order.sort_by(|(s, i), (t, j)| {
+        let by = |k: usize| lexicographic(at(s[k]), at(t[k]));
+        by(0).then_with(|| by(1)).then(i.cmp(j))
+    });
+    order
+}
+
+/// Whether a point lies in the box of two others.
+fn in_box(x: Point2, p: Point2, q: Point2) -> bool {
+    (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]))
+}
+
+/// Whether the segment `r s` comes to the pixel of `p`, the places that are rounded to it: at the
+/// abscissa of p it has an ordinate that is rounded to that of p, or the other way round.
+fn passes(r: Point2, s: Point2, p: Point2) -> bool {
+    if !in_box(p, r, s) || p == r || p == s || far(r, s, p) {
+        return false;
+    }
+    if orient2d(r, s, p).is_zero() {
+        return true;
+    }
+    // Now neither side of the box has no length.
+    (0..2).any(|k| {
+        let other = 1 - k;
+        let (mut below, mut above) = (p, p);
+        below[other] = r[other].min(s[other]);
+        above[other] = r[other].max(s[other]);
+        intersection(r, s, below, above)[other] == p[other]
+    })
+}
+
+/// Whether p is farther from the line r s than its pixel can be wide; most points are.
+fn far(r: Point2, s: Point2, p: Point2) -> bool {
+    let (left, right) = ((s[0] - r[0]) * (p[1] - r[1]), (s[1] - r[1]) * (p[0] - r[0]));
+    let unit = |x: f64| x.abs() * f64::EPSILON + f64::MIN_POSITIVE;
+    let pixel = (s[0] - r[0]).abs() * unit(p[1]) + (s[1] - r[1]).abs() * unit(p[0]);
+    let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
+    (left - right).abs() > 2.0 * pixel + rounding
+}
