@@ -1,0 +1,52 @@
+//! The corners of the input where segments meet at a small angle, which no refinement can mend: they
+//! are told apart so that it does not try for ever.
+
+use delone_predicates::Point2;
+
+use crate::error::Result;
+use crate::memory::filled;
+
+/// Angles below this between two segments make a sharp corner: there, cuts of the one may encroach
+/// upon the other.
+const SHARP: f64 = std::f64::consts::FRAC_PI_2;
+
+/// For each vertex, whether two of its segments meet at less than a right angle.
+pub fn sharp(points: &[Point2], segments: &[[u32; 2]], vertices: usize) -> Result<Vec<bool>> {
+    let mut directions: Vec<(u32, f64)> = Vec::with_capacity(2 * segments.len());
+    for &[u, v] in segments {
+        let [p, q] = [u, v].map(|v| points[v as usize]);
+        let angle = (q[1] - p[1]).atan2(q[0] - p[0]);
+        let back = (p[1] - q[1]).atan2(p[0] - q[0]);
+        directions.extend([(u, angle), (v, back)]);
+    }
+    directions.sort_unstable_by(|s, t| s.0.cmp(&t.0).then(s.1.total_cmp(&t.1)));
+    let mut sharp = filled(vertices, false)?;
+    for star in directions.chunk_by(|s, t| s.0 == t.0) {
+        let (first, last) = (star[0], star[star.len() - 1]);
+        let round = first.1 + std::f64::consts::TAU - last.1;
+        let narrow = star.windows(2).any(|w| w[1].1 - w[0].1 < SHARP);
+        sharp[first.0 as usize] = star.len() > 1 && (narrow || round < SHARP);
+    }
+    Ok(sharp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_are_sharp_below_a_right_angle() {
+        let points = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 1.0],
+            [-1.0, 0.1],
+            [-1.0, -0.1],
+        ];
+        let found = sharp(&points, &[[0, 1], [1, 2], [2, 0], [0, 3]], 5).unwrap();
+        assert_eq!(found, [true, false, true, false, false]);
+        // Across the branch of the arc tangent.
+        let found = sharp(&points, &[[0, 3], [0, 4]], 5).unwrap();
+        assert_eq!(found, [true, false, false, false, false]);
+    }
+}

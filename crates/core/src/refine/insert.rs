@@ -1,0 +1,131 @@
+//! The insertion of a vertex in the domain: the triangles whose circles hold it, on its side of the
+//! marked edges, make way for a star, as in `delaunay2::cavity`. Labels and caps of area pass on.
+
+use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
+
+use crate::constrained::marked::Marked;
+use crate::mesh2::{Code, next, prev, triangle};
+
+/// Triangles that a walk may meet: what is inserted is near.
+const WALK: usize = 4096;
+
+/// Where a walk ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walk {
+    /// In the triangle that holds the point.
+    Home(u32),
+    /// At a marked edge that hides the point, seen from the side of the walk.
+    Blocked(Code),
+    /// Nowhere: it was too long, or the point is a vertex.
+    Lost,
+}
+
+/// A cavity, kept from one insertion to the next.
+#[derive(Debug, Default)]
+pub struct Cavity {
+    /// Its triangles.
+    pub triangles: Vec<u32>,
+    /// Its edges, counter-clockwise, as codes of its own triangles.
+    pub rim: Vec<Code>,
+    stack: Vec<Code>,
+    sides: Vec<Side>,
+}
+
+/// An edge of the hole.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    ends: [u32; 2],
+    across: Code,
+    marked: bool,
+}
+
+/// Walks from triangle `from` towards `p`, across edges that are not marked.
+pub fn walk(marked: &mut Marked, from: u32, p: Point2) -> Walk {
+    let triangles = marked.triangles();
+    let mesh = marked.mesh.resume(triangles);
+    let points = &marked.points;
+    let mut t = from;
+    let mut came = u32::MAX;
+    for _ in 0..WALK {
+        let beyond = (8 * t..8 * t + 3).filter(|&e| e != came).find(|&e| {
+            let [u, v] = [next(e), prev(e)].map(|c| points[mesh.vertex(c) as usize]);
+            orient2d(u, v, p) == Sign::Negative
+        });
+        let Some(e) = beyond else {
+            let is_vertex = mesh.corners(t).iter().any(|&v| points[v as usize] == p);
+            return if is_vertex { Walk::Lost } else { Walk::Home(t) };
+        };
+        if mesh.is_marked(e) {
+            return Walk::Blocked(e);
+        }
+        came = mesh.opposite(e);
+        t = triangle(came);
+    }
+    Walk::Lost
+}
+
+impl Cavity {
+    /// Finds the cavity of `p`, which triangle `home` holds. It may be no star: then p lies on a marked
+    /// edge, or one hides a part from it; that edge is returned.
+    pub fn dig(&mut self, marked: &mut Marked, home: u32, p: Point2) -> Option<Code> {
+        let triangles = marked.triangles();
+        let mesh = marked.mesh.resume(triangles);
+        let at = |v: u32| marked.points[v as usize];
+        self.triangles.clear();
+        self.rim.clear();
+        self.triangles.push(home);
+        self.stack.clear();
+        self.stack.extend([8 * home + 2, 8 * home + 1, 8 * home]);
+        // Depth first and always to the right first, the edges come counter-clockwise. A triangle
+        // is met once: the cavity has no vertex inside, so its triangles form a tree.
+        while let Some(e) = self.stack.pop() {
+            let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            let o = mesh.opposite(e);
+            let w = mesh.vertex(o);
+            let open = !mesh.is_marked(e) && w != mesh.infinite();
+            if open && incircle_canonical(at(v), at(u), at(w), p) == Sign::Positive {
+                self.triangles.push(triangle(o));
+                self.stack.extend([prev(o), next(o)]);
+            } else if orient2d(at(u), at(v), p) == Sign::Positive {
+                self.rim.push(e);
+            } else {
+                return Some(e);
+            }
+        }
+        None
+    }
+
+    /// Fills the cavity with the star of a new vertex at `p`; there is room for it. `caps` has the
+    /// largest double area of each triangle.
+    pub fn fill(&mut self, marked: &mut Marked, p: Point2, caps: &mut Vec<f64>) -> u32 {
+        let v = marked.count as u32;
+        marked.points[v as usize] = p;
+        marked.count += 1;
+        let triangles = marked.triangles();
+        let mut mesh = marked.mesh.resume(triangles);
+        let label = mesh.label(self.triangles[0]);
+        let cap = |caps: &[f64], t: &u32| caps[*t as usize];
+        let cap = (self.triangles.iter().map(|t| cap(caps, t))).fold(f64::INFINITY, f64::min);
+        self.sides.clear();
+        self.sides.extend(self.rim.iter().map(|&e| Side {
+            ends: [mesh.vertex(next(e)), mesh.vertex(prev(e))],
+            across: mesh.opposite(e),
+            marked: mesh.is_marked(e),
+        }));
+        self.triangles.extend([triangles - 2, triangles - 1]);
+        caps.resize(triangles as usize, cap);
+        for (&t, side) in self.triangles.iter().zip(&self.sides) {
+            mesh.set(t, [v, side.ends[0], side.ends[1]]);
+            mesh.set_marks(t, u32::from(side.marked));
+            mesh.set_label(t, label);
+            mesh.link(8 * t, side.across);
+            caps[t as usize] = cap;
+        }
+        let last = self.triangles[self.triangles.len() - 1];
+        let before = std::iter::once(&last).chain(&self.triangles);
+        for (&s, &t) in before.zip(&self.triangles) {
+            mesh.link(8 * s + 1, 8 * t + 2);
+        }
+        v
+    }
+}

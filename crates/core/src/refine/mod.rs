@@ -1,0 +1,168 @@
+//! Delaunay refinement: vertices are added to a constrained triangulation until no angle is small and
+//! no triangle is large, as far as the angles of the input allow.
+//!
+//! J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", Journal
+//! of Algorithms 18 (1995), with the diametral lenses of L. P. Chew, "Guaranteed-quality mesh
+//! generation for curved surfaces" (1993), the off-centres of A. Ungor (2004), and for small angles
+//! of the input the rule of G. L. Miller, S. E. Pav and N. J. Walkington, "When and why Delaunay
+//! refinement algorithms work", International Journal of Computational Geometry & Applications 15
+//! (2005): a thin triangle whose shortest edge spans two subsegments that meet in a corner, on one
+//! circle about it, stays.
+//!
+//! The order of work hangs on the mesh alone, so the result is the same every time.
+
+mod corners;
+mod insert;
+mod queue;
+mod shape;
+mod work;
+
+use delone_predicates::Point2;
+
+use self::work::Work;
+use crate::constrained::marked::Marked;
+use crate::delaunay2::lawson::compact;
+use crate::error::{Error, Result};
+use crate::memory::{filled, with_room};
+use crate::mesh2::{import, next, prev, triangle};
+use crate::watch::Watch;
+
+/// A constrained triangulation to be refined, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// Rows of coordinates.
+    pub points: &'a [Point2],
+    /// Triangles that tile the hull of the points.
+    pub simplices: &'a [[i32; 3]],
+    /// For each, a label of its part of the domain, the same on both sides of each edge that is no
+    /// segment; below 0 outside.
+    pub labels: &'a [i32],
+    /// For each, the largest area that its part may keep.
+    pub areas: &'a [f64],
+    /// Edges that are kept, as vertices.
+    pub segments: &'a [[u32; 2]],
+    /// For each, whether it may not be split.
+    pub frozen: &'a [bool],
+    /// No smaller angle is left, in degrees; below 60.
+    pub min_angle: f64,
+    /// Most vertices that may be added.
+    pub max_vertices: usize,
+}
+
+/// Which vertices were added for what.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// On segments.
+    pub segment: usize,
+    /// Inside, for angles.
+    pub angle: usize,
+    /// Inside, for sizes.
+    pub size: usize,
+}
+
+/// A refined triangulation of the hull, in rows of the points given, added vertices behind them.
+#[derive(Debug)]
+pub struct Refined {
+    /// Vertices added.
+    pub added: Vec<Point2>,
+    /// For each of those, the segment that it lies on, or -1.
+    pub on: Vec<i32>,
+    /// Triangles.
+    pub simplices: Vec<[i32; 3]>,
+    /// The triangle opposite each corner, -1 outside.
+    pub neighbors: Vec<[i32; 3]>,
+    /// For each corner the segment that the edge opposite is a part of, or -1.
+    pub sides: Vec<[i32; 3]>,
+    /// The label of each triangle; -1 outside of the domain.
+    pub labels: Vec<i32>,
+    /// Vertices by cause.
+    pub counts: Counts,
+    /// Whether the limit on vertices ended it.
+    pub exhausted: bool,
+}
+
+/// Refines a triangulation.
+pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
+    let (rows, own) = compact(task.points, task.simplices)?;
+    let mut points = with_room(rows.len() + 1)?;
+    points.extend(rows.iter().map(|&row| task.points[row as usize]));
+    points.push([f64::NAN; 2]);
+    let (mesh, _) = import::mesh(&own, rows.len())?;
+    let mut marked = Marked::new(mesh, points)?;
+    let mut place = filled(task.points.len(), u32::MAX)?;
+    for (v, &row) in (0..).zip(&rows) {
+        place[row as usize] = v;
+    }
+    let mut ends = with_room(task.segments.len())?;
+    ends.extend(
+        task.segments
+            .iter()
+            .map(|s| s.map(|row| place[row as usize])),
+    );
+    let mut caps = filled(marked.triangles() as usize, f64::INFINITY)?;
+    for (t, (&label, &area)) in (0..).zip(task.labels.iter().zip(task.areas)) {
+        // 0 is for ghosts and what lies outside.
+        marked.patch().set_label(t, (label + 1).max(0) as u32);
+        caps[t as usize] = 2.0 * area;
+    }
+    for &[u, v] in &ends {
+        if u.max(v) as usize >= rows.len() {
+            return Err(Error::Shape("a segment ends in no vertex".into()));
+        }
+        let e = marked.edge(u, v)?;
+        marked.patch().mark(e, true);
+    }
+    let mut work = Work::new(marked, caps, &ends, task)?;
+    let exhausted = !work.run(watch)?;
+    export(work, &rows, task.points.len(), exhausted)
+}
+
+/// Everything in rows.
+fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result<Refined> {
+    let count = work.marked.count;
+    let mut row_of = with_room(count)?;
+    row_of.extend_from_slice(rows);
+    row_of.extend((given as u32..).take(count - rows.len()));
+    let added = work.marked.points[rows.len()..count].to_vec();
+    let on = work.on[rows.len()..count].to_vec();
+    let triangles = work.marked.triangles();
+    let mesh = work.marked.patch();
+    let mut number = filled(triangles as usize, -1)?;
+    let infinite = mesh.infinite();
+    let finite = |t: &u32| !mesh.corners(*t).contains(&infinite);
+    let all: Vec<u32> = (0..triangles).filter(finite).collect();
+    for (i, &t) in (0..).zip(&all) {
+        number[t as usize] = i;
+    }
+    let mut out = Refined {
+        added,
+        on,
+        simplices: with_room(all.len())?,
+        neighbors: with_room(all.len())?,
+        sides: with_room(all.len())?,
+        labels: with_room(all.len())?,
+        counts: work.counts,
+        exhausted,
+    };
+    for &t in &all {
+        let codes = [8 * t, 8 * t + 1, 8 * t + 2];
+        let corners = mesh.corners(t).map(|v| row_of[v as usize] as i32);
+        out.simplices.push(corners);
+        let across = codes.map(|e| number[triangle(mesh.opposite(e)) as usize]);
+        out.neighbors.push(across);
+        out.labels.push(mesh.label(t) as i32 - 1);
+    }
+    for &t in &all {
+        let codes = [8 * t, 8 * t + 1, 8 * t + 2];
+        let mut sides = [-1; 3];
+        for (side, e) in sides.iter_mut().zip(codes) {
+            let mesh = work.marked.patch();
+            if mesh.is_marked(e) {
+                let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+                *side = work.segment_of(ends);
+            }
+        }
+        out.sides.push(sides);
+    }
+    Ok(out)
+}

@@ -1,0 +1,372 @@
+//! The loop of the refinement: encroached subsegments first, then the bad triangle with the shortest
+//! edge. A vertex that is to mend a triangle but lies beyond a subsegment or in the lens of one is
+//! not inserted; the subsegment is split instead.
+//!
+//! With angles up to about 26 degrees, and no sharp corner, each new edge is as long as a fixed part
+//! of what is there already, so it ends; with sharp corners the circles about them and the rule for
+//! triangles that span them do the same. Beyond that, up to some 34 degrees, it ends in practice, and
+//! a limit on vertices ends it in any case.
+
+use std::collections::HashMap;
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::insert::{Cavity, Walk, walk};
+use super::queue::{Bad, Queue};
+use super::shape::{Reason, Seen, Shape};
+use super::{Counts, Task, corners};
+use crate::constrained::conforming::cut;
+use crate::constrained::marked::{Marked, turn};
+use crate::error::Result;
+use crate::memory::{filled, with_room};
+use crate::mesh2::{Code, next, prev, triangle};
+use crate::watch::Watch;
+
+/// Vertices between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 12;
+
+/// Radii about a corner are one if they differ by less.
+const SAME_SHELL: f64 = 1e-3;
+
+/// A subsegment as it was when it was put aside.
+#[derive(Debug, Clone, Copy)]
+struct Waiting {
+    edge: Code,
+    ends: [u32; 2],
+}
+
+/// The state.
+pub struct Work<'a> {
+    pub marked: Marked,
+    /// Twice the largest area of each triangle.
+    caps: Vec<f64>,
+    /// For each vertex the segment that it was put on, or -1.
+    pub on: Vec<i32>,
+    pub counts: Counts,
+    task: Task<'a>,
+    /// The segments as vertices.
+    ends: &'a [[u32; 2]],
+    /// The segment between two vertices of the input.
+    between: HashMap<[u32; 2], i32>,
+    sharp: Vec<bool>,
+    shape: Shape,
+    queue: Queue,
+    encroached: Vec<Waiting>,
+    cavity: Cavity,
+    /// Vertices of the input.
+    own: usize,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(
+        marked: Marked,
+        caps: Vec<f64>,
+        ends: &'a [[u32; 2]],
+        task: Task<'a>,
+    ) -> Result<Self> {
+        let own = marked.count;
+        let key = |&[u, v]: &[u32; 2]| [u.min(v), u.max(v)];
+        Ok(Self {
+            caps,
+            on: filled(own, -1)?,
+            counts: Counts::default(),
+            task,
+            ends,
+            between: (0..).zip(ends).map(|(i, e)| (key(e), i)).collect(),
+            sharp: corners::sharp(&marked.points, ends, own)?,
+            shape: Shape::new(task.min_angle),
+            queue: Queue::default(),
+            encroached: with_room(64)?,
+            cavity: Cavity::default(),
+            own,
+            marked,
+        })
+    }
+
+    /// Works until nothing is bad; false where the limit on vertices came first.
+    pub fn run(&mut self, watch: &Watch) -> Result<bool> {
+        for t in 0..self.marked.triangles() {
+            self.judge(t);
+            for e in 8 * t..8 * t + 3 {
+                self.look(e);
+            }
+        }
+        let mut until_watch = 1;
+        loop {
+            until_watch -= 1;
+            if until_watch == 0 {
+                watch.check()?;
+                until_watch = WATCH_EVERY;
+            }
+            if self.marked.count - self.own >= self.task.max_vertices {
+                return Ok(false);
+            }
+            if let Some(waiting) = self.encroached.pop() {
+                if self.stands(&waiting) && self.is_encroached(waiting.edge) {
+                    self.split(waiting.edge)?;
+                }
+            } else if let Some(bad) = self.queue.pop() {
+                if self.marked.patch().corners(bad.triangle) == bad.corners {
+                    self.improve(bad.triangle)?;
+                }
+            } else {
+                return Ok(true);
+            }
+        }
+    }
+
+    fn at(&self, v: u32) -> Point2 {
+        self.marked.points[v as usize]
+    }
+
+    fn points_of(&mut self, t: u32) -> [Point2; 3] {
+        let corners = self.marked.patch().corners(t);
+        corners.map(|v| self.marked.points[v as usize])
+    }
+
+    /// The segment that an edge between two vertices is a part of, or -1.
+    pub fn segment_of(&self, [u, v]: [u32; 2]) -> i32 {
+        // One that was put on a segment is on no other.
+        let on = self.on[u as usize].max(self.on[v as usize]);
+        if on >= 0 {
+            return on;
+        }
+        let key = [u.min(v), u.max(v)];
+        self.between.get(&key).copied().unwrap_or(-1)
+    }
+
+    /// Puts a triangle in the queue if it is bad.
+    fn judge(&mut self, t: u32) {
+        let mesh = self.marked.patch();
+        if mesh.label(t) == 0 {
+            return;
+        }
+        let corners = mesh.corners(t);
+        let seen = self.shape.see(corners.map(|v| self.at(v)));
+        if self.shape.fault(&seen, self.caps[t as usize]).is_some() {
+            let bad = Bad {
+                triangle: t,
+                corners,
+            };
+            self.queue.push(bad, seen.shortest);
+        }
+    }
+
+    /// Puts the edge `e` aside if it is a subsegment upon which its apex encroaches.
+    fn look(&mut self, e: Code) {
+        let mesh = self.marked.patch();
+        if mesh.is_marked(e) && self.encroaches(e) {
+            let mesh = self.marked.patch();
+            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            self.encroached.push(Waiting { edge: e, ends });
+        }
+    }
+
+    /// Whether the apex of `e`, in a triangle inside, lies in the lens of e.
+    fn encroaches(&mut self, e: Code) -> bool {
+        let mesh = self.marked.patch();
+        if mesh.label(triangle(e)) == 0 {
+            return false;
+        }
+        let [p, q, r] = [next(e), prev(e), e].map(|c| mesh.vertex(c));
+        self.shape.in_lens(self.at(p), self.at(q), self.at(r))
+    }
+
+    fn is_encroached(&mut self, e: Code) -> bool {
+        let o = self.marked.patch().opposite(e);
+        self.encroaches(e) || self.encroaches(o)
+    }
+
+    /// Whether an edge is still what it was.
+    fn stands(&mut self, waiting: &Waiting) -> bool {
+        let (mesh, e) = (self.marked.patch(), waiting.edge);
+        mesh.is_marked(e) && [next(e), prev(e)].map(|c| mesh.vertex(c)) == waiting.ends
+    }
+
+    /// Splits the subsegment `e`; false where it may not or cannot be.
+    fn split(&mut self, e: Code) -> Result<bool> {
+        let mesh = self.marked.patch();
+        let o = mesh.opposite(e);
+        let inf = mesh.infinite();
+        let [u, v, p, q] = [next(e), prev(e), e, o].map(|c| mesh.vertex(c));
+        let segment = self.segment_of([u, v]);
+        if segment >= 0 && self.task.frozen[segment as usize] {
+            return Ok(false);
+        }
+        let x = self.cut_of(u, v);
+        let [a, b] = [u, v].map(|v| self.at(v));
+        // The rounded point may lie beside the edge, but not beyond its triangles.
+        let holds = |apex: u32, [a, b]: [Point2; 2]| {
+            let at = self.at(apex);
+            apex == inf
+                || orient2d(a, x, at) == Sign::Positive && orient2d(x, b, at) == Sign::Positive
+        };
+        if x == a || x == b || !holds(p, [a, b]) || !holds(q, [b, a]) {
+            return Ok(false);
+        }
+        self.marked.grow()?;
+        let w = self.marked.count as u32;
+        self.marked.points[w as usize] = x;
+        let mut mesh = self.marked.patch();
+        let star = mesh.split_marked_edge(e, w);
+        self.marked.count += 1;
+        self.marked.near.push(0);
+        self.on.push(segment);
+        let [_, r, _, s] = star.map(triangle);
+        self.caps.resize(self.marked.triangles() as usize, 0.0);
+        self.caps[r as usize] = self.caps[triangle(e) as usize];
+        self.caps[s as usize] = self.caps[triangle(o) as usize];
+        self.settle(w, star)?;
+        self.counts.segment += 1;
+        self.greet(w);
+        Ok(true)
+    }
+
+    fn cut_of(&self, u: u32, v: u32) -> Point2 {
+        let corner = |v: u32| (v as usize) < self.own && self.sharp[v as usize];
+        let [u, v] = if corner(u) { [u, v] } else { [v, u] };
+        cut(self.at(u), self.at(v), corner(u) && !corner(v))
+    }
+
+    /// Flips edges until all are Delaunay again, from those of the star of a new vertex on.
+    fn settle(&mut self, w: u32, star: [Code; 4]) -> Result<()> {
+        self.marked.near[w as usize] = star[0];
+        self.marked.stack.clear();
+        self.marked.stack.extend(star);
+        let caps = &mut self.caps;
+        self.marked.legalise_with(|s, t| {
+            let cap = caps[s as usize].min(caps[t as usize]);
+            (caps[s as usize], caps[t as usize]) = (cap, cap);
+        })
+    }
+
+    /// Looks at all triangles of a new vertex.
+    fn greet(&mut self, w: u32) {
+        let start = self.marked.near[w as usize];
+        let mut corner = start;
+        loop {
+            self.judge(triangle(corner));
+            for e in [corner, next(corner)] {
+                self.look(e);
+                let o = self.marked.patch().opposite(e);
+                self.look(o);
+            }
+            corner = turn(&self.marked.patch(), corner);
+            if corner == start {
+                return;
+            }
+        }
+    }
+
+    /// Mends a bad triangle, or splits what keeps it from being mended.
+    fn improve(&mut self, t: u32) -> Result<()> {
+        let points = self.points_of(t);
+        let seen = self.shape.see(points);
+        let Some(reason) = self.shape.fault(&seen, self.caps[t as usize]) else {
+            return Ok(());
+        };
+        if reason == Reason::Angle && self.is_forced(t, &seen) {
+            return self.improve_size(t, points, &seen);
+        }
+        let p = self.shape.cure(points, &seen, reason);
+        self.try_vertex(t, p, reason)
+    }
+
+    /// A triangle whose angle cannot be mended may still be too large.
+    fn improve_size(&mut self, t: u32, points: [Point2; 3], seen: &Seen) -> Result<()> {
+        if seen.area2 <= self.caps[t as usize] {
+            return Ok(());
+        }
+        let p = self.shape.cure(points, seen, Reason::Size);
+        self.try_vertex(t, p, Reason::Size)
+    }
+
+    fn try_vertex(&mut self, t: u32, p: Point2, reason: Reason) -> Result<()> {
+        if !(p[0].is_finite() && p[1].is_finite()) {
+            return Ok(());
+        }
+        let home = match walk(&mut self.marked, t, p) {
+            Walk::Home(home) => home,
+            Walk::Blocked(e) => return self.yield_to(t, &[e]),
+            Walk::Lost => return Ok(()),
+        };
+        if let Some(e) = self.cavity.dig(&mut self.marked, home, p) {
+            return self.yield_to(t, &[e]);
+        }
+        let triangles = self.marked.triangles();
+        let (mesh, points) = (self.marked.mesh.resume(triangles), &self.marked.points);
+        let encroached = |e: &Code| {
+            let [u, v] = [next(*e), prev(*e)].map(|c| points[mesh.vertex(c) as usize]);
+            mesh.is_marked(*e) && self.shape.in_lens(u, v, p)
+        };
+        let rim = self.cavity.rim.iter().copied();
+        let near: Vec<Code> = rim.filter(encroached).collect();
+        if !near.is_empty() {
+            return self.yield_to(t, &near);
+        }
+        self.marked.grow()?;
+        let v = self.cavity.fill(&mut self.marked, p, &mut self.caps);
+        self.marked.near.push(8 * self.cavity.triangles[0]);
+        self.on.push(-1);
+        match reason {
+            Reason::Angle => self.counts.angle += 1,
+            Reason::Size => self.counts.size += 1,
+        }
+        for i in 0..self.cavity.triangles.len() {
+            self.judge(self.cavity.triangles[i]);
+        }
+        debug_assert!(v as usize + 1 == self.marked.count);
+        Ok(())
+    }
+
+    /// Splits subsegments that keep a vertex from mending triangle `t`, which is judged again.
+    fn yield_to(&mut self, t: u32, walls: &[Code]) -> Result<()> {
+        let corners = self.marked.patch().corners(t);
+        let mesh = self.marked.patch();
+        let waiting: Vec<Waiting> = walls
+            .iter()
+            .filter(|&&edge| mesh.is_marked(edge))
+            .map(|&edge| Waiting {
+                edge,
+                ends: [next(edge), prev(edge)].map(|c| mesh.vertex(c)),
+            })
+            .collect();
+        let mut parted = false;
+        for w in waiting {
+            // A split before may have flipped triangles round, but it moves no other subsegment
+            // unless it encroaches upon it.
+            if self.stands(&w) {
+                parted |= self.split(w.edge)?;
+            }
+        }
+        if parted && self.marked.patch().corners(t) == corners {
+            self.judge(t);
+        }
+        Ok(())
+    }
+
+    /// Whether the smallest angle of a triangle is forced by the input: it lies between two
+    /// subsegments, or its shortest edge joins two that meet in a corner, on one circle about it.
+    fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
+        let mesh = self.marked.patch();
+        let apex = 8 * t + seen.apex as u32;
+        if mesh.is_marked(next(apex)) && mesh.is_marked(prev(apex)) {
+            return true;
+        }
+        let [u, v] = [next(apex), prev(apex)].map(|c| mesh.vertex(c));
+        let [s, r] = [u, v].map(|v| self.on[v as usize]);
+        if s < 0 || r < 0 || s == r {
+            return false;
+        }
+        let [s, r] = [s, r].map(|i| self.ends[i as usize]);
+        let Some(corner) = s.into_iter().find(|v| r.contains(v)) else {
+            return false;
+        };
+        let c = self.at(corner);
+        let [d, e] = [u, v].map(|v| {
+            let p = self.at(v);
+            (p[0] - c[0]).hypot(p[1] - c[1])
+        });
+        (d - e).abs() <= SAME_SHELL * d.max(e)
+    }
+}
