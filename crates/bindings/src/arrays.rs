@@ -1,6 +1,7 @@
 //! NumPy arrays as slices of small arrays and back, without a copy.
 
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::ndarray::{Dimension, IntoDimension};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use delone_core::error::{Error, Result};
@@ -47,4 +48,24 @@ pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> P
 /// A vector as a one-dimensional array that owns it.
 pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyAny> {
     PyArray1::from_vec(py, values).into_any().unbind()
+}
+
+/// The items of a C-contiguous array of any shape, row after row.
+pub fn flat<'a, T: Element, D: Dimension>(
+    array: &'a PyReadonlyArray<'_, T, D>,
+    name: &str,
+) -> Result<&'a [T]> {
+    array
+        .as_slice()
+        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
+}
+
+/// A vector as an array of the shape that has as many items.
+pub fn shaped<T: Element, S: IntoDimension>(
+    py: Python<'_>,
+    values: Vec<T>,
+    shape: S,
+) -> PyResult<Py<PyAny>> {
+    let array = PyArray1::from_vec(py, values).reshape(shape)?;
+    Ok(array.into_any().unbind())
 }

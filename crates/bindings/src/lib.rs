@@ -2,11 +2,16 @@
 //! No algorithm lives here.
 
 mod arrays;
+mod constrained;
 mod errors;
+mod interpolate;
 mod lawson;
+mod locate;
 mod predicates;
+mod refine;
 mod signals;
 mod triangulation;
+mod voronoi;
 
 use pyo3::prelude::*;
 
@@ -21,8 +26,22 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;
-    m.add_function(wrap_pyfunction!(triangulation::find_simplex2, m)?)?;
+    m.add_function(wrap_pyfunction!(locate::find_simplex2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
+    m.add_class::<locate::Locator2>()?;
+    m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;
+    m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
+    m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
+    m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::neighbors2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::voronoi2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::voronoi_clip2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::measures2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::regular2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::periodic2, m)?)?;
     Ok(())
 }

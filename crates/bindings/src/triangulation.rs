@@ -1,6 +1,5 @@
 //! Triangulations as arrays.
 
-use delone_core::delaunay2::locate::find;
 use delone_core::delaunay2::validate::{Findings, Given, validate};
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::error::{Error, Result};
@@ -88,7 +87,7 @@ fn given<'a>(
 }
 
 /// Borrowed arrays whose indices have been checked, which takes a look at each.
-fn checked<'a>(
+pub fn checked<'a>(
     points: &'a PyReadonlyArray2<'_, f64>,
     simplices: &'a PyReadonlyArray2<'_, i32>,
     neighbors: &'a PyReadonlyArray2<'_, i32>,
@@ -148,20 +147,4 @@ pub fn validate2<'py>(
         report.set_item(name, table::<i32, 2>(py, pairs)?)?;
     }
     Ok(report)
-}
-
-/// For each query the triangle that holds it, or -1.
-#[pyfunction]
-pub fn find_simplex2(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    xi: PyReadonlyArray2<'_, f64>,
-    workers: usize,
-) -> PyResult<Py<PyAny>> {
-    let given = given(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
-    let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-    let found = watched(py, |watch| find(given, queries, workers, watch))?;
-    Ok(column(py, found))
 }

@@ -3,13 +3,20 @@
 //! Knows nothing of Python. Data flows one way: `points` and `order` feed `delaunay2`, which fills a
 //! `mesh2`; consumers read that mesh and hand arrays out.
 
+pub mod constrained;
 pub mod delaunay2;
 pub mod error;
+pub mod interpolate;
+pub mod locate;
 pub mod memory;
 pub mod mesh2;
 pub mod order;
 mod parallel;
 pub mod points;
+pub mod refine;
+pub mod regular;
+pub mod voronoi;
 pub mod watch;
+mod wide;
 
 pub use delone_predicates::{Point2, Point3};

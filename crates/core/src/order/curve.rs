@@ -10,11 +10,15 @@ use delone_predicates::{Point2, lexicographic};
 use super::{hilbert, radix};
 use crate::error::Result;
 use crate::memory::{clear_with_room, with_room};
+use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 
 /// Longest run of equal keys that is sorted lexicographically and not keyed again.
 const CROWD: usize = 16;
+
+/// Fewest points that a thread is worth in [`order_of`].
+const SHARE: usize = 1 << 14;
 
 /// Cells of a box: 65536 to the longer side.
 struct Cells {
@@ -74,11 +78,7 @@ pub fn along_curve(
     watch: &Watch,
 ) -> Result<(usize, Vec<[u32; 2]>)> {
     let cells = Cells::of(&Extent::of(points.iter().copied()));
-    // Keys finer than about 16 cells a point cost passes and gain nothing: runs are few.
-    let fine = (usize::BITS - points.len().leading_zeros() + 4)
-        .next_multiple_of(8)
-        .min(32);
-    let low_bit = 32 - fine;
+    let low_bit = 32 - fine_bits(points.len());
     let mask = u64::MAX << (32 + low_bit);
     let Scratch {
         items,
@@ -105,15 +105,70 @@ pub fn along_curve(
     Ok((to.len(), duplicates))
 }
 
-/// The rows of the finite points along the curve; for points of which nothing is built.
-pub fn order_of(points: &[Point2]) -> Result<Vec<u32>> {
-    let finite = |p: &Point2| p[0].is_finite() && p[1].is_finite();
-    let cells = Cells::of(&Extent::of(points.iter().copied().filter(finite)));
-    let mut items = with_room(points.len())?;
-    let rows = (0u64..).zip(points).filter(|(_, p)| finite(p));
-    items.extend(rows.map(|(i, &p)| cells.key(p) << 32 | i));
-    radix::sort(&mut items, &mut Vec::new(), 0)?;
-    Ok(items.into_iter().map(|item| row(item) as u32).collect())
+/// The rows of the finite points along the curve, in parts of which each follows the one before;
+/// for points of which nothing is built. Whoever comes first among points of one cell is open.
+pub fn order_of(points: &[Point2], workers: usize) -> Result<Vec<Vec<u32>>> {
+    let share = points.len().div_ceil(workers.max(1)).max(SHARE);
+    let shares = || points.chunks(share).collect::<Vec<_>>();
+    let extents = parallel::map(workers, shares(), |share| {
+        Extent::of(share.iter().copied().filter(is_finite))
+    });
+    let extent = Extent::of(extents.iter().flat_map(|e| [e.min, e.max]).filter(is_finite));
+    let cells = Cells::of(&extent);
+    let low_bit = 32 - fine_bits(points.len());
+    let mask = u64::MAX << (32 + low_bit);
+    let tasks = (0u64..).step_by(share).zip(shares()).collect();
+    let sorted = parallel::map(workers, tasks, |(first, share)| {
+        let mut items = with_room(share.len())?;
+        let rows = (first..).zip(share).filter(|(_, p)| is_finite(p));
+        items.extend(rows.map(|(i, &p)| cells.key(p) << 32 & mask | i));
+        radix::sort(&mut items, &mut Vec::new(), low_bit)?;
+        Ok(items)
+    });
+    let sorted = sorted.into_iter().collect::<Result<Vec<Vec<u64>>>>()?;
+    let tasks = if sorted.len() > 1 { 4 * workers as u64 } else { 1 };
+    let cut = |part: u64| ((u128::from(part) << 64) / u128::from(tasks)) as u64;
+    let parts = parallel::map(workers, (0..tasks).collect(), |part| {
+        let within = |items: &[u64]| {
+            let place = |cut| items.partition_point(|&item| item < cut);
+            let end = if part + 1 < tasks { place(cut(part + 1)) } else { items.len() };
+            place(cut(part))..end
+        };
+        let mut items = with_room(sorted.iter().map(|s| within(s).len()).sum())?;
+        for share in &sorted {
+            items.extend_from_slice(&share[within(share)]);
+        }
+        if sorted.len() > 1 {
+            // Its few runs ascend, and it merges them.
+            items.sort();
+        }
+        order_crowds(points, &mut items);
+        let mut rows = with_room(items.len())?;
+        rows.extend(items.into_iter().map(|item| row(item) as u32));
+        Ok(rows)
+    });
+    parts.into_iter().collect()
+}
+
+fn is_finite(p: &Point2) -> bool {
+    p[0].is_finite() && p[1].is_finite()
+}
+
+/// Bits of a key that are worth sorting by: keys finer than about 16 cells a point cost passes and
+/// gain nothing, as runs are few.
+fn fine_bits(points: usize) -> u32 {
+    (usize::BITS - points.leading_zeros() + 4)
+        .next_multiple_of(8)
+        .min(32)
+}
+
+/// Orders the items of each cell that holds many points.
+fn order_crowds(points: &[Point2], items: &mut [u64]) {
+    for run in items.chunk_by_mut(|i, j| i >> 32 == j >> 32) {
+        if run.len() > CROWD {
+            order_runs(points, run);
+        }
+    }
 }
 
 fn row(item: u64) -> usize {

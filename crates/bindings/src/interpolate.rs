@@ -1,0 +1,304 @@
+//! Interpolation: the bodies of the methods of `Locator2`, and functions beside it.
+
+use delone_core::Point2;
+use delone_core::error::{Error, Result};
+use delone_core::interpolate::{
+    Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table, clough_tocher,
+    clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
+    natural_values,
+};
+use numpy::{
+    PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{column, flat, rows, shaped};
+use crate::errors::raise;
+use crate::locate::Locator2;
+use crate::triangulation::watched;
+
+/// Columns of values.
+pub type Values<'py> = PyReadonlyArray2<'py, f64>;
+/// Rows of points.
+pub type Points<'py> = PyReadonlyArray2<'py, f64>;
+/// A gradient for each value.
+pub type Gradients<'py> = PyReadonlyArray3<'py, f64>;
+/// Closed edges.
+pub type Closed<'py> = PyReadonlyArray2<'py, bool>;
+
+/// An array.
+type Array = Py<PyAny>;
+
+fn order_of(order: usize) -> PyResult<Order> {
+    Order::of(order).ok_or_else(|| PyValueError::new_err("order must be 0, 1 or 2"))
+}
+
+fn kind_of(kind: &str) -> PyResult<Kind> {
+    let names = Kind::NAMES.map(|(name, _)| name);
+    let message = || PyValueError::new_err(format!("kind must be one of {names:?}, got {kind:?}"));
+    Kind::named(kind).ok_or_else(message)
+}
+
+/// The barrier, empty for none; a row for each triangle.
+fn barrier_of<'a>(barrier: Option<&'a Closed<'_>>, triangles: usize) -> Result<Barrier<'a>> {
+    let Some(array) = barrier else {
+        return Ok(&[]);
+    };
+    let closed = rows(array, "barrier")?;
+    if closed.len() == triangles {
+        Ok(closed)
+    } else {
+        Err(Error::Shape("barrier needs a row for each triangle".into()))
+    }
+}
+
+/// A result of `columns` columns, by order of derivatives.
+fn table_of(
+    py: Python<'_>,
+    found: Vec<f64>,
+    queries: usize,
+    columns: usize,
+    order: Order,
+) -> PyResult<Array> {
+    match order {
+        Order::Value => shaped(py, found, [queries, columns]),
+        _ => shaped(py, found, [queries, columns, order.components()]),
+    }
+}
+
+/// Linear interpolation.
+pub fn linear_of(
+    py: Python<'_>,
+    locator: &Locator2,
+    values: &Values<'_>,
+    xi: &Points<'_>,
+    order: usize,
+    workers: usize,
+) -> PyResult<Array> {
+    let order = order_of(order)?;
+    let fail = |e: Error| raise(py, &e);
+    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
+    let columns = values.shape()[1];
+    let items = flat(values, "values").map_err(fail)?;
+    let found = locator.run(py, queries.len(), |at, watch| {
+        let field = Field::new(&at.given, items, None, columns)?;
+        linear(at, field, queries, order, workers, watch)
+    })?;
+    table_of(py, found, queries.len(), columns, order)
+}
+
+/// What Clough-Tocher interpolation and natural neighbours are given.
+pub struct Smooth<'a, 'py> {
+    /// Columns of values.
+    pub values: &'a Values<'py>,
+    /// A gradient for each.
+    pub gradients: Option<&'a Gradients<'py>>,
+    /// The queries.
+    pub xi: &'a Points<'py>,
+    /// Closed edges.
+    pub barrier: Option<&'a Closed<'py>>,
+    /// Which derivatives.
+    pub order: usize,
+    /// How many threads.
+    pub workers: usize,
+}
+
+/// Clough-Tocher interpolation, or natural neighbours of a kind.
+pub fn smooth_of(
+    py: Python<'_>,
+    locator: &Locator2,
+    kind: Option<&str>,
+    given: Smooth<'_, '_>,
+) -> PyResult<Array> {
+    let order = order_of(given.order)?;
+    let kind = kind.map(kind_of).transpose()?;
+    let fail = |e: Error| raise(py, &e);
+    let queries: &[Point2] = rows(given.xi, "xi").map_err(fail)?;
+    let columns = given.values.shape()[1];
+    let items = flat(given.values, "values").map_err(fail)?;
+    let slopes = given.gradients.map(|g| flat(g, "gradients"));
+    let slopes = slopes.transpose().map_err(fail)?;
+    if slopes.is_none() && kind.is_none_or(Kind::is_smooth) {
+        return Err(PyValueError::new_err("this kind needs gradients"));
+    }
+    let barrier = barrier_of(given.barrier, locator.triangles(py)).map_err(fail)?;
+    let workers = given.workers;
+    let found = locator.run(py, queries.len(), |at, watch| {
+        let field = Field::new(&at.given, items, slopes, columns)?;
+        match kind {
+            None => clough_tocher(at, field, queries, barrier, order, workers, watch),
+            Some(kind) => natural_values(at, kind, field, queries, barrier, order, workers, watch),
+        }
+    })?;
+    table_of(py, found, queries.len(), columns, order)
+}
+
+/// `(triangle, weights, slopes)` of Clough-Tocher interpolation.
+pub fn corner_weights_of(
+    py: Python<'_>,
+    locator: &Locator2,
+    xi: &Points<'_>,
+    barrier: Option<&Closed<'_>>,
+    workers: usize,
+) -> PyResult<(Array, Array, Array)> {
+    let fail = |e: Error| raise(py, &e);
+    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
+    let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
+    let n = queries.len();
+    let found = locator.run(py, n, |at, watch| {
+        clough_tocher_weights(at, queries, barrier, workers, watch)
+    })?;
+    Ok((
+        column(py, found.triangle),
+        shaped(py, found.weights, [n, 3])?,
+        shaped(py, found.slopes, [n, 3, 2])?,
+    ))
+}
+
+/// `(indptr, indices, weights, slopes, triangle)` of natural neighbours.
+pub type Neighbours = (Array, Array, Array, Option<Array>, Array);
+
+/// The weights of natural neighbours.
+pub fn natural_of(
+    py: Python<'_>,
+    locator: &Locator2,
+    kind: &str,
+    xi: &Points<'_>,
+    barrier: Option<&Closed<'_>>,
+    workers: usize,
+) -> PyResult<Neighbours> {
+    let kind = kind_of(kind)?;
+    let fail = |e: Error| raise(py, &e);
+    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
+    let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
+    let (found, triangle) = locator.run(py, queries.len(), |at, watch| {
+        natural(at, kind, queries, barrier, workers, watch)
+    })?;
+    let entries = found.indices.len();
+    let slopes = if kind.is_smooth() {
+        Some(shaped(py, found.slopes, [entries, 2])?)
+    } else {
+        None
+    };
+    Ok((
+        column(py, found.indptr),
+        column(py, found.indices),
+        column(py, found.weights),
+        slopes,
+        column(py, triangle),
+    ))
+}
+
+/// `(indptr, indices, weights)` of all other vertices, for each.
+pub fn leave_one_out_of(
+    py: Python<'_>,
+    locator: &Locator2,
+    kind: &str,
+    workers: usize,
+) -> PyResult<(Array, Array, Array)> {
+    let method = Method::named(kind)
+        .ok_or_else(|| PyValueError::new_err(format!("nothing to leave out for {kind:?}")))?;
+    let Rows {
+        indptr,
+        indices,
+        weights,
+        ..
+    } = locator.run(py, usize::MAX, |at, watch| {
+        leave_one_out(at.given, method, workers, watch)
+    })?;
+    Ok((
+        column(py, indptr),
+        column(py, indices),
+        column(py, weights),
+    ))
+}
+
+/// Sums of weights times values, row by row.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+pub fn combine2(
+    py: Python<'_>,
+    indptr: PyReadonlyArray1<'_, i64>,
+    indices: PyReadonlyArray1<'_, i32>,
+    weights: PyReadonlyArray1<'_, f64>,
+    values: Values<'_>,
+    slopes: Option<PyReadonlyArray2<'_, f64>>,
+    gradients: Option<Gradients<'_>>,
+    workers: usize,
+) -> PyResult<Array> {
+    let fail = |e: Error| raise(py, &e);
+    let [n, columns] = [0, 1].map(|k| values.shape()[k]);
+    let slopes = slopes.as_ref().map(|s| rows(s, "slopes"));
+    let gradients = gradients.as_ref().map(|g| flat(g, "gradients"));
+    let table = Table {
+        indptr: flat(&indptr, "indptr").map_err(fail)?,
+        indices: flat(&indices, "indices").map_err(fail)?,
+        weights: flat(&weights, "weights").map_err(fail)?,
+        slopes: slopes.transpose().map_err(fail)?,
+    };
+    let gradients = gradients.transpose().map_err(fail)?;
+    if table.slopes.is_some() != gradients.is_some() {
+        return Err(PyValueError::new_err("slopes and gradients go together"));
+    }
+    let items = flat(&values, "values").map_err(fail)?;
+    let field = Field::of_rows(n, items, gradients, columns).map_err(fail)?;
+    let found = watched(py, |watch| table.combine(n, field, workers, watch))?;
+    shaped(py, found, [indptr.shape()[0].saturating_sub(1), columns])
+}
+
+/// Gradients of least bending, and the sweeps for each column.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+pub fn gradients_global2(
+    py: Python<'_>,
+    points: Points<'_>,
+    indptr: PyReadonlyArray1<'_, i32>,
+    indices: PyReadonlyArray1<'_, i32>,
+    values: Values<'_>,
+    tol: f64,
+    maxiter: usize,
+    workers: usize,
+) -> PyResult<(Array, Array)> {
+    let fail = |e: Error| raise(py, &e);
+    let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
+    let (n, columns) = (rows.len(), values.shape()[1]);
+    let starts = flat(&indptr, "indptr").map_err(fail)?;
+    let ends = flat(&indices, "indices").map_err(fail)?;
+    let items = flat(&values, "values").map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let (found, sweeps) = watched(py, |watch| {
+        let edges = Adjacency::new(n, starts, ends)?;
+        global_gradients(rows, edges, field, tol, maxiter, workers, watch)
+    })?;
+    Ok((shaped(py, found, [n, columns, 2])?, column(py, sweeps)))
+}
+
+/// Gradients of polynomials fitted around each vertex.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+pub fn gradients_local2(
+    py: Python<'_>,
+    points: Points<'_>,
+    indptr: PyReadonlyArray1<'_, i32>,
+    indices: PyReadonlyArray1<'_, i32>,
+    values: Values<'_>,
+    degree: usize,
+    workers: usize,
+) -> PyResult<Array> {
+    let fail = |e: Error| raise(py, &e);
+    if !(1..=2).contains(&degree) {
+        return Err(PyValueError::new_err("degree must be 1 or 2"));
+    }
+    let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
+    let (n, columns) = (rows.len(), values.shape()[1]);
+    let starts = flat(&indptr, "indptr").map_err(fail)?;
+    let ends = flat(&indices, "indices").map_err(fail)?;
+    let items = flat(&values, "values").map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let found = watched(py, |watch| {
+        let edges = Adjacency::new(n, starts, ends)?;
+        local_gradients(rows, edges, field, degree, workers, watch)
+    })?;
+    shaped(py, found, [n, columns, 2])
+}

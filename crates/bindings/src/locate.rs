@@ -1,0 +1,279 @@
+//! Point location on arrays.
+
+use delone_core::delaunay2::validate::Given;
+use delone_core::error::{Error, Result};
+use delone_core::locate::{Kept, Locator, along, coordinates, find, nearest};
+use delone_core::watch::Watch;
+use numpy::{
+    PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+
+use crate::arrays::{column, rows, shaped};
+use crate::errors::{detached, raise};
+use crate::interpolate::{
+    Closed, Gradients, Neighbours, Points, Smooth, Values, corner_weights_of, leave_one_out_of,
+    linear_of, natural_of, smooth_of,
+};
+use crate::triangulation::{checked, watched};
+
+/// Queries below which a call keeps the GIL: it is over before another thread could run.
+const FEW: usize = 16;
+
+/// A triangulation for many calls: its arrays, which never change, and a tree of starts.
+#[pyclass(frozen, module = "delone._core")]
+pub struct Locator2 {
+    points: Py<PyArray2<f64>>,
+    simplices: Py<PyArray2<i32>>,
+    neighbors: Py<PyArray2<i32>>,
+    kept: Kept,
+}
+
+/// The arrays of a locator, borrowed from Python for one call.
+pub struct Borrowed<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
+}
+
+impl Borrowed<'_> {
+    /// The arrays; the constructor has checked them.
+    pub fn given(&self) -> Result<Given<'_>> {
+        Ok(Given {
+            points: rows(&self.points, "points")?,
+            simplices: rows(&self.simplices, "simplices")?,
+            neighbors: rows(&self.neighbors, "neighbors")?,
+        })
+    }
+}
+
+/// `(triangle, weights, beside, edge, along)`.
+type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+impl Locator2 {
+    /// Borrows the arrays.
+    pub fn borrow<'py>(&self, py: Python<'py>) -> PyResult<Borrowed<'py>> {
+        Ok(Borrowed {
+            points: self.points.bind(py).try_readonly()?,
+            simplices: self.simplices.bind(py).try_readonly()?,
+            neighbors: self.neighbors.bind(py).try_readonly()?,
+        })
+    }
+
+    /// The number of triangles.
+    pub fn triangles(&self, py: Python<'_>) -> usize {
+        self.simplices.bind(py).shape()[0]
+    }
+
+    /// Calls `work` with a locator for `count` queries, without the GIL unless they are few.
+    pub fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        work: impl FnOnce(&Locator, &Watch) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let borrowed = self.borrow(py)?;
+        let given = borrowed.given().map_err(|e| raise(py, &e))?;
+        let locator = Locator::new(given, &self.kept);
+        if count <= FEW {
+            return work(&locator, &Watch::idle()).map_err(|e| raise(py, &e));
+        }
+        watched(py, |watch| work(&locator, watch))
+    }
+}
+
+#[pymethods]
+impl Locator2 {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        simplices: PyReadonlyArray2<'_, i32>,
+        neighbors: PyReadonlyArray2<'_, i32>,
+    ) -> PyResult<Self> {
+        let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+        let kept = detached(py, || Kept::of(&given))?;
+        Ok(Self {
+            points: (*points).clone().unbind(),
+            simplices: (*simplices).clone().unbind(),
+            neighbors: (*neighbors).clone().unbind(),
+            kept,
+        })
+    }
+
+    /// For each query the first triangle that holds it, or -1.
+    fn find(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.run(py, queries.len(), |locator, watch| {
+            find(locator, queries, workers, watch)
+        })?;
+        Ok(column(py, found))
+    }
+
+    /// Triangles with barycentric coordinates, and outside the nearest boundary point.
+    fn locate(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Places> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let n = queries.len();
+        let found = self.run(py, n, |locator, watch| {
+            coordinates(locator, queries, workers, watch)
+        })?;
+        Ok((
+            column(py, found.triangle),
+            shaped(py, found.weights, [n, 3])?,
+            column(py, found.beside),
+            shaped(py, found.edge, [n, 2])?,
+            column(py, found.along),
+        ))
+    }
+
+    /// The nearest vertex to each query; of a Delaunay triangulation.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.run(py, queries.len(), |locator, watch| {
+            nearest(locator, queries, workers, watch)
+        })?;
+        Ok(column(py, found))
+    }
+
+    /// The triangles along the segment from `a` to `b`.
+    fn along(
+        &self,
+        py: Python<'_>,
+        a: PyReadonlyArray1<'_, f64>,
+        b: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Py<PyAny>> {
+        let end = |p: &PyReadonlyArray1<'_, f64>| {
+            let pair = p.as_slice().ok().and_then(|p| p.try_into().ok());
+            pair.ok_or_else(|| raise(py, &Error::Shape("an end needs two coordinates".into())))
+        };
+        let (a, b) = (end(&a)?, end(&b)?);
+        let met = self.run(py, usize::MAX, |locator, _| along(locator, a, b))?;
+        Ok(column(py, met))
+    }
+
+    /// Linear interpolation: values, or gradients.
+    fn linear(
+        &self,
+        py: Python<'_>,
+        values: Values<'_>,
+        xi: Points<'_>,
+        order: usize,
+        workers: usize,
+    ) -> PyResult<Py<PyAny>> {
+        linear_of(py, self, &values, &xi, order, workers)
+    }
+
+    /// Clough-Tocher interpolation: values, gradients or Hessians.
+    #[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+    fn clough_tocher(
+        &self,
+        py: Python<'_>,
+        values: Values<'_>,
+        gradients: Gradients<'_>,
+        xi: Points<'_>,
+        barrier: Option<Closed<'_>>,
+        order: usize,
+        workers: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let given = Smooth {
+            values: &values,
+            gradients: Some(&gradients),
+            xi: &xi,
+            barrier: barrier.as_ref(),
+            order,
+            workers,
+        };
+        smooth_of(py, self, None, given)
+    }
+
+    /// The weights of Clough-Tocher interpolation.
+    fn clough_tocher_weights(
+        &self,
+        py: Python<'_>,
+        xi: Points<'_>,
+        barrier: Option<Closed<'_>>,
+        workers: usize,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+        corner_weights_of(py, self, &xi, barrier.as_ref(), workers)
+    }
+
+    /// The weights of natural neighbours.
+    fn natural(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        xi: Points<'_>,
+        barrier: Option<Closed<'_>>,
+        workers: usize,
+    ) -> PyResult<Neighbours> {
+        natural_of(py, self, kind, &xi, barrier.as_ref(), workers)
+    }
+
+    /// Natural neighbour interpolation: values, gradients or Hessians.
+    #[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+    fn natural_values(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        values: Values<'_>,
+        gradients: Option<Gradients<'_>>,
+        xi: Points<'_>,
+        barrier: Option<Closed<'_>>,
+        order: usize,
+        workers: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let given = Smooth {
+            values: &values,
+            gradients: gradients.as_ref(),
+            xi: &xi,
+            barrier: barrier.as_ref(),
+            order,
+            workers,
+        };
+        smooth_of(py, self, Some(kind), given)
+    }
+
+    /// The weights of all other vertices, for each.
+    fn leave_one_out(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        workers: usize,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+        leave_one_out_of(py, self, kind, workers)
+    }
+}
+
+/// For each query the first triangle that holds it, or -1.
+#[pyfunction]
+pub fn find_simplex2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    xi: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> PyResult<Py<PyAny>> {
+    let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+    let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        let kept = Kept::of(&given)?;
+        find(&Locator::new(given, &kept), queries, workers, watch)
+    })?;
+    Ok(column(py, found))
+}

@@ -1,0 +1,243 @@
+//! Voronoi and power diagrams, and polygons cut from them, as arrays.
+
+use delone_core::error::{Error, Result};
+use delone_core::regular;
+use delone_core::voronoi::{self, Cells, Given};
+use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{column, in_range, rows, table};
+use crate::errors::{detached, raise};
+use crate::triangulation::watched;
+
+/// The entries of a C-contiguous array.
+fn entries<'a, T: Element>(array: &'a PyReadonlyArray1<'_, T>, name: &str) -> Result<&'a [T]> {
+    array
+        .as_slice()
+        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
+}
+
+/// Checks that every entry lies in `from..to`.
+fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()> {
+    in_range(values.as_chunks::<1>().0, from, to, name)
+}
+
+/// Checks that `starts` cuts `length` entries into pieces.
+fn are_starts(starts: &[i32], length: usize) -> Result<()> {
+    let right = starts.first() == Some(&0)
+        && starts.last() == Some(&(length as i32))
+        && starts.is_sorted();
+    if right {
+        Ok(())
+    } else {
+        Err(Error::Shape(format!("starts do not cut {length} entries")))
+    }
+}
+
+/// The diagram of a triangulation; of the regular one, where there are weights.
+#[pyfunction]
+pub fn voronoi2<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    weights: Option<PyReadonlyArray1<'py, f64>>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
+    workers: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = (|| {
+        let given = Given {
+            points: rows(&points, "points")?,
+            weights: weights.as_ref().map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            simplices: rows(&simplices, "simplices")?,
+            neighbors: rows(&neighbors, "neighbors")?,
+        };
+        in_range(given.simplices, 0, given.points.len(), "simplices")?;
+        in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
+        let same = given.neighbors.len() == given.simplices.len();
+        let weighed = weights.is_none() || given.weights.len() == given.points.len();
+        if same && weighed {
+            return Ok(given);
+        }
+        Err(Error::Shape("arrays that belong together differ in length".into()))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
+    let out = PyDict::new(py);
+    out.set_item("vertices", table(py, made.vertices)?)?;
+    out.set_item("triangle_vertex", column(py, made.triangle_vertex))?;
+    out.set_item("sites", table(py, made.ridges.sites)?)?;
+    out.set_item("ends", table(py, made.ridges.ends)?)?;
+    out.set_item("rays", table(py, made.ridges.rays)?)?;
+    out.set_item("region", column(py, made.regions.of_point))?;
+    out.set_item("site", column(py, made.regions.site))?;
+    out.set_item("starts", column(py, made.regions.starts))?;
+    out.set_item("region_vertices", column(py, made.regions.vertices))?;
+    out.set_item("region_ridges", column(py, made.regions.ridges))?;
+    Ok(out)
+}
+
+/// Polygons as arrays: `(starts, corners, ridges)`.
+type Cut = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// The cells of a diagram, as `voronoi2` gives it, cut to a box.
+#[pyfunction]
+pub fn voronoi_clip2<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    weights: Option<PyReadonlyArray1<'py, f64>>,
+    diagram: &Bound<'py, PyDict>,
+    bounds: [f64; 4],
+    workers: usize,
+) -> PyResult<Cut> {
+    let pairs = |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> { Ok(item(diagram, name)?.extract()?) };
+    let codes = |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> { Ok(item(diagram, name)?.extract()?) };
+    let list = |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> { Ok(item(diagram, name)?.extract()?) };
+    let (vertices, rays) = (pairs("vertices")?, pairs("rays")?);
+    let (sites, ends) = (codes("sites")?, codes("ends")?);
+    let (site, starts) = (list("site")?, list("starts")?);
+    let (region_vertices, region_ridges) = (list("region_vertices")?, list("region_ridges")?);
+    let cells = (|| {
+        let cells = Cells {
+            points: rows(&points, "points")?,
+            weights: weights.as_ref().map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            vertices: rows(&vertices, "vertices")?,
+            sites: rows(&sites, "sites")?,
+            ends: rows(&ends, "ends")?,
+            rays: rows(&rays, "rays")?,
+            site: entries(&site, "site")?,
+            starts: entries(&starts, "starts")?,
+            entry_vertices: entries(&region_vertices, "region_vertices")?,
+            entry_ridges: entries(&region_ridges, "region_ridges")?,
+        };
+        in_range(cells.sites, 0, cells.points.len(), "sites")?;
+        are_starts(cells.starts, cells.entry_vertices.len())?;
+        each_in_range(cells.entry_vertices, -1, cells.vertices.len(), "region_vertices")?;
+        each_in_range(cells.entry_ridges, 0, cells.sites.len(), "region_ridges")?;
+        if cells.ends.len() != cells.sites.len() || cells.starts.len() != cells.site.len() + 1 {
+            return Err(Error::Shape("arrays that belong together differ in length".into()));
+        }
+        Ok(cells)
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let [left, bottom, right, top] = bounds;
+    let made = watched(py, |watch| {
+        voronoi::clip(cells, [left, bottom], [right, top], workers, watch)
+    })?;
+    Ok((
+        column(py, made.starts),
+        table(py, made.points)?,
+        column(py, made.ridges),
+    ))
+}
+
+fn item<'py>(diagram: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    diagram
+        .get_item(name)?
+        .ok_or_else(|| raise(diagram.py(), &Error::Shape(format!("the diagram has no {name}"))))
+}
+
+/// `(areas, centroids, perimeters)` of polygons.
+#[pyfunction]
+pub fn measures2(
+    py: Python<'_>,
+    starts: PyReadonlyArray1<'_, i32>,
+    corners: PyReadonlyArray2<'_, f64>,
+    workers: usize,
+) -> PyResult<Cut> {
+    let (starts, corners) = (|| {
+        let (starts, corners) = (entries(&starts, "starts")?, rows(&corners, "corners")?);
+        are_starts(starts, corners.len())?;
+        Ok((starts, corners))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let made = detached(py, || voronoi::measures(starts, corners, workers))?;
+    Ok((
+        column(py, made.areas),
+        table(py, made.centroids)?,
+        column(py, made.perimeters),
+    ))
+}
+
+/// For each polygon its group of those that no segment comes near, or -1; and the number of groups.
+#[pyfunction]
+pub fn touched2(
+    py: Python<'_>,
+    starts: PyReadonlyArray1<'_, i32>,
+    corners: PyReadonlyArray2<'_, f64>,
+    ridges: PyReadonlyArray1<'_, i32>,
+    segments: PyReadonlyArray2<'_, f64>,
+) -> PyResult<(Py<PyAny>, usize)> {
+    let (starts, corners, ridges, segments) = (|| {
+        let (starts, corners) = (entries(&starts, "starts")?, rows(&corners, "corners")?);
+        are_starts(starts, corners.len())?;
+        let ridges = entries(&ridges, "ridges")?;
+        if ridges.len() != corners.len() {
+            return Err(Error::Shape("ridges and corners differ in length".into()));
+        }
+        Ok((starts, corners, ridges, rows(&segments, "segments")?))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let (groups, count) = detached(py, || voronoi::touched(starts, corners, ridges, segments))?;
+    Ok((column(py, groups), count))
+}
+
+/// `(simplices, neighbors, chain, stands_for)`.
+type Weighed = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// The regular triangulation of weighted points; a chain of rows where all are in line.
+#[pyfunction]
+pub fn regular2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Weighed> {
+    let (points, weights) = (|| {
+        let (points, weights) = (rows(&points, "points")?, entries(&weights, "weights")?);
+        if points.len() == weights.len() && weights.iter().all(|w| w.is_finite()) {
+            return Ok((points, weights));
+        }
+        Err(Error::Shape("each point needs one finite weight".into()))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| regular::regular(points, weights, watch))?;
+    Ok((
+        table(py, made.triangles.simplices)?,
+        table(py, made.triangles.neighbors)?,
+        column(py, made.chain.into_iter().map(|v| v as i32).collect()),
+        column(py, made.stands_for),
+    ))
+}
+
+/// `(simplices, neighbors, chain, rows, moved)`.
+type Repeated = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// The Delaunay triangulation of points and their copies one period away: `taken` has rows and by how
+/// many periods they are moved; vertices number the copies.
+#[pyfunction]
+pub fn periodic2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    periods: [f64; 2],
+    taken: PyReadonlyArray2<'_, i32>,
+) -> PyResult<Repeated> {
+    let (points, taken) = (|| {
+        let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
+        let right = |t: &[i32; 3]| {
+            t[0] >= 0 && (t[0] as usize) < points.len() && t[1..].iter().all(|k| (-1..=1).contains(k))
+        };
+        if taken.iter().all(right) {
+            return Ok((points, taken));
+        }
+        Err(Error::Shape("copies are rows and periods of -1, 0 or 1".into()))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| regular::periodic(points, periods, taken, watch))?;
+    Ok((
+        table(py, made.triangles.simplices)?,
+        table(py, made.triangles.neighbors)?,
+        column(py, made.chain.into_iter().map(|v| v as i32).collect()),
+        column(py, made.rows),
+        table(py, made.moved)?,
+    ))
+}

@@ -1,0 +1,314 @@
+//! Interpolation by cubics on triangles split in three, with a continuous gradient.
+//!
+//! The scheme of R. W. Clough and J. L. Tocher (1965) in the reduced form that SciPy has: values and
+//! gradients at the vertices are given, and across each edge the derivative in one direction is
+//! linear. That direction is the line between the centroids of the two triangles, as P. Alfeld ("A
+//! trivariate Clough-Tocher scheme for tetrahedral data", 1984) and G. Farin ("A modified Clough-
+//! Tocher interpolant", 1985) propose: it is the same from both sides, and affine maps keep it. At
+//! the boundary it is the median.
+//!
+//! A cubic is held by its Bezier ordinates. With the corners i, j, k and the centroid c, `iij` is the
+//! ordinate a third of the way from i to j.
+
+use delone_predicates::Point2;
+
+use super::Order;
+use super::cavity::{Barrier, is_closed};
+use super::field::Field;
+use super::number::{Jet, Number};
+use crate::delaunay2::validate::Given;
+use crate::error::Result;
+use crate::locate::{
+    Located, Locator, Output, Place, Side, barycentric, cross, each, next, prev, seen_from,
+};
+use crate::watch::Watch;
+
+/// What of a triangle the cubics depend on, apart from values and gradients.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    /// For each corner the way to the next and to the previous one.
+    ways: [[Point2; 2]; 3],
+    /// For the edge opposite each corner k: the direction across as weights of i, j and c.
+    across: [[f64; 3]; 3],
+}
+
+impl Frame {
+    fn of(given: &Given, barrier: Barrier, triangle: usize) -> Self {
+        let corners = given.corners(triangle);
+        let way = |from: usize, to: usize| [0, 1].map(|k| corners[to][k] - corners[from][k]);
+        let across = |k| {
+            let side = Side {
+                triangle,
+                corner: k,
+            };
+            let beyond = given.beyond(side).filter(|_| !is_closed(barrier, side));
+            // The far apex in coordinates of this triangle; at the boundary the middle of the edge.
+            let [xi, xj, xk] = match beyond {
+                Some(there) => {
+                    let x = coordinates(corners, given.point(given.vertex(there)));
+                    [x[next(k)], x[prev(k)], x[k]]
+                }
+                None => [0.5, 0.5, 0.0],
+            };
+            // From corner k to there, three times the way between the centroids; corner k is
+            // 3 c - i - j.
+            [xi - xk + 1.0, xj - xk + 1.0, 3.0 * (xk - 1.0)]
+        };
+        Self {
+            ways: std::array::from_fn(|k| [way(k, next(k)), way(k, prev(k))]),
+            across: std::array::from_fn(across),
+        }
+    }
+}
+
+/// Barycentric coordinates of any point, of either sign.
+fn coordinates(corners: [Point2; 3], x: Point2) -> [f64; 3] {
+    let (seen, unit) = seen_from(x, corners);
+    let areas: [f64; 3] = std::array::from_fn(|k| {
+        let (i, j) = (next(k), prev(k));
+        if unit == 1.0 {
+            cross(x, corners[i], corners[j], seen[i], seen[j])
+        } else {
+            cross([0.0; 2], seen[i], seen[j], seen[i], seen[j])
+        }
+    });
+    let sum = areas[0] + areas[1] + areas[2];
+    let found = areas.map(|a| a / sum);
+    if found.iter().all(|x| x.is_finite()) {
+        found
+    } else {
+        [0.5, 0.5, 0.0]
+    }
+}
+
+/// The ordinates of the three cubics on a triangle, by corner.
+#[derive(Debug, Clone, Copy)]
+struct Ordinates {
+    /// iii
+    at: [f64; 3],
+    /// iij with j the next corner, and with the previous one.
+    along: [[f64; 2]; 3],
+    /// iic
+    inner: [f64; 3],
+    /// ijc, by the corner opposite.
+    middle: [f64; 3],
+    /// icc
+    deep: [f64; 3],
+    /// ccc
+    centre: f64,
+}
+
+impl Ordinates {
+    fn of(frame: &Frame, values: [f64; 3], gradients: [[f64; 2]; 3]) -> Self {
+        let along: [[f64; 2]; 3] = std::array::from_fn(|i| {
+            let [gx, gy] = gradients[i];
+            frame.ways[i].map(|way| values[i] + (gx * way[0] + gy * way[1]) / 3.0)
+        });
+        let inner: [f64; 3] =
+            std::array::from_fn(|i| (values[i] + along[i][0] + along[i][1]) / 3.0);
+        let middle: [f64; 3] = std::array::from_fn(|k| {
+            // The derivative across the edge is a parabola along it; its middle ordinate is made
+            // the mean of the outer two.
+            let (i, j) = (next(k), prev(k));
+            let [di, dj, dc] = frame.across[k];
+            let (iij, ijj) = (along[i][0], along[j][1]);
+            let at_i = di * values[i] + dj * iij + dc * inner[i];
+            let at_j = di * ijj + dj * values[j] + dc * inner[j];
+            (0.5 * (at_i + at_j) - di * iij - dj * ijj) / dc
+        });
+        let deep: [f64; 3] =
+            std::array::from_fn(|i| (inner[i] + middle[next(i)] + middle[prev(i)]) / 3.0);
+        Self {
+            at: values,
+            along,
+            inner,
+            middle,
+            deep,
+            centre: (deep[0] + deep[1] + deep[2]) / 3.0,
+        }
+    }
+
+    /// The value at barycentric coordinates.
+    #[inline]
+    fn value<T: Number>(&self, b: [T; 3]) -> T {
+        // The part of the triangle is that opposite the corner of least weight.
+        let mut k = 0;
+        for l in 1..3 {
+            if b[l].value() < b[k].value() {
+                k = l;
+            }
+        }
+        let (i, j) = (next(k), prev(k));
+        let three = T::constant(3.0);
+        let (bi, bj, bc) = (b[i] - b[k], b[j] - b[k], three * b[k]);
+        let by = |x: f64| T::constant(x);
+        let edge = by(self.at[i]) * bi * bi * bi
+            + three * bi * bj * (by(self.along[i][0]) * bi + by(self.along[j][1]) * bj)
+            + by(self.at[j]) * bj * bj * bj;
+        let first = by(self.inner[i]) * bi * bi
+            + by(2.0 * self.middle[k]) * bi * bj
+            + by(self.inner[j]) * bj * bj;
+        let second = by(self.deep[i]) * bi + by(self.deep[j]) * bj;
+        edge + bc * (three * first + bc * (three * second + by(self.centre) * bc))
+    }
+}
+
+/// The cubics of the triangle that was asked for last: queries near each other share it.
+#[derive(Default)]
+struct Last {
+    triangle: Option<usize>,
+    columns: Vec<Ordinates>,
+}
+
+impl Last {
+    fn visit(&mut self, given: &Given, barrier: Barrier, field: &Field, triangle: usize) {
+        if self.triangle == Some(triangle) {
+            return;
+        }
+        let frame = Frame::of(given, barrier, triangle);
+        let vertices = given.simplices[triangle];
+        self.triangle = Some(triangle);
+        self.columns.clear();
+        self.columns.extend((0..field.columns).map(|column| {
+            let values = vertices.map(|v| field.value(v, column));
+            let gradients = vertices.map(|v| field.gradient(v, column));
+            Ordinates::of(&frame, values, gradients)
+        }));
+    }
+}
+
+/// Barycentric coordinates as functions of the place.
+fn jets(given: &Given, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
+    let corners = given.corners(triangle);
+    let ([u, v], unit) = seen_from(corners[0], [corners[1], corners[2]]);
+    let area = if unit == 1.0 {
+        cross(corners[0], corners[1], corners[2], u, v)
+    } else {
+        cross([0.0; 2], u, v, u, v)
+    };
+    let seen = [[0.0; 2], u, v];
+    std::array::from_fn(|k| {
+        let (i, j) = (seen[next(k)], seen[prev(k)]);
+        let gradient = [(i[1] - j[1]) / area / unit, (j[0] - i[0]) / area / unit];
+        Jet::linear(b[k], gradient)
+    })
+}
+
+/// Values, gradients or Hessians at the queries, a row each; NaN outside.
+pub fn clough_tocher(
+    locator: &Locator,
+    field: Field,
+    queries: &[Point2],
+    barrier: Barrier,
+    order: Order,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<f64>> {
+    let given = &locator.given;
+    let width = field.columns * order.components();
+    let out = Output::filled(queries.len() * width, f64::NAN)?;
+    let state = Last::default;
+    each(locator, queries, workers, watch, state, |last, row, q, at| {
+        let Located::Inside(place) = at else {
+            return Ok(());
+        };
+        let triangle = place.triangle;
+        if order == Order::Value
+            && let Some(corner) = place.site()
+        {
+            let values = field.row(given.simplices[triangle][corner]);
+            out.set_all(row * width, values);
+            return Ok(());
+        }
+        last.visit(given, barrier, &field, triangle);
+        let b = barycentric(given, &place, q);
+        if order == Order::Value {
+            for (column, ordinates) in last.columns.iter().enumerate() {
+                out.set(row * width + column, ordinates.value(b));
+            }
+            return Ok(());
+        }
+        let b = jets(given, triangle, b);
+        for (column, ordinates) in last.columns.iter().enumerate() {
+            let found = ordinates.value(b);
+            match order {
+                Order::Hessian => out.set_all(row * width + 3 * column, &found.hessian),
+                _ => out.set_all(row * width + 2 * column, &found.gradient),
+            }
+        }
+        Ok(())
+    })?;
+    Ok(out.into_vec())
+}
+
+/// Weights of the values and gradients at the corners of a triangle, row by row.
+#[derive(Debug)]
+pub struct CornerWeights {
+    /// The triangle, or -1.
+    pub triangle: Vec<i32>,
+    /// Three a row; NaN outside.
+    pub weights: Vec<f64>,
+    /// Three times two a row; NaN outside.
+    pub slopes: Vec<f64>,
+}
+
+/// The weights that [`clough_tocher`] gives to values and gradients.
+pub fn clough_tocher_weights(
+    locator: &Locator,
+    queries: &[Point2],
+    barrier: Barrier,
+    workers: usize,
+    watch: &Watch,
+) -> Result<CornerWeights> {
+    let given = &locator.given;
+    let n = queries.len();
+    let triangle = Output::filled(n, -1)?;
+    let weights = Output::filled(3 * n, f64::NAN)?;
+    let slopes = Output::filled(6 * n, f64::NAN)?;
+    each(locator, queries, workers, watch, || None, |last, row, q, at| {
+        if let Located::Inside(place) = at {
+            let (w, s) = basis(given, barrier, last, &place, q);
+            triangle.set(row, place.triangle as i32);
+            weights.set_all(3 * row, &w);
+            slopes.set_all(6 * row, s.as_flattened());
+        }
+        Ok(())
+    })?;
+    Ok(CornerWeights {
+        triangle: triangle.into_vec(),
+        weights: weights.into_vec(),
+        slopes: slopes.into_vec(),
+    })
+}
+
+/// Values of the nine functions with one value or derivative 1 and all others 0.
+fn basis(
+    given: &Given,
+    barrier: Barrier,
+    last: &mut Option<(usize, [Ordinates; 9])>,
+    place: &Place,
+    q: Point2,
+) -> ([f64; 3], [[f64; 2]; 3]) {
+    if let Some(corner) = place.site() {
+        let weights = std::array::from_fn(|k| f64::from(u8::from(k == corner)));
+        return (weights, [[0.0; 2]; 3]);
+    }
+    let functions = match last {
+        Some((triangle, functions)) if *triangle == place.triangle => functions,
+        _ => {
+            let frame = Frame::of(given, barrier, place.triangle);
+            let functions = std::array::from_fn(|f| {
+                let unit = |g| f64::from(u8::from(f == g));
+                let values = std::array::from_fn(&unit);
+                let gradients =
+                    std::array::from_fn(|k| [unit(3 + 2 * k), unit(4 + 2 * k)]);
+                Ordinates::of(&frame, values, gradients)
+            });
+            &mut last.insert((place.triangle, functions)).1
+        }
+    };
+    let b = barycentric(given, place, q);
+    let found = functions.map(|f| f.value(b));
+    let slopes = std::array::from_fn(|k| [found[3 + 2 * k], found[4 + 2 * k]]);
+    ([found[0], found[1], found[2]], slopes)
+}

@@ -1,0 +1,295 @@
+//! Gradients at the vertices, estimated from values.
+
+use delone_predicates::Point2;
+
+use super::field::Field;
+use crate::error::{Error, Result};
+use crate::locate::Output;
+use crate::memory::{filled, with_room};
+use crate::parallel;
+use crate::watch::Watch;
+
+/// Vertices between two looks at the watch, and for a thread at once.
+const SHARE: usize = 1 << 12;
+
+/// Which vertices share an edge, in compressed rows.
+#[derive(Debug, Clone, Copy)]
+pub struct Adjacency<'a> {
+    indptr: &'a [i32],
+    indices: &'a [i32],
+}
+
+impl<'a> Adjacency<'a> {
+    /// Checks that the rows are those of `vertices` vertices.
+    pub fn new(vertices: usize, indptr: &'a [i32], indices: &'a [i32]) -> Result<Self> {
+        let n = indices.len();
+        let fits = indptr.len() == vertices + 1
+            && indptr.is_sorted()
+            && indptr.first() == Some(&0)
+            && indptr.last().is_some_and(|&end| end as usize == n);
+        let inside = |&v: &i32| v >= 0 && (v as usize) < vertices;
+        if !fits || !indices.iter().all(inside) {
+            return Err(Error::Shape(format!(
+                "indptr and indices are no rows of {vertices} vertices"
+            )));
+        }
+        Ok(Self { indptr, indices })
+    }
+
+    #[inline]
+    fn range(&self, v: usize) -> std::ops::Range<usize> {
+        self.indptr[v] as usize..self.indptr[v + 1] as usize
+    }
+
+    #[inline]
+    fn neighbours(&self, v: usize) -> &'a [i32] {
+        &self.indices[self.range(v)]
+    }
+}
+
+/// An edge from a vertex.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    way: [f64; 2],
+    /// One over the cube of its length.
+    weight: f64,
+}
+
+/// Gradients that make the curves along all edges bend least in total: G. M. Nielson, "A method for
+/// interpolating scattered data based upon a minimum norm network", 1983.
+///
+/// A cubic along an edge of length L with ends f, f' and derivatives p, p' by the edge (not by its
+/// length) bends by 4 (p^2 + p p' + p'^2 - 3 (p + p')(f' - f) + 3 (f' - f)^2) / L^3. The minimum over
+/// one gradient, all others fixed, is a system of two equations; sweeps over all vertices go on until
+/// no gradient changes by more than `tol`, relative to itself where it is above 1 (R. J. Renka and A.
+/// K. Cline, 1984, and SciPy, whose sweeps are the same). Returns gradients, and for each column
+/// the sweeps, or 0 where `maxiter` were not enough.
+pub fn global_gradients(
+    points: &[Point2],
+    adjacency: Adjacency,
+    field: Field,
+    tol: f64,
+    maxiter: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Vec<f64>, Vec<i64>)> {
+    let mut edges = with_room(adjacency.indices.len())?;
+    let mut inverses = with_room(points.len())?;
+    for (v, p) in points.iter().enumerate() {
+        let mut m = [0.0; 3];
+        for &other in adjacency.neighbours(v) {
+            let q = points[other as usize];
+            let way = [q[0] - p[0], q[1] - p[1]];
+            let length = way[0].hypot(way[1]);
+            let weight = 1.0 / (length * length * length);
+            m[0] += 4.0 * way[0] * way[0] * weight;
+            m[1] += 4.0 * way[0] * way[1] * weight;
+            m[2] += 4.0 * way[1] * way[1] * weight;
+            edges.push(Edge { way, weight });
+        }
+        let det = m[0] * m[2] - m[1] * m[1];
+        inverses.push([m[2] / det, -m[1] / det, m[0] / det]);
+    }
+    let columns = (0..field.columns).collect();
+    let solved = parallel::map(workers, columns, |column| {
+        sweeps(adjacency, &edges, &inverses, &field, column, tol, maxiter, watch)
+    });
+    let mut gradients = filled(2 * points.len() * field.columns, 0.0)?;
+    let mut counts = Vec::with_capacity(field.columns);
+    for (column, solved) in solved.into_iter().enumerate() {
+        let (found, count) = solved?;
+        counts.push(count);
+        for (v, g) in found.into_iter().enumerate() {
+            let i = 2 * (v * field.columns + column);
+            gradients[i..i + 2].copy_from_slice(&g);
+        }
+    }
+    Ok((gradients, counts))
+}
+
+/// Sweeps over one column.
+#[expect(clippy::too_many_arguments, reason = "one loop of one caller")]
+fn sweeps(
+    adjacency: Adjacency,
+    edges: &[Edge],
+    inverses: &[[f64; 3]],
+    field: &Field,
+    column: usize,
+    tol: f64,
+    maxiter: usize,
+    watch: &Watch,
+) -> Result<(Vec<[f64; 2]>, i64)> {
+    let n = inverses.len();
+    let mut gradients = filled(n, [0.0; 2])?;
+    for sweep in 1..=maxiter {
+        let mut worst: f64 = 0.0;
+        for v in 0..n {
+            if v % SHARE == 0 {
+                watch.check()?;
+            }
+            let range = adjacency.range(v);
+            if range.is_empty() {
+                continue;
+            }
+            let value = field.value(v as i32, column);
+            let mut s = [0.0; 2];
+            for (edge, &other) in edges[range.clone()].iter().zip(&adjacency.indices[range]) {
+                let g = gradients[other as usize];
+                let slope = edge.way[0] * g[0] + edge.way[1] * g[1];
+                let rise = field.value(other, column) - value;
+                let pull = (6.0 * rise - 2.0 * slope) * edge.weight;
+                s[0] += pull * edge.way[0];
+                s[1] += pull * edge.way[1];
+            }
+            let [xx, xy, yy] = inverses[v];
+            let new = [xx * s[0] + xy * s[1], xy * s[0] + yy * s[1]];
+            let old = std::mem::replace(&mut gradients[v], new);
+            let change = (new[0] - old[0]).abs().max((new[1] - old[1]).abs());
+            let size = new[0].abs().max(new[1].abs()).max(1.0);
+            worst = worst.max(change / size);
+        }
+        if worst < tol {
+            return Ok((gradients, sweep as i64));
+        }
+    }
+    Ok((gradients, 0))
+}
+
+/// Gradients of polynomials of degree 1 or 2 through each vertex that fit its surroundings in the
+/// least squares sense, nearer ones by the inverse square of their distance more.
+///
+/// Degree 1 takes the neighbours; degree 2 takes their neighbours, too, and is degree 1 where those
+/// do not determine it.
+pub fn local_gradients(
+    points: &[Point2],
+    adjacency: Adjacency,
+    field: Field,
+    degree: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<f64>> {
+    let out = Output::filled(2 * points.len() * field.columns, 0.0)?;
+    let tasks = (0..points.len()).step_by(SHARE).collect();
+    let ends = parallel::map(workers, tasks, |start: usize| {
+        watch.check()?;
+        let mut ring = Vec::new();
+        for v in start..points.len().min(start + SHARE) {
+            surroundings(adjacency, v, degree, &mut ring);
+            let fit = Fit::of(points, v, &ring, degree).or_else(|| {
+                surroundings(adjacency, v, 1, &mut ring);
+                Fit::of(points, v, &ring, 1)
+            });
+            let Some(fit) = fit else { continue };
+            for column in 0..field.columns {
+                let g = fit.gradient(&field, v, &ring, column);
+                out.set_all(2 * (v * field.columns + column), &g);
+            }
+        }
+        Ok(())
+    });
+    ends.into_iter().collect::<Result<()>>()?;
+    Ok(out.into_vec())
+}
+
+/// The neighbours of a vertex, for degree 2 theirs as well, itself left out.
+fn surroundings(adjacency: Adjacency, v: usize, degree: usize, ring: &mut Vec<i32>) {
+    ring.clear();
+    ring.extend_from_slice(adjacency.neighbours(v));
+    if degree > 1 {
+        for &u in adjacency.neighbours(v) {
+            ring.extend_from_slice(adjacency.neighbours(u as usize));
+        }
+        ring.sort_unstable();
+        ring.dedup();
+        ring.retain(|&u| u as usize != v);
+    }
+}
+
+/// The factors by which differences to surrounding values make a gradient.
+struct Fit {
+    factors: Vec<[f64; 2]>,
+}
+
+impl Fit {
+    /// Solves the least squares problem by orthogonal columns (modified Gram-Schmidt), for the
+    /// gradient alone, which takes the first two unknowns last.
+    fn of(points: &[Point2], v: usize, ring: &[i32], degree: usize) -> Option<Self> {
+        let p = points[v];
+        let ways = ring.iter().map(|&u| {
+            let q = points[u as usize];
+            [q[0] - p[0], q[1] - p[1]]
+        });
+        let ways: Vec<Point2> = ways.collect();
+        let size = ways.iter().fold(0.0, |most: f64, w| most.max(w[0].hypot(w[1])));
+        if !(size > 0.0 && size.is_finite()) {
+            return None;
+        }
+        let weights: Vec<f64> = ways.iter().map(|w| size / w[0].hypot(w[1])).collect();
+        let column = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+            let scaled = ways.iter().map(|w| f(w[0] / size, w[1] / size));
+            scaled.zip(&weights).map(|(x, w)| x * w).collect()
+        };
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        if degree > 1 {
+            basis.push(column(&|x, _| x * x));
+            basis.push(column(&|x, y| x * y));
+            basis.push(column(&|_, y| y * y));
+        }
+        basis.push(column(&|x, _| x));
+        basis.push(column(&|_, y| y));
+        let (gx, gy) = last_two(&mut basis)?;
+        let factors = gx.iter().zip(&gy).zip(&weights);
+        Some(Self {
+            factors: factors.map(|((x, y), w)| [x * w / size, y * w / size]).collect(),
+        })
+    }
+
+    fn gradient(&self, field: &Field, v: usize, ring: &[i32], column: usize) -> [f64; 2] {
+        let value = field.value(v as i32, column);
+        let mut g = [0.0; 2];
+        for (f, &u) in self.factors.iter().zip(ring) {
+            let rise = field.value(u, column) - value;
+            g = [g[0] + f[0] * rise, g[1] + f[1] * rise];
+        }
+        g
+    }
+}
+
+/// The rows of the pseudo-inverse for the last two of the columns; nothing where the columns are
+/// dependent, or nearly so.
+fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// Below this share of its length, a column is one of those before.
+    const DEPENDENT: f64 = 1e-10;
+    let n = columns.len();
+    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+    let mut corner = 0.0; // The last entry of the triangular factor above its diagonal.
+    let mut diagonal = 1.0;
+    for i in 0..n {
+        let (before, rest) = columns.split_at_mut(i);
+        let column = &mut rest[0];
+        let length = dot(column, column).sqrt();
+        for (j, q) in before.iter().enumerate() {
+            let part = dot(q, column);
+            if i == n - 1 && j == n - 2 {
+                corner = part;
+            }
+            column.iter_mut().zip(q).for_each(|(x, y)| *x -= part * y);
+        }
+        let left = dot(column, column).sqrt();
+        if !(left > DEPENDENT * length) || length == 0.0 {
+            return None;
+        }
+        column.iter_mut().for_each(|x| *x /= left);
+        if i == n - 2 {
+            diagonal = left;
+        }
+        if i == n - 1 {
+            // R [gx, gy] = Q^T b, from the bottom.
+            let gy: Vec<f64> = column.iter().map(|x| x / left).collect();
+            let gx = before[n - 2].iter().zip(&gy);
+            let gx = gx.map(|(q, y)| (q - corner * y) / diagonal).collect();
+            return Some((gx, gy));
+        }
+    }
+    None
+}

@@ -1,0 +1,264 @@
+//! Weights of all other vertices for the value at each vertex, as if it were not there: what cross
+//! validation needs, without a triangulation for each.
+//!
+//! Without an inner vertex its star becomes a hole, and the Delaunay triangles of that hole are
+//! those that the vertex, taken as a query, would remove: the hole is the cavity. It is cut off ear by
+//! ear: an ear whose circle has no vertex of the hole inside is a Delaunay triangle.
+
+use delone_predicates::{Point2, Sign, incircle, nearer, orient2d};
+
+use super::Rows;
+use super::cavity::Cavity;
+use super::natural::Part;
+use super::weights::{Kind, Weights};
+use crate::delaunay2::validate::Given;
+use crate::delaunay2::{self, triangulate};
+use crate::error::Result;
+use crate::locate::{Kept, Locator, Located, Side, barycentric_weights, next, prev};
+use crate::memory::filled;
+use crate::parallel;
+use crate::watch::Watch;
+
+/// Vertices that a thread takes at once.
+const SHARE: usize = 1 << 10;
+/// Vertices of a hole up to which ears are tried one by one, in cubic time.
+const SMALL: usize = 32;
+
+/// What is validated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Linear interpolation.
+    Linear,
+    /// The nearest vertex.
+    Nearest,
+    /// Natural neighbours.
+    Natural(Kind),
+}
+
+impl Method {
+    /// The method of that name; kinds with gradients are none, as those depend on the vertex, too.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "linear" => Some(Self::Linear),
+            "nearest" => Some(Self::Nearest),
+            _ => Kind::named(name)
+                .filter(|kind| !kind.is_smooth())
+                .map(Self::Natural),
+        }
+    }
+}
+
+/// For each vertex the weights of the others; empty for corners of the hull and for rows that are no
+/// vertex. The triangulation must be Delaunay.
+pub fn leave_one_out(
+    given: Given,
+    method: Method,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Rows> {
+    let n = given.points.len();
+    let mut stars = filled(n, None)?;
+    for (triangle, vertices) in given.simplices.iter().enumerate() {
+        for (corner, &v) in vertices.iter().enumerate() {
+            stars[v as usize] = Some(Side { triangle, corner });
+        }
+    }
+    let tasks = (0..n).step_by(SHARE).collect();
+    let parts = parallel::map(workers, tasks, |start: usize| {
+        watch.check()?;
+        let mut part = Part::default();
+        let mut hole = Hole::default();
+        for (i, star) in stars[start..n.min(start + SHARE)].iter().enumerate() {
+            if let Some(side) = *star {
+                hole.open(&given, side);
+                hole.weigh(&given, method, &mut part)?;
+            }
+            part.close(start + i);
+        }
+        Ok(part)
+    });
+    let parts = parts.into_iter().collect::<Result<Vec<Part>>>()?;
+    Rows::of_parts(n, parts, false)
+}
+
+/// The star of a vertex without it.
+#[derive(Default)]
+struct Hole {
+    /// The vertex.
+    vertex: i32,
+    /// Whether it is on the hull.
+    is_outer: bool,
+    cavity: Cavity,
+    weights: Weights<f64>,
+    rest: Vec<u32>,
+}
+
+impl Hole {
+    /// The ring around the vertex at a corner, counter-clockwise; on the hull from boundary to
+    /// boundary.
+    fn open(&mut self, given: &Given, side: Side) {
+        self.vertex = given.vertex(side);
+        let mut first = side;
+        self.is_outer = given.around(side, |_| true);
+        if self.is_outer {
+            while let Some(right) = given.turn_right(first) {
+                first = right;
+            }
+        }
+        let cavity = &mut self.cavity;
+        cavity.vertices.clear();
+        cavity.triangles.clear();
+        cavity.flat = None;
+        let mut last = first;
+        given.around(first, |side| {
+            let corner = next(side.corner);
+            cavity.vertices.push(given.vertex(Side { corner, ..side }));
+            last = side;
+            true
+        });
+        if self.is_outer {
+            let corner = prev(last.corner);
+            cavity.vertices.push(given.vertex(Side { corner, ..last }));
+        }
+        cavity.points.clear();
+        let points = cavity.vertices.iter().map(|&v| given.point(v));
+        cavity.points.extend(points);
+        cavity.ring.clear();
+        cavity.ring.extend(0..cavity.vertices.len() as u32);
+    }
+
+    fn weigh(&mut self, given: &Given, method: Method, part: &mut Part) -> Result<()> {
+        let q = given.point(self.vertex);
+        if method == Method::Nearest {
+            part.entry(self.nearest(q), 1.0, [0.0; 2]);
+            return Ok(());
+        }
+        if self.is_outer {
+            self.between_ends(q, part);
+            return Ok(());
+        }
+        if self.cavity.points.len() > SMALL {
+            return self.weigh_large(q, method, part);
+        }
+        self.cut_ears();
+        match method {
+            Method::Natural(kind) => {
+                if self.weights.compute(kind, &self.cavity, q) {
+                    for (&v, &w) in self.cavity.vertices.iter().zip(&self.weights.values) {
+                        part.entry(v, w, [0.0; 2]);
+                    }
+                }
+            }
+            _ => self.linear(q, part),
+        }
+        Ok(())
+    }
+
+    /// The nearest neighbour, of several the first row: a Delaunay neighbour is nearest of all.
+    fn nearest(&self, q: Point2) -> i32 {
+        let slots = self.cavity.vertices.iter().zip(&self.cavity.points);
+        let best = slots.reduce(|a, b| match nearer(q, *a.1, *b.1) {
+            Sign::Positive => a,
+            Sign::Negative => b,
+            Sign::Zero => std::cmp::min_by_key(a, b, |x| x.0),
+        });
+        best.map_or(-1, |(&v, _)| v)
+    }
+
+    /// On the hull: nothing, unless the vertex is in the middle of a side.
+    fn between_ends(&self, q: Point2, part: &mut Part) {
+        let points = &self.cavity.points;
+        let (Some(&a), Some(&b)) = (points.first(), points.last()) else {
+            return;
+        };
+        if orient2d(a, q, b) != Sign::Zero {
+            return;
+        }
+        let length = |p: Point2| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let (from, to) = (length(a), length(b));
+        let share = from / (from + to);
+        let share = if share.is_finite() { share } else { 0.5 };
+        let vertices = &self.cavity.vertices;
+        part.entry(vertices[0], 1.0 - share, [0.0; 2]);
+        part.entry(vertices[points.len() - 1], share, [0.0; 2]);
+    }
+
+    /// Cuts the hole into Delaunay triangles.
+    fn cut_ears(&mut self) {
+        let Cavity {
+            points, triangles, ..
+        } = &mut self.cavity;
+        self.rest.clear();
+        self.rest.extend(0..points.len() as u32);
+        while self.rest.len() > 3 {
+            let n = self.rest.len();
+            let ear = (0..n).find(|&i| {
+                let slots = [(i + n - 1) % n, i, (i + 1) % n].map(|j| self.rest[j] as usize);
+                let [a, b, c] = slots.map(|s| points[s]);
+                orient2d(a, b, c) == Sign::Positive
+                    && self.rest.iter().all(|&s| {
+                        slots.contains(&(s as usize))
+                            || incircle(a, b, c, points[s as usize]) != Sign::Positive
+                    })
+            });
+            // There always is one, in a hole of a Delaunay triangulation.
+            let Some(i) = ear else { break };
+            triangles.push([self.rest[(i + n - 1) % n], self.rest[i], self.rest[(i + 1) % n]]);
+            self.rest.remove(i);
+        }
+        if let [a, b, c] = self.rest[..] {
+            triangles.push([a, b, c]);
+        }
+    }
+
+    /// The weights in the triangle of the hole that has the vertex.
+    fn linear(&self, q: Point2, part: &mut Part) {
+        for slots in &self.cavity.triangles {
+            let corners = slots.map(|s| self.cavity.points[s as usize]);
+            let [a, b, c] = corners;
+            let signs = [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)];
+            if signs.contains(&Sign::Negative) {
+                continue;
+            }
+            let on = signs.map(|s| s == Sign::Zero);
+            for (&slot, w) in slots.iter().zip(barycentric_weights(corners, on, q)) {
+                part.entry(self.cavity.vertices[slot as usize], w, [0.0; 2]);
+            }
+            return;
+        }
+    }
+
+    /// The same by a triangulation of the ring, which has all natural neighbours.
+    fn weigh_large(&mut self, q: Point2, method: Method, part: &mut Part) -> Result<()> {
+        let idle = Watch::idle();
+        let ring = self.cavity.points.clone();
+        let made = triangulate(&ring, delaunay2::Method::Auto, 1, &idle)?;
+        let given = Given {
+            points: &ring,
+            simplices: &made.arrays.simplices,
+            neighbors: &made.arrays.neighbors,
+        };
+        let kept = Kept::of(&given)?;
+        let Some(Located::Inside(place)) = Locator::new(given, &kept).locate(q)? else {
+            return Ok(());
+        };
+        let names = self.cavity.vertices.clone();
+        let name = |slot: i32| names[slot as usize];
+        if let Method::Natural(kind) = method {
+            let cavity = &mut self.cavity;
+            cavity.find(&given, &[], place.triangle, place.edge(), q)?;
+            if self.weights.compute(kind, cavity, q) {
+                for (&v, &w) in cavity.vertices.iter().zip(&self.weights.values) {
+                    part.entry(name(v), w, [0.0; 2]);
+                }
+            }
+        } else {
+            let weights = crate::locate::barycentric(&given, &place, q);
+            let corners = given.simplices[place.triangle];
+            for (v, w) in corners.into_iter().zip(weights) {
+                part.entry(name(v), w, [0.0; 2]);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,54 @@
+//! Values between scattered points, from a triangulation of them and a locator in it.
+//!
+//! `linear` in each triangle, `clough_tocher` on each split in three, `natural` by the cavity that a
+//! query would leave. All are linear in the values (and gradients), so weights serve many fields.
+
+mod cavity;
+mod clough_tocher;
+mod field;
+mod gradients;
+mod leave_one_out;
+mod linear;
+mod natural;
+mod number;
+mod rows;
+mod weights;
+
+pub use cavity::Barrier;
+pub use clough_tocher::{clough_tocher, clough_tocher_weights};
+pub use field::Field;
+pub use gradients::{Adjacency, global_gradients, local_gradients};
+pub use leave_one_out::{Method, leave_one_out};
+pub use linear::linear;
+pub use natural::{natural, natural_values};
+pub use rows::{Rows, Table};
+pub use weights::Kind;
+
+/// What of an interpolant is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Its value.
+    Value,
+    /// Its derivatives by x and y.
+    Gradient,
+    /// Its second derivatives xx, xy and yy.
+    Hessian,
+}
+
+impl Order {
+    /// The order that a number names.
+    pub fn of(number: usize) -> Option<Self> {
+        [Self::Value, Self::Gradient, Self::Hessian]
+            .get(number)
+            .copied()
+    }
+
+    /// How many numbers it has.
+    pub fn components(self) -> usize {
+        match self {
+            Self::Value => 1,
+            Self::Gradient => 2,
+            Self::Hessian => 3,
+        }
+    }
+}

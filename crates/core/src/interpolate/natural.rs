@@ -1,0 +1,203 @@
+//! Natural neighbour interpolation of batches: weights as rows of a sparse matrix, or values.
+
+use delone_predicates::Point2;
+
+use super::cavity::{Barrier, Cavity};
+use super::field::Field;
+use super::number::{Jet, Number};
+use super::weights::{Kind, Weights};
+use super::{Order, Rows};
+use crate::delaunay2::validate::Given;
+use crate::error::Result;
+use crate::locate::{Located, Locator, Output, Place, Side, barycentric, each};
+use crate::watch::Watch;
+
+/// What a thread computes with.
+#[derive(Default)]
+struct Room<T> {
+    cavity: Cavity,
+    weights: Weights<T>,
+}
+
+impl<T: Number> Room<T> {
+    /// The weights of `q`, which is at no vertex.
+    #[inline]
+    fn compute(
+        &mut self,
+        kind: Kind,
+        given: &Given,
+        barrier: Barrier,
+        place: &Place,
+        q: Point2,
+    ) -> Result<()> {
+        let edge = place.edge();
+        self.cavity.find(given, barrier, place.triangle, edge, q)?;
+        if !self.weights.compute(kind, &self.cavity, q) {
+            let corners = barycentric(given, place, q);
+            let slots = self.cavity.points.len();
+            self.weights.fall_back(kind, corners, slots);
+        }
+        Ok(())
+    }
+}
+
+/// The weights of each query: sparse rows, empty outside.
+pub fn natural(
+    locator: &Locator,
+    kind: Kind,
+    queries: &[Point2],
+    barrier: Barrier,
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Rows, Vec<i32>)> {
+    let given = &locator.given;
+    let triangles = Output::filled(queries.len(), -1)?;
+    let state = || (Room::<f64>::default(), Part::default());
+    let parts = each(locator, queries, workers, watch, state, |state, row, q, at| {
+        let (room, part) = state;
+        let Located::Inside(place) = at else {
+            return Ok(());
+        };
+        triangles.set(row, place.triangle as i32);
+        if let Some(corner) = place.site() {
+            let triangle = place.triangle;
+            part.entry(given.vertex(Side { triangle, corner }), 1.0, [0.0; 2]);
+        } else {
+            room.compute(kind, given, barrier, &place, q)?;
+            for (slot, &vertex) in room.cavity.vertices.iter().enumerate() {
+                let slope = room.weights.slopes.get(slot).copied().unwrap_or_default();
+                part.entry(vertex, room.weights.values[slot], slope);
+            }
+        }
+        part.close(row);
+        Ok(())
+    })?;
+    let parts = parts.into_iter().map(|(_, part)| part).collect();
+    let rows = Rows::of_parts(queries.len(), parts, kind.is_smooth())?;
+    Ok((rows, triangles.into_vec()))
+}
+
+/// Rows in the order in which a thread has met them.
+#[derive(Debug, Default)]
+pub struct Part {
+    /// The row in the query, and where its entries end.
+    pub ends: Vec<(usize, usize)>,
+    /// The vertices.
+    pub indices: Vec<i32>,
+    /// The weights of their values.
+    pub weights: Vec<f64>,
+    /// The weights of their gradients.
+    pub slopes: Vec<[f64; 2]>,
+}
+
+impl Part {
+    /// Adds an entry, unless it is nothing.
+    #[inline]
+    pub fn entry(&mut self, vertex: i32, weight: f64, slope: [f64; 2]) {
+        if weight != 0.0 || slope != [0.0; 2] {
+            self.indices.push(vertex);
+            self.weights.push(weight);
+            self.slopes.push(slope);
+        }
+    }
+
+    /// Ends a row.
+    #[inline]
+    pub fn close(&mut self, row: usize) {
+        self.ends.push((row, self.indices.len()));
+    }
+}
+
+/// Values, gradients or Hessians at the queries, a row each; NaN outside.
+pub fn natural_values(
+    locator: &Locator,
+    kind: Kind,
+    field: Field,
+    queries: &[Point2],
+    barrier: Barrier,
+    order: Order,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<f64>> {
+    let width = field.columns * order.components();
+    let out = Output::filled(queries.len() * width, f64::NAN)?;
+    let given = &locator.given;
+    if order == Order::Value {
+        let state = Room::<f64>::default;
+        each(locator, queries, workers, watch, state, |room, row, q, at| {
+            let Located::Inside(place) = at else {
+                return Ok(());
+            };
+            if let Some(corner) = place.site() {
+                let vertex = given.simplices[place.triangle][corner];
+                out.set_all(row * width, field.row(vertex));
+                return Ok(());
+            }
+            room.compute(kind, given, barrier, &place, q)?;
+            for column in 0..field.columns {
+                out.set(row * width + column, value(room, &field, column));
+            }
+            Ok(())
+        })?;
+        return Ok(out.into_vec());
+    }
+    let state = Room::<Jet>::default;
+    each(locator, queries, workers, watch, state, |room, row, q, at| {
+        let Located::Inside(place) = at else {
+            return Ok(());
+        };
+        if let Some(corner) = place.site() {
+            if order == Order::Gradient && kind.is_smooth() {
+                let vertex = given.simplices[place.triangle][corner];
+                for column in 0..field.columns {
+                    out.set_all(row * width + 2 * column, &field.gradient(vertex, column));
+                }
+            }
+            return Ok(());
+        }
+        room.compute(kind, given, barrier, &place, q)?;
+        for column in 0..field.columns {
+            let sum = derivatives(room, &field, column);
+            match order {
+                Order::Hessian => out.set_all(row * width + 3 * column, &sum.hessian),
+                _ => out.set_all(row * width + 2 * column, &sum.gradient),
+            }
+        }
+        Ok(())
+    })?;
+    Ok(out.into_vec())
+}
+
+/// The sum of weights times values and gradients.
+#[inline]
+fn value(room: &Room<f64>, field: &Field, column: usize) -> f64 {
+    let Room { cavity, weights } = room;
+    let mut sum = 0.0;
+    for (&vertex, &w) in cavity.vertices.iter().zip(&weights.values) {
+        if w != 0.0 {
+            sum += w * field.value(vertex, column);
+        }
+    }
+    for (&vertex, s) in cavity.vertices.iter().zip(&weights.slopes) {
+        if *s != [0.0; 2] {
+            let g = field.gradient(vertex, column);
+            sum += s[0] * g[0] + s[1] * g[1];
+        }
+    }
+    sum
+}
+
+/// The same with derivatives. Values count from the first, as the weights' derivatives sum to zero.
+fn derivatives(room: &Room<Jet>, field: &Field, column: usize) -> Jet {
+    let Room { cavity, weights } = room;
+    let base = field.value(cavity.vertices[0], column);
+    let mut sum = Jet::constant(0.0);
+    for (slot, (&vertex, &w)) in cavity.vertices.iter().zip(&weights.values).enumerate() {
+        sum = sum + w * Jet::constant(field.value(vertex, column) - base);
+        if let Some(s) = weights.slopes.get(slot) {
+            let g = field.gradient(vertex, column);
+            sum = sum + s[0] * Jet::constant(g[0]) + s[1] * Jet::constant(g[1]);
+        }
+    }
+    sum
+}

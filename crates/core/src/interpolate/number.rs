@@ -1,0 +1,190 @@
+//! Numbers that formulas are written for once: a double, or a double with its derivatives by the
+//! place of the query, which the same formula then has, too (R. E. Wengert, "A simple automatic
+//! derivative evaluation program", 1964).
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use delone_predicates::Point2;
+
+/// What formulas need of a number.
+pub trait Number:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A number that does not depend on the query.
+    fn constant(value: f64) -> Self;
+    /// A number with this value and this gradient, linear in the place of the query.
+    fn linear(value: f64, gradient: Point2) -> Self;
+    /// The number without its derivatives.
+    fn value(self) -> f64;
+    /// The same derivatives on another value.
+    fn with_value(self, value: f64) -> Self;
+    /// The square root, of a positive number.
+    fn sqrt(self) -> Self;
+    /// The same with derivatives by lengths, where they were by multiples of `unit`.
+    fn per_length(self, unit: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn linear(value: f64, _: Point2) -> Self {
+        value
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn with_value(self, value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn per_length(self, _: f64) -> Self {
+        self
+    }
+}
+
+/// A value, its gradient and its Hessian.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Jet {
+    /// The value.
+    pub value: f64,
+    /// Derivatives by x and y.
+    pub gradient: [f64; 2],
+    /// Second derivatives: xx, xy, yy.
+    pub hessian: [f64; 3],
+}
+
+/// Which pairs of axes the entries of a Hessian belong to.
+const PAIRS: [(usize, usize); 3] = [(0, 0), (0, 1), (1, 1)];
+
+impl Jet {
+    /// A function of one number, by its value and its first two derivatives there.
+    #[inline]
+    fn chain(self, value: f64, first: f64, second: f64) -> Self {
+        let g = self.gradient;
+        Self {
+            value,
+            gradient: g.map(|x| first * x),
+            hessian: std::array::from_fn(|i| {
+                let (k, l) = PAIRS[i];
+                first * self.hessian[i] + second * g[k] * g[l]
+            }),
+        }
+    }
+}
+
+impl Number for Jet {
+    fn constant(value: f64) -> Self {
+        Self {
+            value,
+            ..Self::default()
+        }
+    }
+    fn linear(value: f64, gradient: Point2) -> Self {
+        Self {
+            value,
+            gradient,
+            hessian: [0.0; 3],
+        }
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn with_value(self, value: f64) -> Self {
+        Self { value, ..self }
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, 0.5 / root, -0.25 / (root * self.value))
+    }
+    fn per_length(self, unit: f64) -> Self {
+        Self {
+            value: self.value,
+            gradient: self.gradient.map(|x| x / unit),
+            hessian: self.hessian.map(|x| x / unit / unit),
+        }
+    }
+}
+
+impl Add for Jet {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
+            hessian: std::array::from_fn(|k| self.hessian[k] + other.hessian[k]),
+        }
+    }
+}
+
+impl Neg for Jet {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            gradient: self.gradient.map(|x| -x),
+            hessian: self.hessian.map(|x| -x),
+        }
+    }
+}
+
+impl Sub for Jet {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Jet {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.value, other.value);
+        let (g, h) = (self.gradient, other.gradient);
+        Self {
+            value: a * b,
+            gradient: std::array::from_fn(|k| a * h[k] + b * g[k]),
+            hessian: std::array::from_fn(|i| {
+                let (k, l) = PAIRS[i];
+                a * other.hessian[i] + b * self.hessian[i] + g[k] * h[l] + g[l] * h[k]
+            }),
+        }
+    }
+}
+
+impl Div for Jet {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let one = 1.0 / other.value;
+        self * other.chain(one, -one * one, 2.0 * one * one * one)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_of_a_formula() {
+        let (x, y) = (Jet::linear(3.0, [1.0, 0.0]), Jet::linear(2.0, [0.0, 1.0]));
+        // x^2 y / (x - y) at (3, 2), and the root of its square.
+        let f = x * x * y / (x - y);
+        assert_eq!(f.value, 18.0);
+        assert_eq!(f.gradient, [-6.0, 27.0]);
+        assert_eq!(f.hessian, [16.0, -33.0, 54.0]);
+        let same = (f * f).sqrt();
+        assert!(same.hessian.iter().zip(f.hessian).all(|(a, b)| (a - b).abs() < 1e-12));
+    }
+}

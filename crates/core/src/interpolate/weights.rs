@@ -1,0 +1,345 @@
+//! Natural neighbour weights from a cavity: the area that the cell of the query would take from
+//! each neighbour (R. Sibson, "A vector identity for the Dirichlet tessellation", 1980), or the length of
+//! the wall between them over their distance (Laplace weights: N. H. Christ, R. Friedberg and T. D.
+//! Lee, 1982; V. V. Belikov et al., 1997), and what Sibson (1981) and Farin (1990) make of the first
+//! and of gradients to be smooth.
+//!
+//! # Areas without centres
+//!
+//! The part of a cell that lies in a triangle, counted with its sign, has at corner a the area
+//! (|ab|^2 cot c + |ac|^2 cot b) / 8. The area taken from a neighbour is the sum of these over the
+//! triangles of the cavity less the sum over the triangles from the query to the ring. So neither
+//! centres of circles nor their intersections are needed (compare L. Liang and D. Hale, "A stable
+//! and fast implementation of natural neighbor interpolation", 2010), and each cotangent is a dot
+//! product over a cross product, whose relative accuracy `locate::cross` sees to. All areas are of
+//! the size of the largest circle times the distance to the nearest site at least, and so are the
+//! terms at most, beside a factor of edge over distance that cancels at a site.
+//!
+//! # Near the hull
+//!
+//! Beside a hull edge one new triangle is flat: its terms pass all bounds, and on the edge they are
+//! infinite. Weights do not change when all areas are multiplied by the area of that triangle; then
+//! its own terms are dot products, and on the edge, where all others vanish, they are linear between
+//! its ends. So the limit is part of the formula, and derivatives are those from inside.
+
+use delone_predicates::Point2;
+
+use super::cavity::Cavity;
+use super::number::Number;
+use crate::locate::{cross, in_unit, seen_from};
+
+/// Which weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Areas.
+    Sibson,
+    /// Lengths over distances.
+    Laplace,
+    /// Areas and gradients, by Sibson's blend: C1 except at the sites.
+    Sibson1,
+    /// Areas and gradients, by Farin's cubic: C1.
+    Farin,
+}
+
+impl Kind {
+    /// The kinds by name.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("sibson", Self::Sibson),
+        ("laplace", Self::Laplace),
+        ("sibson1", Self::Sibson1),
+        ("farin", Self::Farin),
+    ];
+
+    /// The kind of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        let found = Self::NAMES.iter().find(|(n, _)| *n == name);
+        found.map(|&(_, kind)| kind)
+    }
+
+    /// Whether it takes gradients.
+    pub fn is_smooth(self) -> bool {
+        matches!(self, Self::Sibson1 | Self::Farin)
+    }
+}
+
+/// Squared sine of the angle below which a new triangle counts as flat.
+const FLAT: f64 = 1e-6;
+
+/// Weights of the slots of a cavity.
+#[derive(Debug)]
+pub struct Weights<T> {
+    /// For each slot the weight of its value.
+    pub values: Vec<T>,
+    /// For each slot the weights of its gradient; empty for kinds without.
+    pub slopes: Vec<[T; 2]>,
+    /// The vertices as seen from the query, in the unit.
+    seen: Vec<[T; 2]>,
+    /// The triangles from the query to the ring.
+    fans: Vec<Fan<T>>,
+}
+
+impl<T> Default for Weights<T> {
+    fn default() -> Self {
+        Self {
+            values: Vec::new(),
+            slopes: Vec::new(),
+            seen: Vec::new(),
+            fans: Vec::new(),
+        }
+    }
+}
+
+/// A triangle from the query to an edge of the ring, from slot u to slot v.
+#[derive(Debug, Clone, Copy)]
+struct Fan<T> {
+    u: usize,
+    v: usize,
+    /// Twice its area.
+    cross: T,
+    /// Cosines times lengths at the query, at u and at v.
+    at: [T; 3],
+}
+
+impl<T: Number> Weights<T> {
+    /// Computes the weights of `q`; false where arithmetic gives none.
+    pub fn compute(&mut self, kind: Kind, cavity: &Cavity, q: Point2) -> bool {
+        let unit = self.look(cavity, q);
+        self.fan(cavity, q, unit);
+        let flat = self.flattest();
+        self.values.clear();
+        self.values.resize(cavity.points.len(), T::constant(0.0));
+        if kind == Kind::Laplace {
+            self.lengths(flat);
+        } else {
+            self.areas(cavity, flat, unit);
+        }
+        if !self.normalise() {
+            return false;
+        }
+        self.slopes.clear();
+        match kind {
+            Kind::Sibson1 => self.blend(unit),
+            Kind::Farin => self.cubic(unit),
+            Kind::Sibson | Kind::Laplace => {}
+        }
+        if unit != 1.0 {
+            self.in_units(unit);
+        }
+        true
+    }
+
+    /// The vertices from the query, and the unit of length.
+    fn look(&mut self, cavity: &Cavity, q: Point2) -> f64 {
+        // One unit for all: that of the first triangle, the others are of like size or larger.
+        let (_, unit) = seen_from(q, [cavity.points[0], cavity.points[1], cavity.points[2]]);
+        self.seen.clear();
+        self.seen.extend(cavity.points.iter().map(|&p| {
+            let seen = in_unit(q, p, unit);
+            [
+                T::linear(seen[0], [-1.0, 0.0]),
+                T::linear(seen[1], [0.0, -1.0]),
+            ]
+        }));
+        unit
+    }
+
+    /// The triangles to the ring.
+    fn fan(&mut self, cavity: &Cavity, q: Point2, unit: f64) {
+        self.fans.clear();
+        let ring = &cavity.ring;
+        for (i, &u) in ring.iter().enumerate() {
+            let after = if i + 1 < ring.len() { i + 1 } else { 0 };
+            let (u, v) = (u as usize, ring[after] as usize);
+            let (a, b) = (self.seen[u], self.seen[v]);
+            let edge = [b[0] - a[0], b[1] - a[1]];
+            let area = if cavity.flat == Some(u as u32) {
+                0.0
+            } else if unit == 1.0 {
+                cross(q, cavity.points[u], cavity.points[v], values(a), values(b))
+            } else {
+                cross([0.0; 2], values(a), values(b), values(a), values(b))
+            };
+            self.fans.push(Fan {
+                u,
+                v,
+                cross: (a[0] * b[1] - a[1] * b[0]).with_value(area),
+                at: [dot(a, b), -dot(edge, a), dot(edge, b)],
+            });
+        }
+    }
+
+    /// The fan of least angle at the query, where it is flat.
+    fn flattest(&self) -> Option<usize> {
+        let mut found = None;
+        let mut least = FLAT;
+        for (i, fan) in self.fans.iter().enumerate() {
+            let (a, b) = (values(self.seen[fan.u]), values(self.seen[fan.v]));
+            let lengths = (a[0] * a[0] + a[1] * a[1]) * (b[0] * b[0] + b[1] * b[1]);
+            let cross = fan.cross.value();
+            // A short wall has a small angle at the query, too; flat are those with it between.
+            if cross * cross < least * lengths && fan.at[0].value() < 0.0 {
+                least = cross * cross / lengths;
+                found = Some(i);
+            }
+        }
+        found
+    }
+
+    /// Laplace weights, twice over.
+    fn lengths(&mut self, flat: Option<usize>) {
+        let scale = flat.map(|i| self.fans[i].cross);
+        for (i, fan) in self.fans.iter().enumerate() {
+            let factor = factor(fan.cross, scale, flat == Some(i));
+            self.values[fan.u] = self.values[fan.u] + fan.at[2] * factor;
+            self.values[fan.v] = self.values[fan.v] + fan.at[1] * factor;
+        }
+    }
+
+    /// Areas taken, eight times over.
+    fn areas(&mut self, cavity: &Cavity, flat: Option<usize>, unit: f64) {
+        let scale = flat.map(|i| self.fans[i].cross);
+        for (i, fan) in self.fans.iter().enumerate() {
+            let (a, b) = (self.seen[fan.u], self.seen[fan.v]);
+            let edge = [b[0] - a[0], b[1] - a[1]];
+            let factor = factor(fan.cross, scale, flat == Some(i));
+            let wall = dot(edge, edge) * fan.at[0];
+            let at_u = (wall + dot(a, a) * fan.at[2]) * factor;
+            let at_v = (wall + dot(b, b) * fan.at[1]) * factor;
+            self.values[fan.u] = self.values[fan.u] - at_u;
+            self.values[fan.v] = self.values[fan.v] - at_v;
+        }
+        for slots in &cavity.triangles {
+            let parts = corner_areas(slots.map(|s| cavity.points[s as usize]), unit);
+            for (&slot, part) in slots.iter().zip(parts) {
+                let value = &mut self.values[slot as usize];
+                *value = match scale {
+                    None => *value + T::constant(part),
+                    Some(scale) => *value + scale * T::constant(part),
+                };
+            }
+        }
+    }
+
+    /// Weights where the arithmetic has given none: those of the first three slots.
+    pub fn fall_back(&mut self, kind: Kind, corners: [f64; 3], slots: usize) {
+        let zero = T::constant(0.0);
+        self.values.clear();
+        self.values.extend(corners.map(T::constant));
+        self.values.resize(slots, zero);
+        self.slopes.clear();
+        if kind.is_smooth() {
+            self.slopes.resize(slots, [zero; 2]);
+        }
+    }
+
+    /// Divides by the sum; what is below zero by rounding becomes zero.
+    fn normalise(&mut self) -> bool {
+        let mut sum = T::constant(0.0);
+        for value in &mut self.values {
+            if value.value() < 0.0 {
+                *value = value.with_value(0.0);
+            }
+            sum = sum + *value;
+        }
+        if !(sum.value() > 0.0 && sum.value().is_finite()) {
+            return false;
+        }
+        for value in &mut self.values {
+            *value = *value / sum;
+        }
+        true
+    }
+
+    /// Sibson's C1 blend: what the neighbours' tangent planes say, by weights over distances, and
+    /// the values, so that x^2 + y^2 is reproduced ("A brief description of natural neighbour
+    /// interpolation", 1981).
+    fn blend(&mut self, unit: f64) {
+        let zero = T::constant(0.0);
+        let distance = |p: &[T; 2]| dot(*p, *p).sqrt();
+        let (mut over, mut times, mut squares) = (zero, zero, zero);
+        for (w, p) in self.values.iter().zip(&self.seen) {
+            let r = distance(p);
+            over = over + *w / r;
+            times = times + *w * r;
+            squares = squares + *w * r * r;
+        }
+        let alpha = times / over;
+        let sum = alpha + squares;
+        for (w, p) in self.values.iter_mut().zip(&self.seen) {
+            let planes = squares / sum * (*w / distance(p) / over);
+            *w = alpha / sum * *w + planes;
+            let factor = -planes * T::constant(unit);
+            self.slopes.push([factor * p[0], factor * p[1]]);
+        }
+    }
+
+    /// Farin's C1 cubic over the weights as coordinates ("Surfaces over Dirichlet tessellations",
+    /// 1990), its sum over triples reduced to sums over neighbours: with S the sum of squared
+    /// weights and M that of squared weights times the neighbours as seen from the query, the factor
+    /// of a value is w (1 - S + w), that of a gradient -w ((1 - S + w) p + M) / 2.
+    fn cubic(&mut self, unit: f64) {
+        let zero = T::constant(0.0);
+        let (mut s, mut m) = (zero, [zero; 2]);
+        for (w, p) in self.values.iter().zip(&self.seen) {
+            let square = *w * *w;
+            s = s + square;
+            m = [m[0] + square * p[0], m[1] + square * p[1]];
+        }
+        let half = T::constant(-0.5 * unit);
+        for (w, p) in self.values.iter_mut().zip(&self.seen) {
+            let share = T::constant(1.0) - s + *w;
+            let factor = half * *w;
+            let slope = [0, 1].map(|k| factor * (share * p[k] + m[k]));
+            self.slopes.push(slope);
+            *w = *w * share;
+        }
+    }
+
+    /// Derivatives were by lengths in the unit.
+    fn in_units(&mut self, unit: f64) {
+        for value in &mut self.values {
+            *value = value.per_length(unit);
+        }
+        for slope in &mut self.slopes {
+            *slope = slope.map(|x| x.per_length(unit));
+        }
+    }
+}
+
+fn values<T: Number>(p: [T; 2]) -> Point2 {
+    p.map(T::value)
+}
+
+#[inline]
+fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// One over twice the area of a fan, times that of the flat one where there is such.
+#[inline]
+fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
+    match scale {
+        None => T::constant(1.0) / cross,
+        Some(_) if is_flat => T::constant(1.0),
+        Some(scale) => scale / cross,
+    }
+}
+
+/// Eight times the part of each corner's cell in a triangle.
+#[inline]
+fn corner_areas(corners: [Point2; 3], unit: f64) -> [f64; 3] {
+    let [a, b, c] = corners;
+    let (ab, ac) = (in_unit(a, b, unit), in_unit(a, c, unit));
+    let area = if unit == 1.0 {
+        cross(a, b, c, ab, ac)
+    } else {
+        cross([0.0; 2], ab, ac, ab, ac)
+    };
+    let bc = [ac[0] - ab[0], ac[1] - ab[1]];
+    let at_a = dot(ab, ac);
+    let at_b = -dot(ab, bc);
+    let at_c = dot(ac, bc);
+    let (aa, bb, cc) = (dot(bc, bc) * at_a, dot(ac, ac) * at_b, dot(ab, ab) * at_c);
+    let one = 1.0 / area;
+    [(bb + cc) * one, (aa + cc) * one, (aa + bb) * one]
+}

@@ -1,0 +1,154 @@
+//! The boundary of a tiling: whether it is convex, and its nearest point.
+
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+
+use super::range::seen_from;
+use super::tiling::{Side, next, prev};
+use crate::delaunay2::validate::Given;
+use crate::error::{Error, Result};
+
+/// The boundary edges of a tiling.
+#[derive(Debug)]
+pub struct Boundary {
+    /// Each boundary edge; where the boundary is convex, in order, counter-clockwise.
+    pub sides: Vec<Side>,
+    /// Whether the triangles fill one convex area.
+    pub convex: bool,
+    /// Where each edge is in `sides`, by edge.
+    places: Vec<(Side, usize)>,
+}
+
+impl Boundary {
+    /// Reads the boundary off the arrays.
+    pub fn of(given: &Given) -> Result<Self> {
+        let mut sides = Vec::new();
+        for (triangle, row) in given.neighbors.iter().enumerate() {
+            let open = (0..3).filter(|&k| row[k] < 0);
+            sides.extend(open.map(|corner| Side { triangle, corner }));
+        }
+        let convex = match cycle(given, &sides)? {
+            Some(cycle) if is_convex(given, &cycle) => {
+                sides = cycle;
+                true
+            }
+            _ => false,
+        };
+        let mut places: Vec<_> = sides.iter().copied().zip(0..).collect();
+        places.sort_unstable();
+        Ok(Self {
+            sides,
+            convex,
+            places,
+        })
+    }
+
+    /// The boundary edge with the nearest point to `q`, which is outside, and how far along that is.
+    ///
+    /// On a convex boundary in as many steps as there are edges between `from`, which has `q` beyond
+    /// it, and the answer; elsewhere each edge is looked at.
+    pub fn nearest(&self, given: &Given, from: Side, q: Point2) -> (Side, f64) {
+        if !self.convex {
+            return self.nearest_of_all(given, q).unwrap_or((from, 0.0));
+        }
+        let count = self.sides.len();
+        let start = self
+            .places
+            .binary_search_by_key(&from, |p| p.0)
+            .map_or(0, |i| self.places[i].1);
+        let mut i = start;
+        let mut forward = None;
+        // One way round at most: a change of direction ends at the vertex between.
+        for _ in 0..count {
+            let (along, _) = project(given, self.sides[i], q);
+            let ahead = along > 1.0;
+            if (0.0..=1.0).contains(&along) || along.is_nan() || forward == Some(!ahead) {
+                return (self.sides[i], clamp(along));
+            }
+            forward = Some(ahead);
+            i = (i + if ahead { 1 } else { count - 1 }) % count;
+        }
+        (self.sides[i], clamp(project(given, self.sides[i], q).0))
+    }
+
+    fn nearest_of_all(&self, given: &Given, q: Point2) -> Option<(Side, f64)> {
+        let measured = self.sides.iter().map(|&side| {
+            let (along, distance) = project(given, side, q);
+            (side, clamp(along), distance)
+        });
+        measured
+            .min_by(|a, b| a.2.total_cmp(&b.2))
+            .map(|(side, along, _)| (side, along))
+    }
+}
+
+fn clamp(along: f64) -> f64 {
+    along.max(0.0).min(1.0)
+}
+
+/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end, and its squared distance.
+fn project(given: &Given, side: Side, q: Point2) -> (f64, f64) {
+    let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| {
+        given.point(given.vertex(Side { corner, ..side }))
+    });
+    let ([u, v], unit) = seen_from(q, [u, v]);
+    let d = [v[0] - u[0], v[1] - u[1]];
+    let along = -(u[0] * d[0] + u[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let t = clamp(along);
+    let near = [u[0] + t * d[0], u[1] + t * d[1]];
+    (along, near[0].hypot(near[1]) * unit)
+}
+
+/// The boundary edges in order, where they are one cycle.
+fn cycle(given: &Given, sides: &[Side]) -> Result<Option<Vec<Side>>> {
+    let Some(&start) = sides.first() else {
+        return Ok(None);
+    };
+    let mut cycle = Vec::with_capacity(sides.len());
+    let mut side = start;
+    let mut steps = 4 * given.simplices.len() + 4;
+    loop {
+        cycle.push(side);
+        // The next edge starts where this one ends: turn right around that vertex.
+        let mut at = Side {
+            corner: prev(side.corner),
+            ..side
+        };
+        while let Some(beside) = given.turn_right(at) {
+            at = beside;
+            steps = steps.checked_sub(1).ok_or_else(|| {
+                Error::Internal("the triangles around a vertex do not end".into())
+            })?;
+        }
+        side = Side {
+            corner: prev(at.corner),
+            ..at
+        };
+        if side == start {
+            return Ok((cycle.len() == sides.len()).then_some(cycle));
+        }
+        if cycle.len() == sides.len() {
+            return Ok(None);
+        }
+    }
+}
+
+/// Whether a closed chain never turns right, and winds round once: then it goes through one
+/// lexicographic minimum.
+fn is_convex(given: &Given, cycle: &[Side]) -> bool {
+    let start = |side: &Side| {
+        given.point(given.vertex(Side {
+            corner: next(side.corner),
+            ..*side
+        }))
+    };
+    let n = cycle.len();
+    let mut minima = 0;
+    for i in 0..n {
+        let [a, b, c] = [i, i + 1, i + 2].map(|j| start(&cycle[j % n]));
+        if orient2d(a, b, c) == Sign::Negative {
+            return false;
+        }
+        minima += usize::from(lexicographic(a, b).is_gt() && lexicographic(b, c).is_lt());
+    }
+    minima == 1
+}

@@ -1,0 +1,64 @@
+//! Triangles with barycentric coordinates, and outside the nearest point of the boundary.
+
+use delone_predicates::Point2;
+
+use super::batch::{Output, each};
+use super::tiling::{Side, next, prev};
+use super::{Located, Locator, barycentric};
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// Where queries are, row by row.
+#[derive(Debug)]
+pub struct Coordinates {
+    /// The first triangle that holds the query, or -1.
+    pub triangle: Vec<i32>,
+    /// The weights of its corners, three a row; NaN outside.
+    pub weights: Vec<f64>,
+    /// Outside: the triangle at the boundary edge with the nearest point; else -1.
+    pub beside: Vec<i32>,
+    /// The ends of that edge, two a row, the triangle on its left; else -1.
+    pub edge: Vec<i32>,
+    /// How far along that edge the nearest point is, from 0 to 1; else NaN.
+    pub along: Vec<f64>,
+}
+
+/// Locates queries; those that are not finite are nowhere.
+pub fn coordinates(
+    locator: &Locator,
+    queries: &[Point2],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Coordinates> {
+    let n = queries.len();
+    let given = &locator.given;
+    let triangle = Output::filled(n, -1)?;
+    let weights = Output::filled(3 * n, f64::NAN)?;
+    let beside = Output::filled(n, -1)?;
+    let edge = Output::filled(2 * n, -1)?;
+    let along = Output::filled(n, f64::NAN)?;
+    each(locator, queries, workers, watch, || (), |(), row, q, at| {
+        match at {
+            Located::Inside(place) => {
+                triangle.set(row, place.triangle as i32);
+                weights.set_all(3 * row, &barycentric(given, &place, q));
+            }
+            Located::Outside(from) => {
+                let (side, t) = locator.boundary()?.nearest(given, from, q);
+                let ends = [next(side.corner), prev(side.corner)];
+                let ends = ends.map(|corner| given.vertex(Side { corner, ..side }));
+                beside.set(row, side.triangle as i32);
+                edge.set_all(2 * row, &ends);
+                along.set(row, t);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(Coordinates {
+        triangle: triangle.into_vec(),
+        weights: weights.into_vec(),
+        beside: beside.into_vec(),
+        edge: edge.into_vec(),
+        along: along.into_vec(),
+    })
+}

@@ -1,0 +1,168 @@
+//! Which triangle holds a point: exact, boundary included, for any tiling in exported arrays.
+//!
+//! `Locator` keeps what calls have in common: a tree of starts, the boundary. `batch` takes queries
+//! along the curve, or as they come where that is as good, and walks from each to the next.
+
+mod barycentric;
+mod batch;
+mod boundary;
+mod boxes;
+mod coordinates;
+mod cross;
+mod nearest;
+mod range;
+mod segment;
+mod star;
+mod start;
+mod straight;
+mod tiling;
+mod walk;
+
+use std::sync::OnceLock;
+
+use delone_predicates::Point2;
+
+pub use barycentric::{barycentric, weights as barycentric_weights};
+pub use batch::{Output, each};
+pub use boundary::Boundary;
+pub use coordinates::{Coordinates, coordinates};
+pub use cross::cross;
+pub use nearest::nearest;
+pub use range::{in_unit, seen_from};
+pub use segment::along;
+pub use star::{Place, Star};
+pub use tiling::{Side, next, prev};
+
+use crate::delaunay2::validate::Given;
+use crate::error::Result;
+use crate::watch::Watch;
+use boxes::Boxes;
+use start::Start;
+use walk::{Found, walk};
+
+/// What is kept between calls for one triangulation.
+#[derive(Debug)]
+pub struct Kept {
+    start: Start,
+    boundary: OnceLock<Boundary>,
+    boxes: OnceLock<Boxes>,
+}
+
+impl Kept {
+    /// A tree of starts for many calls; the rest is made when it is needed.
+    pub fn of(given: &Given) -> Result<Self> {
+        Ok(Self {
+            start: Start::of(given)?,
+            boundary: OnceLock::new(),
+            boxes: OnceLock::new(),
+        })
+    }
+}
+
+/// A triangulation and what is kept for it.
+#[derive(Clone, Copy)]
+pub struct Locator<'a> {
+    /// The arrays.
+    pub given: Given<'a>,
+    kept: &'a Kept,
+}
+
+/// Where a point is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Located {
+    /// In a triangle.
+    Inside(Place),
+    /// Outside of all, strictly beyond this boundary edge where the boundary is convex.
+    Outside(Side),
+}
+
+impl<'a> Locator<'a> {
+    /// A locator of what was kept for the same arrays.
+    pub fn new(given: Given<'a>, kept: &'a Kept) -> Self {
+        Self { given, kept }
+    }
+
+    /// The boundary.
+    pub fn boundary(&self) -> Result<&'a Boundary> {
+        kept(&self.kept.boundary, || Boundary::of(&self.given))
+    }
+
+    /// A triangle near `q`.
+    #[inline]
+    pub fn near(&self, q: Point2) -> usize {
+        self.kept.start.near(q)
+    }
+
+    /// Where `q` is, on the way from triangle `from`.
+    #[inline]
+    pub fn locate_from(&self, from: usize, q: Point2, star: &mut Star) -> Result<Located> {
+        match walk(&self.given, from, q)? {
+            Found::Inside(triangle, on) => {
+                let first = star.first(&self.given, Place { triangle, on });
+                if first.open && !self.boundary()?.convex {
+                    let place = self.boxes()?.first(&self.given, q);
+                    return Ok(Located::Inside(place.unwrap_or(first.place)));
+                }
+                Ok(Located::Inside(first.place))
+            }
+            Found::Beyond(side) => self.beyond(side, q),
+        }
+    }
+
+    /// Where `q` is; nothing for what is not finite, or where there is no triangle.
+    pub fn locate(&self, q: Point2) -> Result<Option<Located>> {
+        if !is_finite(q) || self.given.simplices.is_empty() {
+            return Ok(None);
+        }
+        let located = self.locate_from(self.near(q), q, &mut Star::default())?;
+        Ok(Some(located))
+    }
+
+    /// What lies beyond a boundary edge: more triangles, unless the boundary is convex.
+    fn beyond(&self, side: Side, q: Point2) -> Result<Located> {
+        if self.boundary()?.convex {
+            return Ok(Located::Outside(side));
+        }
+        Ok(match self.boxes()?.first(&self.given, q) {
+            Some(place) => Located::Inside(place),
+            None => Located::Outside(side),
+        })
+    }
+
+    fn boxes(&self) -> Result<&'a Boxes> {
+        kept(&self.kept.boxes, || Boxes::of(&self.given))
+    }
+}
+
+/// What is in the cell, or is made now; where two threads make it, one of the two equal values.
+fn kept<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
+    match cell.get() {
+        Some(value) => Ok(value),
+        None => {
+            let made = make()?;
+            Ok(cell.get_or_init(|| made))
+        }
+    }
+}
+
+fn is_finite(q: Point2) -> bool {
+    q[0].is_finite() && q[1].is_finite()
+}
+
+/// For each query the first triangle that holds it, boundary included, or -1: outside, or not
+/// finite.
+pub fn find(
+    locator: &Locator,
+    queries: &[Point2],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<i32>> {
+    let found = Output::<i32>::filled(queries.len(), -1)?;
+    each(locator, queries, workers, watch, || (), |(), row, _, at| {
+        if let Located::Inside(place) = at {
+            found.set(row, place.triangle as i32);
+        }
+        Ok(())
+    })?;
+    Ok(found.into_vec())
+}

@@ -1,0 +1,65 @@
+//! The triangles along a segment between any two points.
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::straight::Trace;
+use super::tiling::{Side, next, prev};
+use super::{Located, Locator, Place, Star, is_finite};
+use crate::error::{Error, Result};
+
+/// The triangles that the segment from `a` to `b` meets in more than a point, in order; the one
+/// that holds `a` where `a` is `b`. Of the two beside an edge on the segment the left one counts,
+/// at the boundary the one there is. Parts outside the convex hull are skipped.
+pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
+    if !is_finite(a) || !is_finite(b) {
+        return Err(Error::Shape("an end of the segment is not finite".into()));
+    }
+    if locator.given.simplices.is_empty() {
+        return Ok(Vec::new());
+    }
+    if !locator.boundary()?.convex {
+        return Err(Error::Shape(
+            "a walk along a segment needs triangles of the whole convex hull".into(),
+        ));
+    }
+    let given = &locator.given;
+    let mut met = Vec::new();
+    let place = |p| match locator.locate_from(locator.near(p), p, &mut Star::default())? {
+        Located::Inside(place) => Ok(Some(place)),
+        Located::Outside(_) => Ok(None),
+    };
+    let inside = |Place { triangle, on }, a, b| Trace::from_inside(given, triangle, on, a, b);
+    match (place(a)?, place(b)?) {
+        (Some(start), Some(_)) if a == b => met.push(start.triangle as i32),
+        (Some(start), _) => {
+            inside(start, a, b).run(|t| met.push(t as i32))?;
+        }
+        (None, Some(end)) => {
+            inside(end, b, a).right_handed().run(|t| met.push(t as i32))?;
+            met.reverse();
+        }
+        (None, None) => {
+            if let Some(side) = entry(locator, a, b)? {
+                Trace::from_outside(given, side, a, b).run(|t| met.push(t as i32))?;
+            }
+        }
+    }
+    Ok(met)
+}
+
+/// The boundary edge through which, or through an end of which, the segment between two points
+/// outside comes in.
+fn entry(locator: &Locator, a: Point2, b: Point2) -> Result<Option<Side>> {
+    let given = &locator.given;
+    let enters = |side: &&Side| {
+        let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| {
+            given.point(given.vertex(Side { corner, ..**side }))
+        });
+        // a is strictly beyond the edge and b strictly before it; u is left of the line.
+        orient2d(u, v, a) == Sign::Negative
+            && orient2d(u, v, b) == Sign::Positive
+            && orient2d(a, b, u) != Sign::Negative
+            && orient2d(a, b, v) != Sign::Positive
+    };
+    Ok(locator.boundary()?.sides.iter().find(enters).copied())
+}

@@ -1,0 +1,310 @@
+//! The straight walk: the triangles that a segment meets, in order.
+//!
+//! Every decision is the exact side of a vertex on the line through the two given ends, so each
+//! triangle of the line is met once and the walk ends on any tiling (the "straight walk" of O.
+//! Devillers, S. Pion and M. Teillaud, "Walking in a triangulation", 2002, with the degenerate
+//! cases). The walk is in one of two states: at a vertex that is exactly on the segment, or in the
+//! middle of an edge that the segment crosses.
+
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+
+use super::tiling::{Side, next, prev};
+use crate::delaunay2::validate::Given;
+use crate::error::{Error, Result};
+
+/// How a trace ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// In a triangle whose closed area has the far end.
+    Reached(usize),
+    /// At a boundary edge beyond which, or at whose end, the segment goes on outside.
+    Left(Side),
+}
+
+#[derive(Debug, Clone, Copy)]
+enum State {
+    /// The vertex at this corner is on the segment.
+    Vertex(Side),
+    /// The segment enters the triangle through the open edge opposite this corner.
+    Enter(Side),
+    /// The segment begins in this triangle, not at a corner.
+    Within(usize),
+    Done(End),
+}
+
+/// A walk along the segment from `a` to `b`.
+pub struct Trace<'a> {
+    given: &'a Given<'a>,
+    a: Point2,
+    b: Point2,
+    /// Of the triangles beside an edge on the segment: the left one first, or the right one.
+    prefer_left: bool,
+    state: State,
+}
+
+impl<'a> Trace<'a> {
+    /// From the vertex at a corner to `b`.
+    pub fn from_corner(given: &'a Given<'a>, start: Side, b: Point2) -> Self {
+        Self {
+            given,
+            a: given.point(given.vertex(start)),
+            b,
+            prefer_left: true,
+            state: State::Vertex(start),
+        }
+    }
+
+    /// From `a`, which is in the closed area of triangle `t` and on its edges `on`, to `b`, another
+    /// point.
+    pub fn from_inside(
+        given: &'a Given<'a>,
+        t: usize,
+        on: [bool; 3],
+        a: Point2,
+        b: Point2,
+    ) -> Self {
+        let mut trace = Self {
+            given,
+            a,
+            b,
+            prefer_left: true,
+            state: State::Within(t),
+        };
+        let corners = (0..3).filter(|&k| on[k]).collect::<Vec<_>>();
+        let side = |corner| Side {
+            triangle: t,
+            corner,
+        };
+        trace.state = match corners[..] {
+            [] => State::Within(t),
+            [k] => trace.from_edge(side(k)),
+            // Of three corners the one that is opposite neither edge.
+            [k, l, ..] => State::Vertex(side(3 - k - l)),
+        };
+        trace
+    }
+
+    /// From beyond boundary edge `side`, which the segment meets, to `b`.
+    pub fn from_outside(given: &'a Given<'a>, side: Side, a: Point2, b: Point2) -> Self {
+        let mut trace = Self {
+            given,
+            a,
+            b,
+            prefer_left: true,
+            state: State::Enter(side),
+        };
+        for corner in [next(side.corner), prev(side.corner)] {
+            let at = Side { corner, ..side };
+            if trace.side(given.point(given.vertex(at))) == Sign::Zero {
+                trace.state = State::Vertex(at);
+            }
+        }
+        trace
+    }
+
+    /// The same walk with the right one of two triangles beside an edge.
+    pub fn right_handed(mut self) -> Self {
+        self.prefer_left = false;
+        self
+    }
+
+    /// Walks to the end; `meet` gets each triangle.
+    pub fn run(&mut self, mut meet: impl FnMut(usize)) -> Result<End> {
+        // Each triangle is entered once; a vertex or an edge on the way adds two steps.
+        let mut left = 4 * self.given.simplices.len() + 4;
+        loop {
+            self.state = match self.state {
+                State::Done(end) => return Ok(end),
+                State::Vertex(side) => self.leave_vertex(side, &mut meet)?,
+                State::Enter(side) => self.cross(side, &mut meet),
+                State::Within(t) => self.leave_inside(t, &mut meet),
+            };
+            left = left.checked_sub(1).ok_or_else(|| self.endless())?;
+        }
+    }
+
+    fn endless(&self) -> Error {
+        Error::Internal(format!(
+            "the straight walk from {:?} to {:?} does not end",
+            self.a, self.b
+        ))
+    }
+
+    fn side(&self, p: Point2) -> Sign {
+        orient2d(self.a, self.b, p)
+    }
+
+    /// Whether `b` is in the closed area of a triangle.
+    fn holds_end(&self, t: usize) -> bool {
+        let [p, q, r] = self.given.corners(t);
+        [(p, q), (q, r), (r, p)]
+            .into_iter()
+            .all(|(u, v)| orient2d(u, v, self.b) != Sign::Negative)
+    }
+
+    /// Through the edge opposite a corner, or out.
+    fn through(&self, side: Side) -> State {
+        match self.given.beyond(side) {
+            Some(across) => State::Enter(across),
+            None => State::Done(End::Left(side)),
+        }
+    }
+
+    /// The start in the open edge opposite a corner.
+    fn from_edge(&self, side: Side) -> State {
+        let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
+        let [p, q] = [u, v].map(|s| self.given.point(self.given.vertex(s)));
+        match orient2d(p, q, self.b) {
+            Sign::Positive => State::Within(side.triangle),
+            Sign::Negative => self.through(side),
+            Sign::Zero => {
+                // Along the edge: as from its end behind.
+                let ahead = lexicographic(self.a, self.b) == lexicographic(p, q);
+                State::Vertex(if ahead { u } else { v })
+            }
+        }
+    }
+
+    /// In `t`, from a point that is no corner and from which the segment goes inwards.
+    fn leave_inside(&self, t: usize, meet: &mut impl FnMut(usize)) -> State {
+        meet(t);
+        if self.holds_end(t) {
+            return State::Done(End::Reached(t));
+        }
+        let signs = self.given.corners(t).map(|p| self.side(p));
+        for corner in 0..3 {
+            let side = Side {
+                triangle: t,
+                corner,
+            };
+            // Seen from inside, what is left of the line comes after what is right of it.
+            match (signs[corner], signs[next(corner)], signs[prev(corner)]) {
+                (Sign::Zero, Sign::Positive, Sign::Negative) => return State::Vertex(side),
+                (_, Sign::Negative, Sign::Positive) => return self.through(side),
+                _ => {}
+            }
+        }
+        // Only in triangles that are no triangles.
+        State::Done(End::Left(Side {
+            triangle: t,
+            corner: 0,
+        }))
+    }
+
+    /// Into the triangle through the open edge opposite the corner, and on.
+    fn cross(&self, side: Side, meet: &mut impl FnMut(usize)) -> State {
+        meet(side.triangle);
+        if self.holds_end(side.triangle) {
+            return State::Done(End::Reached(side.triangle));
+        }
+        // Seen along the segment the edge has its `next` corner on the left.
+        match self.side(self.given.point(self.given.vertex(side))) {
+            Sign::Zero => State::Vertex(side),
+            Sign::Positive => self.through(Side {
+                corner: next(side.corner),
+                ..side
+            }),
+            Sign::Negative => self.through(Side {
+                corner: prev(side.corner),
+                ..side
+            }),
+        }
+    }
+
+    /// From a vertex on the segment into the triangle, or along the edge, that leads on to `b`.
+    fn leave_vertex(&self, at: Side, meet: &mut impl FnMut(usize)) -> Result<State> {
+        let p = self.given.point(self.given.vertex(at));
+        let mut found = None;
+        let mut rim = at;
+        self.given.around(at, |side| {
+            let [u, v] = [next(side.corner), prev(side.corner)]
+                .map(|corner| self.given.point(self.given.vertex(Side { corner, ..side })));
+            let (right, left) = (orient2d(p, u, self.b), orient2d(p, v, self.b));
+            if right == Sign::Negative || left == Sign::Positive {
+                // At the boundary the edge that has b beyond: seen from p, to its left or right.
+                if right == Sign::Negative && self.given.turn_right(side).is_none() {
+                    rim = Side {
+                        corner: prev(side.corner),
+                        ..side
+                    };
+                }
+                if left == Sign::Positive && self.given.turn_left(side).is_none() {
+                    rim = Side {
+                        corner: next(side.corner),
+                        ..side
+                    };
+                }
+                return true;
+            }
+            found = Some((side, right, left, u, v));
+            false
+        });
+        let Some((side, right, left, u, v)) = found else {
+            return Ok(State::Done(End::Left(rim)));
+        };
+        if right == Sign::Zero && left == Sign::Zero {
+            // The far end is this vertex.
+            meet(side.triangle);
+            return Ok(State::Done(End::Reached(side.triangle)));
+        }
+        if right == Sign::Zero {
+            let end = Side {
+                corner: next(side.corner),
+                ..side
+            };
+            return Ok(self.along_edge(side, p, u, end, meet));
+        }
+        if left == Sign::Zero {
+            // The same edge seen from its other side, unless that is outside.
+            let (beside, end) = match self.given.turn_left(side) {
+                Some(across) => (
+                    across,
+                    Side {
+                        corner: next(across.corner),
+                        ..across
+                    },
+                ),
+                None => (
+                    side,
+                    Side {
+                        corner: prev(side.corner),
+                        ..side
+                    },
+                ),
+            };
+            return Ok(self.along_edge(beside, p, v, end, meet));
+        }
+        meet(side.triangle);
+        if self.holds_end(side.triangle) {
+            return Ok(State::Done(End::Reached(side.triangle)));
+        }
+        Ok(self.through(side))
+    }
+
+    /// Along the edge from `p`, at corner `side`, to `u`, at corner `end` of the same triangle.
+    fn along_edge(
+        &self,
+        side: Side,
+        p: Point2,
+        u: Point2,
+        end: Side,
+        meet: &mut impl FnMut(usize),
+    ) -> State {
+        let is_left = end.corner == next(side.corner);
+        let other = if is_left {
+            self.given.turn_right(side)
+        } else {
+            self.given.turn_left(side)
+        };
+        let beside = match other {
+            Some(other) if is_left != self.prefer_left => other.triangle,
+            _ => side.triangle,
+        };
+        meet(beside);
+        if lexicographic(u, self.b) == lexicographic(p, u) {
+            State::Vertex(end)
+        } else {
+            State::Done(End::Reached(beside))
+        }
+    }
+}

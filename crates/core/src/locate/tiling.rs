@@ -1,0 +1,128 @@
+//! Exported arrays as a tiling: from triangle to triangle by codes, never by vertex numbers, so that
+//! the two sides of an edge may name different rows with equal coordinates.
+
+use delone_predicates::Point2;
+
+use crate::delaunay2::validate::Given;
+
+/// A corner of a triangle, and the edge opposite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    /// The triangle.
+    pub triangle: usize,
+    /// The corner, 0 to 2.
+    pub corner: usize,
+}
+
+/// The corner after `k`, counter-clockwise.
+#[inline]
+pub fn next(k: usize) -> usize {
+    if k == 2 { 0 } else { k + 1 }
+}
+
+/// The corner before `k`.
+#[inline]
+pub fn prev(k: usize) -> usize {
+    if k == 0 { 2 } else { k - 1 }
+}
+
+impl Given<'_> {
+    /// The coordinates of a vertex.
+    #[inline]
+    pub fn point(&self, v: i32) -> Point2 {
+        self.points[v as usize]
+    }
+
+    /// The coordinates of the corners of a triangle.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [Point2; 3] {
+        self.simplices[t].map(|v| self.point(v))
+    }
+
+    /// The vertex at a corner.
+    #[inline]
+    pub fn vertex(&self, side: Side) -> i32 {
+        self.simplices[side.triangle][side.corner]
+    }
+
+    /// The same edge seen from the triangle beyond; nothing at the boundary.
+    ///
+    /// ```text
+    ///        a                 the edge from s[next(k)] to s[next(next(k))] of the one
+    ///       / \                is the edge from s'[next(next(k'))] to s'[next(k')] of the other
+    ///      / k \
+    ///     b-----c
+    ///      \ k'/
+    ///       \ /
+    /// ```
+    #[inline]
+    pub fn beyond(&self, side: Side) -> Option<Side> {
+        let t = self.neighbors[side.triangle][side.corner];
+        if t < 0 {
+            return None;
+        }
+        let back = &self.neighbors[t as usize];
+        let here = side.triangle as i32;
+        let corner = usize::from(back[1] == here) + 2 * usize::from(back[2] == here);
+        Some(Side {
+            triangle: t as usize,
+            // Two triangles share one edge; arrays that say otherwise must not lead out of range.
+            corner: corner.min(2),
+        })
+    }
+
+    /// The next triangle counter-clockwise around the vertex at a corner.
+    #[inline]
+    pub fn turn_left(&self, side: Side) -> Option<Side> {
+        let across = self.beyond(Side {
+            corner: next(side.corner),
+            ..side
+        })?;
+        Some(Side {
+            corner: next(across.corner),
+            ..across
+        })
+    }
+
+    /// The next triangle clockwise around the vertex at a corner.
+    #[inline]
+    pub fn turn_right(&self, side: Side) -> Option<Side> {
+        let across = self.beyond(Side {
+            corner: prev(side.corner),
+            ..side
+        })?;
+        Some(Side {
+            corner: prev(across.corner),
+            ..across
+        })
+    }
+
+    /// Calls `visit` on each triangle around the vertex at a corner, once, until it answers `false`:
+    /// counter-clockwise until the turn is complete; where the boundary is met, on from the first
+    /// one clockwise. It ends after as many steps as there are triangles, whatever the arrays say.
+    /// Returns whether the boundary was met.
+    #[inline]
+    pub fn around(&self, start: Side, mut visit: impl FnMut(Side) -> bool) -> bool {
+        let mut left = self.simplices.len();
+        let mut now = Some(start);
+        while let Some(side) = now {
+            if !visit(side) || left == 0 {
+                return false;
+            }
+            left -= 1;
+            now = self.turn_left(side);
+            if now.is_some_and(|side| side.triangle == start.triangle) {
+                return false;
+            }
+        }
+        let mut now = self.turn_right(start);
+        while let Some(side) = now {
+            if !visit(side) || left == 0 {
+                break;
+            }
+            left -= 1;
+            now = self.turn_right(side);
+        }
+        true
+    }
+}

@@ -1,0 +1,104 @@
+//! The walk through exported arrays to the triangle that holds a point.
+//!
+//! The remembering visibility walk (O. Devillers, S. Pion and M. Teillaud, "Walking in a
+//! triangulation", 2002) goes across an edge that has the point on its other side. It ends on
+//! Delaunay triangulations; on others it may turn in circles, so it has a budget, and then the
+//! straight walk takes over, which meets each triangle of a line once.
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::straight::{End, Trace};
+use super::tiling::{Side, next, prev};
+use crate::delaunay2::validate::Given;
+use crate::error::Result;
+
+/// Where a walk ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// In a triangle whose closed area has the point: it is on the edges opposite these corners.
+    Inside(usize, [bool; 3]),
+    /// At a boundary edge that has the point strictly beyond.
+    Beyond(Side),
+}
+
+/// Steps of the visibility walk before the straight walk takes over: several times what a walk
+/// across a whole mesh of uniform points takes.
+fn budget(triangles: usize) -> usize {
+    64 + 8 * triangles.isqrt()
+}
+
+/// Walks from triangle `from` to `q`.
+#[inline]
+pub fn walk(given: &Given, from: usize, q: Point2) -> Result<Found> {
+    match visibility(given, from, q, budget(given.simplices.len())) {
+        Some(found) => Ok(found),
+        None => straight(given, from, q),
+    }
+}
+
+/// On which side of the directed edge from `a` to `b` the point lies.
+#[inline]
+fn side_of(a: Point2, b: Point2, q: Point2) -> Sign {
+    orient2d(a, b, q)
+}
+
+/// The visibility walk, unless it needs more than `budget` steps.
+#[inline]
+pub fn visibility(given: &Given, from: usize, q: Point2, budget: usize) -> Option<Found> {
+    let [a, b, c] = given.corners(from);
+    let signs = [side_of(b, c, q), side_of(c, a, q), side_of(a, b, q)];
+    let Some(k) = signs.iter().position(|&s| s == Sign::Negative) else {
+        return Some(Found::Inside(from, signs.map(|s| s == Sign::Zero)));
+    };
+    // The walk leaves `at` across the edge from u to v.
+    let mut at = Side {
+        triangle: from,
+        corner: k,
+    };
+    let corners = [a, b, c];
+    let (mut u, mut v) = (corners[next(k)], corners[prev(k)]);
+    for _ in 0..budget {
+        let Some(side) = given.beyond(at) else {
+            return Some(Found::Beyond(at));
+        };
+        let w = given.point(given.vertex(side));
+        let (left, right) = (side_of(u, w, q), side_of(w, v, q));
+        if left == Sign::Negative {
+            at.corner = next(side.corner);
+            v = w;
+        } else if right == Sign::Negative {
+            at.corner = prev(side.corner);
+            u = w;
+        } else {
+            let mut on = [false; 3];
+            on[next(side.corner)] = left == Sign::Zero;
+            on[prev(side.corner)] = right == Sign::Zero;
+            return Some(Found::Inside(side.triangle, on));
+        }
+        at.triangle = side.triangle;
+    }
+    None
+}
+
+/// The straight walk from the first corner of a triangle.
+#[cold]
+#[inline(never)]
+pub fn straight(given: &Given, from: usize, q: Point2) -> Result<Found> {
+    let mut trace = Trace::from_corner(
+        given,
+        Side {
+            triangle: from,
+            corner: 0,
+        },
+        q,
+    );
+    let end = trace.run(|_| ())?;
+    Ok(match end {
+        End::Reached(t) => {
+            let [a, b, c] = given.corners(t);
+            let on = [side_of(b, c, q), side_of(c, a, q), side_of(a, b, q)];
+            Found::Inside(t, on.map(|s| s == Sign::Zero))
+        }
+        End::Left(side) => Found::Beyond(side),
+    })
+}

@@ -1,0 +1,191 @@
+//! Delaunay triangulations of points repeated at a period in x, in y, or both.
+//!
+//! The copies of the points one period away on all sides are triangulated with them; triangles with a
+//! corner among the points themselves are those of the whole periodic set. For let p be a point, z a
+//! place of its cell and q a copy two periods away in x: z is at most half a period from p in x, since
+//! the copies of p cut the cell there, and so the copy of q one period nearer is strictly nearer to z.
+//! (N. P. Dolbilin and D. H. Huson, "Periodic Delone tilings", 1997.) This holds while all points lie
+//! within one period, its end left out.
+//!
+//! The coordinate of a copy, x + k L, is in general no double. Predicates therefore work on the pair of
+//! point and copy: the filter on x - x' + (k - k') L with a bound that counts the rounding of both, and
+//! integers on the exact sum. Nothing is rounded to a double before a sign is known. Ties go by the
+//! lexicographic order of the copies, which no translation changes, so that all periods are cut alike.
+//!
+//! # The bounds of the filters
+//!
+//! Let u = 2^-53, m the largest of |x - x'| + |k - k'| L over the differences of a predicate, D the
+//! largest rounded difference. A difference errs by 4 u m at most (three roundings). A turn has 2
+//! monomials of degree 2, each off by 2 D 4 u m, and roundings of 4 u D^2: together less than
+//! 32 u D (m + D). An in-circle test has 12 of degree 4, each off by 4 D^3 4 u m and roundings of
+//! 16 u D^4: less than 256 u D^3 (m + D). Magnitudes are kept between 2^-200 and 2^200.
+
+use delone_predicates::{Point2, Sign};
+use num_bigint::BigInt;
+
+use super::insertion::{Sites, Triangles, insert_all};
+use super::power::{determinant, in_line};
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::order::arrange;
+use crate::watch::Watch;
+use crate::wide::{lowest, scaled, sign};
+
+const U: f64 = f64::EPSILON / 2.0;
+/// 2^-200 and 2^200.
+const RANGE: (f64, f64) = (
+    f64::from_bits((1023 - 200) << 52),
+    f64::from_bits((1023 + 200) << 52),
+);
+
+/// Copies of points.
+struct Images<'a> {
+    points: &'a [Point2],
+    periods: Point2,
+    /// The point, and by how many periods it is moved.
+    of: Vec<(u32, [i8; 2])>,
+}
+
+/// A triangulation of copies.
+#[derive(Debug)]
+pub struct Copies {
+    /// Triangles of copies.
+    pub triangles: Triangles,
+    /// Copies in line, where there is no triangle.
+    pub chain: Vec<u32>,
+    /// The row of each copy.
+    pub rows: Vec<i32>,
+    /// By how many periods each copy is moved.
+    pub moved: Vec<[i32; 2]>,
+}
+
+/// Triangulates distinct points and those copies of them that `taken` names: row, and periods in x
+/// and y of -1, 0 or 1. A period of 0 stands for none.
+pub fn periodic(
+    points: &[Point2],
+    periods: Point2,
+    taken: &[[i32; 3]],
+    watch: &Watch,
+) -> Result<Copies> {
+    let images: Vec<(u32, [i8; 2])> = taken
+        .iter()
+        .map(|&[row, x, y]| (row as u32, [x as i8, y as i8]))
+        .collect();
+    // Rounded copies serve for the order of insertion alone; two may round to one.
+    let mut near = with_room(images.len())?;
+    near.extend(images.iter().map(|&(row, moved)| {
+        let p = points[row as usize];
+        [0, 1].map(|k| p[k] + f64::from(moved[k]) * periods[k])
+    }));
+    let arranged = arrange(&near, 1, watch)?;
+    let rest = arranged.duplicates.iter().map(|&[row, _]| row);
+    let order: Vec<u32> = arranged.rows.iter().copied().chain(rest).collect();
+    let sites = Images {
+        points,
+        periods,
+        of: order.iter().map(|&i| images[i as usize]).collect(),
+    };
+    let (triangles, chain) = match insert_all(&sites, order.len(), watch)? {
+        Ok(triangles) => (triangles, Vec::new()),
+        Err(chain) => {
+            let none = Triangles {
+                simplices: Vec::new(),
+                neighbors: Vec::new(),
+            };
+            (none, chain)
+        }
+    };
+    Ok(Copies {
+        triangles,
+        chain,
+        rows: sites.of.iter().map(|&(row, _)| row as i32).collect(),
+        moved: sites.of.iter().map(|&(_, moved)| moved.map(i32::from)).collect(),
+    })
+}
+
+impl Images<'_> {
+    /// Rounded differences to the last site, and the largest magnitude that went into one.
+    fn differences<const N: usize>(&self, sites: [u32; N], last: u32) -> ([Point2; N], f64) {
+        let (origin, zero) = self.of[last as usize];
+        let origin = self.points[origin as usize];
+        let mut most = 0.0_f64;
+        let found = sites.map(|v| {
+            let (row, moved) = self.of[v as usize];
+            let p = self.points[row as usize];
+            [0, 1].map(|k| {
+                let inner = p[k] - origin[k];
+                let outer = f64::from(moved[k] - zero[k]) * self.periods[k];
+                most = most.max(inner.abs() + outer.abs());
+                inner + outer
+            })
+        });
+        (found, most)
+    }
+
+    /// Exact differences to the last site.
+    fn exact<const N: usize>(&self, sites: [u32; N], last: u32) -> [[BigInt; 2]; N] {
+        let mut corners = vec![self.periods];
+        corners.extend(sites.map(|v| self.points[self.of[v as usize].0 as usize]));
+        corners.push(self.points[self.of[last as usize].0 as usize]);
+        let low = lowest(&corners, &[]);
+        let at = |v: u32| {
+            let (row, moved) = self.of[v as usize];
+            let p = self.points[row as usize];
+            [0, 1].map(|k| scaled(p[k], low) + scaled(self.periods[k], low) * moved[k])
+        };
+        let origin = at(last);
+        sites.map(|v| {
+            let [x, y] = at(v);
+            [x - &origin[0], y - &origin[1]]
+        })
+    }
+}
+
+/// The largest of some coordinates, where all magnitudes are within the range of the filters.
+fn largest(points: &[Point2], most: f64) -> Option<f64> {
+    let largest = points.as_flattened().iter().fold(0.0_f64, |d, x| d.max(x.abs()));
+    let inside = |x: f64| x > RANGE.0 && x < RANGE.1;
+    (inside(largest) && inside(most)).then_some(largest)
+}
+
+impl Sites for Images<'_> {
+    fn turn(&self, [a, b, c]: [u32; 3]) -> Sign {
+        let ([p, q], most) = self.differences([a, b], c);
+        let det = p[0] * q[1] - p[1] * q[0];
+        match largest(&[p, q], most) {
+            Some(d) if det.abs() > 32.0 * U * d * (most + d) => Sign::of(det),
+            _ => {
+                let [p, q] = self.exact([a, b], c);
+                sign(&(&p[0] * &q[1] - &p[1] * &q[0]))
+            }
+        }
+    }
+
+    fn height(&self, [a, b, c, d]: [u32; 4]) -> Sign {
+        let ([p, q, r], most) = self.differences([a, b, c], d);
+        let square = |v: Point2| v[0] * v[0] + v[1] * v[1];
+        let cross = |v: Point2, w: Point2| v[0] * w[1] - v[1] * w[0];
+        let det = square(p) * cross(q, r) + square(q) * cross(r, p) + square(r) * cross(p, q);
+        match largest(&[p, q, r], most) {
+            Some(d) if det.abs() > 256.0 * U * d * d * d * (most + d) => Sign::of(det),
+            _ => determinant(&self.exact([a, b, c], d), [const { BigInt::ZERO }; 3]),
+        }
+    }
+
+    fn height_in_line(&self, [a, b, p]: [u32; 3]) -> Sign {
+        let [b, p] = self.exact([b, p], a);
+        let height = |q: &[BigInt; 2]| &q[0] * &q[0] + &q[1] * &q[1];
+        in_line([&b, &p], [height(&b), height(&p)])
+    }
+
+    fn smaller(&self, a: u32, b: u32) -> bool {
+        let ([d], most) = self.differences([a], b);
+        let sure = |x: f64| x.abs() > 8.0 * U * most && most > RANGE.0;
+        if sure(d[0]) {
+            return d[0] < 0.0;
+        }
+        let [[x, y]] = self.exact([a], b);
+        let zero = BigInt::ZERO;
+        x < zero || (x == zero && y < zero)
+    }
+}

@@ -1,0 +1,268 @@
+//! Where the bisectors of three sites meet, rounded.
+//!
+//! With the first corner a as the origin, d = b - a and e = c - a, the point u at equal power from
+//! all three solves 2 u.d = |d|^2 + w(a) - w(b) = L and 2 u.e = |e|^2 + w(a) - w(c) = M, so that
+//!
+//! ```text
+//! u = (e_y L - d_y M, d_x M - e_x L) / (2 d x e),    center = a + u
+//! ```
+//!
+//! and without weights it is the centre of the circle. Three stages, each sure of what it returns:
+//!
+//! 1. *Plain*: in doubles, with a bound on the error, accepted up to 4 units in the last place.
+//! 2. *Pairs*: the same with numbers of two doubles, accepted where the whole interval of the error
+//!    rounds to one double: correctly rounded.
+//! 3. *Exact*: integers of any width, correctly rounded, whatever the range.
+//!
+//! The corner that serves as the origin is the lexicographically smallest one, so that the result
+//! does not hang on the order in which a triangle names its corners.
+//!
+//! # The bound of the plain stage
+//!
+//! Let u = 2^-53, N the numerator of a component, D = 2 d x e, and P, Q the sums of the magnitudes of
+//! their monomials. A monomial of N passes 3 differences, 2 products and 3 sums, one of D 2
+//! differences, a product and a sum: N errs by 10 u P, D by 5 u Q at most, with room for terms of
+//! second order. Where D > 10 u Q, the quotient q = N / D errs by
+//! 2 u (10 P + 5 |q| Q) / |D| + u |q|, and x = a + q by u |x| more. Nothing underflows to any effect
+//! while P, Q > 2^-700 and all differences and weights lie below 2^300.
+
+use delone_predicates::arithmetic::{Pair, is_safe};
+use delone_predicates::{Point2, lexicographic};
+use num_bigint::BigInt;
+
+use crate::wide::{lowest, ratio, scaled};
+
+/// Half the distance from 1.0 to the next double.
+const U: f64 = f64::EPSILON / 2.0;
+/// Below this a sum of magnitudes may have suffered from underflow, see the head of the file.
+const SMALL: f64 = f64::from_bits((1023 - 700) << 52);
+/// Differences and weights up to here cannot overflow in degree 3.
+const LARGE: f64 = f64::from_bits((1023 + 300) << 52);
+/// More than what underflow can take from the last sums of pairs: 2^-1000.
+const FLOOR: f64 = f64::from_bits((1023 - 1000) << 52);
+
+/// Three sites, counter-clockwise, and their weights.
+#[derive(Clone, Copy, Debug)]
+pub struct Corners {
+    points: [Point2; 3],
+    weights: [f64; 3],
+}
+
+/// A centre as far as doubles reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Center {
+    /// Its rounded coordinates.
+    At(Point2),
+    /// A coordinate is beyond the range: the direction in which the centre lies, of length 1.
+    Beyond(Point2),
+}
+
+impl Corners {
+    /// Corners with their weights, 0 for none.
+    #[inline]
+    pub fn new([a, b, c]: [Point2; 3], [u, v, w]: [f64; 3]) -> Self {
+        Self {
+            points: [a, b, c],
+            weights: [u, v, w],
+        }
+    }
+
+    /// Turned so that the lexicographically smallest corner comes first.
+    #[inline]
+    fn turned(&self) -> Self {
+        let ([a, b, c], [u, v, w]) = (self.points, self.weights);
+        let first = lexicographic(a, b).is_lt() && lexicographic(a, c).is_lt();
+        let second = !first && lexicographic(b, c).is_lt();
+        let (points, weights) = if first {
+            ([a, b, c], [u, v, w])
+        } else if second {
+            ([b, c, a], [v, w, u])
+        } else {
+            ([c, a, b], [w, u, v])
+        };
+        Self { points, weights }
+    }
+
+    /// The centre, within 4 units in the last place of each coordinate.
+    #[inline]
+    pub fn center(&self) -> Center {
+        match self.turned().plain() {
+            Some(at) => Center::At(at),
+            None => self.rounded(),
+        }
+    }
+
+    /// The centre, correctly rounded.
+    #[cold]
+    #[inline(never)]
+    pub fn rounded(&self) -> Center {
+        self.pairs().map_or_else(|| self.exact(), Center::At)
+    }
+
+    #[inline]
+    fn plain(&self) -> Option<Point2> {
+        let [a, b, c] = self.points;
+        let [wa, wb, wc] = self.weights;
+        let (dx, dy, ex, ey) = (b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]);
+        let (dw, ew) = (wa - wb, wa - wc);
+        let (dd, ee) = (dx * dx + dy * dy, ex * ex + ey * ey);
+        let (l, m) = (dd + dw, ee + ew);
+        let (left, right) = (dx * ey, dy * ex);
+        let (den, size) = (2.0 * (left - right), 2.0 * (left.abs() + right.abs()));
+        let (big_l, big_m) = (dd + dw.abs(), ee + ew.abs());
+        let px = ey.abs() * big_l + dy.abs() * big_m;
+        let py = dx.abs() * big_m + ex.abs() * big_l;
+        let (qx, qy) = ((ey * l - dy * m) / den, (dx * m - ex * l) / den);
+        let (x, y) = (a[0] + qx, a[1] + qy);
+        let certain = |q: f64, p: f64, x: f64| {
+            20.0 * p + 10.0 * q.abs() * size <= (3.0 * x.abs() - q.abs()) * den
+        };
+        // One comparison after the other, so that NaN fails each.
+        let sure = den > 10.0 * U * size
+            && size > SMALL
+            && px > SMALL
+            && py > SMALL
+            && big_l < LARGE
+            && big_m < LARGE
+            && certain(qx, px, x)
+            && certain(qy, py, y);
+        sure.then_some([x, y])
+    }
+
+    fn pairs(&self) -> Option<Point2> {
+        if !is_safe(&self.points) || !is_safe(&[self.weights]) {
+            return None;
+        }
+        let [a, b, c] = self.points;
+        let [wa, wb, wc] = self.weights;
+        let [dx, dy, ex, ey] = [
+            Pair::difference(b[0], a[0]),
+            Pair::difference(b[1], a[1]),
+            Pair::difference(c[0], a[0]),
+            Pair::difference(c[1], a[1]),
+        ];
+        let (dw, ew) = (Pair::difference(wa, wb), Pair::difference(wa, wc));
+        let (dd, ee) = (dx.square() + dy.square(), ex.square() + ey.square());
+        let (l, m) = (dd + dw, ee + ew);
+        let (left, right) = (dx * ey, dy * ex);
+        let half = left - right;
+        let size = left.hi.abs() + right.hi.abs();
+        // Thirteen u^2 is what a product and a sum may err by, see `Pair`.
+        if !(half.hi > 64.0 * U * U * size) {
+            return None;
+        }
+        let (big_l, big_m) = (dd.hi + dw.hi.abs(), ee.hi + ew.hi.abs());
+        let px = ey.hi.abs() * big_l + dy.hi.abs() * big_m;
+        let py = dx.hi.abs() * big_m + ex.hi.abs() * big_l;
+        let component = |origin: f64, n: Pair, p: f64| {
+            let q = quotient(n, half) * Pair::difference(0.5, 0.0);
+            let sum = Pair::difference(origin, 0.0) + q;
+            // N errs by 30 u^2 P, D by 13 u^2 of its size, the quotient by 32 u^2 of itself, the sum
+            // by 4 u^2 of both parts: doubled, with room for the rounding of the bound.
+            let error = 64.0 * U * U * ((p + q.hi.abs() * size) / half.hi)
+                + 128.0 * U * U * (q.hi.abs() + origin.abs())
+                + FLOOR;
+            let (low, high) = (sum.hi + (sum.lo - error), sum.hi + (sum.lo + error));
+            (low == high).then_some(low)
+        };
+        let x = component(a[0], ey * l - dy * m, px)?;
+        let y = component(a[1], dx * m - ex * l, py)?;
+        Some([x, y])
+    }
+
+    fn exact(&self) -> Center {
+        let low = lowest(&self.points, &self.weights);
+        let at = |x: f64| scaled(x, low);
+        let [a, b, c] = self.points.map(|p| p.map(at));
+        let [wa, wb, wc] = self.weights.map(|w| scaled(w, 2 * low));
+        let (dx, dy, ex, ey) = (&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]);
+        let l = &dx * &dx + &dy * &dy + &wa - wb;
+        let m = &ex * &ex + &ey * &ey + &wa - wc;
+        let den = (&dx * &ey - &dy * &ex) * 2;
+        let x = &ey * &l - &dy * &m + &a[0] * &den;
+        let y = &dx * &m - &ex * &l + &a[1] * &den;
+        match (ratio(&x, &den, low), ratio(&y, &den, low)) {
+            (Some(x), Some(y)) => Center::At([x, y]),
+            _ => Center::Beyond(direction(&x, &y)),
+        }
+    }
+}
+
+/// `n / d` to about 100 bits.
+fn quotient(n: Pair, d: Pair) -> Pair {
+    let as_pair = |x: f64| Pair::difference(x, 0.0);
+    let first = n.hi / d.hi;
+    let rest = n - d * as_pair(first);
+    let second = rest.hi / d.hi;
+    let rest = rest - d * as_pair(second);
+    (as_pair(first) + as_pair(second)) + as_pair(rest.hi / d.hi)
+}
+
+/// The direction of (x, y), of length 1.
+fn direction(x: &BigInt, y: &BigInt) -> Point2 {
+    // Sixty bits of the longer one are more than a double holds.
+    let shift = x.bits().max(y.bits()).saturating_sub(60);
+    let part = |v: &BigInt| i64::try_from(v >> shift).unwrap_or(0) as f64;
+    let (x, y) = (part(x), part(y));
+    let length = x.hypot(y);
+    [x / length, y / length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use delone_predicates::{Sign as Turn, orient2d};
+
+    const NONE: [f64; 3] = [0.0; 3];
+
+    #[test]
+    fn a_right_triangle_has_the_middle_of_its_longest_side() {
+        let corners = Corners::new([[4.0, 0.0], [4.0, 3.0], [0.0, 0.0]], NONE);
+        assert_eq!(corners.center(), Center::At([2.0, 1.5]));
+        assert_eq!(corners.exact(), Center::At([2.0, 1.5]));
+        assert_eq!(corners.pairs(), Some([2.0, 1.5]));
+    }
+
+    #[test]
+    fn the_stages_agree_as_far_as_they_promise() {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut plain = 0;
+        for i in 0..4000 {
+            let thin = if i % 2 == 0 { 1.0 } else { 1e-9 };
+            let offset = [0.0, 1e6, -0.3][i % 3];
+            let [a, b, c] = [(); 3].map(|()| [offset + next(), offset + next() * thin]);
+            let points = match orient2d(a, b, c) {
+                Turn::Positive => [a, b, c],
+                Turn::Negative => [a, c, b],
+                Turn::Zero => continue,
+            };
+            let weights = if i % 5 == 0 { [next(), next(), next()] } else { NONE };
+            let corners = Corners::new(points, weights);
+            let Center::At(exact) = corners.exact() else {
+                panic!("in range")
+            };
+            assert!(corners.pairs().is_none_or(|p| p == exact));
+            if let Some(found) = corners.plain() {
+                plain += 1;
+                for k in 0..2 {
+                    let ulp = exact[k].abs().next_up() - exact[k].abs();
+                    assert!((found[k] - exact[k]).abs() <= 4.0 * ulp);
+                }
+            }
+        }
+        assert!(plain > 500);
+    }
+
+    #[test]
+    fn a_center_beyond_the_range_has_a_direction() {
+        let flat = [[0.0, 0.0], [1.0, 5e-324], [-1.0, 5e-324]];
+        assert_eq!(Corners::new(flat, NONE).center(), Center::Beyond([0.0, 1.0]));
+        let far = [[0.0, 0.0], [f64::MAX, 0.0], [0.0, f64::MAX]];
+        let half = f64::MAX / 2.0;
+        assert_eq!(Corners::new(far, NONE).center(), Center::At([half, half]));
+    }
+}

@@ -1,0 +1,22 @@
+//! Voronoi and power diagrams: the dual of a triangulation, its cells cut to a box, their measures.
+//!
+//! A triangulation is given as arrays; with weights it must be the regular one. Triangles of one
+//! circle share one vertex, which an exact test decides. Only the coordinates of vertices are
+//! rounded (see `center`), and nothing in the combinatorics hangs on them.
+//!
+//! Where an edge of a cell does not end within the range of doubles, its end is a *ray*: a direction,
+//! in which it goes on for ever, or to a vertex beyond the range.
+
+mod center;
+mod clip;
+mod dual;
+mod measure;
+mod outline;
+mod regions;
+mod ridges;
+
+pub use center::{Center, Corners};
+pub use clip::{Cells, Polygons, clip};
+pub use dual::{Diagram, Given, diagram};
+pub use measure::{Measures, measures};
+pub use outline::touched;

@@ -1,0 +1,148 @@
+//! Edges of cells: each is the dual of an edge of the triangulation, and lies on the bisector of the
+//! two sites that the edge joins (their radical axis, with weights).
+
+use delone_predicates::Point2;
+
+use super::dual::{Given, OWNED};
+use crate::error::Result;
+use crate::memory::{with_room, zeroed};
+use crate::parallel;
+
+/// Triangles that one task does.
+const SHARE: usize = 1 << 14;
+
+/// Edges of cells. The first site lies to the left of the way from the first end to the second.
+#[derive(Debug, Default)]
+pub struct Ridges {
+    /// The two sites of each ridge.
+    pub sites: Vec<[i32; 2]>,
+    /// The two ends: a vertex, or !i where ray i is that end. A ray comes first.
+    pub ends: Vec<[i32; 2]>,
+    /// Direction of each ray, away from the ridge's other end, of length 1.
+    pub rays: Vec<Point2>,
+}
+
+/// Ridges in the order of the triangles with which they are numbered, and the number of the first
+/// ridge of each triangle. `far` are the directions of vertices beyond the range.
+pub(super) fn ridges(
+    given: Given,
+    masks: &[u8],
+    vertex: &[i32],
+    far: &[Point2],
+    workers: usize,
+) -> Result<(Ridges, Vec<u32>)> {
+    let (first, starts, count) = count(masks)?;
+    let mut sites = zeroed::<[i32; 2]>(count)?;
+    let mut ends = zeroed::<[i32; 2]>(count)?;
+    let mut tasks = Vec::with_capacity(starts.len());
+    let (mut rest_sites, mut rest_ends) = (&mut sites[..], &mut ends[..]);
+    for (i, w) in starts.windows(2).enumerate() {
+        let (s, t) = rest_sites.split_at_mut(w[1] - w[0]);
+        let (e, f) = rest_ends.split_at_mut(w[1] - w[0]);
+        tasks.push((i * SHARE, s, e));
+        (rest_sites, rest_ends) = (t, f);
+    }
+    let open = parallel::map(workers, tasks, |(from, sites, ends)| {
+        fill(given, masks, vertex, from, sites, ends)
+    });
+    let mut rays = Vec::new();
+    for (open, &start) in open.into_iter().zip(&starts) {
+        for row in open.into_iter().map(|row| start + row) {
+            close(given, far, &mut sites[row], &mut ends[row], &mut rays);
+        }
+    }
+    Ok((Ridges { sites, ends, rays }, first))
+}
+
+/// The first ridge of each triangle, the first one of each share, and how many there are.
+fn count(masks: &[u8]) -> Result<(Vec<u32>, Vec<usize>, usize)> {
+    let mut first = with_room(masks.len())?;
+    let mut starts = Vec::with_capacity(masks.len() / SHARE + 2);
+    let mut count = 0;
+    for share in masks.chunks(SHARE) {
+        starts.push(count as usize);
+        for mask in share {
+            first.push(count);
+            count += (mask >> OWNED).count_ones();
+        }
+    }
+    starts.push(count as usize);
+    Ok((first, starts, count as usize))
+}
+
+/// Fills a share of the ridges, and tells which have an end that is no vertex.
+///
+/// The way from the triangle right of an edge (a, b) to the one left of it turns left from b - a,
+/// so that a lies on its left.
+fn fill(
+    given: Given,
+    masks: &[u8],
+    vertex: &[i32],
+    from: usize,
+    sites: &mut [[i32; 2]],
+    ends: &mut [[i32; 2]],
+) -> Vec<usize> {
+    let mut open = Vec::new();
+    let mut row = 0;
+    for (t, mask) in (from..).zip(&masks[from..masks.len().min(from + SHARE)]) {
+        for k in (0..3).filter(|k| mask >> (OWNED + *k as u32) & 1 == 1) {
+            let s = given.simplices[t];
+            let right = given.neighbors[t][k];
+            let right = if right < 0 {
+                i32::MIN
+            } else {
+                vertex[right as usize]
+            };
+            sites[row] = [s[(k + 1) % 3], s[(k + 2) % 3]];
+            ends[row] = [right, vertex[t]];
+            if right < 0 || vertex[t] < 0 {
+                open.push(row);
+            }
+            row += 1;
+        }
+    }
+    open
+}
+
+/// Gives a ridge rays for the ends that are no vertices.
+fn close(
+    given: Given,
+    far: &[Point2],
+    sites: &mut [i32; 2],
+    ends: &mut [i32; 2],
+    rays: &mut Vec<Point2>,
+) {
+    let [a, b] = sites.map(|v| given.point(v));
+    let normal = unit([a[1], b[0]], [b[1], a[0]]);
+    let back = normal.map(|x| 0.0 - x);
+    for (end, outward) in ends.iter_mut().zip([back, normal]) {
+        if *end >= 0 {
+            continue;
+        }
+        let direction = match far.get(!*end as usize) {
+            // Seen from the sites a far vertex lies along the bisector, on one side or the other.
+            Some(far) if far[0] * normal[0] + far[1] * normal[1] < 0.0 => back,
+            Some(_) => normal,
+            None => outward,
+        };
+        *end = !(rays.len() as i32);
+        rays.push(direction);
+    }
+    if ends[1] < 0 && ends[0] >= 0 {
+        ends.swap(0, 1);
+        sites.swap(0, 1);
+    }
+}
+
+/// The vector from `b` to `a`, which differ, made of length 1.
+fn unit(a: Point2, b: Point2) -> Point2 {
+    let mut v = [a[0] - b[0], a[1] - b[1]];
+    if !v.iter().all(|x| x.is_finite()) {
+        v = [a[0] / 2.0 - b[0] / 2.0, a[1] / 2.0 - b[1] / 2.0];
+    }
+    // By its longer part first, so that no square over- or underflows.
+    let longest = v[0].abs().max(v[1].abs());
+    let v = v.map(|x| x / longest);
+    let length = v[0].hypot(v[1]);
+    v.map(|x| x / length + 0.0)
+}

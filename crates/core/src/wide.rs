@@ -1,0 +1,104 @@
+//! Doubles as integers of any width, and quotients of such integers as doubles: the last resort of
+//! predicates and constructions that no filter decides, and rare enough to allocate.
+
+use delone_predicates::{Point2, Sign as Turn};
+use delone_predicates::arithmetic::decode_odd;
+use num_bigint::{BigInt, Sign};
+
+/// Exponent of the least subnormal.
+const LEAST: i64 = -1074;
+
+/// An exponent of which all coordinates are multiples, and its double one of which the weights are.
+pub fn lowest(points: &[Point2], weights: &[f64]) -> i64 {
+    let exponent = |x: &f64| {
+        let (magnitude, exponent) = decode_odd(*x);
+        (magnitude != 0).then(|| i64::from(exponent))
+    };
+    let of_points = points.as_flattened().iter().filter_map(exponent).min();
+    let of_weights = weights.iter().filter_map(exponent).min();
+    let half = of_weights.map(|e| e.div_euclid(2));
+    of_points.into_iter().chain(half).min().unwrap_or(0)
+}
+
+/// `x / 2^low`, an integer.
+pub fn scaled(x: f64, low: i64) -> BigInt {
+    let (magnitude, exponent) = decode_odd(x);
+    // For zero the exponent says nothing; otherwise `low` is no larger, by its choice.
+    let integer = BigInt::from(magnitude) << (i64::from(exponent) - low).max(0);
+    if x < 0.0 { -integer } else { integer }
+}
+
+/// `n / d * 2^low` correctly rounded, ties to even; `None` beyond the range. `d` is positive.
+pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
+    if n.sign() == Sign::NoSign {
+        return Some(0.0);
+    }
+    // At least 66 bits of quotient, and one more for what is left over.
+    let shift = 67 + d.bits() as i64 - n.bits() as i64;
+    let (n, positive) = (n.magnitude(), n.sign() == Sign::Plus);
+    let (wide_n, wide_d) = if shift >= 0 {
+        (n << shift, d.magnitude().clone())
+    } else {
+        (n.clone(), d.magnitude() << -shift)
+    };
+    let (whole, rest) = (&wide_n / &wide_d, &wide_n % &wide_d);
+    let mut digits = u128::try_from(whole).unwrap_or(u128::MAX);
+    digits = digits << 1 | u128::from(rest.bits() != 0);
+    let value = rounded(digits, low - shift - 1)?;
+    Some(if positive { value } else { -value })
+}
+
+/// `digits * 2^exponent` rounded to a double, the last digit standing for all that follow.
+fn rounded(digits: u128, exponent: i64) -> Option<f64> {
+    let top = exponent + 127 - i64::from(digits.leading_zeros());
+    let unit = (top - 52).max(LEAST);
+    let drop = unit - exponent;
+    // Below half of the least subnormal all digits go.
+    let (mut kept, tail, half) = if drop > 127 {
+        (0, 0, 1)
+    } else {
+        let tail = digits & ((1_u128 << drop) - 1);
+        ((digits >> drop) as u64, tail, 1_u128 << (drop - 1))
+    };
+    if tail > half || (tail == half && kept % 2 == 1) {
+        kept += 1;
+    }
+    let value = kept as f64 * power(unit)?;
+    value.is_finite().then_some(value)
+}
+
+/// 2^exponent from the least subnormal on, where a double can be.
+fn power(exponent: i64) -> Option<f64> {
+    match exponent {
+        LEAST..-1022 => Some(f64::from_bits(1 << (exponent - LEAST))),
+        -1022..=1023 => Some(f64::from_bits(((exponent + 1023) as u64) << 52)),
+        _ => None,
+    }
+}
+
+/// The sign of an integer.
+pub fn sign(value: &BigInt) -> Turn {
+    match value.sign() {
+        Sign::Minus => Turn::Negative,
+        Sign::NoSign => Turn::Zero,
+        Sign::Plus => Turn::Positive,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quotients_are_rounded_to_even_down_to_subnormals() {
+        let big = |x: u64| BigInt::from(x);
+        assert_eq!(ratio(&big(1), &big(3), 0), Some(1.0 / 3.0));
+        assert_eq!(ratio(&-big(7), &big(5), -1074), Some(-5e-324));
+        assert_eq!(ratio(&big(1), &big(2), -1074), Some(0.0));
+        assert_eq!(ratio(&big(3), &big(2), -1074), Some(1e-323));
+        assert_eq!(ratio(&big((1 << 53) + 1), &big(1), 0), Some((1_u64 << 53) as f64));
+        assert_eq!(ratio(&big(1), &big(1), 1023), Some(2_f64.powi(1023)));
+        assert_eq!(ratio(&big(1), &big(1), 1024), None);
+        assert_eq!(ratio(&big(1), &big(1), -1300), Some(0.0));
+    }
+}
