@@ -18,11 +18,12 @@ Simplices = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Adapter:
-    """A peer: the call that is timed, and how its answer becomes vertex numbers."""
+    """A peer: the call that is timed, how the judge reads its answer, and how input is read."""
 
-    call: Callable[[Points], Any]
-    simplices: Callable[[Points, Any], Simplices]
+    call: Callable[[Any], Any]
+    simplices: Callable[[Any, Any], NDArray[Any]]
     version: str
+    load: Callable[[str], Any] = np.load
 
 
 def rows_of(points: Points, coordinates: Points) -> Simplices:

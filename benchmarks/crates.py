@@ -37,12 +37,13 @@ def build() -> Path:
     return CRATE / "target" / "release" / "delone-peers"
 
 
-def build_cgal() -> Path | None:
-    """Build the driver of CGAL and return the program; nothing where CGAL is not installed."""
-    program = CRATE / "target" / "cgal"
+def build_cgal(name: str = "cgal") -> Path | None:
+    """Build a driver of CGAL and return the program; nothing where CGAL is not installed."""
+    program = CRATE / "target" / name
     if shutil.which("g++") is None or not Path("/usr/include/CGAL").exists():
         return None
-    command = ["g++", "-O3", "-DNDEBUG", "-std=c++17", "cgal.cpp", "-o", str(program), "-lgmp"]
+    command = ["g++", "-O3", "-DNDEBUG", "-std=c++17", f"{name}.cpp"]
+    command += ["-o", str(program), "-lgmp"]
     subprocess.run(command, cwd=CRATE, check=True)
     return program
 
@@ -51,7 +52,7 @@ def runs_of(output: str) -> dict[str, list[float]]:
     """Return the seconds of each peer's runs; none where it failed."""
     times: dict[str, list[float]] = {}
     for line in output.splitlines():
-        peer, time, _ = line.split("\t")
+        peer, time, _ = line.split("\t", 2)
         times.setdefault(peer, []).extend([float(time)] if time != "failed" else [])
     return times
 

@@ -19,21 +19,29 @@ def distinct(points: Points) -> int:
     return len(np.unique(complex_keys(points)))
 
 
+def edge_keys(edges: NDArray[np.integer]) -> NDArray[np.int64]:
+    """Return one number for each edge, (k, 2), whichever way it runs."""
+    ends = np.sort(edges.astype(np.int64), axis=1)
+    return ends[:, 0] << 32 | ends[:, 1]
+
+
 def interior_edges(simplices: Simplices) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners (a, b, c) and the far vertex d across each edge of two triangles."""
     corner = simplices.astype(np.int64)
     edges = np.concatenate([corner[:, [1, 2, 0]], corner[:, [2, 0, 1]], corner[:, [0, 1, 2]]])
-    low, high = edges[:, :2].min(axis=1), edges[:, :2].max(axis=1)
-    key = low * (corner.max() + 1) + high
+    key = edge_keys(edges[:, :2])
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(key[order][1:] == key[order][:-1])
     one, other = order[same], order[same + 1]
     return edges[one], edges[other, 2]
 
 
-def wrong_edges(points: Points, simplices: Simplices) -> int:
-    """Count the interior edges that are not locally Delaunay."""
+def wrong_edges(points: Points, simplices: Simplices, fixed: Simplices | None = None) -> int:
+    """Count the interior edges that are not locally Delaunay, and that are not `fixed`, (k, 2)."""
     triangles, far = interior_edges(simplices)
+    if fixed is not None:
+        free = ~np.isin(edge_keys(triangles[:, :2]), edge_keys(fixed))
+        triangles, far = triangles[free], far[free]
     wrong = 0
     for start in range(0, len(far), CHUNK):
         a, b, c = points[triangles[start : start + CHUNK]].swapaxes(0, 1)

@@ -5,13 +5,13 @@ whatever else the machine does meets them alike.
 """
 
 import gc
+import importlib
 import multiprocessing
 import time
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-import adapters
 import memory
 import numpy as np
 
@@ -26,11 +26,13 @@ class Run:
     megabytes: float
 
 
-def serve(connection: Connection, peer: str, points_file: str, answer_file: str) -> None:
+def serve(
+    connection: Connection, module: str, peer: str, points_file: str, answer_file: str
+) -> None:
     """Send the version, then a `Run` for each request; the first answer is kept for the judge."""
     try:
-        adapter = adapters.PEERS[peer]()
-        points = np.load(points_file)
+        adapter = importlib.import_module(module).PEERS[peer]()
+        points = adapter.load(points_file)
         connection.send(adapter.version)
         while connection.recv():
             gc.collect()
@@ -56,14 +58,18 @@ def error_line(error: Exception) -> str:
 class Peer:
     """A peer at work on one point set: its runs so far, and why there are no more if so."""
 
-    def __init__(self, name: str, points_file: Path, answer_file: Path) -> None:
+    def __init__(
+        self, name: str, points_file: Path, answer_file: Path, module: str = "adapters"
+    ) -> None:
         self.name = name
         self.answer_file = answer_file
         self.runs: list[Run] = []
         self.ended = ""
         self.connection, theirs = multiprocessing.Pipe()
         self.process = multiprocessing.get_context("spawn").Process(
-            target=serve, args=(theirs, name, str(points_file), str(answer_file)), daemon=True
+            target=serve,
+            args=(theirs, module, name, str(points_file), str(answer_file)),
+            daemon=True,
         )
         self.process.start()
         theirs.close()

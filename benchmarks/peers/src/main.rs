@@ -7,27 +7,17 @@
 //! doubles, for the judge. `benchmarks/crates.py` makes the files and the table.
 
 use std::env;
-use std::error::Error;
-use std::fs;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::watch::Watch;
+use delone_peers::{Failure, Outcome, Peer, Points, compete, points};
 use spade::{DelaunayTriangulation, Triangulation};
 
-type Points = Vec<[f64; 2]>;
 type Spade = DelaunayTriangulation<spade::Point2<f64>>;
 
-/// The time of the call, and the triangles by their coordinates, taken out after it.
-struct Outcome {
-    time: Duration,
-    triangles: Vec<[[f64; 2]; 3]>,
-}
-
-type Call = fn(&Points) -> Result<Outcome, Box<dyn Error>>;
-
-const PEERS: [(&str, Call); 5] = [
+const PEERS: [Peer<Points>; 5] = [
     ("delone", |points| delone(points, 1)),
     ("delone, 2 workers", |points| delone(points, 2)),
     ("spade bulk_load", spade_bulk_load),
@@ -35,7 +25,7 @@ const PEERS: [(&str, Call); 5] = [
     ("delaunator", delaunator_triangulate),
 ];
 
-fn delone(points: &Points, workers: usize) -> Result<Outcome, Box<dyn Error>> {
+fn delone(points: &Points, workers: usize) -> Result<Outcome, Failure> {
     let start = Instant::now();
     let answer = triangulate(black_box(points), Method::Auto, workers, &Watch::idle())?;
     let time = start.elapsed();
@@ -61,21 +51,21 @@ fn spade_points(points: &Points) -> Vec<spade::Point2<f64>> {
         .collect()
 }
 
-fn spade_bulk_load(points: &Points) -> Result<Outcome, Box<dyn Error>> {
+fn spade_bulk_load(points: &Points) -> Result<Outcome, Failure> {
     let given = spade_points(points);
     let start = Instant::now();
     let answer = Spade::bulk_load(black_box(given))?;
     Ok(spade_outcome(start.elapsed(), &answer))
 }
 
-fn spade_bulk_load_stable(points: &Points) -> Result<Outcome, Box<dyn Error>> {
+fn spade_bulk_load_stable(points: &Points) -> Result<Outcome, Failure> {
     let given = spade_points(points);
     let start = Instant::now();
     let answer = Spade::bulk_load_stable(black_box(given))?;
     Ok(spade_outcome(start.elapsed(), &answer))
 }
 
-fn delaunator_triangulate(points: &Points) -> Result<Outcome, Box<dyn Error>> {
+fn delaunator_triangulate(points: &Points) -> Result<Outcome, Failure> {
     let given: Vec<_> = points
         .iter()
         .map(|&[x, y]| delaunator::Point { x, y })
@@ -91,44 +81,10 @@ fn delaunator_triangulate(points: &Points) -> Result<Outcome, Box<dyn Error>> {
     })
 }
 
-fn read(file: &str) -> std::io::Result<Points> {
-    let bytes = fs::read(file)?;
-    let number = |b: &[u8]| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]);
-    Ok(bytes
-        .chunks_exact(16)
-        .map(|row| [number(&row[..8]), number(&row[8..])])
-        .collect())
-}
-
-fn write(file: &str, triangles: &[[[f64; 2]; 3]]) -> std::io::Result<()> {
-    let numbers = triangles.as_flattened().as_flattened();
-    fs::write(
-        file,
-        numbers
-            .iter()
-            .flat_map(|x| x.to_le_bytes())
-            .collect::<Vec<u8>>(),
-    )
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = env::args().collect();
     let [_, runs, file] = &arguments[..] else {
         return Err("usage: delone-peers RUNS FILE".into());
     };
-    let points = read(file)?;
-    for run in 0..runs.parse()? {
-        for (name, call) in PEERS {
-            match call(&points) {
-                Ok(Outcome { time, triangles }) => {
-                    println!("{name}\t{}\t{}", time.as_secs_f64(), triangles.len());
-                    if run == 0 {
-                        write(&format!("{file}.{name}"), &triangles)?;
-                    }
-                }
-                Err(error) => println!("{name}\tfailed\t{error}"),
-            }
-        }
-    }
-    Ok(())
+    compete(&PEERS, &points(file)?, runs.parse()?, file)
 }
