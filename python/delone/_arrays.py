@@ -217,6 +217,132 @@ def as_simplices(
     return _as_indices(simplices, d + 1, 0, npoints, name)
 
 
+def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") -> NDArray[np.int32]:
+    """Return segments as an int32 C-contiguous array of valid vertex indices.
+
+    Parameters
+    ----------
+    segments : array_like of int, shape (s, 2)
+        Vertex indices; an empty sequence is no segments.
+    npoints : int
+        Number of points that the indices refer to.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of int32, shape (s, 2)
+        The input itself where it is right already.
+
+    Raises
+    ------
+    ShapeError
+        Not of shape (s, 2).
+    DtypeError
+        Not integers.
+    InputError
+        Indices below 0 or beyond the last point; the first ten such rows are named.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_segments
+    >>> as_segments([(0, 1), (1, 3), (2, -1)], 3)
+    Traceback (most recent call last):
+    ...
+    delone.errors.InputError: segments: 2 of 3 rows leave the range 0 to 2 of points; first: 1, 2
+    """
+    array = _as_plain_array(segments, name)
+    if array.shape in ((0,), (0, 2)):
+        return np.empty((0, 2), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ShapeError(f"{name} must have shape (s, 2), got {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers (rows of points), got dtype {array.dtype}")
+    if int(array.min()) < 0 or int(array.max()) >= npoints:
+        rows = np.flatnonzero(((array < 0) | (array >= npoints)).any(axis=1))
+        first = ", ".join(map(str, rows[:10].tolist()))
+        raise InputError(
+            f"{name}: {len(rows)} of {len(array)} rows leave the range 0 to {npoints - 1} of "
+            f"points; first: {first}"
+        )
+    return np.require(array, dtype=np.int32, requirements=["C", "A"])
+
+
+def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray[np.float64]:
+    """Return points that stand for the areas around them.
+
+    Parameters
+    ----------
+    seeds : array_like, shape (k, 2) or (k, columns), or None
+        Finite points, further columns behind their coordinates; None or empty is no seeds.
+    name : str
+        What the argument is called in error messages.
+    columns : {2, 3}, optional
+        The largest number of columns.
+
+    Returns
+    -------
+    ndarray of float64, shape (k, 2) or (k, columns)
+        The input itself where it is right already.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        As in `as_points`.
+    NonFiniteError
+        A number is NaN or infinite.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_seeds
+    >>> as_seeds([(1, 2)], name="holes")
+    array([[1., 2.]])
+    >>> as_seeds(None, name="holes").shape
+    (0, 2)
+    """
+    if seeds is None:
+        return np.empty((0, 2))
+    array = _as_plain_array(seeds, name)
+    if array.size == 0 and array.ndim <= 2:
+        return np.empty((0, 2))
+    found = as_points(seeds, ndim=2 if columns == 2 else None, name=name)
+    require_finite(found, name=name)
+    return found
+
+
+def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
+    """Return a word if it is one of those that an option may have.
+
+    Parameters
+    ----------
+    value : str
+        What the caller passed.
+    choices : tuple of str
+        What there is to choose from.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    str
+        The word.
+
+    Raises
+    ------
+    InputError
+        It is none of them.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_choice
+    >>> as_choice("hull", ("hull", "outline"), name="boundary")
+    'hull'
+    """
+    if isinstance(value, str) and value in choices:
+        return value
+    raise InputError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
+
+
 def as_neighbors(
     neighbors: ArrayLike, nsimplex: int, d: int, *, name: str = "neighbors"
 ) -> NDArray[np.int32]:

@@ -1,9 +1,10 @@
 """Triangulations in files: NumPy's .npz archives, checked before they are believed.
 
-An archive holds one array for each name in `_LAYOUT` and the version of this layout. Reading takes
-nothing on trust: what zip and array headers claim is compared with the bytes that are there, every
-index with what it counts, and the triangles with each other, so that the walks of the core end and
-stay inside. What is not checked is whether triangles are Delaunay: ``validate()`` does that.
+An archive holds one array for each name in the layout of its kind, and the version of the layouts.
+Reading takes nothing on trust: what zip and array headers claim is compared with the bytes that are
+there, every index with what it counts, and the triangles with each other, so that the walks of the
+core end and stay inside. What is not checked is whether triangles are Delaunay: ``validate()`` does
+that.
 """
 
 from __future__ import annotations
@@ -13,35 +14,38 @@ import tokenize
 import zipfile
 import zlib
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone import predicates
 from delone.atomic import replacing
 from delone.errors import FileFormatError
-from delone.topology import boundary_edges, boundary_next, is_mutual
+from delone.topology import among, boundary_edges, boundary_next, edge_keys, is_mutual
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
-__all__ = ["read", "write"]
+__all__ = ["CONSTRAINED", "DELAUNAY", "Kind", "read", "write"]
 
-_FORMAT = "delone.Delaunay"
 _VERSION = 1
-# Names of the arrays, their dtypes and numbers of columns.
-_LAYOUT: dict[str, tuple[np.dtype[Any], int]] = {
-    "points": (np.dtype("<f8"), 2),
-    "simplices": (np.dtype("<i4"), 3),
-    "neighbors": (np.dtype("<i4"), 3),
-    "duplicates": (np.dtype("<i4"), 2),
-}
 
 
-def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]]) -> None:
+class Kind(NamedTuple):
+    """A kind of archive."""
+
+    format: str
+    # Names of the arrays, their dtypes and numbers of columns; 0 for arrays of one axis.
+    layout: Mapping[str, tuple[str, int]]
+    check: Callable[..., None]
+
+
+def write(
+    path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], kind: Kind | None = None
+) -> None:
     """Write a triangulation to a file, whole or not at all.
 
     Parameters
@@ -49,25 +53,30 @@ def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]]) -> N
     path : str or path-like
         The file; what is there is replaced at the end, in one step.
     arrays : mapping of str to ndarray
-        The arrays `points`, `simplices`, `neighbors` and `duplicates`.
+        The arrays of the layout.
+    kind : Kind, optional
+        The kind of archive, by default `DELAUNAY`.
 
     Raises
     ------
     OSError
         The file cannot be written, or is no regular file.
     """
-    columns: dict[str, Any] = {name: arrays[name] for name in _LAYOUT}
+    kind = kind or DELAUNAY
+    columns: dict[str, Any] = {name: arrays[name] for name in kind.layout}
     with replacing(_path(path)) as beside, beside.open("wb") as file:
-        np.savez(file, format=np.array(_FORMAT), version=np.array(_VERSION), **columns)
+        np.savez(file, format=np.array(kind.format), version=np.array(_VERSION), **columns)
 
 
-def read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+def read(path: str | os.PathLike[str], kind: Kind | None = None) -> dict[str, NDArray[Any]]:
     """Read a triangulation from a file.
 
     Parameters
     ----------
     path : str or path-like
         A file that `write` made.
+    kind : Kind, optional
+        The kind of archive, by default `DELAUNAY`.
 
     Returns
     -------
@@ -86,7 +95,7 @@ def read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     if source.exists() and not source.is_file() and not source.is_dir():
         raise OSError(f"{source} is not a regular file")
     with source.open("rb") as file:
-        return _parsed(file, source)
+        return _parsed(file, source, kind or DELAUNAY)
 
 
 def _path(path: str | os.PathLike[str]) -> Path:
@@ -97,12 +106,12 @@ def _path(path: str | os.PathLike[str]) -> Path:
         raise TypeError(f"path must be a string or a path-like object, got {kind}") from None
 
 
-def _parsed(file: IO[bytes], path: Path) -> dict[str, NDArray[Any]]:
+def _parsed(file: IO[bytes], path: Path, kind: Kind) -> dict[str, NDArray[Any]]:
     try:
         with zipfile.ZipFile(file) as archive:
-            _check_kind(archive)
-            arrays = {name: _array(archive, name) for name in _LAYOUT}
-        _check(**arrays)
+            _check_kind(archive, kind.format)
+            arrays = {name: _array(archive, name, *kind.layout[name]) for name in kind.layout}
+        kind.check(**arrays)
     except _DAMAGE as error:
         raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from error
     except _ContradictionError as error:
@@ -136,9 +145,9 @@ def _require(condition: bool | np.bool_, message: str) -> None:
         raise _ContradictionError(message)
 
 
-def _check_kind(archive: zipfile.ZipFile) -> None:
+def _check_kind(archive: zipfile.ZipFile, wanted: str) -> None:
     found = _scalar(archive, "format")
-    _require(found == _FORMAT, f"its format is {found!r}, not {_FORMAT!r}")
+    _require(found == wanted, f"its format is {found!r}, not {wanted!r}")
     version = _scalar(archive, "version")
     _require(version == _VERSION, f"its version is {version!r}, this release reads {_VERSION}")
 
@@ -152,17 +161,17 @@ def _scalar(archive: zipfile.ZipFile, name: str) -> Any:
     return np.frombuffer(data, dtype=dtype)[0].item()
 
 
-def _array(archive: zipfile.ZipFile, name: str) -> Any:
-    wanted, columns = _LAYOUT[name]
+def _array(archive: zipfile.ZipFile, name: str, kind: str, columns: int) -> Any:
+    wanted = np.dtype(kind)
     with _member(archive, name) as file:
         shape, dtype = _header(file, name)
         _require(dtype == wanted, f"{name} has dtype {dtype}, not {wanted}")
-        _require(
-            len(shape) == 2 and shape[1] == columns, f"{name} has shape {shape}, not (n, {columns})"
-        )
+        fits = len(shape) == 2 and shape[1] == columns if columns else len(shape) == 1
+        axes = f"(n, {columns})" if columns else "(n,)"
+        _require(fits, f"{name} has shape {shape}, not {axes}")
         # Reads what is there, whatever the header claims; zipfile compares the checksum.
         data = file.read()
-    claimed = shape[0] * columns * wanted.itemsize
+    claimed = shape[0] * (columns or 1) * wanted.itemsize
     _require(len(data) == claimed, f"{name} has {len(data)} bytes, its header says {claimed}")
     native = wanted.newbyteorder("=")
     return np.frombuffer(data, dtype=wanted).reshape(shape).astype(native, copy=False)
@@ -228,3 +237,97 @@ def _check_duplicates(
     other = np.ones(len(points), dtype=bool)
     other[row] = False
     _require((vertex == other).all(), "vertices and duplicates are not all the points")
+
+
+def _check_constrained(**arrays: NDArray[Any]) -> None:
+    """Check the triangles as those of `Delaunay`, and that segments fit them."""
+    triangles = {name: arrays[name] for name in DELAUNAY.layout}
+    _check(**triangles)
+    _check_options(arrays["options"])
+    points, constrained = arrays["points"], arrays["constrained"]
+    n, m = len(points), len(arrays["simplices"])
+    _require(constrained.shape == (m, 3), "it has no flags of edges")
+    ninput = n - len(arrays["added"])
+    _require(
+        ninput > 0 and (arrays["added"] == points[ninput:]).all(), "added points lie elsewhere"
+    )
+    _check_range("input", arrays["input"], 0, ninput)
+    _check_range("segments", arrays["segments"], 0, n)
+    _check_flags(arrays)
+    _check_sources(arrays)
+    rows = len(arrays["input"])
+    for name, indices, end in (
+        ("zero", arrays["zero"], rows),
+        ("through", arrays["through"][:, 0], rows),
+        ("through", arrays["through"][:, 1], n),
+        ("crossings", arrays["crossings"][:, :2], rows),
+        ("crossings", arrays["crossings"][:, 2], n),
+    ):
+        _check_range(name, indices, 0, end)
+    seeds = np.concatenate((arrays["holes"], arrays["regions"]))
+    _require(np.isfinite(seeds).all(), "a seed is not finite")
+    geometries, rings = arrays["geometries"], arrays["rings"]
+    matched = len(geometries) == len(rings) == rows and (geometries[rings] >= 0).all()
+    _require(matched, "geometries and segments do not match")
+    _require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
+
+
+def _check_options(options: NDArray[np.int64]) -> None:
+    _require(
+        len(options) == 5 and (options[:4] >= 0).all() and (options[:4] <= (2, 1, 1, 1)).all(),
+        "its options are odd",
+    )
+    _require(0 <= options[4] < 2**31, "its options are odd")
+
+
+def _check_flags(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Check that the flagged edges are the subsegments, each once."""
+    simplices, segments, n = arrays["simplices"], arrays["segments"], len(arrays["points"])
+    edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], n)
+    keys = np.sort(edge_keys(segments[:, 0], segments[:, 1], n))
+    _require((keys[1:] > keys[:-1]).all(), "a subsegment is there twice")
+    _require((among(edges, keys) == arrays["constrained"]).all(), "flags of edges are wrong")
+    _require(among(keys, edges.ravel()).all(), "a subsegment is no edge")
+
+
+def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
+    start, source = arrays["source_start"], arrays["source"]
+    _require(
+        len(start) == len(arrays["segments"]) + 1 and start[0] == 0 and start[-1] == len(source),
+        "sources of segments are out of range",
+    )
+    _require((np.diff(start) > 0).all(), "a segment has no source")
+    _require(len(arrays["forward"]) == len(source), "directions of segments are out of range")
+    _check_range("source", source, 0, len(arrays["input"]))
+
+
+_TRIANGLES = {
+    "points": ("<f8", 2),
+    "simplices": ("<i4", 3),
+    "neighbors": ("<i4", 3),
+    "duplicates": ("<i4", 2),
+}
+DELAUNAY = Kind("delone.Delaunay", _TRIANGLES, _check)
+CONSTRAINED = Kind(
+    "delone.ConstrainedDelaunay",
+    _TRIANGLES
+    | {
+        "constrained": ("|b1", 3),
+        "added": ("<f8", 2),
+        "segments": ("<i4", 2),
+        "source_start": ("<i8", 0),
+        "source": ("<i4", 0),
+        "forward": ("|b1", 0),
+        "zero": ("<i4", 0),
+        "through": ("<i4", 2),
+        "crossings": ("<i4", 3),
+        "input": ("<i4", 2),
+        "geometries": ("<i4", 0),
+        "rings": ("|b1", 0),
+        "holes": ("<f8", 2),
+        "regions": ("<f8", 2),
+        "labels": ("<i4", 0),
+        "options": ("<i8", 0),
+    },
+    _check_constrained,
+)

@@ -15,9 +15,11 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "BudgetExceededError",
+    "CrossingSegmentsError",
     "DegenerateInputError",
     "DeloneError",
     "DtypeError",
@@ -121,6 +123,74 @@ class DegenerateInputError(InputError):
         super().__init__(message)
         self.reason = reason
         self.chain = _row_numbers(chain)
+
+
+class CrossingSegmentsError(InputError):
+    """Segments cross, and crossings were to be refused.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    pairs : array_like of int, shape (c, 2), optional
+        Rows of the segments that cross.
+    points : array_like of float, shape (c, 2), optional
+        Where they cross.
+
+    Attributes
+    ----------
+    pairs : ndarray of int64, shape (c, 2)
+        Rows of the segments that cross, every pair once.
+    points : ndarray of float64, shape (c, 2)
+        Where they cross, each coordinate rounded once.
+    """
+
+    pairs: NDArray[np.int64]
+    points: NDArray[np.float64]
+
+    def __init__(
+        self,
+        message: str = "segments cross",
+        *,
+        pairs: ArrayLike = (),
+        points: ArrayLike = (),
+    ) -> None:
+        super().__init__(message)
+        self.pairs = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        self.points = np.array(points, dtype=np.float64).reshape(-1, 2)
+        self.pairs.flags.writeable = False
+        self.points.flags.writeable = False
+
+
+class BudgetExceededError(DeloneError, RuntimeError):
+    """The answer needs more than the caller allowed, or more than the default allows.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    limit : int, optional
+        How many added vertices were allowed.
+    found : int, optional
+        How many were found when the work was given up; there may be more.
+
+    Attributes
+    ----------
+    limit : int
+        How many added vertices were allowed.
+    found : int
+        How many were found when the work was given up; there may be more.
+    """
+
+    limit: int
+    found: int
+
+    def __init__(
+        self, message: str = "too many vertices to add", *, limit: int = 0, found: int = 0
+    ) -> None:
+        super().__init__(message)
+        self.limit = int(limit)
+        self.found = int(found)
 
 
 class LimitError(InputError):

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
 
 __all__ = [
+    "among",
     "boundary_edges",
     "boundary_next",
+    "edge_keys",
     "edges",
     "is_mutual",
     "neighbors",
@@ -275,3 +277,63 @@ def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
         )
         right &= back.any(axis=1) | ~inner
     return right
+
+
+def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> NDArray[np.int64]:
+    """Return a number for each edge, the same in both directions.
+
+    Parameters
+    ----------
+    a, b : ndarray of int, of one shape
+        Ends of the edges.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    ndarray of int64
+        In the shape of the ends, ascending with the smaller end, then with the larger one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import edge_keys
+    >>> edge_keys(np.array([0, 3]), np.array([2, 1]), 10).tolist()
+    [2, 13]
+    """
+    keys: NDArray[np.int64] = np.minimum(a, b).astype(np.int64) * npoints + np.maximum(a, b)
+    return keys
+
+
+def among(keys: NDArray[np.int64], others: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Tell which numbers are among others.
+
+    Parameters
+    ----------
+    keys : ndarray of int64
+        Numbers.
+    others : ndarray of int64, shape (k,)
+        Others, in any order.
+
+    Returns
+    -------
+    ndarray of bool
+        In the shape of `keys`.
+
+    Notes
+    -----
+    O(log k) for each. The hash table of ``numpy.isin`` is several times slower on keys of edges.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import among
+    >>> among(np.array([1, 5, 9]), np.array([9, 1]))
+    array([ True, False,  True])
+    """
+    if not len(others):
+        return np.zeros(keys.shape, dtype=bool)
+    ordered = np.sort(others)
+    place = np.minimum(np.searchsorted(ordered, keys), len(ordered) - 1)
+    found: NDArray[np.bool_] = ordered[place] == keys
+    return found

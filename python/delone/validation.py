@@ -7,7 +7,7 @@ fault and words that a person can read. `validate` takes triangles from anywhere
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -20,9 +20,30 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ValidationReport", "validate"]
+__all__ = ["SENTENCES", "ValidationReport", "validate"]
 
 _SHOWN = 5
+
+
+SENTENCES = {
+    "orientation": ("triangle is not counter-clockwise", "triangles are not counter-clockwise"),
+    "edges": ("directed edge is used more than once", "directed edges are used more than once"),
+    "neighbors": ("triangle has wrong neighbours", "triangles have wrong neighbours"),
+    "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
+    "missing": ("point is no vertex", "points are no vertices"),
+    "repeats": (
+        "vertex repeats an earlier row of points",
+        "vertices repeat earlier rows of points",
+    ),
+    "delaunay": (
+        "pair of triangles is not locally Delaunay",
+        "pairs of triangles are not locally Delaunay",
+    ),
+    "ties": (
+        "pair of cocircular triangles is not canonical",
+        "pairs of cocircular triangles are not canonical",
+    ),
+}
 
 
 def _none() -> NDArray[np.int64]:
@@ -89,6 +110,9 @@ class ValidationReport:
     ties: NDArray[np.integer] = field(default_factory=_no_pairs)
     count: NDArray[np.integer] = field(default_factory=_none)
 
+    _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES
+
     def __post_init__(self) -> None:
         for each in fields(self):
             array = np.array(getattr(self, each.name), dtype=np.int64)
@@ -98,7 +122,7 @@ class ValidationReport:
             object.__setattr__(self, each.name, array)
 
     @classmethod
-    def from_culprits(cls, culprits: Mapping[str, NDArray[np.integer]]) -> ValidationReport:
+    def from_culprits(cls, culprits: Mapping[str, NDArray[np.integer]]) -> Self:
         """Make a report of what the core found.
 
         Parameters
@@ -137,9 +161,9 @@ class ValidationReport:
 
     def __str__(self) -> str:
         if self.ok:
-            return "a canonical Delaunay triangulation"
-        lines = ["not a canonical Delaunay triangulation:"]
-        for name, (one, many) in _SENTENCES.items():
+            return self._SUBJECT
+        lines = [f"not {self._SUBJECT}:"]
+        for name, (one, many) in self._SENTENCES.items():
             culprits = getattr(self, name)
             if len(culprits):
                 sentence = one if len(culprits) == 1 else many
@@ -200,27 +224,6 @@ def validate(
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
     return ValidationReport.from_culprits(_core.validate2(rows, triangles, beyond))
-
-
-_SENTENCES = {
-    "orientation": ("triangle is not counter-clockwise", "triangles are not counter-clockwise"),
-    "edges": ("directed edge is used more than once", "directed edges are used more than once"),
-    "neighbors": ("triangle has wrong neighbours", "triangles have wrong neighbours"),
-    "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
-    "missing": ("point is no vertex", "points are no vertices"),
-    "repeats": (
-        "vertex repeats an earlier row of points",
-        "vertices repeat earlier rows of points",
-    ),
-    "delaunay": (
-        "pair of triangles is not locally Delaunay",
-        "pairs of triangles are not locally Delaunay",
-    ),
-    "ties": (
-        "pair of cocircular triangles is not canonical",
-        "pairs of cocircular triangles are not canonical",
-    ),
-}
 
 
 def _list(culprits: NDArray[np.integer]) -> str:

@@ -21,6 +21,8 @@ The five points that every textbook draws, a rectangle and one point inside:
 """
 
 from delone.reference.bowyer_watson import bowyer_watson
+from delone.reference.clough_tocher import clough_tocher
+from delone.reference.constrained import ConstrainedTriangulation, constrained_delaunay
 from delone.reference.exact import (
     Circle,
     circumcircle,
@@ -30,14 +32,19 @@ from delone.reference.exact import (
     orient,
 )
 from delone.reference.lawson import lawson
+from delone.reference.natural import natural_weights
 
 __all__ = [
     "Circle",
+    "ConstrainedTriangulation",
     "bowyer_watson",
     "circumcircle",
+    "clough_tocher",
+    "constrained_delaunay",
     "exact_point",
     "incircle",
     "incircle_canonical",
     "lawson",
+    "natural_weights",
     "orient",
 ]

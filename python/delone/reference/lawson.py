@@ -13,7 +13,7 @@ from delone.reference.bowyer_watson import Triangle, exact_rows, smallest_first
 from delone.reference.exact import incircle_canonical, orient
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from delone.reference.exact import ExactPoint
 
@@ -64,26 +64,84 @@ def lawson(
     """
     exact = exact_rows(points)
     apex = apexes(exact, triangles)
+    flips = make_delaunay(exact, apex)
+    return triangles_of(apex), flips
+
+
+def make_delaunay(
+    points: Sequence[ExactPoint], apex: dict[Edge, int], fixed: Collection[Edge] = ()
+) -> int:
+    """Flip edges until every one that is not fixed is locally Delaunay, ties broken canonically.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    apex : dict of tuple of int to int
+        The triangulation, as `apexes` gives it; it is changed in place.
+    fixed : collection of tuple of int, optional
+        Edges that stay, the smaller vertex first.
+
+    Returns
+    -------
+    int
+        The number of flips.
+    """
     waiting = [(u, v) for u, v in apex if u < v]
     flips = 0
     while waiting:
         u, v = waiting.pop()
-        if (u, v) not in apex or (v, u) not in apex:
-            continue  # flipped away in the meantime, or an edge of the hull
+        if (u, v) not in apex or (v, u) not in apex or (min(u, v), max(u, v)) in fixed:
+            continue  # flipped away in the meantime, an edge of the hull, or one to keep
         p, q = apex[u, v], apex[v, u]
-        if incircle_canonical(exact[u], exact[v], exact[p], exact[q]) <= 0:
+        if incircle_canonical(points[u], points[v], points[p], points[q]) <= 0:
             continue
-        #        p                 p
-        #      /   \             / | \
-        #     u ─── v    ->     u  |  v
-        #      \   /             \ | /
-        #        q                 q
-        del apex[u, v], apex[v, u]
-        for a, b, c in ((p, u, q), (q, v, p)):
-            apex[a, b], apex[b, c], apex[c, a] = c, a, b
+        flip(apex, u, v)
         waiting += [(u, q), (q, v), (v, p), (p, u)]
         flips += 1
-    return sorted({smallest_first((u, v, p)) for (u, v), p in apex.items()}), flips
+    return flips
+
+
+def flip(apex: dict[Edge, int], u: int, v: int) -> Edge:
+    """Replace the edge uv by the other diagonal of its two triangles.
+
+    Parameters
+    ----------
+    apex : dict of tuple of int to int
+        The triangulation, as `apexes` gives it; it is changed in place.
+    u, v : int
+        The ends of an inner edge whose two triangles form a strictly convex quadrilateral.
+
+    Returns
+    -------
+    tuple of int
+        The new edge.
+    """
+    p, q = apex.pop((u, v)), apex.pop((v, u))
+    #        p                 p
+    #      /   \             / | \
+    #     u ─── v    ->     u  |  v
+    #      \   /             \ | /
+    #        q                 q
+    for a, b, c in ((p, u, q), (q, v, p)):
+        apex[a, b], apex[b, c], apex[c, a] = c, a, b
+    return p, q
+
+
+def triangles_of(apex: dict[Edge, int]) -> list[Triangle]:
+    """List the triangles of a map of apexes.
+
+    Parameters
+    ----------
+    apex : dict of tuple of int to int
+        The triangulation, as `apexes` gives it.
+
+    Returns
+    -------
+    list of tuple of int
+        Counter-clockwise, each beginning with its smallest vertex, in ascending order.
+    """
+    return sorted({smallest_first((u, v, p)) for (u, v), p in apex.items()})
 
 
 def apexes(points: Sequence[ExactPoint], triangles: Iterable[Sequence[int]]) -> dict[Edge, int]:

@@ -1,0 +1,638 @@
+"""The class ConstrainedDelaunay: a triangulation that has given segments among its edges.
+
+The core makes the triangles of the whole convex hull; `segmented` holds them and says which of
+them are kept. Here are construction, search, proof and files. Walks go through the whole, so that
+they pass through holes and around bays.
+
+Chew, L. P. (1989), "Constrained Delaunay triangulations", Algorithmica 4, 97-108.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core, location, regions, topology
+from delone._arrays import (
+    as_choice,
+    as_count,
+    as_seeds,
+    as_segments,
+    as_vectors,
+    as_workers,
+    require_finite,
+)
+from delone.constrained_validation import ConstrainedReport, validate
+from delone.errors import InputError, InternalError, ShapeError
+from delone.segmented import Options, Segmented
+from delone.triangulation import counted, kept, own_copy
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.editing import Editing
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["ConstrainedDelaunay"]
+
+# What vertices a call may add unless it says otherwise: about 1.5 GiB of arrays.
+_MOST_ADDED = 4_000_000
+# The third is for polygons alone.
+_BOUNDARIES = ("hull", "outline", "polygons")
+_CROSSINGS = ("error", "split")
+
+
+class ConstrainedDelaunay(Segmented):
+    """The constrained Delaunay triangulation of points and segments in the plane.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Finite coordinates, as for `Delaunay`.
+    segments : array_like of int, shape (s, 2)
+        Edges that the triangulation must have, as pairs of rows of `points`. They may repeat,
+        overlap, have no length or run through points; `report` says which do. Empty is fine.
+    holes : array_like, shape (h, 2), optional
+        Seeds of holes: the triangles of the area around each are removed, up to the segments.
+    regions : array_like, shape (k, 2) or (k, 3), optional
+        Seeds of regions: the triangles of the area around each get its label in `region`, the third
+        column (an integer of at least 0) or else its row.
+    boundary : {"hull", "outline"}, optional
+        What is triangulated: the convex hull, or only what cannot be reached from outside of it
+        without crossing a segment.
+    crossing : {"error", "split"}, optional
+        Whether segments that cross are an error, or get a vertex where they do.
+    conforming : bool, optional
+        Add vertices on segments until the circle over each subsegment holds no vertex in its
+        inside, so that each is an edge of the plain Delaunay triangulation of all vertices.
+    max_vertices : int, optional
+        How many vertices may be added; by default 4,000,000.
+    method, workers : optional
+        As for `Delaunay`. The answer is the same.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n + nadded, 2)
+        The rows that were given, then the vertices that were added.
+    simplices : ndarray of int32, shape (m, 3)
+        The triangles that are kept, as rows of `points`, counter-clockwise.
+    neighbors : ndarray of int32, shape (m, 3)
+        ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1
+        where there is none, or it was removed.
+    constrained : ndarray of bool, shape (m, 3)
+        Whether the edge opposite vertex k of triangle t is part of a segment.
+    segments : ndarray of int32, shape (q, 2)
+        The subsegments: the edges into which points and crossings divide the segments.
+
+    Raises
+    ------
+    CrossingSegmentsError
+        Segments cross, and `crossing` is ``"error"``; ``error.pairs`` names all pairs of rows,
+        ``error.points`` where they cross.
+    BudgetExceededError
+        More than `max_vertices` would have to be added; ``error.found`` of them were found.
+    InputError
+        A segment has an end that is no row of `points`, a label is no integer of at least 0, or an
+        option is none of its choices. The message names the rows.
+    DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
+        As for `Delaunay`; seeds must be finite, too.
+
+    Notes
+    -----
+    Each edge that is no subsegment is locally Delaunay: no vertex that is visible from its
+    triangles lies inside their circles (D. T. Lee and A. K. Lin, "Generalized Delaunay
+    triangulation for planar graphs", 1986; Chew 1989). Ties between cocircular points go by
+    coordinates as in `Delaunay`, so that one set of points and segments has one triangulation,
+    however its rows are ordered, and no segments give the triangles of `Delaunay`.
+
+    A crossing that is split gets the exact intersection of the two rows given, rounded once to the
+    nearest doubles, and vertices that ``conforming=True`` adds are rounded as well. Segments then
+    run through rounded vertices, and may bend there by that much; the triangulation is always
+    valid.
+
+    To conform, subsegments are halved, or near corners cut at powers of two, so that segments that
+    meet at sharp angles stop disturbing each other (J. Ruppert, "A Delaunay refinement algorithm
+    for quality 2-dimensional mesh generation", 1995). Subsegments between neighbouring doubles
+    cannot be cut and stay as they are.
+
+    Two segments that cross where a point of the input lies do not count as crossing: both run
+    through it. Rows of `points` that lie in removed triangles only are no corners of any triangle.
+    A seed that lies on a segment or outside has no effect; `report` names it.
+
+    All arrays are read-only, attributes cannot be set. What is not listed above, such as `region`
+    and `report`, is computed on first use and kept; holes and ``boundary="outline"`` are found at
+    once, in linear time.
+
+    Examples
+    --------
+    >>> from delone import ConstrainedDelaunay
+    >>> outer = [(0, 0), (6, 0), (6, 6), (0, 6)]
+    >>> inner = [(2, 2), (4, 2), (4, 4), (2, 4)]
+    >>> rings = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+    >>> mesh = ConstrainedDelaunay(outer + inner, rings, holes=[(3, 3)])
+    >>> mesh
+    <ConstrainedDelaunay of 8 points and 8 segments: 8 triangles>
+    >>> float(mesh.areas.sum())
+    32.0
+    >>> bool(mesh.validate())
+    True
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        segments: ArrayLike,
+        *,
+        holes: ArrayLike | None = None,
+        regions: ArrayLike | None = None,
+        boundary: str = "hull",
+        crossing: str = "error",
+        conforming: bool = False,
+        max_vertices: int | None = None,
+        method: str = "auto",
+        workers: int | None = None,
+    ) -> None:
+        if hasattr(self, "_found"):
+            raise AttributeError("a ConstrainedDelaunay never changes: edit() makes another one")
+        options = Options(
+            boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
+            crossing=as_choice(crossing, _CROSSINGS, name="crossing"),
+            conforming=bool(conforming),
+            max_vertices=_budget(max_vertices),
+            method=as_choice(method, tuple(_core.methods2()), name="method"),
+            workers=workers,
+            labelled=regions is not None,
+        )
+        own = own_copy(points)
+        rows = _own(as_segments(segments, len(own)), segments)
+        origin = np.full(len(rows), -1, dtype=np.int32), np.zeros(len(rows), dtype=bool)
+        found = _given(rows, origin, holes, regions)
+        self._set(found, options, _compute(own, found, options))
+
+    @classmethod
+    def _of_geometries(
+        cls,
+        points: Floats,
+        segments: Indices,
+        origin: tuple[Indices, Bools],
+        *,
+        holes: ArrayLike | None,
+        regions: ArrayLike | None = None,
+        **choices: Any,
+    ) -> Self:
+        """Triangulate arrays of ours.
+
+        `origin` has for each segment the geometry it came from, and whether it is the side of a
+        ring.
+        """
+        as_choice(choices["boundary"], _BOUNDARIES, name="boundary")
+        as_choice(choices["crossing"], _CROSSINGS, name="crossing")
+        as_choice(choices["method"], tuple(_core.methods2()), name="method")
+        choices["max_vertices"] = _budget(choices["max_vertices"])
+        mesh = cls.__new__(cls)
+        options = Options(labelled=regions is not None, **choices)
+        found = _given(segments, origin, holes, regions)
+        mesh._set(found, options, _compute(points, found, options))
+        return mesh
+
+    def find_simplex(
+        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
+    ) -> Indices:
+        """Tell which triangles hold points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate. NaN and infinity are outside.
+        bruteforce : bool, optional
+            Accepted as in SciPy. No search is exhaustive.
+        tol : float, optional
+            Accepted as in SciPy. It has no effect: the answer is exact.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The triangle that has the point inside or on its boundary, the first one where there are
+            several, or -1 where there is none: outside, or in a hole.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
+
+        Notes
+        -----
+        Walks go through all triangles of the convex hull, the removed ones included.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> points = [(0, 0), (6, 0), (0, 6), (1, 1), (2, 1), (1, 2)]
+        >>> mesh = ConstrainedDelaunay(points, [(3, 4), (4, 5), (5, 3)], holes=[(1.2, 1.2)])
+        >>> (mesh.find_simplex([(1.2, 1.2), (1, 1), (0.5, 0.5)]) >= 0).tolist()
+        [False, True, True]
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        rows = queries.reshape(-1, 2)
+        tiling, workers = self._tiles(), as_workers(self._options.workers)
+        whole = _core.find_simplex2(*tiling[:3], rows, workers)
+        found = whole
+        if self._number is not None:
+            found = self._number[whole]
+            doubtful = np.flatnonzero((found < 0) & (whole >= 0))
+            first = self.vertex_to_simplex
+            found[doubtful] = regions.beside(
+                tiling, whole[doubtful], rows[doubtful], self._number, first
+            )
+        return found.reshape(queries.shape[:-1])
+
+    def triangles_along(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """Return the triangles that a straight way meets, in order.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Where the way begins and where it ends, outside or inside.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            Triangles that have more than a point of the way, in their order from a to b. Where it
+            leads through a hole or outside, nothing stands for that part. Where it runs along an
+            edge, the triangle to the left of it, unless there is none; a way without length is a
+            point to be found.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError
+            `a` or `b` is no finite point in the plane.
+
+        Notes
+        -----
+        Exact. Linear in the number of triangles met, after a walk to the first.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
+        >>> way = mesh.triangles_along((0.5, 1.5), (1.5, 0.5))
+        >>> len(way), mesh.neighbors[way[0]].tolist().count(way[1])
+        (2, 1)
+        """
+        along = self._along(_end(a, "a"), _end(b, "b"))
+        found = along if self._number is None else self._number[along]
+        kept_ones: Indices = found[found >= 0]
+        return kept_ones
+
+    def _along(self, a: Floats, b: Floats) -> Indices:
+        """Triangles of the whole hull."""
+        return self._whole_locator.along(a, b)
+
+    @property
+    @kept
+    def _whole_locator(self) -> _core.Locator2:
+        return self._locator if self._number is None else location.locator(*self._tiles()[:3])
+
+    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """Return the triangles along a segment: `triangles_along` by the name of `Delaunay`.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Ends of the segment.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            Triangles, in their order from a to b.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError
+            An end is no finite point.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
+        >>> len(mesh.walk((0.5, 1.5), (1.5, 0.5)))
+        2
+        """
+        return self.triangles_along(a, b)
+
+    def segments_crossing(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """Return the subsegments that a straight way crosses, in order.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Where the way begins and where it ends, outside or inside.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            Rows of `segments`, in the order of their crossings from a to b. Those in holes and
+            outside of the outline count, too.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError
+            `a` or `b` is no finite point in the plane.
+
+        Notes
+        -----
+        Exact. To cross is to have one point in common that is an end of neither: a subsegment that
+        only touches the way, or lies along it, does not cross it.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
+        >>> mesh.segments[mesh.segments_crossing((0.5, 1.5), (1.5, 0.5))].tolist()
+        [[0, 2]]
+        """
+        start, end = _end(a, "a"), _end(b, "b")
+        tiling, along = self._tiles(), self._along(start, end)
+        found = regions.crossed(tiling, along, start, end)
+        keys, order = self._keys_of_segments
+        wanted = topology.edge_keys(found[:, 0], found[:, 1], self.npoints)
+        rows: Indices = order[np.searchsorted(keys, wanted)]
+        return rows
+
+    @property
+    @kept
+    def _keys_of_segments(self) -> tuple[NDArray[np.int64], Indices]:
+        """The subsegments as numbers in order, and their rows."""
+        keys = topology.edge_keys(self.segments[:, 0], self.segments[:, 1], self.npoints)
+        order = np.argsort(keys)
+        return keys[order], order.astype(np.int32)
+
+    def edit(self) -> Editing:
+        """Return a context that collects changes and makes another triangulation of them.
+
+        Returns
+        -------
+        Editing
+            What takes the changes; see there.
+
+        Notes
+        -----
+        The triangulation itself never changes. Since it is canonical, the outcome is the same as
+        that of a new triangulation of the changed input.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
+        >>> with mesh.edit() as edit:
+        ...     edit.remove_segment(0, 2)
+        ...     edit.insert_segment(1, 3)
+        >>> edit.result.segments
+        array([[1, 3]], dtype=int32)
+        """
+        from delone.editing import Editing
+
+        return Editing(self)
+
+    def _arguments(self) -> dict[str, Any]:
+        """What the constructor was given besides points and segments."""
+        arguments: dict[str, Any] = self._options._asdict()
+        if arguments.pop("labelled"):
+            seeds, labels = self._found["regions"], self._found["labels"]
+            arguments["regions"] = np.column_stack((seeds, labels))
+        return arguments | {"holes": self._found["holes"]}
+
+    def validate(self) -> ConstrainedReport:
+        """Prove that this is the canonical constrained triangulation, or name the culprits.
+
+        Returns
+        -------
+        ConstrainedReport
+            Truthy when all is right: triangles counter-clockwise and tiling the exact convex hull,
+            each edge a subsegment or locally Delaunay, ties broken canonically, and the subsegments
+            of each row a way from its one end to the other, straight where it has neither crossings
+            nor added vertices.
+
+        Notes
+        -----
+        Exact, in about the time of the triangulation. Removed triangles are checked, too.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> print(ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).validate())
+        a canonical constrained Delaunay triangulation
+        """
+        return validate(self._found, self.duplicate_of)
+
+    def to_geopandas(self, *, crs: Any = None) -> Any:
+        """Return the triangles as a table of polygons (extra ``geo``).
+
+        Parameters
+        ----------
+        crs : optional
+            Reference system of the coordinates, anything that geopandas takes.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each triangle: its vertices ``v0``, ``v1`` and ``v2``, its ``region``, with
+            polygons in the input its ``polygon``, and its geometry.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas or shapely is not installed.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> frame = ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).to_geopandas()
+        >>> frame.region.tolist(), frame.area.tolist()
+        ([0], [0.5])
+        """
+        from delone.geodata import frame
+
+        columns = {"region": self.region, "polygon": self.polygon}
+        if not self._found["rings"].any():
+            del columns["polygon"]
+        return frame(self._points, self._simplices, columns, crs)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the triangulation to an .npz file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file. No suffix is added.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written, or is no regular file; what was there before is as it was.
+        TypeError
+            `path` is no path. File objects are refused.
+
+        See Also
+        --------
+        load : The way back.
+
+        Examples
+        --------
+        >>> import os, tempfile
+        >>> from delone import ConstrainedDelaunay
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "mesh.npz")
+        ...     ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], [(0, 1)]).save(path)
+        ...     ConstrainedDelaunay.load(path)
+        <ConstrainedDelaunay of 3 points and 1 segment: 1 triangle>
+        """
+        from delone import archive
+
+        options = self._options
+        choices = (
+            _BOUNDARIES.index(options.boundary),
+            _CROSSINGS.index(options.crossing),
+            options.labelled,
+            options.conforming,
+            options.max_vertices,
+        )
+        arrays = self._found | {"options": np.array(choices, dtype=np.int64)}
+        archive.write(path, arrays, archive.CONSTRAINED)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> ConstrainedDelaunay:
+        """Read a triangulation that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+
+        Returns
+        -------
+        ConstrainedDelaunay
+            The triangulation, not computed again.
+
+        Raises
+        ------
+        FileFormatError
+            The file is torn or of another kind, or its arrays contradict each other.
+        OSError
+            The file cannot be read, or is no regular file.
+        TypeError
+            `path` is no path. File objects are refused.
+
+        Notes
+        -----
+        Checked in linear time are shapes, dtypes, ranges, duplicates, mutual neighbours,
+        orientations, the boundary, and that the flags of edges are those of the subsegments.
+        `validate` proves the rest.
+        """
+        from delone import archive
+
+        arrays = archive.read(path, archive.CONSTRAINED)
+        boundary, crossing, labelled, conforming, most = arrays.pop("options").tolist()
+        options = Options(
+            boundary=_BOUNDARIES[boundary],
+            crossing=_CROSSINGS[crossing],
+            conforming=bool(conforming),
+            max_vertices=most,
+            method="auto",
+            workers=None,
+            labelled=bool(labelled),
+        )
+        return cls._restored(arrays, options, {})
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_points"):  # the constructor failed, or has not run
+            return "<ConstrainedDelaunay of nothing yet>"
+        points = counted(self.npoints, "point")
+        if self.nadded:
+            points += f" ({self.nadded} added)"
+        given = counted(len(self.input_segments), "segment")
+        triangles = counted(self.nsimplex, "triangle")
+        return f"<ConstrainedDelaunay of {points} and {given}: {triangles}>"
+
+
+def _given(
+    segments: Indices,
+    origin: tuple[Indices, Bools],
+    holes: ArrayLike | None,
+    regions: ArrayLike | None,
+) -> dict[str, NDArray[Any]]:
+    """Return what the caller gave besides points, by name."""
+    seeds = as_seeds(regions, name="regions", columns=3)
+    return {
+        "input": segments,
+        "geometries": origin[0],
+        "rings": origin[1],
+        "holes": as_seeds(holes, name="holes").copy(),
+        "regions": seeds[:, :2].copy(),
+        "labels": _labels(seeds),
+    }
+
+
+def _compute(points: Floats, found: dict[str, NDArray[Any]], options: Options) -> dict[str, float]:
+    """Let the core triangulate, and put all that it found beside the input."""
+    try:
+        answer = _core.constrained2(
+            points,
+            found["input"],
+            options.crossing == "split",
+            options.conforming,
+            options.max_vertices,
+            options.method,
+            as_workers(options.workers),
+        )
+    except InternalError as error:
+        error.points = points
+        raise
+    stages = dict(answer.pop("stages"))
+    added = answer["added"]
+    found |= answer
+    found["points"] = np.concatenate((points, added)) if len(added) else points
+    return stages
+
+
+def _budget(max_vertices: int | None) -> int:
+    if max_vertices is None:
+        return _MOST_ADDED
+    return min(as_count(max_vertices, name="max_vertices"), 2**31 - 1)
+
+
+def _own(array: Indices, given: ArrayLike) -> Indices:
+    if isinstance(given, list | tuple) or not np.may_share_memory(array, np.asarray(given)):
+        return array
+    return array.copy()
+
+
+def _labels(seeds: Floats) -> Indices:
+    """Return the third column of seeds as integers, or their rows."""
+    if seeds.shape[1] == 2:
+        return np.arange(len(seeds), dtype=np.int32)
+    given = seeds[:, 2]
+    wrong = np.flatnonzero((given != np.floor(given)) | (given < 0) | (given > 2**31 - 1))
+    if wrong.size:
+        rows = ", ".join(map(str, wrong[:10].tolist()))
+        raise InputError(
+            f"regions: {len(wrong)} of {len(seeds)} labels are no integers from 0 to 2**31 - 1; "
+            f"rows {rows}"
+        )
+    return given.astype(np.int32)
+
+
+def _end(point: ArrayLike, name: str) -> Floats:
+    end = as_vectors(point, 2, name=name)
+    if end.ndim != 1:
+        raise ShapeError(f"{name} must be one point, got shape {end.shape}")
+    require_finite(end.reshape(1, 2), name=name)
+    return end

@@ -1,0 +1,175 @@
+"""Whether a triangulation is the canonical constrained one: nothing, or the culprits by number.
+
+The core checks the triangles as it checks those of `Delaunay`; of what it finds not locally
+Delaunay, edges that are subsegments are let off. What remains is whether subsegments, the flags of
+edges and the rows that were given fit each other, which are comparisons of integers and signs of
+exact predicates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from delone import _core
+from delone.topology import among, edge_keys
+from delone.validation import SENTENCES, ValidationReport
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    Bools = NDArray[np.bool_]
+    Indices = NDArray[np.int32]
+
+__all__ = ["ConstrainedReport", "validate"]
+
+
+def _none() -> NDArray[np.int64]:
+    return np.empty(0, dtype=np.int64)
+
+
+def _no_pairs() -> NDArray[np.int64]:
+    return np.empty((0, 2), dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ConstrainedReport(ValidationReport):
+    """The answer of ``ConstrainedDelaunay.validate()``: truthy when the triangulation is right.
+
+    Every field is an array of culprits and empty when there is none. Triangles are those of the
+    whole convex hull: where some are removed, their numbers are not those of `simplices`. The
+    fields of `ValidationReport` mean what they mean there, but `delaunay` and `ties` leave out
+    pairs of triangles with a subsegment between them.
+
+    Parameters
+    ----------
+    orientation, edges, neighbors, hull, missing, repeats, delaunay, ties, count : ndarray of int
+        As in `ValidationReport`.
+    flags : ndarray of int, shape (k,)
+        Triangles of which an edge is flagged as part of a segment and is none, or the reverse.
+    absent : ndarray of int, shape (k, 2)
+        Subsegments that are no edges of triangles.
+    uncovered : ndarray of int, shape (k,)
+        Rows of segments whose subsegments are no way from the one end to the other.
+    bent : ndarray of int, shape (k, 2)
+        Rows of segments and vertices on their way that are not exactly on the row. Rows that run
+        through crossings or added vertices may bend, because those are rounded.
+
+    Attributes
+    ----------
+    ok : bool
+        True when there is no culprit.
+
+    Examples
+    --------
+    >>> from delone import ConstrainedDelaunay
+    >>> report = ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], [(0, 1)]).validate()
+    >>> report.ok, len(report.uncovered)
+    (True, 0)
+    """
+
+    flags: NDArray[np.integer] = field(default_factory=_none)
+    absent: NDArray[np.integer] = field(default_factory=_no_pairs)
+    uncovered: NDArray[np.integer] = field(default_factory=_none)
+    bent: NDArray[np.integer] = field(default_factory=_no_pairs)
+
+    _SUBJECT: ClassVar[str] = "a canonical constrained Delaunay triangulation"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
+        **SENTENCES,
+        "flags": ("triangle has wrong flags", "triangles have wrong flags"),
+        "absent": ("subsegment is no edge", "subsegments are no edges"),
+        "uncovered": ("row of segments is not covered", "rows of segments are not covered"),
+        "bent": ("vertex bends a row of segments", "vertices bend rows of segments"),
+    }
+
+
+def validate(found: Mapping[str, NDArray[Any]], duplicate_of: Indices) -> ConstrainedReport:
+    """Check the arrays of a constrained triangulation.
+
+    Parameters
+    ----------
+    found : mapping of str to ndarray
+        What `ConstrainedDelaunay` holds: input, triangles of the whole hull, subsegments.
+    duplicate_of : ndarray of int32, shape (n,)
+        The vertex of each point.
+
+    Returns
+    -------
+    ConstrainedReport
+        The culprits.
+    """
+    points, simplices, neighbors = found["points"], found["simplices"], found["neighbors"]
+    culprits: dict[str, NDArray[Any]] = dict(_core.validate2(points, simplices, neighbors))
+    edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], len(points))
+    segments = edge_keys(found["segments"][:, 0], found["segments"][:, 1], len(points))
+    wanted = among(edges, segments)
+    culprits["flags"] = np.flatnonzero((wanted != found["constrained"]).any(axis=1))
+    culprits["absent"] = found["segments"][~among(segments, edges.ravel())]
+    for name in ("delaunay", "ties"):
+        if name in culprits:
+            culprits[name] = _not_across(culprits[name], neighbors, wanted)
+    ends = duplicate_of[found["input"]]
+    culprits["uncovered"] = _uncovered(found, ends, len(points))
+    culprits["bent"] = _bent(found, ends)
+    return ConstrainedReport.from_culprits(culprits)
+
+
+def _not_across(pairs: Indices, neighbors: Indices, wanted: Bools) -> Indices:
+    """Leave out pairs of triangles that a subsegment separates."""
+    across = neighbors[pairs[:, 0]] == pairs[:, 1:]
+    left: Indices = pairs[~(across & wanted[pairs[:, 0]]).any(axis=1)]
+    return left
+
+
+def _directed(found: Mapping[str, NDArray[Any]]) -> tuple[Indices, Indices, Indices]:
+    """Return row, tail and head of each subsegment in the direction of each of its rows."""
+    steps = np.repeat(found["segments"], np.diff(found["source_start"]), axis=0)
+    forward = found["forward"]
+    tail = np.where(forward, steps[:, 0], steps[:, 1])
+    head = np.where(forward, steps[:, 1], steps[:, 0])
+    return found["source"], tail, head
+
+
+def _uncovered(found: Mapping[str, NDArray[Any]], ends: Indices, npoints: int) -> Indices:
+    """Rows whose subsegments are no simple way from end to end.
+
+    Each vertex but the first must be the head of exactly one subsegment, each but the last the tail
+    of one. Then the subsegments are one way and perhaps cycles; cycles would be bent.
+    """
+    row, tail, head = _directed(found)
+    rows = np.arange(len(ends))
+    long = ends[:, 0] != ends[:, 1]
+    into = np.concatenate((_pair(row, head, npoints), _pair(rows[long], ends[long, 0], npoints)))
+    out = np.concatenate((_pair(row, tail, npoints), _pair(rows[long], ends[long, 1], npoints)))
+    into, out = np.sort(into), np.sort(out)
+    wrong = np.zeros(len(ends), dtype=bool)
+    for keys, others in ((into, out), (out, into)):
+        wrong[keys[1:][keys[1:] == keys[:-1]] // npoints] = True
+        wrong[keys[~among(keys, others)] // npoints] = True
+    return np.flatnonzero(wrong).astype(np.int32)
+
+
+def _pair(row: NDArray[np.integer], vertex: Indices, npoints: int) -> NDArray[np.int64]:
+    return row.astype(np.int64) * npoints + vertex
+
+
+def _bent(found: Mapping[str, NDArray[Any]], ends: Indices) -> Indices:
+    """Vertices off their row, of rows without crossings and added vertices."""
+    points = found["points"]
+    row, tail, head = _directed(found)
+    first, last = ends[row, 0], ends[row, 1]
+    off = _core.orient2d(points[first], points[last], points[head]) != 0
+    # On the line, but not between the ends.
+    low = np.minimum(points[first], points[last])
+    high = np.maximum(points[first], points[last])
+    off |= ((points[head] < low) | (points[head] > high)).any(axis=1)
+    may_bend = np.zeros(len(ends), dtype=bool)
+    # A crossing may have been rounded to a vertex that was there.
+    may_bend[found["crossings"][:, :2]] = True
+    may_bend[row[np.maximum(tail, head) >= len(points) - len(found["added"])]] = True
+    off &= ~may_bend[row]
+    return np.unique(np.column_stack((row[off], head[off])), axis=0)

@@ -1,0 +1,296 @@
+"""Geometries to arrays, and triangles to tables of geometries.
+
+Shapely's geometries are read by shapely in bulk; what only has ``__geo_interface__``, or is such a
+mapping, is read by hand, so that no library is needed for it. Either way a geometry becomes parts:
+runs of coordinates, each a ring (closed without repeating its first point), a line or points. Third
+coordinates are left out; missing and empty geometries have no parts.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.errors import InputError, MissingExtraError, ShapeError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["EXTERIOR", "INTERIOR", "LINE", "POINTS", "Parts", "frame", "parts_of"]
+
+POINTS, LINE, EXTERIOR, INTERIOR = range(4)
+# Shapely's numbers of types.
+_POINT, _POLYGON = 0, 3
+
+
+class Parts(NamedTuple):
+    """Runs of coordinates, and what each is."""
+
+    # (n, 2), of all parts one after the other.
+    coordinates: Floats
+    # (p + 1,): where the coordinates of each part begin.
+    starts: NDArray[np.int64]
+    # (p,): POINTS, LINE, EXTERIOR or INTERIOR.
+    kinds: NDArray[np.int64]
+    # (p,): the geometry of each part, in the order in which they were given.
+    geometries: NDArray[np.int64]
+
+
+def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
+    """Take geometries apart.
+
+    Parameters
+    ----------
+    geometries : geometry or iterable of geometries
+        Geometries of shapely, tables and series of geopandas, objects with ``__geo_interface__``,
+        mappings of that form, None, and iterables of these. Rows of tables and features of
+        collections are geometries each.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    Parts
+        The parts of the geometries, in order.
+
+    Raises
+    ------
+    InputError
+        Something is no geometry.
+    ShapeError
+        Coordinates of a mapping are not nested as its type says.
+
+    Examples
+    --------
+    >>> from delone.geodata import parts_of
+    >>> square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
+    >>> parts_of([square, {"type": "Point", "coordinates": (5, 5)}])
+    Parts(coordinates=array([[0., 0.],
+           [1., 0.],
+           [1., 1.],
+           [5., 5.]]), starts=array([0, 3, 4]), kinds=array([2, 0]), geometries=array([0, 1]))
+    """
+    found: list[Parts] = []
+    count = 0
+    for batch in _batches(geometries, name):
+        if isinstance(batch, np.ndarray):
+            parts, length = _taken_apart(batch), len(batch)
+        else:
+            parts, length = _joined(_of_mapping(batch, name)), 1
+        found.append(parts._replace(geometries=parts.geometries + count))
+        count += length
+    return _joined(found)
+
+
+def _batches(given: Any, name: str) -> Iterator[Any]:
+    """Arrays of shapely's geometries, and mappings, in the order given."""
+    if given is None:
+        yield np.array([None], dtype=object)
+    elif hasattr(given, "geom_type") and _is_shapely(given):
+        yield np.array([given], dtype=object)
+    elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
+        yield np.asarray(given.geometry.values, dtype=object)
+    elif isinstance(given, dict):
+        yield from _features(given)
+    elif hasattr(given, "__geo_interface__"):
+        yield from _features(given.__geo_interface__)
+    elif isinstance(given, str | bytes) or not hasattr(given, "__iter__"):
+        raise InputError(f"{name} hold {given!r:.80}, which is no geometry")
+    else:
+        yield from _of_iterable(given, name)
+
+
+def _is_shapely(given: Any) -> bool:
+    shapely = sys.modules.get("shapely")
+    return shapely is not None and isinstance(given, shapely.Geometry)
+
+
+def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
+    """Runs of shapely's geometries become arrays, so that they are read in bulk."""
+    run: list[Any] = []
+    for item in given:
+        if item is None or _is_shapely(item):
+            run.append(item)
+            continue
+        if run:
+            yield _object_array(run)
+            run = []
+        if isinstance(item, int | float | np.number):
+            raise InputError(f"{name} hold {item!r:.80}, which is no geometry")
+        yield from _batches(item, name)
+    if run:
+        yield _object_array(run)
+
+
+def _object_array(items: list[Any]) -> NDArray[Any]:
+    array = np.empty(len(items), dtype=object)
+    array[:] = items
+    return array
+
+
+def _features(mapping: Mapping[str, Any]) -> Iterator[Any]:
+    if mapping.get("type") == "FeatureCollection":
+        for feature in mapping["features"]:
+            yield from _features(feature)
+    elif mapping.get("type") == "Feature":
+        yield mapping["geometry"] or {"type": "GeometryCollection", "geometries": []}
+    else:
+        yield mapping
+
+
+def _taken_apart(geometries: NDArray[Any]) -> Parts:
+    """Take shapely's geometries apart, in bulk."""
+    if all(item is None for item in geometries.tolist()):
+        return _joined([])
+    shapely = sys.modules["shapely"]
+    rows = np.arange(len(geometries))
+    while (shapely.get_type_id(geometries) > _POLYGON).any():
+        geometries, index = shapely.get_parts(geometries, return_index=True)
+        rows = rows[index]
+    rings, index = shapely.get_rings(geometries, return_index=True)
+    plain = shapely.get_type_id(geometries) != _POLYGON
+    # Rings of polygons stand where their polygon stood.
+    items = np.concatenate((geometries[plain], rings))
+    at = np.concatenate((np.flatnonzero(plain), index))
+    kinds = np.concatenate((_plain_kinds(shapely, geometries[plain]), _ring_kinds(index)))
+    order = np.argsort(at, kind="stable")
+    coordinates, part = shapely.get_coordinates(items[order], return_index=True)
+    return _closed(coordinates, part, kinds[order], rows[at[order]])
+
+
+def _plain_kinds(shapely: Any, geometries: NDArray[Any]) -> NDArray[np.int64]:
+    types = shapely.get_type_id(geometries)
+    # A ring that is no polygon's is a line that comes back.
+    return np.where(types == _POINT, POINTS, LINE)
+
+
+def _ring_kinds(polygon: NDArray[np.int64]) -> NDArray[np.int64]:
+    first = np.ones(len(polygon), dtype=bool)
+    first[1:] = polygon[1:] != polygon[:-1]
+    return np.where(first, EXTERIOR, INTERIOR)
+
+
+def _closed(
+    coordinates: Floats,
+    part: NDArray[np.int64],
+    kinds: NDArray[np.int64],
+    geometries: NDArray[np.int64],
+) -> Parts:
+    """Leave out the last points of rings that repeat their first ones, and empty parts."""
+    counts = np.bincount(part, minlength=len(kinds))
+    starts = np.concatenate(([0], np.cumsum(counts)))
+    ring = np.flatnonzero((kinds >= EXTERIOR) & (counts > 1))
+    first, last = starts[ring], starts[ring + 1] - 1
+    repeats = (coordinates[first] == coordinates[last]).all(axis=1)
+    stays = np.ones(len(coordinates), dtype=bool)
+    stays[last[repeats]] = False
+    counts[ring[repeats]] -= 1
+    full = counts > 0
+    return Parts(
+        np.ascontiguousarray(coordinates[stays]),
+        np.concatenate(([0], np.cumsum(counts[full]))),
+        kinds[full],
+        geometries[full],
+    )
+
+
+def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
+    """Take a mapping of the form of GeoJSON apart."""
+    kind = mapping.get("type")
+    if kind == "GeometryCollection":
+        for geometry in mapping["geometries"]:
+            yield from _of_mapping(geometry, name)
+        return
+    coordinates: Any = mapping.get("coordinates")
+    if coordinates is None or not isinstance(kind, str):
+        raise InputError(f"{name} hold {dict(mapping)!r:.80}, which is no geometry")
+    if kind in ("Point", "MultiPoint"):
+        for point in [coordinates] if kind == "Point" else coordinates:
+            yield _run([point], POINTS, kind)
+    elif kind in ("LineString", "MultiLineString"):
+        for line in [coordinates] if kind == "LineString" else coordinates:
+            yield _run(line, LINE, kind)
+    elif kind in ("Polygon", "MultiPolygon"):
+        for polygon in [coordinates] if kind == "Polygon" else coordinates:
+            for i, ring in enumerate(polygon):
+                yield _run(ring, INTERIOR if i else EXTERIOR, kind)
+    else:
+        raise InputError(f"{name} hold a geometry of type {kind!r}, which delone does not know")
+
+
+def _run(coordinates: Any, kind: int, what: str) -> Parts:
+    try:
+        rows = np.array([tuple(row)[:2] for row in coordinates if len(row)], dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ShapeError(f"the coordinates of a {what} are no pairs of numbers: {error}") from error
+    if rows.size == 0:
+        return _joined([])
+    if rows.ndim != 2 or rows.shape[1] != 2:
+        raise ShapeError(f"the coordinates of a {what} are no pairs of numbers")
+    part = np.zeros(len(rows), dtype=np.int64)
+    return _closed(rows, part, np.array([kind]), np.array([0]))
+
+
+def _joined(parts: Iterable[Parts]) -> Parts:
+    none = Parts(
+        np.empty((0, 2)),
+        np.zeros(1, dtype=np.int64),
+        np.empty(0, dtype=np.int64),
+        np.empty(0, dtype=np.int64),
+    )
+    many = [none, *parts]
+    if len(many) == 2:
+        return many[1]
+    counts = np.concatenate([np.diff(each.starts) for each in many])
+    return Parts(
+        np.concatenate([each.coordinates for each in many]),
+        np.concatenate(([0], np.cumsum(counts))),
+        np.concatenate([each.kinds for each in many]),
+        np.concatenate([each.geometries for each in many]),
+    )
+
+
+def frame(points: Floats, simplices: Indices, columns: Mapping[str, Any], crs: Any) -> Any:
+    """Return triangles as a GeoDataFrame.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    columns : mapping of str to ndarray, each of length m
+        Columns besides the vertices v0, v1 and v2.
+    crs : any
+        Reference system, or None.
+
+    Returns
+    -------
+    geopandas.GeoDataFrame
+        One row for each triangle.
+
+    Raises
+    ------
+    MissingExtraError
+        geopandas or shapely is not installed.
+    """
+    geopandas, shapely = _required("geopandas"), _required("shapely")
+    table = {f"v{k}": simplices[:, k] for k in range(3)} | dict(columns)
+    return geopandas.GeoDataFrame(table, geometry=shapely.polygons(points[simplices]), crs=crs)
+
+
+def _required(module: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        library = (error.name or module).partition(".")[0]
+        message = f'a table needs {library}, which is not installed: pip install "delone[geo]"'
+        raise MissingExtraError(message, extra="geo") from error

@@ -1,0 +1,289 @@
+"""The constrained Delaunay triangulation: segments as edges, all other edges locally Delaunay.
+
+Start from the Delaunay triangulation. Cut each segment at the vertices on it. Insert one piece
+after the other by flipping the edges that cross it, then flip every edge that is no piece by the
+canonical circle test, until none is left to flip. Segments that cross are refused.
+
+Sloan, S. W. (1993), "A fast algorithm for generating constrained Delaunay triangulations",
+Computers & Structures 47 (3), 441-450. He takes the crossing edges in turn and puts back those
+whose quadrilateral is not convex; here the next edge is chosen so that it always is (see
+`insert_segment`), and so the loop provably ends.
+
+That the result is unique is shown by Chew, L. P. (1989), "Constrained Delaunay triangulations",
+Algorithmica 4, 97-108.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations, pairwise, product
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from delone.errors import CrossingSegmentsError, InputError
+from delone.reference.bowyer_watson import Triangle, bowyer_watson, exact_rows
+from delone.reference.exact import exact_point, orient
+from delone.reference.lawson import Edge, apexes, flip, make_delaunay, triangles_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+
+    from delone.reference.exact import ExactNumber, ExactPoint
+
+
+class ConstrainedTriangulation(NamedTuple):
+    """Triangles and the edges that were demanded.
+
+    Parameters
+    ----------
+    triangles : list of tuple of int
+        Counter-clockwise triples of row numbers, each beginning with its smallest, in ascending
+        order.
+    sources : dict of tuple of int to list of int
+        Each subsegment, the smaller vertex first, in ascending order, with the rows of the segments
+        that cover it, ascending.
+    """
+
+    triangles: list[Triangle]
+    sources: dict[Edge, list[int]]
+
+
+def constrained_delaunay(
+    points: Sequence[Sequence[Any]], segments: Iterable[Sequence[int]]
+) -> ConstrainedTriangulation:
+    """Triangulate points so that segments between them are edges, or chains of edges.
+
+    Parameters
+    ----------
+    points : sequence of pairs of numbers, length n
+        Integers, floats, fractions or decimals, all taken exactly.
+    segments : iterable of pairs of int
+        Rows of `points`. They may share ends, overlap, repeat, pass through points, or have no
+        length; they must not cross.
+
+    Returns
+    -------
+    ConstrainedTriangulation
+        The triangles, and the subsegments into which points cut the segments, with their sources.
+        Of equal points only the first appears.
+
+    Raises
+    ------
+    CrossingSegmentsError
+        Two segments have a point in common that is a vertex of neither; it names all such pairs.
+    InputError
+        A segment names a row that is not there.
+    NonFiniteError, DegenerateInputError, ShapeError
+        As `bowyer_watson` raises them.
+
+    Notes
+    -----
+    Every edge that is no subsegment is locally Delaunay, ties broken canonically as
+    `incircle_canonical` says, so the answer depends on coordinates alone. O(n²) tests for the
+    Delaunay triangulation, O(n) for each segment, O(s²) for s subsegments that might cross and
+    O(k²) flips for each that crosses k edges. Sloan (1993), Chew (1989).
+
+    Examples
+    --------
+    The longer diagonal of a kite, which a Delaunay triangulation would not draw:
+
+    >>> from delone.reference import bowyer_watson, constrained_delaunay
+    >>> kite = [(0, 0), (2, -1), (4, 0), (2, 1)]
+    >>> bowyer_watson(kite)
+    [(0, 1, 3), (1, 2, 3)]
+    >>> constrained_delaunay(kite, [(0, 2)])
+    ConstrainedTriangulation(triangles=[(0, 1, 2), (0, 2, 3)], sources={(0, 2): [0]})
+    """
+    exact = exact_rows(points)
+    apex = apexes(exact, bowyer_watson(exact))
+    sources = pieces(exact, segments)
+    refuse_crossings(points, exact, sources)
+    inserted: set[Edge] = set()
+    for piece in sources:
+        insert_segment(exact, apex, *piece)
+        inserted.add(piece)
+    make_delaunay(exact, apex, fixed=inserted)
+    return ConstrainedTriangulation(triangles_of(apex), sources)
+
+
+def pieces(
+    points: Sequence[ExactPoint], segments: Iterable[Sequence[int]]
+) -> dict[Edge, list[int]]:
+    """Cut segments at all points on them.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    segments : iterable of pairs of int
+        Rows of the points.
+
+    Returns
+    -------
+    dict of tuple of int to list of int
+        The pieces, the smaller vertex first, in ascending order, with the rows of the segments that
+        cover them. Vertices are the first rows of their points; a segment without length has no
+        piece.
+
+    Raises
+    ------
+    InputError
+        A segment names a row that is not there.
+    """
+    first: dict[ExactPoint, int] = {}
+    for row, point in enumerate(points):
+        first.setdefault(point, row)
+    sources: dict[Edge, list[int]] = {}
+    for row, segment in enumerate(segments):
+        ends = [int(end) for end in segment]
+        if not all(0 <= end < len(points) for end in ends):
+            raise InputError(f"segment {row} names a row that is not there: {ends}")
+        # In lexicographic order points on one line are in order along it.
+        low, high = sorted(points[end] for end in ends)
+        inner = [p for p in first if low < p < high and orient(low, high, p) == 0]
+        for a, b in pairwise(sorted({low, high, *inner})):
+            u, v = sorted((first[a], first[b]))
+            sources.setdefault((u, v), []).append(row)
+    return dict(sorted(sources.items()))
+
+
+def refuse_crossings(
+    points: Sequence[Sequence[Any]], exact: Sequence[ExactPoint], sources: dict[Edge, list[int]]
+) -> None:
+    """Raise an error if pieces cross.
+
+    Parameters
+    ----------
+    points : sequence of pairs of numbers
+        All points, as they were given.
+    exact : sequence of exact points
+        The same, scaled to integers.
+    sources : dict of tuple of int to list of int
+        Pieces with no vertex in their interior, and the rows that they come from.
+
+    Raises
+    ------
+    CrossingSegmentsError
+        Two of them cross. It names the rows of each pair once, the smaller first, ascending, and
+        the points in which they meet.
+    """
+    found: dict[tuple[int, int], tuple[float, float]] = {}
+    for one, other in combinations(sources, 2):
+        if not cross(*(exact[vertex] for vertex in (*one, *other))):
+            continue
+        place = meeting(*(points[vertex] for vertex in (*one, *other)))
+        for i, j in product(sources[one], sources[other]):
+            found[min(i, j), max(i, j)] = place
+    if found:
+        rows = sorted(found)
+        raise CrossingSegmentsError(
+            f"{len(rows)} pairs of segments cross; first: {rows[0]}",
+            pairs=rows,
+            points=[found[pair] for pair in rows],
+        )
+
+
+def meeting(
+    a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]
+) -> tuple[float, float]:
+    """Return the point in which the lines ab and cd meet.
+
+    Parameters
+    ----------
+    a, b, c, d : sequence of two numbers
+        Points; the lines are not parallel.
+
+    Returns
+    -------
+    tuple of float
+        Its coordinates, each the nearest double.
+    """
+    (ax, ay), (bx, by), (cx, cy), (dx, dy) = map(exact_point, (a, b, c, d))
+    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    t = Fraction((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
+    return float(ax + t * ux), float(ay + t * uy)
+
+
+def cross(a: ExactPoint, b: ExactPoint, c: ExactPoint, d: ExactPoint) -> bool:
+    """Tell whether ab and cd have one point in common that is an end of neither.
+
+    Parameters
+    ----------
+    a, b, c, d : exact points
+        The ends.
+
+    Returns
+    -------
+    bool
+        Whether the ends of each lie strictly on both sides of the other.
+    """
+    apart = any(
+        max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)
+    )
+    if apart:  # that decides most pairs
+        return False
+    return orient(a, b, c) * orient(a, b, d) < 0 and orient(c, d, a) * orient(c, d, b) < 0
+
+
+def insert_segment(points: Sequence[ExactPoint], apex: dict[Edge, int], a: int, b: int) -> None:
+    """Flip the edges that cross ab until there is none and ab is an edge.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    apex : dict of tuple of int to int
+        A triangulation, as `apexes` gives it; it is changed in place.
+    a, b : int
+        Vertices with no other vertex between them.
+
+    Notes
+    -----
+    Of the crossing edges, those are next which end in the vertex w that is farthest to the left of
+    ab, and of these the one whose other end is farthest to the right; of several that are equally
+    far, the one farthest along ab. So w is a corner of the convex hull of all triangles that ab
+    crosses, and the other end is a corner of the hull of those among them that meet in w: at both
+    ends the two triangles of the edge make an angle below 180 degrees, so they form a strictly
+    convex quadrilateral. A flip takes an edge from w and gives it none, and what is new ends in
+    vertices that had crossing edges before or in a and b; so each vertex on the left is done
+    with once, and all k edges are gone after O(k²) flips.
+    """
+
+    def far(w: int, side: int) -> tuple[ExactNumber, ExactNumber]:
+        """The distance from ab to one side, and that along ab, both times the length of ab."""
+        (ax, ay), (bx, by), (x, y) = points[a], points[b], points[w]
+        dx, dy = bx - ax, by - ay
+        return side * (dx * (y - ay) - dy * (x - ax)), dx * (x - ax) + dy * (y - ay)
+
+    def leftmost(edge: Edge) -> tuple[tuple[ExactNumber, ExactNumber], ...]:
+        left, right = max(edge, key=lambda w: far(w, 1)), min(edge, key=lambda w: far(w, 1))
+        return far(left, 1), far(right, -1)
+
+    crossing = edges_across(points, apex, a, b)
+    while crossing:
+        edge = max(crossing, key=leftmost)
+        crossing.remove(edge)
+        p, q = flip(apex, *edge)
+        if cross(points[a], points[b], points[p], points[q]):
+            crossing.append((p, q))
+
+
+def edges_across(
+    points: Sequence[ExactPoint], apex: Collection[Edge], a: int, b: int
+) -> list[Edge]:
+    """List the edges that cross ab, each once.
+
+    Parameters
+    ----------
+    points : sequence of exact points
+        All points.
+    apex : collection of tuple of int
+        Directed edges, of an inner edge both directions.
+    a, b : int
+        Vertices.
+
+    Returns
+    -------
+    list of tuple of int
+        Edges with their smaller vertex first.
+    """
+    return [(u, v) for u, v in apex if u < v and cross(points[a], points[b], points[u], points[v])]

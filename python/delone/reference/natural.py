@@ -1,0 +1,142 @@
+"""Natural neighbour weights by their definition: Voronoi cells, clipped in exact arithmetic.
+
+The cell that a query would have in the Voronoi diagram is cut out of a square by half-planes, one
+for each site; what a site loses to it is cut out of the cell by the half-planes of that site. The
+share of the area lost is Sibson's weight (R. Sibson, "A vector identity for the Dirichlet
+tessellation", 1980). The length of the edge between query and site over their distance is Laplace's
+(N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random lattice",
+1982). Both are rational. Time is O(n²) for each query.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from delone.errors import InputError
+from delone.reference.exact import ExactNumber, ExactPoint, exact_point
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    Polygon = list[ExactPoint]
+
+__all__ = ["natural_weights"]
+
+
+def natural_weights(
+    points: Sequence[Sequence[Any]], query: Sequence[Any], *, kind: str = "sibson"
+) -> dict[int, Fraction]:
+    """Return how much each natural neighbour of a query counts.
+
+    Parameters
+    ----------
+    points : sequence of points, shape (n, 2)
+        Distinct sites.
+    query : sequence of two numbers
+        A point strictly inside of their convex hull.
+    kind : {"sibson", "laplace"}, optional
+        Shares of area, or of length over distance.
+
+    Returns
+    -------
+    dict of int to Fraction
+        Rows of the sites whose weight is above 0, ascending; the weights sum to 1.
+
+    Raises
+    ------
+    InputError
+        The query is not strictly inside of the hull, so that its cell has no end; or `kind` is
+        unknown.
+
+    Examples
+    --------
+    >>> from delone.reference import natural_weights
+    >>> square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    >>> {row: str(weight) for row, weight in natural_weights(square, (1, 2)).items()}
+    {0: '3/8', 1: '1/8', 2: '1/8', 3: '3/8'}
+    """
+    if kind not in ("sibson", "laplace"):
+        raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r}")
+    sites = [exact_point(point) for point in points]
+    q = exact_point(query)
+    if q in sites:
+        return {sites.index(q): Fraction(1)}
+    cell = _cell(sites, q)
+    measure = _lost if kind == "sibson" else _shared
+    parts = {row: measure(sites, row, q, cell) for row in range(len(sites))}
+    total = sum(parts.values())
+    return {row: Fraction(part) / total for row, part in parts.items() if part > 0}
+
+
+def _cell(sites: list[ExactPoint], q: ExactPoint) -> Polygon:
+    """The Voronoi cell of the query among the sites."""
+    spread = max(abs(x - q[0]) + abs(y - q[1]) for x, y in sites)
+    size = 4 * spread
+    # A cell that ends does so within some square; a square that does not grow it any more has it.
+    for _ in range(64):
+        square = _clipped([(q[0] + i * size, q[1] + j * size) for i, j in _CORNERS], sites, q)
+        if all(max(abs(x - q[0]), abs(y - q[1])) < size for x, y in square):
+            return square
+        size *= 1024
+    raise InputError("the query is not strictly inside of the convex hull of the points")
+
+
+_CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+
+
+def _clipped(polygon: Polygon, others: list[ExactPoint], to: ExactPoint) -> Polygon:
+    """The part of a convex polygon that is nearer to a point than to others."""
+    for other in others:
+        if other != to:
+            polygon = _half(polygon, to, other)
+    return polygon
+
+
+def _half(polygon: Polygon, near: ExactPoint, far: ExactPoint) -> Polygon:
+    """The part of a convex polygon that is nearer to the first point than to the second."""
+    heights = [_nearer(corner, near, far) for corner in polygon]
+    kept: Polygon = []
+    for i, (corner, height) in enumerate(zip(polygon, heights, strict=True)):
+        before, below = polygon[i - 1], heights[i - 1]
+        if (height > 0 > below) or (height < 0 < below):
+            share = Fraction(below) / (below - height)
+            kept.append(
+                (
+                    before[0] + share * (corner[0] - before[0]),
+                    before[1] + share * (corner[1] - before[1]),
+                )
+            )
+        if height >= 0:
+            kept.append(corner)
+    return kept
+
+
+def _nearer(corner: ExactPoint, near: ExactPoint, far: ExactPoint) -> ExactNumber:
+    """How much the square of the distance to the first point is below that to the second."""
+    return _squared(corner, far) - _squared(corner, near)
+
+
+def _squared(a: ExactPoint, b: ExactPoint) -> ExactNumber:
+    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
+
+
+def _lost(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> ExactNumber:
+    """Twice the area that a site loses to the query."""
+    part = _clipped(cell, sites, sites[row])
+    return sum(
+        (a[0] * b[1] - a[1] * b[0] for a, b in zip(part, part[1:] + part[:1], strict=True)),
+        Fraction(0),
+    )
+
+
+def _shared(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> ExactNumber:
+    """The length of the edge between the cells of a site and the query, over their distance."""
+    site = sites[row]
+    on_edge = [corner for corner in cell if _nearer(corner, q, site) == 0]
+    # The edge is perpendicular to the way from query to site; so is this, of the same length.
+    turned = (q[1] - site[1], site[0] - q[0])
+    places = [x * turned[0] + y * turned[1] for x, y in on_edge]
+    if len(places) < 2:
+        return 0
+    return Fraction(max(places) - min(places)) / _squared(q, site)

@@ -1,0 +1,255 @@
+"""The state of a constrained triangulation, and what follows from segments and seeds.
+
+`_found` holds, by name, what was given and all that the core found: the triangles of the whole
+convex hull, subsegments with their rows, seeds. `simplices` and its like are the part of the
+triangles that is kept; `_number` leads from the whole to that part.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+
+from delone import _core, coverage, regions, segments, topology
+from delone._arrays import as_workers
+from delone.triangulation import Triangulation, kept, sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.segments import SegmentReport
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Options", "Segmented"]
+
+
+class Options(NamedTuple):
+    """What a constrained triangulation was asked for, besides its arrays."""
+
+    boundary: str
+    crossing: str
+    conforming: bool
+    max_vertices: int
+    method: str
+    workers: int | None
+    labelled: bool
+
+
+class Segmented(Triangulation):
+    """A triangulation whose edges segments are, with areas between them."""
+
+    __slots__ = ("_constrained", "_found", "_number", "_options")
+
+    _constrained: Bools
+    _found: dict[str, NDArray[Any]]
+    _number: Indices | None
+    _options: Options
+
+    def _set(
+        self, found: dict[str, NDArray[Any]], options: Options, stages: dict[str, float]
+    ) -> None:
+        found = {name: sealed(array) for name, array in found.items()}
+        object.__setattr__(self, "_found", found)
+        object.__setattr__(self, "_options", options)
+        arrays = {name: found[name] for name in ("points", "duplicates")}
+        triangles = {name: found[name] for name in ("simplices", "neighbors", "constrained")}
+        removed = self._removed()
+        number = None
+        if removed is not None:
+            rows = np.flatnonzero(~removed)
+            # The last entry is what -1 stands for.
+            number = np.full(len(removed) + 1, -1, dtype=np.int32)
+            number[rows] = np.arange(len(rows), dtype=np.int32)
+            triangles = {name: array[rows] for name, array in triangles.items()}
+            triangles["neighbors"] = number[triangles["neighbors"]]
+        object.__setattr__(self, "_number", number)
+        self._fill(arrays | triangles, stages, options.workers)
+
+    def _removed(self) -> Bools | None:
+        """Tell which triangles of the hull are in holes or outside; None where all are kept."""
+        holes, boundary = self._found["holes"], self._options.boundary
+        if boundary == "hull" and not len(holes):
+            return None
+        tiling, component = self._tiles(), self._component()
+        gone = np.zeros(int(component.max()) + 1, dtype=bool)
+        if boundary == "outline":
+            gone |= regions.outside(tiling, component)
+        elif boundary == "polygons":
+            gone |= self._polygons(component) < 0
+        if len(holes):
+            triangle, on_segment = self._located("holes")
+            gone[component[triangle[(triangle >= 0) & ~on_segment]]] = True
+        return gone[component] if gone.any() else None
+
+    def _polygons(self, component: Indices) -> Indices:
+        """Return the first polygon of each component."""
+        found = self._found
+        ends = _vertices(found["duplicates"], len(found["points"]))[found["input"]]
+        sides = coverage.closed_rings(ends, found["geometries"], found["rings"])
+        return coverage.first_polygon(found, component, sides)
+
+    def _tiles(self) -> regions.Tiling:
+        found = self._found
+        return regions.Tiling(
+            found["points"], found["simplices"], found["neighbors"], found["constrained"]
+        )
+
+    def _component(self) -> Indices:
+        return _core.components2(self._found["neighbors"], self._found["constrained"])
+
+    def _located(self, name: str) -> tuple[Indices, Bools]:
+        """Tell in which triangles of the hull seeds lie, and which lie on segments."""
+        found, workers = self._found, as_workers(self._options.workers)
+        return regions.located(self._tiles(), found[name], found["segments"], workers)
+
+    def _tiling(self) -> tuple[Indices, Indices]:
+        return self._found["simplices"], self._found["neighbors"]
+
+    @property
+    def constrained(self) -> Bools:
+        """Whether the edge opposite each vertex is part of a segment, (m, 3)."""
+        return self._constrained
+
+    @property
+    def nadded(self) -> int:
+        """Number of vertices that were added; they are the last rows of `points`."""
+        return len(self._found["added"])
+
+    @property
+    def input_segments(self) -> Indices:
+        """The segments that were given, (s, 2)."""
+        return self._found["input"]
+
+    @property
+    def segments(self) -> Indices:
+        """The subsegments, (q, 2), in the order of the first row that covers them and along it.
+
+        Each once, in the direction of that row, those in holes and outside of the outline included.
+        """
+        return self._found["segments"]
+
+    @property
+    def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
+        """The rows that cover subsegments as compressed rows (indptr, indices).
+
+        Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
+        ascending. There are several where rows repeat or overlap.
+        """
+        return self._found["source_start"], self._found["source"]
+
+    @property
+    def segment_forward(self) -> Bools:
+        """Beside the indices of `segment_source`: whether the row runs as the subsegment does.
+
+        It does where it meets ``segments[i, 0]`` before ``segments[i, 1]``; the first row of each
+        subsegment always does.
+        """
+        return self._found["forward"]
+
+    @property
+    def geometry_of_segment(self) -> Indices:
+        """The geometry that each of `input_segments` came from, (s,); -1 for those from arrays."""
+        return self._found["geometries"]
+
+    @property
+    @kept
+    def polygon(self) -> Indices:
+        """The first polygon that has each triangle inside, (m,), as a number of a geometry.
+
+        -1 where there is none, and in triangulations of arrays. Inside is what an odd number of the
+        rings of the geometry winds around. A geometry from whose rings an edit took a side has no
+        inside.
+        """
+        component = self._component()
+        return sealed(self._only_kept(self._polygons(component)[component]))
+
+    @property
+    @kept
+    def boundary_edges(self) -> Indices:
+        """The edges with a triangle on one side only, (k, 2), the triangle to the left."""
+        return sealed(topology.boundary_edges(self._simplices, self._neighbors))
+
+    @property
+    @kept
+    def region(self) -> Indices:
+        """The area of each triangle, (m,): triangles that no segment separates have one number.
+
+        With seeds of regions it is the label of the first seed in the area, -1 without one. Without
+        seeds, areas are numbered from 0 in the order of their smallest triangles. Triangles are
+        compared by their smallest corners, then their middle ones, then their largest; corners by
+        x, then y. So the numbers do not hang on the order of rows.
+        """
+        component = self._component()
+        if self._options.labelled:
+            label, _ = self._labelled(component)
+            return sealed(self._only_kept(label))
+        return sealed(regions.numbered(self._points, self._simplices, self._only_kept(component)))
+
+    def _only_kept(self, values: Indices) -> Indices:
+        return values if self._number is None else values[self._number[:-1] >= 0]
+
+    def _labelled(self, component: Indices) -> tuple[Indices, Indices]:
+        triangle, on_segment = self._located("regions")
+        valid = (triangle >= 0) & ~on_segment & ~self._is_gone(triangle)
+        of_seed = np.where(valid, component[triangle], -1)
+        return regions.labels(component, of_seed, self._found["labels"])
+
+    def _is_gone(self, triangle: Indices) -> Bools:
+        if self._number is None:
+            return np.zeros(len(triangle), dtype=bool)
+        gone: Bools = (triangle >= 0) & (self._number[triangle] < 0)
+        return gone
+
+    @property
+    @kept
+    def report(self) -> SegmentReport:
+        """What the input held besides plain segments, row by row; truthy when nothing."""
+        found = self._found
+        repeated = segments.repeated_rows(self.duplicate_of[found["input"]])
+        culprits = {name: found[name] for name in ("duplicates", "zero", "through", "crossings")}
+        culprits["repeated"] = repeated
+        culprits["overlaps"] = segments.overlapping_rows(
+            found["source_start"], found["source"], repeated
+        )
+        culprits["steiner"] = segments.steiner_rows(
+            found["segments"],
+            found["source_start"],
+            found["source"],
+            found["crossings"],
+            first=self.npoints - self.nadded,
+        )
+        return segments.SegmentReport(**culprits, **self._idle_seeds())
+
+    def _idle_seeds(self) -> dict[str, Indices]:
+        idle: dict[str, NDArray[Any]] = {}
+        for name in ("holes", "regions"):
+            triangle, on_segment = self._located(name)
+            outside = triangle < 0
+            if name == "regions":
+                outside |= self._is_gone(triangle) & ~on_segment
+            idle[f"{name}_outside"] = np.flatnonzero(outside)
+            idle[f"{name}_on_segment"] = np.flatnonzero(on_segment)
+        if len(self._found["regions"]):
+            idle["regions_repeated"] = self._labelled(self._component())[1]
+        return idle
+
+    @classmethod
+    def _restored(
+        cls, found: dict[str, NDArray[Any]], options: Options, stages: dict[str, float]
+    ) -> Self:
+        mesh = cls.__new__(cls)
+        mesh._set(found, options, stages)
+        return mesh
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._restored, (self._found, self._options, self._stages)
+
+
+def _vertices(duplicates: Indices, npoints: int) -> Indices:
+    first = np.arange(npoints, dtype=np.int32)
+    first[duplicates[:, 0]] = duplicates[:, 1]
+    return first

@@ -1,0 +1,272 @@
+"""What became of the segments and seeds that a constrained triangulation was given.
+
+Nothing that can be handled is an error: rows that repeat, overlap, have no length or run through
+vertices are taken for what they are, and named here. The core finds most of it; repetition and
+overlap follow from its arrays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone.topology import among
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Indices = NDArray[np.int32]
+
+__all__ = ["SegmentReport", "overlapping_rows", "repeated_rows", "steiner_rows"]
+
+_SHOWN = 5
+
+
+def _none() -> Indices:
+    return np.empty(0, dtype=np.int32)
+
+
+def _no_pairs() -> Indices:
+    return np.empty((0, 2), dtype=np.int32)
+
+
+def _no_triples() -> Indices:
+    return np.empty((0, 3), dtype=np.int32)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SegmentReport:
+    """What the input of a constrained triangulation held besides plain segments.
+
+    Truthy when there is nothing to report: each row of `segments` is one subsegment, no two
+    points coincide, and each seed lies in an area of its own. Every field is an array of culprits,
+    empty when there is none. "Row" is a row of the array that was given.
+
+    Parameters
+    ----------
+    duplicates : ndarray of int32, shape (k, 2)
+        Rows of points and the first row with the same coordinates, which is the vertex.
+    zero : ndarray of int32, shape (k,)
+        Rows of segments without length: both ends have the same coordinates.
+    repeated : ndarray of int32, shape (k, 2)
+        Rows of segments and the first row with the same two ends, in either direction.
+    overlaps : ndarray of int32, shape (k, 2)
+        Rows of segments and the first row with which they share a subsegment without having the
+        same two ends. A row may be in several pairs.
+    through : ndarray of int32, shape (k, 2)
+        Rows of segments and vertices, rows of points, that lie on them between their ends.
+    crossings : ndarray of int32, shape (k, 3)
+        Two rows of segments that cross, and the vertex where they meet now.
+    steiner : ndarray of int32, shape (k, 2)
+        Rows of segments and added vertices on them that are not their own crossings: those that
+        make the triangulation conforming, and rounded crossings of others that lie in their way.
+    holes_outside, regions_outside : ndarray of int32, shape (k,)
+        Rows of seeds that lie in no triangle; those of regions also where the triangle has been
+        removed. They have no effect.
+    holes_on_segment, regions_on_segment : ndarray of int32, shape (k,)
+        Rows of seeds that lie on a segment, and so in no area. They have no effect.
+    regions_repeated : ndarray of int32, shape (k, 2)
+        Rows of seeds and the earlier row that has labelled their area.
+
+    Attributes
+    ----------
+    ok : bool
+        True when there is nothing to report.
+
+    Examples
+    --------
+    >>> from delone import ConstrainedDelaunay
+    >>> square = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+    >>> mesh = ConstrainedDelaunay(square, [(0, 2), (4, 0), (3, 3)], holes=[(5, 5)])
+    >>> bool(mesh.report)
+    False
+    >>> print(mesh.report)
+    1 row of segments has no length: 2
+    1 row of segments overlaps another: 1-0
+    1 vertex lies on a segment (row-vertex): 0-4
+    1 seed of holes lies outside: 0
+    """
+
+    duplicates: Indices = field(default_factory=_no_pairs)
+    zero: Indices = field(default_factory=_none)
+    repeated: Indices = field(default_factory=_no_pairs)
+    overlaps: Indices = field(default_factory=_no_pairs)
+    through: Indices = field(default_factory=_no_pairs)
+    crossings: Indices = field(default_factory=_no_triples)
+    steiner: Indices = field(default_factory=_no_pairs)
+    holes_outside: Indices = field(default_factory=_none)
+    holes_on_segment: Indices = field(default_factory=_none)
+    regions_outside: Indices = field(default_factory=_none)
+    regions_on_segment: Indices = field(default_factory=_none)
+    regions_repeated: Indices = field(default_factory=_no_pairs)
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            array = np.array(getattr(self, each.name), dtype=np.int32)
+            array.flags.writeable = False
+            object.__setattr__(self, each.name, array)
+
+    @property
+    def ok(self) -> bool:
+        """True when there is nothing to report."""
+        return all(len(getattr(self, each.name)) == 0 for each in fields(self))
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        lines = []
+        for name, (one, many) in _SENTENCES.items():
+            culprits = getattr(self, name)
+            if len(culprits):
+                sentence = one if len(culprits) == 1 else many
+                lines.append(f"{len(culprits)} {sentence}: {_list(culprits)}")
+        return "\n".join(lines) or "nothing to report"
+
+
+_SENTENCES = {
+    "duplicates": ("point repeats an earlier row", "points repeat earlier rows"),
+    "zero": ("row of segments has no length", "rows of segments have no length"),
+    "repeated": ("row of segments repeats another", "rows of segments repeat others"),
+    "overlaps": ("row of segments overlaps another", "pairs of rows of segments overlap"),
+    "through": (
+        "vertex lies on a segment (row-vertex)",
+        "vertices lie on segments (row-vertex)",
+    ),
+    "crossings": (
+        "crossing was split (row-row-vertex)",
+        "crossings were split (row-row-vertex)",
+    ),
+    "steiner": (
+        "vertex was added on a segment (row-vertex)",
+        "vertices were added on segments (row-vertex)",
+    ),
+    "holes_outside": ("seed of holes lies outside", "seeds of holes lie outside"),
+    "holes_on_segment": ("seed of holes lies on a segment", "seeds of holes lie on segments"),
+    "regions_outside": ("seed of regions lies outside", "seeds of regions lie outside"),
+    "regions_on_segment": (
+        "seed of regions lies on a segment",
+        "seeds of regions lie on segments",
+    ),
+    "regions_repeated": (
+        "seed of regions lies in an area that has a label",
+        "seeds of regions lie in areas that have labels",
+    ),
+}
+
+
+def _list(culprits: Indices) -> str:
+    shown = [
+        "-".join(map(str, culprit)) if isinstance(culprit, list) else str(culprit)
+        for culprit in culprits[:_SHOWN].tolist()
+    ]
+    return ", ".join(shown) + (", ..." if len(culprits) > _SHOWN else "")
+
+
+def repeated_rows(ends: Indices) -> Indices:
+    """Return the rows that have the same two ends as an earlier one.
+
+    Parameters
+    ----------
+    ends : ndarray of int32, shape (s, 2)
+        Vertices of the segments, of equal points always the same one.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        Row and first row with these ends, ascending. Rows without length are not among them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.segments import repeated_rows
+    >>> repeated_rows(np.array([(0, 1), (2, 1), (1, 0), (3, 3), (3, 3)])).tolist()
+    [[2, 0]]
+    """
+    low, high = ends.min(axis=1, initial=2**31 - 1), ends.max(axis=1, initial=-1)
+    order = np.lexsort((high, low))
+    low, high = low[order], high[order]
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
+    # The sort is stable, so that the first of equal rows comes first.
+    first = order[np.flatnonzero(new)][np.cumsum(new) - 1]
+    later = ~new & (low != high)
+    pairs = np.column_stack((order[later], first[later]))
+    return pairs[np.argsort(pairs[:, 0])].astype(np.int32)
+
+
+def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indices) -> Indices:
+    """Return the rows that share a subsegment with an earlier row of other ends.
+
+    Parameters
+    ----------
+    start : ndarray of int64, shape (q + 1,)
+        Where the sources of each subsegment begin.
+    source : ndarray of int32
+        Rows that cover the subsegments, ascending for each.
+    repeated : ndarray of int32, shape (k, 2)
+        What `repeated_rows` returns.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        Row and the first row that covers a common subsegment, ascending, every pair once.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.segments import overlapping_rows
+    >>> start, source = np.array([0, 2, 3]), np.array([0, 1, 1])
+    >>> overlapping_rows(start, source, np.empty((0, 2), dtype=np.int32)).tolist()
+    [[1, 0]]
+    """
+    first = np.repeat(source[start[:-1]], np.diff(start))
+    same = np.arange(int(source.max(initial=-1)) + 1, dtype=np.int32)
+    same[repeated[:, 0]] = repeated[:, 1]
+    other = same[source] != same[first]
+    pairs = np.column_stack((source[other], first[other]))
+    return np.unique(pairs, axis=0).astype(np.int32)
+
+
+def steiner_rows(
+    segments: Indices, start: NDArray[np.int64], source: Indices, crossings: Indices, *, first: int
+) -> Indices:
+    """Return the added vertices on rows that are not crossings of these rows.
+
+    Parameters
+    ----------
+    segments : ndarray of int32, shape (q, 2)
+        The subsegments.
+    start : ndarray of int64, shape (q + 1,)
+        Where the sources of each subsegment begin.
+    source : ndarray of int32
+        Rows that cover the subsegments.
+    crossings : ndarray of int32, shape (c, 3)
+        Two rows and the vertex where they meet.
+    first : int
+        The first added vertex.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        Row and vertex, ascending, every pair once.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.segments import steiner_rows
+    >>> segments, start = np.array([(0, 5), (5, 6), (6, 1)]), np.array([0, 1, 2, 3])
+    >>> crossings = np.array([(0, 1, 6)])
+    >>> steiner_rows(segments, start, np.array([0, 0, 0]), crossings, first=5).tolist()
+    [[0, 5]]
+    """
+    row = np.repeat(source, 2)
+    vertex = np.repeat(segments, np.diff(start), axis=0).ravel()
+    added = vertex >= first
+    pairs = np.unique(np.column_stack((row[added], vertex[added])), axis=0)
+    known = np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]]))
+    end = int(vertex.max(initial=0)) + 1
+    keys, others = (a[:, 0].astype(np.int64) * end + a[:, 1] for a in (pairs, known))
+    return pairs[~among(keys, others)].astype(np.int32)

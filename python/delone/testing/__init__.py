@@ -1,0 +1,21 @@
+"""Exact assertions about triangulations, for this package's tests and for everybody else's.
+
+Nothing here uses the compiled core: coordinates become Python integers at one common power of two,
+which no arithmetic on them can round, and every test is a few lines of textbook geometry over NumPy
+arrays of such integers. What passes is the Delaunay triangulation of the real numbers that the
+doubles denote. Two-dimensional.
+"""
+
+from delone.testing.constrained import ConstrainedArrays, assert_constrained_delaunay
+from delone.testing.delaunay import assert_delaunay
+from delone.testing.regions import assert_regions
+from delone.testing.sets import same_triangles, triangle_set
+
+__all__ = [
+    "ConstrainedArrays",
+    "assert_constrained_delaunay",
+    "assert_delaunay",
+    "assert_regions",
+    "same_triangles",
+    "triangle_set",
+]

@@ -1,0 +1,147 @@
+"""The parts of an exact check, each of which names its culprits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone.testing.exact import (
+    SHOWN,
+    Mesh,
+    assert_none,
+    directed_edges,
+    hull_of,
+    incircle,
+    opposite_corners,
+    orient,
+    require,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.testing.exact import Indices
+
+
+def assert_vertices(mesh: Mesh) -> None:
+    """Every distinct point is a vertex, and of equal points only the first."""
+    used = np.zeros(len(mesh.points), dtype=bool)
+    used[mesh.triangles] = True
+    is_first = mesh.first == np.arange(len(mesh.points))
+    repeats = np.flatnonzero(used & ~is_first)
+    assert_none(
+        [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
+        len(repeats),
+        "is used in spite of an earlier equal row",
+        "row",
+    )
+    lost = np.flatnonzero(is_first & ~used)
+    assert_none(
+        [mesh.name([row]) for row in lost[:SHOWN].tolist()],
+        len(lost),
+        "is no vertex of any triangle",
+        "point",
+    )
+
+
+def assert_counter_clockwise(mesh: Mesh) -> None:
+    """Triangles turn left, and each edge has one triangle on its left."""
+    a, b, c = mesh.triangles.T
+    turned = np.flatnonzero(orient(mesh, a, b, c) <= 0)
+    assert_none(
+        [f"triangle {t}: {mesh.name(mesh.triangles[t].tolist())}" for t in turned[:SHOWN]],
+        len(turned),
+        "is not counter-clockwise",
+        "triangle",
+    )
+    keys, counts = np.unique(directed_edges(mesh), return_counts=True)
+    doubled = keys[counts > 1]
+    n = len(mesh.points)
+    assert_none(
+        [f"edge {mesh.name((key // n, key % n))}" for key in doubled[:SHOWN].tolist()],
+        len(doubled),
+        "is used more than once in the same direction",
+        "edge",
+    )
+
+
+def assert_hull_and_area(mesh: Mesh) -> None:
+    """The boundary is that of the convex hull; count and area agree."""
+    n, hull = len(mesh.points), hull_of(mesh)
+    found = set(directed_edges(mesh)[opposite_corners(mesh) < 0].tolist())
+    wanted = {u * n + v for u, v in zip(hull, hull[1:] + hull[:1], strict=True)}
+    for keys_left, fault in (
+        (sorted(found - wanted), "is on the boundary, but not on the convex hull"),
+        (sorted(wanted - found), "is on the convex hull, but not on the boundary"),
+    ):
+        assert_none(
+            [f"edge {mesh.name((key // n, key % n))}" for key in keys_left[:SHOWN]],
+            len(keys_left),
+            fault,
+            "edge",
+        )
+    # Count and area follow from what was asserted so far: they check the checks.
+    distinct, m = len(np.unique(mesh.first)), len(mesh.triangles)
+    expected = 2 * distinct - len(hull) - 2
+    require(
+        m == expected,
+        f"{m} triangles, but {distinct} distinct points of which {len(hull)} are on the hull "
+        f"have {expected}",
+    )
+    corners = np.array(hull)
+    area = orient(mesh, *mesh.triangles.T).sum()
+    hull_area = orient(mesh, corners[0], corners[:-1], corners[1:]).sum()
+    require(area == hull_area, "the triangles have not the area of the hull")
+
+
+def assert_locally_delaunay(
+    mesh: Mesh, canonical: bool, fixed: NDArray[np.bool_] | None = None
+) -> None:
+    """Inner edges are locally Delaunay, unless they are opposite a corner that is fixed, (m, 3)."""
+    opposite = opposite_corners(mesh)
+    once = opposite > np.arange(len(opposite))  # each inner edge once
+    corner = np.flatnonzero(once if fixed is None else once & ~fixed.ravel())
+    t, k = np.divmod(corner, 3)
+    p, u, v = (mesh.triangles[t, (k + i) % 3] for i in range(3))
+    q = mesh.triangles.ravel()[opposite[corner]]
+    inside = incircle(mesh, p, u, v, q)
+
+    def edges(which: Indices) -> list[str]:
+        return [
+            f"edge {mesh.name(sorted((u[i], v[i])))} between {mesh.name(sorted((p[i], q[i])))}"
+            for i in which[:SHOWN].tolist()
+        ]
+
+    wrong = np.flatnonzero(inside > 0)
+    assert_none(edges(wrong), len(wrong), "is not locally Delaunay", "edge")
+    if not canonical:
+        return
+    rank = mesh.rank
+    apex_smallest = np.minimum(rank[p], rank[q]) < np.minimum(rank[u], rank[v])
+    tied = np.flatnonzero((inside == 0) & apex_smallest)
+    fault = "is not canonical: the smallest of four cocircular points is not on it"
+    assert_none(edges(tied), len(tied), fault, "edge")
+
+
+def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
+    """Neighbours are those across the edges."""
+    array = np.asarray(neighbors)
+    if array.size == 0:
+        array = array.astype(np.int64).reshape(-1, 3)
+    require(array.dtype.kind in "iu", f"neighbors must hold integers, got dtype {array.dtype}")
+    require(
+        array.shape == mesh.triangles.shape,
+        f"neighbors must have shape {mesh.triangles.shape}, got {array.shape}",
+    )
+    if len(array) == 0:
+        return
+    opposite = opposite_corners(mesh)
+    wanted = np.where(opposite < 0, -1, opposite // 3).reshape(-1, 3)
+    wrong = np.flatnonzero((array != wanted).any(axis=1))
+    assert_none(
+        [f"triangle {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
+        len(wrong),
+        "has wrong neighbours",
+        "triangle",
+    )

@@ -1,0 +1,427 @@
+"""The exact check of constrained Delaunay triangulations.
+
+A triangulation is the constrained Delaunay triangulation of its points and segments when the
+segments are chains of edges, and every other edge is locally Delaunay: Chew, L. P. (1989),
+"Constrained Delaunay triangulations", Algorithmica 4, 97-108.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+
+from delone._arrays import as_points, require_finite
+from delone.testing.checks import (
+    assert_counter_clockwise,
+    assert_hull_and_area,
+    assert_locally_delaunay,
+    assert_neighbors,
+    assert_vertices,
+)
+from delone.testing.exact import (
+    SHOWN,
+    Mesh,
+    as_rows,
+    assert_none,
+    directed_edges,
+    hull_of,
+    opposite_corners,
+    orient,
+    require,
+    spans_no_area,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.testing.exact import Indices
+
+    Bools = NDArray[np.bool_]
+
+_ULPS = 4
+
+
+class ConstrainedMesh(Protocol):
+    """What is looked at of a constrained triangulation; `delone.ConstrainedDelaunay` has it."""
+
+    @property
+    def points(self) -> ArrayLike:
+        """Coordinates, (n, 2)."""
+
+    @property
+    def simplices(self) -> ArrayLike:
+        """Triangles, (m, 3)."""
+
+    @property
+    def neighbors(self) -> ArrayLike:
+        """The triangle opposite each vertex, (m, 3)."""
+
+    @property
+    def segments(self) -> ArrayLike:
+        """Subsegments, (q, 2)."""
+
+    @property
+    def segment_source(self) -> tuple[ArrayLike, ArrayLike]:
+        """The given rows that cover each subsegment, as compressed rows (indptr, indices)."""
+
+    @property
+    def constrained(self) -> ArrayLike:
+        """Whether the edge opposite each vertex is a subsegment, (m, 3)."""
+
+
+class ConstrainedArrays(NamedTuple):
+    """A constrained triangulation that has come from anywhere, to be checked.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Finite coordinates; vertices that were added are among them.
+    simplices, neighbors : array_like of int, shape (m, 3)
+        Vertices of the triangles, and the triangle opposite each vertex, -1 outside.
+    segments : array_like of int, shape (q, 2)
+        The subsegments: pairs of vertices.
+    segment_source : tuple of array_like of int
+        ``(indptr, indices)``: the rows of the given segments that cover subsegment i are
+        ``indices[indptr[i]:indptr[i + 1]]``, ascending.
+    constrained : array_like of bool, shape (m, 3)
+        Whether the edge opposite each vertex is a subsegment.
+    """
+
+    points: ArrayLike
+    simplices: ArrayLike
+    neighbors: ArrayLike
+    segments: ArrayLike
+    segment_source: tuple[ArrayLike, ArrayLike]
+    constrained: ArrayLike
+
+    @classmethod
+    def of(
+        cls,
+        points: ArrayLike,
+        simplices: ArrayLike,
+        sources: Mapping[tuple[int, int], Sequence[int]],
+    ) -> ConstrainedArrays:
+        """Fill in what follows from triangles and the sources of subsegments.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            Finite coordinates.
+        simplices : array_like of int, shape (m, 3)
+            Vertices of the triangles.
+        sources : mapping of tuple of int to sequence of int
+            Each subsegment with the rows that cover it, as
+            `delone.reference.constrained_delaunay` returns them.
+
+        Returns
+        -------
+        ConstrainedArrays
+            With neighbours and flags, which then cannot be wrong.
+
+        Examples
+        --------
+        >>> from delone.reference import constrained_delaunay
+        >>> from delone.testing import ConstrainedArrays
+        >>> kite = [(0, 0), (2, -1), (4, 0), (2, 1)]
+        >>> ConstrainedArrays.of(kite, *constrained_delaunay(kite, [(0, 2)])).neighbors
+        array([[-1,  1, -1],
+               [-1, -1,  0]])
+        """
+        exact = Mesh.of(as_points(points, ndim=2), as_rows(simplices, len(np.asarray(points))))
+        opposite = opposite_corners(exact)
+        edges = {frozenset(edge) for edge in sources}
+        flags = [
+            frozenset((t[k - 1], t[k - 2])) in edges
+            for t in exact.triangles.tolist()
+            for k in range(3)
+        ]
+        return cls(
+            points,
+            exact.triangles,
+            np.where(opposite < 0, -1, opposite // 3).reshape(-1, 3),
+            np.array(list(sources), dtype=np.int64).reshape(-1, 2),
+            (
+                np.cumsum([0, *map(len, sources.values())]),
+                np.array([row for rows in sources.values() for row in rows], dtype=np.int64),
+            ),
+            np.array(flags, dtype=bool).reshape(-1, 3),
+        )
+
+
+def assert_constrained_delaunay(
+    mesh: ConstrainedMesh,
+    segments: ArrayLike,
+    *,
+    complete: bool = True,
+    split: bool = False,
+    tolerance: float | None = None,
+    canonical: bool = True,
+) -> None:
+    """Assert, exactly, that triangles are the constrained Delaunay triangulation of segments.
+
+    Parameters
+    ----------
+    mesh : ConstrainedDelaunay, ConstrainedArrays or the like
+        Its attributes `points`, `simplices`, `neighbors`, `segments`, `segment_source` and
+        `constrained` are looked at, see `ConstrainedArrays`.
+    segments : array_like of int, shape (s, 2)
+        The segments that were given, as rows of the points.
+    complete : bool, optional
+        Whether the triangles cover the convex hull. False where some have been removed: then
+        points need not be vertices, the boundary may consist of subsegments as well as of
+        hull edges, and subsegments need not be edges; they are listed all the same.
+    split : bool, optional
+        Whether vertices were added where segments cross, at places that had to be rounded. Then a
+        segment may be a chain of edges that leaves its line by `tolerance`.
+    tolerance : float, optional
+        The largest distance between a vertex and a segment that passes through it, with `split`.
+        By default four times the distance from the largest absolute coordinate to the next double.
+    canonical : bool, optional
+        Whether cocircular vertices must be fanned from their lexicographically smallest one, as far
+        as segments let them. False accepts every constrained Delaunay triangulation.
+
+    Raises
+    ------
+    AssertionError
+        Names what is wrong and the first culprits, with their coordinates.
+    InputError
+        The points are no array of finite points.
+
+    Notes
+    -----
+    Checked are, as by `assert_delaunay`, indices, orientation, edges, vertices, hull, count, area
+    and neighbours; that each subsegment is listed once, is an edge, and is flagged on both of its
+    sides, and no other edge is; that the subsegments of each given row follow one another from
+    end to end without turning back, all on its line; and that every inner edge that is no
+    subsegment is locally Delaunay. With `split` all vertices of a row are near it instead.
+    Where the triangles tile the hull, no two subsegments cross.
+
+    O(n log n) exact operations for n points and subsegments. Chew (1989).
+
+    Examples
+    --------
+    A kite whose longer diagonal is demanded:
+
+    >>> from delone.testing import ConstrainedArrays, assert_constrained_delaunay
+    >>> mesh = ConstrainedArrays(
+    ...     points=[(0, 0), (2, -1), (4, 0), (2, 1)],
+    ...     simplices=[(0, 1, 2), (0, 2, 3)],
+    ...     neighbors=[(-1, 1, -1), (-1, -1, 0)],
+    ...     segments=[(0, 2)],
+    ...     segment_source=([0, 1], [0]),
+    ...     constrained=[(False, True, False), (False, False, True)],
+    ... )
+    >>> assert_constrained_delaunay(mesh, [(0, 2)])
+    >>> assert_constrained_delaunay(mesh, [(0, 2), (1, 2)])
+    Traceback (most recent call last):
+    ...
+    AssertionError: 1 segment is not covered from end to end:
+      row 1: 1 (2.0, -1.0), 2 (4.0, 0.0)
+    """
+    exact = _exact(mesh)
+    if complete and spans_no_area(exact):
+        require(
+            len(exact.triangles) == 0,
+            f"{len(exact.triangles)} triangles of points that span no area",
+        )
+    elif complete:
+        assert_vertices(exact)
+        assert_counter_clockwise(exact)
+        assert_hull_and_area(exact)
+    else:
+        assert_counter_clockwise(exact)
+    assert_neighbors(exact, mesh.neighbors)
+    given = as_rows(segments, len(exact.points), name="segments", noun="segment", width=2)
+    pieces = _Pieces.of(mesh, exact, given)
+    flags = _flags(mesh, exact)
+    _assert_flagged(exact, pieces, flags, complete)
+    if not complete:
+        _assert_boundary(exact, flags)
+    if split:
+        _assert_near(exact, pieces, _tolerance(exact, tolerance))
+    else:
+        _assert_on_line(exact, pieces)
+    _assert_chains(exact, pieces)
+    assert_locally_delaunay(exact, canonical, flags)
+
+
+def _exact(mesh: ConstrainedMesh) -> Mesh:
+    points = as_points(mesh.points, ndim=2)
+    require_finite(points)
+    return Mesh.of(points, as_rows(mesh.simplices, len(points)))
+
+
+def _flags(mesh: ConstrainedMesh, exact: Mesh) -> Bools:
+    flags = np.asarray(mesh.constrained)
+    if flags.size == 0:
+        flags = flags.astype(bool).reshape(-1, 3)
+    require(flags.dtype == bool, f"constrained must hold bools, got dtype {flags.dtype}")
+    shape = exact.triangles.shape
+    require(flags.shape == shape, f"constrained must have shape {shape}, got {flags.shape}")
+    return flags
+
+
+class _Pieces(NamedTuple):
+    """Subsegments, and what covers what: entry i says that `row[i]` covers `piece[i]`."""
+
+    ends: Indices  # (q, 2)
+    given: Indices  # (s, 2), the lexicographically smaller end first; of equal points the first row
+    piece: Indices
+    row: Indices
+
+    @classmethod
+    def of(cls, mesh: ConstrainedMesh, exact: Mesh, given: Indices) -> _Pieces:
+        ends = as_rows(
+            mesh.segments, len(exact.points), name="mesh.segments", noun="subsegment", width=2
+        )
+        indptr, row = (np.asarray(array) for array in mesh.segment_source)
+        count = len(ends)
+        shaped = indptr.shape == (count + 1,) and row.ndim == 1
+        require(shaped, f"segment_source does not fit {count} subsegments")
+        ends_fit = indptr[0] == 0 and indptr[-1] == len(row) and (np.diff(indptr) > 0).all()
+        require(bool(ends_fit), "segment_source does not give each subsegment a row")
+        in_range = len(row) == 0 or bool(row.min() >= 0 and row.max() < len(given))
+        require(in_range, f"segment_source names rows outside 0 to {len(given) - 1}")
+        piece = np.repeat(np.arange(count), np.diff(indptr))
+        unsorted = np.flatnonzero((np.diff(piece) == 0) & (np.diff(row) <= 0))
+        assert_none(
+            [f"subsegment {piece[i]}: {row[piece == piece[i]]}" for i in unsorted[:SHOWN]],
+            len(unsorted),
+            "has rows in segment_source that do not ascend",
+            "subsegment",
+        )
+        own = exact.first[given]
+        swap = exact.rank[own[:, 0]] > exact.rank[own[:, 1]]
+        own = np.where(swap[:, None], own[:, ::-1], own)
+        return cls(ends, own, piece, row.astype(np.int64))
+
+
+def _assert_flagged(exact: Mesh, pieces: _Pieces, flags: Bools, complete: bool) -> None:
+    """Subsegments are edges, once in the list, and flagged; other edges are not flagged."""
+    n = len(exact.points)
+
+    def undirected(u: Indices, v: Indices) -> Indices:
+        return np.minimum(u, v) * n + np.maximum(u, v)
+
+    def names(keys: Indices) -> list[str]:
+        return [f"edge {exact.name((key // n, key % n))}" for key in keys[:SHOWN].tolist()]
+
+    wanted, counts = np.unique(undirected(*pieces.ends.T), return_counts=True)
+    twice = wanted[counts > 1]
+    assert_none(names(twice), len(twice), "is listed more than once", "subsegment")
+    directed = directed_edges(exact)
+    edges = undirected(directed // n, directed % n)
+    lost = wanted[~np.isin(wanted, edges)] if complete else wanted[:0]
+    assert_none(names(lost), len(lost), "is no edge of a triangle", "subsegment")
+    right = np.isin(edges, wanted)
+    for wrong, fault in (
+        (right & ~flags.ravel(), "is a subsegment, but not flagged as constrained"),
+        (~right & flags.ravel(), "is flagged as constrained, but no subsegment"),
+    ):
+        corners = np.flatnonzero(wrong)
+        culprits = names(edges[corners])
+        culprits = [f"triangle {c // 3}: {e}" for c, e in zip(corners, culprits, strict=False)]
+        assert_none(culprits, len(corners), fault, "edge side")
+
+
+def _assert_boundary(exact: Mesh, flags: Bools) -> None:
+    """Where triangles have been removed, the boundary is flagged or on the hull."""
+    n, hull = len(exact.points), hull_of(exact)
+    on_hull = [u * n + v for u, v in zip(hull, hull[1:] + hull[:1], strict=True)]
+    keys = directed_edges(exact)
+    bare = keys[(opposite_corners(exact) < 0) & ~flags.ravel() & ~np.isin(keys, on_hull)]
+    assert_none(
+        [f"edge {exact.name((key // n, key % n))}" for key in bare[:SHOWN].tolist()],
+        len(bare),
+        "is on the boundary, but neither a subsegment nor on the convex hull",
+        "edge",
+    )
+
+
+def _named(exact: Mesh, pieces: _Pieces) -> Callable[[int], str]:
+    """How to name an entry: the row and the subsegment."""
+
+    def name(i: int) -> str:
+        ends = exact.name(pieces.ends[pieces.piece[i]].tolist())
+        return f"row {pieces.row[i]}: subsegment {pieces.piece[i]} from {ends}"
+
+    return name
+
+
+def _assert_on_line(exact: Mesh, pieces: _Pieces) -> None:
+    """Both ends of each subsegment are on the lines of all rows that it belongs to."""
+    (a, b), (u, v) = pieces.given[pieces.row].T, pieces.ends[pieces.piece].T
+    off = (orient(exact, a, b, u) != 0) | (orient(exact, a, b, v) != 0) | (a == b)
+    wrong = np.flatnonzero(off)
+    culprits = list(map(_named(exact, pieces), wrong[:SHOWN].tolist()))
+    assert_none(culprits, len(wrong), "is not on the line of its row", "subsegment")
+
+
+def _assert_chains(exact: Mesh, pieces: _Pieces) -> None:
+    """The subsegments of each row lead from one end to the other, and never turn back.
+
+    In the order in which a segment runs from its smaller end, x does not fall, and y does not rise
+    or does not fall; rounding keeps that.
+    """
+    low, high = pieces.given.T
+    entries = pieces.ends[pieces.piece]
+    falls = exact.y[high] < exact.y[low]
+    place = np.where(falls[pieces.row][:, None], exact.mirrored()[entries], exact.rank[entries])
+    turned = place[:, 0] > place[:, 1]
+    entries = np.where(turned[:, None], entries[:, ::-1], entries)
+    order = np.lexsort((place.min(axis=1, initial=len(exact.points)), pieces.row))
+    row, (u, v) = pieces.row[order], entries[order].T
+    y_up = np.where(falls[row], -1, 1)
+    new = np.ones(len(row), dtype=bool)
+    new[1:] = row[1:] != row[:-1]
+    wrong = u != np.where(new, low[row], np.roll(v, 1))
+    wrong |= np.roll(new, -1) & (v != high[row])
+    wrong |= (exact.y[v] - exact.y[u]) * y_up < 0
+    bare = np.setdiff1d(np.flatnonzero(low != high), row)
+    rows = np.union1d(row[wrong], bare)
+    assert_none(
+        [f"row {row}: {exact.name(pieces.given[row].tolist())}" for row in rows[:SHOWN].tolist()],
+        len(rows),
+        "is not covered from end to end",
+        "segment",
+    )
+
+
+def _tolerance(exact: Mesh, tolerance: float | None) -> Fraction:
+    """The tolerance in the unit of the integer coordinates."""
+    if tolerance is None:
+        largest = float(np.abs(exact.points).max(initial=0.0))
+        tolerance = _ULPS * math.ulp(largest)
+    return Fraction(tolerance) / Fraction(2) ** exact.exponent
+
+
+def _assert_near(exact: Mesh, pieces: _Pieces, tolerance: Fraction) -> None:
+    """Both ends of each subsegment are near all rows that it belongs to."""
+    a, b = pieces.given[pieces.row].T
+    far = np.zeros(len(a), dtype=bool)
+    for w in pieces.ends[pieces.piece].T:
+        far |= _beyond(exact, a, b, w, tolerance)
+    wrong = np.flatnonzero(far)
+    culprits = list(map(_named(exact, pieces), wrong[:SHOWN].tolist()))
+    fault = f"is more than {float(tolerance * Fraction(2) ** exact.exponent)} away from its row"
+    assert_none(culprits, len(wrong), fault, "subsegment")
+
+
+def _beyond(exact: Mesh, a: Indices, b: Indices, w: Indices, tolerance: Fraction) -> Any:
+    """Tell which points w are farther from the segments ab than the tolerance."""
+    x, y = exact.x, exact.y
+    dx, dy = x[b] - x[a], y[b] - y[a]
+    along = dx * (x[w] - x[a]) + dy * (y[w] - y[a])
+    length = dx * dx + dy * dy
+    nearest = np.where(along <= 0, a, b)
+    to_end = (x[w] - x[nearest]) ** 2 + (y[w] - y[nearest]) ** 2
+    # Both sides times the squared denominator of the tolerance, so that they are integers.
+    over, under = tolerance.denominator**2, tolerance.numerator**2
+    beside = (along > 0) & (along < length)
+    from_line = orient(exact, a, b, w) ** 2 * over > length * under
+    return np.where(beside, from_line, to_end * over > under)

@@ -1,0 +1,187 @@
+"""Triangles over unbounded integers: exact coordinates, signs, edges, the hull, and how to fail.
+
+All coordinates are multiplied by one power of two, which makes each of them an integer; NumPy holds
+them as Python's own, so that no product of them is ever rounded.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Indices = NDArray[np.int64]
+    Integers = NDArray[np.object_]
+
+SHOWN = 5
+
+
+class Mesh(NamedTuple):
+    """Triangles with exact coordinates and what every check needs of them."""
+
+    points: NDArray[np.float64]
+    triangles: Indices
+    x: Integers
+    y: Integers
+    order: Indices  # rows sorted by x, then y, then row
+    rank: Indices  # equal for equal points, ascending lexicographically
+    first: Indices  # of each row, the first row with the same coordinates
+    exponent: int  # coordinates are x and y times two to this power
+
+    @classmethod
+    def of(cls, points: NDArray[np.float64], triangles: Indices) -> Mesh:
+        """Take points that are finite and triangles whose indices are in range."""
+        x, y, exponent = scaled_to_integers(points)
+        flat = points + 0.0  # makes -0.0 the same as 0.0
+        order = np.lexsort((flat[:, 1], flat[:, 0]))
+        fresh = np.ones(len(points), dtype=bool)
+        fresh[1:] = (flat[order[1:]] != flat[order[:-1]]).any(axis=1)
+        group = np.cumsum(fresh) - 1
+        rank = np.empty(len(points), dtype=np.int64)
+        rank[order] = group
+        # lexsort is stable, so the first of each group is the smallest row.
+        return cls(points, triangles, x, y, order, rank, order[fresh][rank], exponent)
+
+    def mirrored(self) -> Indices:
+        """The place of each row in the order by ascending x, then descending y."""
+        place = np.empty(len(self.points), dtype=np.int64)
+        flat = self.points + 0.0
+        place[np.lexsort((-flat[:, 1], flat[:, 0]))] = np.arange(len(place))
+        return place
+
+    def name(self, rows: Iterable[int]) -> str:
+        """Rows with their coordinates, for error messages."""
+        return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
+
+
+def scaled_to_integers(points: NDArray[np.float64]) -> tuple[Integers, Integers, int]:
+    """Multiply all coordinates by the power of two that makes the finest of them an integer."""
+    fraction, exponent = np.frexp(points)
+    mantissa = np.ldexp(fraction, 53).astype(np.int64)
+    exponent = exponent.astype(np.int64) - 53
+    # Short mantissas keep the integers short: strip the trailing zero bits.
+    lowest_bit = mantissa & -mantissa
+    zeros = np.frexp(lowest_bit.astype(np.float64))[1].astype(np.int64) - 1
+    zeros[mantissa == 0] = 0
+    mantissa >>= zeros
+    exponent += zeros
+    used = exponent[mantissa != 0]
+    lowest = int(used.min()) if used.size else 0
+    shift = exponent - lowest
+    shift[mantissa == 0] = 0
+    integers = np.left_shift(mantissa.astype(object), shift.astype(object))
+    return integers[:, 0], integers[:, 1], lowest
+
+
+def orient(mesh: Mesh, a: Any, b: Any, c: Any) -> Any:
+    """Twice the signed area of triangles, exactly; a, b, c are rows or arrays of rows."""
+    x, y = mesh.x, mesh.y
+    return (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
+
+
+def incircle(mesh: Mesh, a: Indices, b: Indices, c: Indices, d: Indices) -> Integers:
+    """Positive where d is inside the circle of the counter-clockwise triangle a, b, c."""
+    ax, ay = mesh.x[a] - mesh.x[d], mesh.y[a] - mesh.y[d]
+    bx, by = mesh.x[b] - mesh.x[d], mesh.y[b] - mesh.y[d]
+    cx, cy = mesh.x[c] - mesh.x[d], mesh.y[c] - mesh.y[d]
+    determinant: Integers = (
+        (ax * ax + ay * ay) * (bx * cy - by * cx)
+        + (bx * bx + by * by) * (cx * ay - cy * ax)
+        + (cx * cx + cy * cy) * (ax * by - ay * bx)
+    )
+    return determinant
+
+
+def as_rows(
+    rows: ArrayLike,
+    npoints: int,
+    *,
+    name: str = "simplices",
+    noun: str = "triangle",
+    width: int = 3,
+) -> Indices:
+    """Rows of vertices as an array, whose type, shape and range are asserted."""
+    array = np.asarray(rows)
+    if array.size == 0:
+        array = array.astype(np.int64).reshape(-1, width)
+    require(array.dtype.kind in "iu", f"{name} must hold integers, got dtype {array.dtype}")
+    require(
+        array.ndim == 2 and array.shape[1] == width,
+        f"{name} must have shape ({'q' if width == 2 else 'm'}, {width}), got {array.shape}",
+    )
+    bad = ((array < 0) | (array >= npoints)).any(axis=1)
+    assert_none(
+        [f"{noun} {t}: {array[t].tolist()}" for t in np.flatnonzero(bad)[:SHOWN]],
+        int(bad.sum()),
+        f"has a vertex outside the rows 0 to {npoints - 1}",
+        noun,
+    )
+    return array.astype(np.int64)
+
+
+def require(condition: bool, message: str) -> None:
+    """Assert, also where Python runs with -O and drops assert statements."""
+    if not condition:
+        raise AssertionError(message)
+
+
+def assert_none(culprits: list[str], count: int, fault: str, noun: str) -> None:
+    """Fail if there are culprits, listing the first of them below one sentence."""
+    if count == 0:
+        return
+    if count > 1:
+        noun += "s"
+        fault = fault.replace("is ", "are ", 1).replace("has ", "have ", 1)
+    more = "\n  ..." if count > len(culprits) else ""
+    raise AssertionError(f"{count} {noun} {fault}:\n  " + "\n  ".join(culprits) + more)
+
+
+def hull_of(mesh: Mesh) -> list[int]:
+    """Counter-clockwise hull from the smallest point on, with the points on its edges.
+
+    Andrew, A. M. (1979), "Another efficient algorithm for convex hulls in two dimensions": one
+    chain below and one above, here popping right turns only, so that collinear points stay.
+    """
+    rows = mesh.order[mesh.first[mesh.order] == mesh.order].tolist()
+
+    def chain(rows: list[int]) -> list[int]:
+        kept: list[int] = []
+        for row in rows:
+            while len(kept) > 1 and orient(mesh, kept[-2], kept[-1], row) < 0:
+                kept.pop()
+            kept.append(row)
+        return kept[:-1]
+
+    return chain(rows) + chain(rows[::-1])
+
+
+def spans_no_area(mesh: Mesh) -> bool:
+    """Tell whether all points lie on one line."""
+    rows = np.unique(mesh.first)
+    if len(rows) < 3:
+        return True
+    # The smallest and the largest point differ, so they span the line, if there is one.
+    low, high = int(mesh.order[0]), int(mesh.order[-1])
+    return not (orient(mesh, low, high, rows) != 0).any()
+
+
+def directed_edges(mesh: Mesh) -> Indices:
+    """Edges opposite the vertices, as one number u * n + v each, of shape (3 m,)."""
+    u, v = mesh.triangles[:, [1, 2, 0]].ravel(), mesh.triangles[:, [2, 0, 1]].ravel()
+    keys: Indices = u * len(mesh.points) + v
+    return keys
+
+
+def opposite_corners(mesh: Mesh) -> Indices:
+    """Of each corner 3 t + k, the corner beyond the edge opposite it, or -1 on the boundary."""
+    n, keys = len(mesh.points), directed_edges(mesh)
+    order = np.argsort(keys)
+    reverse = keys % n * n + keys // n
+    place = np.minimum(np.searchsorted(keys, reverse, sorter=order), max(len(keys) - 1, 0))
+    corners: Indices = np.where(keys[order[place]] == reverse, order[place], -1)
+    return corners

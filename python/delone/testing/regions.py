@@ -1,0 +1,174 @@
+"""The check of regions: areas that segments bound, found once more by a flood."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from delone._arrays import as_points, require_finite
+from delone.testing.exact import (
+    SHOWN,
+    Mesh,
+    as_rows,
+    assert_none,
+    opposite_corners,
+    orient,
+    require,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.testing.exact import Indices
+
+    Bools = NDArray[np.bool_]
+
+
+class BoundedMesh(Protocol):
+    """What is looked at of a triangulation with regions; `delone.ConstrainedDelaunay` has it."""
+
+    @property
+    def points(self) -> ArrayLike:
+        """Coordinates, (n, 2)."""
+
+    @property
+    def simplices(self) -> ArrayLike:
+        """Triangles, (m, 3)."""
+
+    @property
+    def constrained(self) -> ArrayLike:
+        """Whether the edge opposite each vertex is a segment, (m, 3)."""
+
+
+def assert_regions(
+    mesh: BoundedMesh,
+    labels: ArrayLike,
+    *,
+    seeds: ArrayLike | None = None,
+    seed_labels: ArrayLike | None = None,
+) -> None:
+    """Assert that labels of triangles tell apart the areas that segments bound.
+
+    Parameters
+    ----------
+    mesh : ConstrainedDelaunay, ConstrainedArrays or the like
+        Its attributes `points`, `simplices` and `constrained` are looked at.
+    labels : array_like of int, shape (m,)
+        The label of each triangle.
+    seeds : array_like, shape (k, 2), optional
+        Points whose areas have been labelled. By default each area has a label of its own.
+    seed_labels : array_like of int, shape (k,), optional
+        The labels given to the areas of the seeds, by default their rows. The first seed in an area
+        counts; those outside and those on a segment, its ends included, do not. An area without a
+        seed has label -1.
+
+    Raises
+    ------
+    AssertionError
+        Names the triangles whose labels are wrong.
+    InputError
+        The points or the seeds are no array of finite points.
+
+    Notes
+    -----
+    Areas are found by a flood in plain Python, from triangle to triangle across edges that are not
+    constrained; which triangles share an edge is found from the triangles themselves. O(m log m),
+    and O(m) exact tests for each seed.
+
+    Examples
+    --------
+    >>> from delone.testing import ConstrainedArrays, assert_regions
+    >>> mesh = ConstrainedArrays(
+    ...     points=[(0, 0), (2, -1), (4, 0), (2, 1)],
+    ...     simplices=[(0, 1, 2), (0, 2, 3)],
+    ...     neighbors=[(-1, 1, -1), (-1, -1, 0)],
+    ...     segments=[(0, 2)],
+    ...     segment_source=([0, 1], [0]),
+    ...     constrained=[(False, True, False), (False, False, True)],
+    ... )
+    >>> assert_regions(mesh, [0, 1])
+    >>> assert_regions(mesh, [-1, 7], seeds=[(2, 0.5)], seed_labels=[7])
+    >>> assert_regions(mesh, [0, 0])
+    Traceback (most recent call last):
+    ...
+    AssertionError: 1 triangle has the label of another area:
+      triangle 1: 0
+    """
+    points = as_points(mesh.points, ndim=2)
+    require_finite(points)
+    triangles = as_rows(mesh.simplices, len(points))
+    places = points if seeds is None else np.vstack((points, as_points(seeds, ndim=2)))
+    require_finite(places, name="seeds")
+    exact = Mesh.of(places, triangles)
+    flags = np.asarray(mesh.constrained, dtype=bool).reshape(-1, 3)
+    found = np.asarray(labels)
+    fits = found.shape == (len(triangles),) and flags.shape == triangles.shape
+    require(fits, f"labels must have shape ({len(triangles)},), got {found.shape}")
+    area = _areas(exact, flags)
+    if seeds is None:
+        _assert_told_apart(area, found)
+        return
+    rows = np.arange(len(points), len(places))
+    given = rows - len(points) if seed_labels is None else np.asarray(seed_labels)
+    wanted = np.full(int(area.max(initial=-1)) + 1, -1, dtype=np.int64)
+    for seed, label in reversed(list(zip(rows.tolist(), given.tolist(), strict=True))):
+        holds = _holding(exact, flags, seed)
+        if holds is not None:
+            wanted[area[holds]] = label
+    wrong = np.flatnonzero(found != wanted[area])
+    assert_none(
+        [f"triangle {t}: {found[t]}, not {wanted[area[t]]}" for t in wrong[:SHOWN].tolist()],
+        len(wrong),
+        "has the wrong label",
+        "triangle",
+    )
+
+
+def _areas(exact: Mesh, flags: Bools) -> Indices:
+    """The area of each triangle, numbered from 0 on in the order of their first triangles."""
+    opposite = opposite_corners(exact)
+    beyond = np.where((opposite < 0) | flags.ravel(), -1, opposite // 3).reshape(-1, 3).tolist()
+    area = [-1] * len(beyond)
+    count = 0
+    for start in range(len(beyond)):
+        if area[start] >= 0:
+            continue
+        area[start], waiting = count, [start]
+        while waiting:
+            for other in beyond[waiting.pop()]:
+                if other >= 0 and area[other] < 0:
+                    area[other] = count
+                    waiting.append(other)
+        count += 1
+    return np.array(area, dtype=np.int64)
+
+
+def _assert_told_apart(area: Indices, found: NDArray[np.integer]) -> None:
+    """Two triangles have one label exactly where they are in one area."""
+    _, first = np.unique(area, return_index=True)
+    of_area = found[first]
+    mixed = np.flatnonzero(found != of_area[area])
+    assert_none(
+        [f"triangle {t}: {found[t]}, not {of_area[area[t]]}" for t in mixed[:SHOWN].tolist()],
+        len(mixed),
+        "has not the label of its area",
+        "triangle",
+    )
+    _, kept = np.unique(of_area, return_index=True)
+    shared = first[np.setdiff1d(np.arange(len(first)), kept)]
+    assert_none(
+        [f"triangle {t}: {found[t]}" for t in shared[:SHOWN].tolist()],
+        len(shared),
+        "has the label of another area",
+        "triangle",
+    )
+
+
+def _holding(exact: Mesh, flags: Bools, seed: int) -> int | None:
+    """A triangle that holds a seed; None outside and on segments."""
+    a, b, c = exact.triangles.T
+    sides = np.stack([orient(exact, u, v, seed) for u, v in ((b, c), (c, a), (a, b))], axis=1)
+    holding = np.flatnonzero((sides >= 0).all(axis=1))
+    on_segment = bool(((sides[holding] == 0) & flags[holding]).any())
+    return None if on_segment or len(holding) == 0 else int(holding[0])

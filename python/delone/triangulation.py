@@ -1,0 +1,407 @@
+"""What the classes of triangulations have in common: immutable arrays and what follows from them.
+
+`points`, `simplices` and `neighbors` come from the core; everything else here follows from them on
+first use (`topology` without coordinates, `geometry` with them) and is kept. Objects never change
+after the constructor, so any number of threads may use one.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self, TypeVar
+
+import numpy as np
+
+from delone import geometry, location, topology
+from delone._arrays import as_points
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone import _core
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Triangulation", "counted", "first_rows", "kept", "own_copy", "sealed"]
+
+T = TypeVar("T")
+
+
+class Keeping(Protocol):
+    """An object with room for what is computed once."""
+
+    _cache: dict[str, Any]
+    _lock: threading.RLock
+
+
+Of = TypeVar("Of", bound=Keeping)
+
+
+def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
+    """Compute once for each object, also where several threads ask at the same time."""
+    name = compute.__name__
+
+    @functools.wraps(compute)
+    def get(self: Of) -> T:
+        cache = self._cache
+        if name not in cache:
+            with self._lock:
+                if name not in cache:
+                    cache[name] = compute(self)
+        value: T = cache[name]
+        return value
+
+    return get
+
+
+def sealed(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array over memory of ours that neither it nor its base can make writeable."""
+    # The owner of memory may always ask for writing again, and a view leads to it by its base; the
+    # base of this array is a memoryview, which cannot.
+    array.flags.writeable = False
+    return np.asarray(array.data)
+
+
+class Triangulation:
+    """Read-only arrays of triangles, and what follows from them; the base of public classes."""
+
+    __slots__ = (
+        "__weakref__",
+        "_cache",
+        "_duplicates",
+        "_lock",
+        "_neighbors",
+        "_points",
+        "_simplices",
+        "_stages",
+        "_workers",
+    )
+
+    _cache: dict[str, Any]
+    _duplicates: Indices
+    _lock: threading.RLock
+    _neighbors: Indices
+    _points: Floats
+    _simplices: Indices
+    _stages: dict[str, float]
+    _workers: int | None
+
+    def _fill(
+        self, arrays: dict[str, NDArray[Any]], stages: dict[str, float], workers: int | None
+    ) -> None:
+        """Set everything there is; afterwards nothing can be set."""
+        values = {
+            "_cache": {},
+            "_lock": threading.RLock(),
+            "_stages": stages,
+            "_workers": workers,
+        }
+        values |= {f"_{name}": sealed(array) for name, array in arrays.items()}
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def _tiling(self) -> tuple[Indices, Indices]:
+        """Triangles and neighbours of the whole convex hull."""
+        return self._simplices, self._neighbors
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, 2)."""
+        return self._points
+
+    @property
+    def simplices(self) -> Indices:
+        """The triangles as rows of `points`, (m, 3), counter-clockwise."""
+        return self._simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex, (m, 3); -1 outside."""
+        return self._neighbors
+
+    @property
+    def ndim(self) -> int:
+        """Number of coordinates, 2."""
+        return 2
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, duplicates included."""
+        return len(self._points)
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of triangles."""
+        return len(self._simplices)
+
+    @property
+    def stages(self) -> dict[str, float]:
+        """Seconds of each part of the construction; empty after loading from a file."""
+        return dict(self._stages)
+
+    @property
+    @kept
+    def min_bound(self) -> Floats:
+        """The least coordinates, (2,)."""
+        return sealed(self._points.min(axis=0))
+
+    @property
+    @kept
+    def max_bound(self) -> Floats:
+        """The greatest coordinates, (2,)."""
+        return sealed(self._points.max(axis=0))
+
+    @property
+    @kept
+    def edges(self) -> Indices:
+        """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
+        return sealed(topology.edges(self._simplices, self._neighbors, self.npoints))
+
+    @property
+    @kept
+    def convex_hull(self) -> Indices:
+        """The edges of the convex hull, (h, 2), each with the triangulation to its left.
+
+        Their order is that of the triangles; `hull` has the vertices in order.
+        """
+        return sealed(topology.boundary_edges(*self._tiling()))
+
+    @property
+    @kept
+    def hull(self) -> NDArray[np.int64]:
+        """The vertices on the convex hull, (h,), counter-clockwise, collinear ones included.
+
+        The first is the lexicographically smallest point.
+        """
+        rows = self.convex_hull[:, 0]
+        x, y = self._points[rows].T
+        start = int(rows[np.lexsort((y, x))[0]])
+        return sealed(topology.boundary_next(self.convex_hull, start))
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The vertex of each row, (n,): the first row with the same coordinates."""
+        first = np.arange(self.npoints, dtype=np.int32)
+        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
+        return sealed(first)
+
+    @property
+    @kept
+    def vertex_to_simplex(self) -> Indices:
+        """A triangle of each point, (n,): the first one that has it or its duplicate as vertex."""
+        first = topology.vertex_to_simplex(self._simplices, self.npoints)
+        return sealed(first[self.duplicate_of])
+
+    @property
+    @kept
+    def coplanar(self) -> Indices:
+        """The duplicates, (k, 3): row, a triangle of its vertex (-1 if it has none), its vertex."""
+        row, first = self._duplicates.T
+        return sealed(np.column_stack((row, self.vertex_to_simplex[first], first)))
+
+    @property
+    @kept
+    def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
+        """Neighbours of vertices as compressed rows (indptr, indices).
+
+        Those of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, ascending. A duplicate has none.
+        """
+        indptr, indices = topology.vertex_neighbor_vertices(self.edges, self.npoints)
+        return sealed(indptr), sealed(indices)
+
+    @property
+    @kept
+    def transform(self) -> Floats:
+        """Affine maps to barycentric coordinates, (m, 3, 2).
+
+        With ``inverse, r = transform[t, :2], transform[t, 2]``, where r is the last vertex of
+        triangle t, ``c = inverse @ (x - r)`` are the first two barycentric coordinates of x, and
+        ``1 - c.sum()`` is the third. No triangle is flat, so no row is NaN, however thin the
+        triangle; entries have a relative error below 1e-13. What exceeds the range of doubles is
+        infinite.
+        """
+        return sealed(geometry.transform(self._points, self._simplices))
+
+    @property
+    @kept
+    def areas(self) -> Floats:
+        """Areas of the triangles, (m,), in the square of the unit of the points.
+
+        All positive, with a relative error below 1e-13, except beyond the range of doubles.
+        """
+        return sealed(geometry.areas(self._points, self._simplices))
+
+    @property
+    @kept
+    def circumcenters(self) -> Floats:
+        """Centres of the circles through the corners of triangles, (m, 2).
+
+        With an error below 1e-13 of the radius, and the rounding of the result. Those of thin
+        triangles are far away, and infinite beyond the range of doubles.
+        """
+        return sealed(geometry.circumcenters(self._points, self._simplices))
+
+    @property
+    @kept
+    def _locator(self) -> _core.Locator2:
+        return location.locator(self._points, self._simplices, self._neighbors)
+
+    def locate(self, xi: ArrayLike) -> location.Location:
+        """Tell where points lie: triangle, weights of its corners, nearest point of the boundary.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate.
+
+        Returns
+        -------
+        Location
+            With fields `simplex`, `barycentric`, `nearest`, `beside`, `edge`, `along`.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
+
+        Notes
+        -----
+        Which triangle, and inside or outside, is exact. The weights are rounded, but none is
+        negative, and at a vertex they are exactly 1, 0 and 0. The first location of a triangulation
+        makes an index, in a small part of the time of the triangulation itself; queries are taken
+        along a space-filling curve, each from the triangle of the one before.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> mesh = Delaunay([(0, 0), (4, 0), (0, 4)])
+        >>> place = mesh.locate([(1, 2), (3, 3)])
+        >>> place.simplex
+        array([ 0, -1], dtype=int32)
+        >>> place.barycentric[0] @ mesh.points[mesh.simplices[0]]
+        array([1., 2.])
+        >>> place.nearest
+        array([[1., 2.],
+               [2., 2.]])
+        """
+        return location.locate(self._locator, self._points, xi, self._workers)
+
+    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """Return the triangles along a segment.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Ends of the segment.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            The triangles that have more than a point of the segment, in order from a to b. Where it
+            runs along an edge, the triangle to the left of it, or the only one there is. Parts
+            outside are skipped; a segment of length zero is a point to be found.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            An end is no finite point.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+        >>> len(mesh.walk((-1, 0.5), (5, 1.5)))
+        3
+        """
+        return location.along(self._locator, a, b)
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the triangulation with matplotlib (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on new axes.
+        **options
+            As in `delone.plot.plot`.
+
+        Returns
+        -------
+        matplotlib Axes
+            What was drawn on.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> ax = Delaunay([(0, 0), (1, 0), (0, 1)]).plot()
+        >>> ax.get_aspect()
+        1.0
+        """
+        from delone.plot import plot
+
+        mesh: Any = self
+        return plot(mesh, ax=ax, **options)
+
+    @classmethod
+    def _from_arrays(
+        cls, arrays: dict[str, NDArray[Any]], stages: dict[str, float], workers: int | None
+    ) -> Self:
+        mesh = cls.__new__(cls)
+        mesh._fill(arrays, stages, workers)
+        return mesh
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything from which the object can be made again."""
+        raise NotImplementedError
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._from_arrays, (self._arrays(), self._stages, self._workers)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number and its noun, as in "1 point" and "2 points"."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def own_copy(points: ArrayLike) -> Floats:
+    """Return points that no one else can change, neither now nor while the core runs."""
+    array = as_points(points, ndim=2)
+    if isinstance(points, list | tuple):
+        return array
+    if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):
+        return array
+    return array.copy()
+
+
+def first_rows(points: Floats) -> NDArray[np.int64]:
+    """Return for each point the first row with the same coordinates."""
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    # The sort is stable, so that the first of equal rows comes first.
+    first = np.empty(len(order), dtype=np.int64)
+    first[order] = order[np.flatnonzero(new)][np.cumsum(new) - 1]
+    return first
