@@ -8,11 +8,13 @@ is no black square. Nothing here needs a display: `save_picture` draws without p
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from delone import cartography
 from delone.atomic import replacing
+from delone.constrained import ConstrainedDelaunay
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
 
 __all__ = ["plot", "save_picture"]
 
@@ -41,7 +44,7 @@ _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
 
 
 def plot(
-    triangulation: Delaunay,
+    triangulation: Mesh,
     ax: Any = None,
     *,
     z: ArrayLike | None = None,
@@ -52,19 +55,20 @@ def plot(
     shade: bool | None = None,
     colorbar: bool = True,
     title: str | None = None,
+    segments: bool = True,
 ) -> Any:
     """Draw a triangulation.
 
     Parameters
     ----------
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         What to draw.
     ax : matplotlib Axes, optional
         Where to draw; by default on the axes of a new pyplot figure.
     z : array_like of float, shape (n,), optional
         Heights: triangles are coloured by them.
     hull : bool, optional
-        Draw the convex hull.
+        Draw the convex hull; of a constrained triangulation the boundary, where it is no segment.
     circumcircles : bool, optional
         Draw the circle through the corners of each triangle, for up to 3000 triangles.
     vertices : bool, optional
@@ -77,6 +81,8 @@ def plot(
         Add the scale of the colours.
     title : str, optional
         Title of the axes.
+    segments : bool, optional
+        Draw the segments of a constrained triangulation as bold lines.
 
     Returns
     -------
@@ -95,6 +101,9 @@ def plot(
     Triangles smaller than 14 pixels on average are drawn as an image: the surface of z, or without
     z the density of points. Colours reach from the first to the last but one hundredth of the
     values; beyond that they stay.
+
+    A `ConstrainedDelaunay` without z has its regions in colours, such that those at one segment
+    differ; triangles without a label are grey, holes stay white.
 
     Examples
     --------
@@ -118,23 +127,29 @@ def plot(
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
     look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
     pixels = _pixels(ax, triangulation)
-    if _is_dense(triangulation, pixels):
+    dense = _is_dense(triangulation, pixels)
+    constrained = triangulation if isinstance(triangulation, ConstrainedDelaunay) else None
+    if constrained is not None and (heights is None or not constrained.nsimplex):
+        cartography.draw_regions(ax, constrained, max(pixels) if dense else None)
+    elif dense:
         _draw_image(ax, triangulation, heights, pixels=max(pixels), **look)
     else:
         _draw_triangles(ax, triangulation, heights, **look)
+    if constrained is not None and segments:
+        cartography.draw_segments(ax, constrained)
     if hull:
         _draw_hull(ax, triangulation)
     if circumcircles:
         _draw_circles(ax, triangulation)
     if vertices or (vertices is None and triangulation.npoints <= _MOST_DOTS):
-        _draw_dots(ax, triangulation)
+        _draw_dots(ax, _dots(triangulation))
     _finish(ax, triangulation, circumcircles, title)
     return ax
 
 
 def save_picture(
     path: str | os.PathLike[str],
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -149,7 +164,7 @@ def save_picture(
     ----------
     path : str or path-like
         The file.
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         What to draw.
     z : array_like of float, shape (n,), optional
         Heights: triangles are coloured by them.
@@ -193,7 +208,7 @@ def save_picture(
 
 def draw_picture(
     path: Path,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -214,11 +229,11 @@ def draw_picture(
     figure.savefig(path, dpi=dpi, facecolor="white")
 
 
-def _require_drawable(triangulation: Delaunay, heights: Floats | None) -> None:
+def _require_drawable(triangulation: Mesh, heights: Floats | None) -> None:
     """Refuse what matplotlib's transforms overflow on, and heights of which nothing shows."""
     if heights is not None and not (finite := np.isfinite(heights)).all():
         rows = np.flatnonzero(~finite)
-        if not finite[triangulation.simplices].all(axis=1).any():
+        if triangulation.nsimplex and not finite[triangulation.simplices].all(axis=1).any():
             raise InputError(f"no triangle has a finite z at each corner; row {rows[0]} has none")
     far = max(np.abs(triangulation.min_bound).max(), np.abs(triangulation.max_bound).max())
     # Halves, since the extent itself may overflow.
@@ -230,11 +245,14 @@ def _require_drawable(triangulation: Delaunay, heights: Floats | None) -> None:
         )
 
 
-def _numbers(triangulation: Delaunay) -> str:
-    return f"{triangulation.npoints:,} points, {triangulation.nsimplex:,} triangles"
+def _numbers(triangulation: Mesh) -> str:
+    numbers = f"{triangulation.npoints:,} points, {triangulation.nsimplex:,} triangles"
+    if isinstance(triangulation, ConstrainedDelaunay):
+        numbers += f", {len(triangulation.input_segments):,} segments"
+    return numbers
 
 
-def _figure_size(triangulation: Delaunay, size: float, *, with_bar: bool) -> tuple[float, float]:
+def _figure_size(triangulation: Mesh, size: float, *, with_bar: bool) -> tuple[float, float]:
     """Return width and height such that the data fill them, labels and colour bar beside."""
     width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
     ratio = min(max(width / height, 0.4), 2.5)
@@ -245,7 +263,7 @@ def _figure_size(triangulation: Delaunay, size: float, *, with_bar: bool) -> tup
     return inner * ratio + beside, inner + above
 
 
-def _pixels(ax: Any, triangulation: Delaunay) -> tuple[int, int]:
+def _pixels(ax: Any, triangulation: Mesh) -> tuple[int, int]:
     """Return the pixels that the data will have across and up."""
     box = ax.get_window_extent()
     width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
@@ -253,7 +271,7 @@ def _pixels(ax: Any, triangulation: Delaunay) -> tuple[int, int]:
     return max(1, round(width * scale)), max(1, round(height * scale))
 
 
-def _is_dense(triangulation: Delaunay, pixels: tuple[int, int]) -> bool:
+def _is_dense(triangulation: Mesh, pixels: tuple[int, int]) -> bool:
     return pixels[0] * pixels[1] < _VISIBLE * triangulation.nsimplex
 
 
@@ -281,7 +299,7 @@ def _shaded(rgb: Floats, light: Floats) -> Floats:
 
 def _draw_image(
     ax: Any,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     z: Floats | None,
     *,
     pixels: int,
@@ -303,7 +321,7 @@ def _draw_image(
         _add_bar(ax, colours, z, "z")
 
 
-def _draw_density(ax: Any, triangulation: Delaunay, pixels: int, cmap: Any, colorbar: bool) -> None:
+def _draw_density(ax: Any, triangulation: Mesh, pixels: int, cmap: Any, colorbar: bool) -> None:
     colors = require("matplotlib.colors", extra="plot", what="drawing")
     # A coarser grid than the screen's: else most of it would be one point or none.
     fewer = int(np.clip(np.sqrt(triangulation.npoints / 4), 50, pixels))
@@ -328,7 +346,7 @@ def _show(ax: Any, raster: Raster, rgba: Floats) -> None:
 
 def _draw_triangles(
     ax: Any,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     z: Floats | None,
     *,
     cmap: Any,
@@ -374,12 +392,15 @@ def _add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
     bar.outline.set_visible(False)
 
 
-def _draw_hull(ax: Any, triangulation: Delaunay) -> None:
+def _draw_hull(ax: Any, triangulation: Mesh) -> None:
+    if isinstance(triangulation, ConstrainedDelaunay):
+        cartography.draw_boundary(ax, triangulation, _RIM)
+        return
     ring = triangulation.points[np.append(triangulation.hull, triangulation.hull[0])]
     ax.plot(*ring.T, color=_RIM, linewidth=1.4, solid_joinstyle="round", zorder=3)
 
 
-def _draw_circles(ax: Any, triangulation: Delaunay) -> None:
+def _draw_circles(ax: Any, triangulation: Mesh) -> None:
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     centres, radii = _circles(triangulation)
     circles = collections.EllipseCollection(
@@ -400,7 +421,7 @@ def _draw_circles(ax: Any, triangulation: Delaunay) -> None:
         ax.plot(*centres.T, "+", color=_CIRCLE, markersize=5, scalex=False, scaley=False, zorder=2)
 
 
-def _circles(triangulation: Delaunay) -> tuple[Floats, Floats]:
+def _circles(triangulation: Mesh) -> tuple[Floats, Floats]:
     centres = triangulation.circumcenters
     corner = triangulation.points[triangulation.simplices[:, 0]]
     radii = np.hypot(*(centres - corner).T)
@@ -408,12 +429,19 @@ def _circles(triangulation: Delaunay) -> tuple[Floats, Floats]:
     return centres[drawn], radii[drawn]
 
 
-def _draw_dots(ax: Any, triangulation: Delaunay) -> None:
-    size = float(np.clip(60 / np.sqrt(triangulation.npoints), 0.8, 5.0))
-    ax.plot(*triangulation.points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
+def _dots(triangulation: Mesh) -> Floats:
+    """Return the points to be drawn: none that lies where triangles have been removed."""
+    if isinstance(triangulation, ConstrainedDelaunay):
+        return triangulation.points[np.unique(triangulation.simplices)]
+    return triangulation.points
 
 
-def _finish(ax: Any, triangulation: Delaunay, circumcircles: bool, title: str | None) -> None:
+def _draw_dots(ax: Any, points: Floats) -> None:
+    size = float(np.clip(60 / np.sqrt(max(len(points), 1)), 0.8, 5.0))
+    ax.plot(*points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
+
+
+def _finish(ax: Any, triangulation: Mesh, circumcircles: bool, title: str | None) -> None:
     """Set limits, aspect and ticks that say the coordinates as they are."""
     ticker = require("matplotlib.ticker", extra="plot", what="drawing")
     low, high = triangulation.min_bound, triangulation.max_bound

@@ -1,16 +1,18 @@
 """Triangulated values as pixels: the picture of a surface whose triangles are smaller than pixels.
 
 A pixel shows the mean of the points within it, which is what an eye sees from afar; a pixel
-without points shows the plane of the triangle at its centre; outside of the hull there is nothing.
+without points shows the plane of the triangle at its centre; without a triangle there is nothing.
 Light and shadow follow B. K. P. Horn, "Hill shading and the reflectance map", 1981. NumPy alone is
 needed.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
+
+from delone.constrained import ConstrainedDelaunay
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,8 +20,9 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
 
-__all__ = ["Raster", "facet_light", "point_density", "rasterize", "relief"]
+__all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 
 _BLOCK = 1 << 20
 # Below this share of pixels with points, triangles are larger than pixels and show themselves.
@@ -48,12 +51,12 @@ class Raster(NamedTuple):
     extent: tuple[float, float, float, float]
 
 
-def rasterize(triangulation: Delaunay, values: Floats, pixels: int) -> Raster:
+def rasterize(triangulation: Mesh, values: Floats, pixels: int) -> Raster:
     """Return a surface over a triangulation as pixels.
 
     Parameters
     ----------
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         The triangulation.
     values : ndarray of float64, shape (n,)
         A value for each point.
@@ -88,15 +91,18 @@ def rasterize(triangulation: Delaunay, values: Floats, pixels: int) -> Raster:
     for start in range(0, len(empty), _BLOCK):
         some = empty[start : start + _BLOCK]
         surface.flat[some] = _interpolated(triangulation, values, _centres(some, frame))
+    if isinstance(triangulation, ConstrainedDelaunay):
+        # Points of removed triangles have been counted, too.
+        surface[triangulation.find_simplex(_all_centres(frame)) < 0] = np.nan
     return Raster(surface, frame.cell, frame.extent)
 
 
-def point_density(triangulation: Delaunay, pixels: int) -> Raster:
+def point_density(triangulation: Mesh, pixels: int) -> Raster:
     """Return how many points lie on the area of each pixel, per unit of area.
 
     Parameters
     ----------
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         The triangulation.
     pixels : int
         Number of pixels along the longer side.
@@ -120,6 +126,40 @@ def point_density(triangulation: Delaunay, pixels: int) -> Raster:
     with np.errstate(divide="ignore", over="ignore"):
         density = np.where(count > 0, count / frame.cell / frame.cell, np.nan)
     return Raster(density, frame.cell, frame.extent)
+
+
+def facet_values(triangulation: Mesh, values: NDArray[np.integer] | Floats, pixels: int) -> Raster:
+    """Return values of triangles as pixels: those of the triangles at their centres.
+
+    Parameters
+    ----------
+    triangulation : Delaunay or ConstrainedDelaunay
+        The triangulation.
+    values : ndarray, shape (m,)
+        A value for each triangle.
+    pixels : int
+        Number of pixels along the longer side.
+
+    Returns
+    -------
+    Raster
+        NaN where there is no triangle.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import ConstrainedDelaunay
+    >>> from delone.shading import facet_values
+    >>> corners = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 0), (2, 4)]
+    >>> mesh = ConstrainedDelaunay(corners, [(4, 5)])
+    >>> facet_values(mesh, mesh.region, 4).values[0]
+    array([0., 0., 1., 1.])
+    """
+    frame = _frame(triangulation, pixels)
+    triangle = triangulation.find_simplex(_all_centres(frame))
+    found = np.full(triangle.shape, np.nan)
+    found[triangle >= 0] = values[triangle[triangle >= 0]]
+    return Raster(found, frame.cell, frame.extent)
 
 
 def relief(raster: Raster) -> Floats:
@@ -218,7 +258,7 @@ class _Frame(NamedTuple):
         return x, x + self.columns * self.cell, y, y + self.rows * self.cell
 
 
-def _frame(triangulation: Delaunay, pixels: int) -> _Frame:
+def _frame(triangulation: Mesh, pixels: int) -> _Frame:
     low = triangulation.min_bound
     width, height = (triangulation.max_bound - low).tolist()
     cell = max(width, height) / pixels
@@ -250,7 +290,12 @@ def _centres(flat: NDArray[np.int64], frame: _Frame) -> Floats:
     return frame.low + frame.cell * (np.column_stack((column, row)) + 0.5)
 
 
-def _interpolated(triangulation: Delaunay, values: Floats, xi: Floats) -> Floats:
+def _all_centres(frame: _Frame) -> Floats:
+    centres = _centres(np.arange(frame.rows * frame.columns), frame)
+    return centres.reshape(frame.rows, frame.columns, 2)
+
+
+def _interpolated(triangulation: Mesh, values: Floats, xi: Floats) -> Floats:
     """Return the height of the triangles at points, NaN outside."""
     triangle = triangulation.find_simplex(xi)
     inside = triangle >= 0

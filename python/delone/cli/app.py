@@ -1,4 +1,4 @@
-"""The three commands, their options, and the way from an error to one line and an exit code."""
+"""The commands, their options, and the way from an error to one line and an exit code."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from delone import Delaunay, __version__
+from delone import ConstrainedDelaunay, __version__
 from delone.atomic import check_target, replacing
+from delone.cli import cells, field
 from delone.cli.check import check_mesh
+from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
 from delone.cli.info import describe
 from delone.cli.report import Stopwatch, peak_memory, summary
@@ -29,13 +31,14 @@ from delone.cli.show import (
     triangulation_rows,
 )
 from delone.errors import MissingExtraError, NonFiniteError
-from delone.io import input_suffixes, output_suffixes, read_points
+from delone.io import GeometrySet, input_suffixes, output_suffixes
 from delone.io.registry import writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from delone.io import PointSet
+    from delone.io.registry import Mesh
 
 __all__ = ["app", "run"]
 
@@ -46,7 +49,8 @@ _CODES = "\b\nExit codes:\n" + "\n".join(
 
 app = typer.Typer(
     name="delone",
-    help="Exact, canonical and fast Delaunay triangulation of the points in a file.",
+    help="Exact, canonical and fast Delaunay triangulation of what a file holds: points, lines, "
+    "polygons.",
     epilog=_CODES,
     no_args_is_help=True,
     add_completion=False,
@@ -55,7 +59,11 @@ app = typer.Typer(
 )
 
 Input = Annotated[
-    Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
+    Path,
+    typer.Argument(
+        metavar="INPUT",
+        help="File of points, lines or polygons: " + " ".join(input_suffixes()),
+    ),
 ]
 Columns = Annotated[
     str | None,
@@ -83,7 +91,7 @@ def _options(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which version.")
     ] = False,
 ) -> None:
-    """Exact, canonical and fast Delaunay triangulation of the points in a file."""
+    """Exact, canonical and fast Delaunay triangulation of what a file holds."""
 
 
 def triangulate(
@@ -110,22 +118,41 @@ def triangulate(
     edges: Annotated[
         bool, typer.Option("--edges", help="Write edges in place of triangles.")
     ] = False,
+    crossing: Annotated[
+        str | None,
+        typer.Option(help="Where lines cross: split (a vertex there, the default) or error."),
+    ] = None,
+    outline: Annotated[
+        bool,
+        typer.Option("--outline", help="Drop what lies outside of polygons, or of closed lines."),
+    ] = False,
+    conforming: Annotated[
+        bool,
+        typer.Option("--conforming", help="Add vertices until all segments are Delaunay edges."),
+    ] = False,
+    max_vertices: Annotated[
+        int | None, typer.Option(help="How many vertices may be added to lines and polygons.")
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Triangulate the points of a file, report, and write meshes and pictures."""
+    """Triangulate the points of a file, report, and write meshes and pictures.
+
+    Lines and the sides of polygons become edges of the triangulation.
+    """
     with writing():
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
-            survey = read_points(
+            survey = read_input(
                 source, columns=_split(columns), classes=_numbers(classes), layer=layer
             )
-        say(f"triangulating {len(survey):,} points")
-        mesh, z, crs = _triangulated(survey, method, workers)
-        del survey
+        say(f"triangulating {len(survey):,} {_what(survey)}")
+        constraints = Constraints(crossing, outline, conforming, max_vertices)
+        mesh, z = triangulated(survey, constraints, method=method, workers=workers)
+        crs = survey.crs
         watch.seconds |= mesh.stages
         _write(writers, mesh, {"z": z, "crs": crs, "edges": edges}, watch, say)
         say("reporting")
@@ -134,6 +161,7 @@ def triangulate(
             "input": str(source),
             "crs": crs,
             **summary(mesh),
+            **_of_constraints(mesh, survey),
             "stages": watch.rows(mesh.npoints),
             "outputs": [str(path) for path in writers],
             "peak_memory_bytes": peak_memory(),
@@ -181,7 +209,7 @@ def info(
     layer: Layer = None,
     as_json: Json = False,
 ) -> None:
-    """Say what a file of points holds, without triangulating it."""
+    """Say what a file holds, without triangulating it."""
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(
@@ -195,7 +223,7 @@ def info(
 
 # Called, not used as decorators: the functions above stay what they are.
 app.callback()(_options)
-for _command in (triangulate, check, info):
+for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
     app.command(epilog="The table of exit codes is in: delone --help")(_command)
 
 
@@ -206,16 +234,19 @@ def _ready(path: Path) -> Callable[..., None]:
     return write
 
 
-def _triangulated(
-    survey: PointSet, method: str, workers: int | None
-) -> tuple[Delaunay, Any, str | None]:
-    mesh = Delaunay(survey.points, method=method, workers=workers)
-    return mesh, survey.z, survey.crs
+def _what(survey: PointSet | GeometrySet) -> str:
+    return "features" if isinstance(survey, GeometrySet) else "points"
+
+
+def _of_constraints(mesh: Mesh, survey: PointSet | GeometrySet) -> dict[str, Any]:
+    if isinstance(mesh, ConstrainedDelaunay) and isinstance(survey, GeometrySet):
+        return {"constraints": constraint_figures(mesh, survey)}
+    return {}
 
 
 def _write(
     writers: Mapping[Path, Callable[..., None]],
-    mesh: Delaunay,
+    mesh: Mesh,
     what: Mapping[str, Any],
     watch: Stopwatch,
     say: Callable[[str], None],

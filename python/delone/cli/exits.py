@@ -8,6 +8,8 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from delone.errors import (
+    BudgetExceededError,
+    CrossingSegmentsError,
     DegenerateInputError,
     FileFormatError,
     InputError,
@@ -43,7 +45,8 @@ MEANINGS = {
     Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation",
     Exit.USAGE: "the command line is wrong",
     Exit.INPUT: "the input is missing, torn or of unknown format",
-    Exit.DEGENERATE: "the points have no triangulation: too few, all on one line, NaN or infinity",
+    Exit.DEGENERATE: "no triangulation: too few points, one line, NaN or infinity, crossings that "
+    "are errors, vertices beyond a limit",
     Exit.OUTPUT: "the output cannot be written; no file was, unless the message says so",
     Exit.MISSING_EXTRA: "an optional library is not installed",
     Exit.MEMORY: "there is not enough memory",
@@ -87,6 +90,8 @@ def code_of(error: BaseException) -> Exit:
         (MissingExtraError, Exit.MISSING_EXTRA),
         (DegenerateInputError, Exit.DEGENERATE),
         (NonFiniteError, Exit.DEGENERATE),
+        (CrossingSegmentsError, Exit.DEGENERATE),
+        (BudgetExceededError, Exit.DEGENERATE),
         (InternalError, Exit.INTERNAL),
         (FileFormatError, Exit.INPUT),
         (InputError, Exit.USAGE),

@@ -1,14 +1,16 @@
-"""What a file of points holds: the figures of ``delone info``."""
+"""What a file of points or other geometries holds: the figures of ``delone info``."""
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.cli.constraints import read_input
 from delone.cli.exits import reading
 from delone.cli.report import finite_or_none
-from delone.io import read_points
+from delone.io import GeometrySet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -40,7 +42,7 @@ _CLASSES = {
 def describe(
     source: Path, *, columns: list[str] | None, classes: list[int] | None, layer: str | None
 ) -> tuple[dict[str, Any], list[Row]]:
-    """Read a file of points and say what is in it.
+    """Read a file and say what is in it.
 
     Parameters
     ----------
@@ -58,7 +60,7 @@ def describe(
     """
     las = source.suffix.lower() in (".las", ".laz")
     with reading():
-        survey = read_points(
+        survey = read_input(
             source,
             columns=columns,
             classes=classes,
@@ -66,9 +68,17 @@ def describe(
             attributes=("classification",) if las else (),
         )
         header = _las_header(source) if las else {}
-    figures = _figures(survey) | header
+    if isinstance(survey, GeometrySet):
+        figures = _figures(survey.coordinates()) | _of_geometries(survey)
+    else:
+        figures = _figures(survey) | header
     figures["file_bytes"] = source.stat().st_size
     return figures, _rows(figures)
+
+
+def _of_geometries(survey: GeometrySet) -> dict[str, Any]:
+    kinds = [getattr(each, "geom_type", "none") for each in survey.geometries.tolist()]
+    return {"features": len(survey), "kinds": dict(Counter(kinds).most_common())}
 
 
 def _las_header(source: Path) -> dict[str, Any]:
@@ -107,6 +117,7 @@ def _range(values: NDArray[np.float64]) -> list[float] | None:
 def _rows(figures: dict[str, Any]) -> list[Row]:
     rows = [
         ("size", f"{figures['file_bytes']:,} bytes"),
+        *_feature_rows(figures),
         ("points", f"{figures['points']:,}"),
         ("reference system", (figures["crs"] or "not told").partition("\n")[0][:100]),
     ]
@@ -130,6 +141,13 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         )
         rows.append(("dimensions", ", ".join(figures["dimensions"])))
     return rows
+
+
+def _feature_rows(figures: dict[str, Any]) -> list[Row]:
+    if "features" not in figures:
+        return []
+    kinds = "\n".join(f"{kind}: {count:,}" for kind, count in figures["kinds"].items())
+    return [("features", f"{figures['features']:,}"), ("kinds", kinds)]
 
 
 def _density(figures: dict[str, Any]) -> float | None:

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone import ConstrainedDelaunay
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from delone.delaunay import Delaunay
+    from delone.io.registry import Mesh
 
 __all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "summary"]
 
@@ -70,35 +72,39 @@ class Stopwatch:
         ]
 
 
-def summary(triangulation: Delaunay) -> dict[str, Any]:
+def summary(triangulation: Mesh) -> dict[str, Any]:
     """Return the counts and measures of a triangulation.
 
     Parameters
     ----------
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         What to report upon.
 
     Returns
     -------
     dict
-        Counts, duplicates, what Euler's formula expects, mean degree, smallest angle, area.
+        Counts, duplicates, what Euler's formula expects, mean degree, smallest angle, area. Where
+        triangles have been removed nothing is expected.
     """
     n, m = triangulation.npoints, triangulation.nsimplex
     coplanar = triangulation.coplanar
     distinct = n - len(coplanar)
-    h = int(np.count_nonzero(triangulation.neighbors < 0))
-    edges = (3 * m - h) // 2 + h
+    rim = int(np.count_nonzero(triangulation.neighbors < 0))
+    edges = (3 * m - rim) // 2 + rim
+    whole = _is_whole(triangulation)
+    h = rim if whole else len(triangulation.convex_hull)
+    used = distinct if whole else len(np.unique(triangulation.simplices))
     angle = smallest_angle(triangulation.points, triangulation.simplices)
     return {
         "points": n,
         "distinct": distinct,
         "duplicates": {"count": len(coplanar), "first": _first(triangulation, coplanar)},
         "hull_vertices": h,
-        "triangles": {"count": m, "expected": 2 * distinct - h - 2},
-        "edges": {"count": edges, "expected": 3 * distinct - h - 3},
-        "mean_degree": 2 * edges / distinct,
+        "triangles": {"count": m, "expected": 2 * distinct - h - 2 if whole else None},
+        "edges": {"count": edges, "expected": 3 * distinct - h - 3 if whole else None},
+        "mean_degree": 2 * edges / used,
         "smallest_angle_degrees": finite_or_none(angle),
-        "area": finite_or_none(hull_area(triangulation)),
+        "area": finite_or_none(area(triangulation)),
         "bounds": [*triangulation.min_bound.tolist(), *triangulation.max_bound.tolist()],
     }
 
@@ -164,12 +170,19 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
     return math.degrees(smallest)
 
 
-def hull_area(triangulation: Delaunay) -> float:
-    """Return the area of the convex hull, which is that of all triangles.
+def _is_whole(triangulation: Mesh) -> bool:
+    """Tell whether no triangle of the convex hull has been removed."""
+    if isinstance(triangulation, ConstrainedDelaunay):
+        return np.array_equal(triangulation.boundary_edges, triangulation.convex_hull)
+    return True
+
+
+def area(triangulation: Mesh) -> float:
+    """Return the area of all triangles.
 
     Parameters
     ----------
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         The triangulation.
 
     Returns
@@ -177,13 +190,15 @@ def hull_area(triangulation: Delaunay) -> float:
     float
         In the square of the unit of the points.
     """
+    if not _is_whole(triangulation):
+        return math.fsum(triangulation.areas.tolist())
     ring = triangulation.points[triangulation.hull]
     with np.errstate(all="ignore"):
         x, y = (ring - ring[0]).T
         return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
-def _first(triangulation: Delaunay, coplanar: NDArray[np.int32]) -> list[dict[str, Any]]:
+def _first(triangulation: Mesh, coplanar: NDArray[np.int32]) -> list[dict[str, Any]]:
     return [
         {"row": row, "same_as": same, "x": x, "y": y}
         for (row, _, same), (x, y) in zip(

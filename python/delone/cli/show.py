@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.table import Table
 
+from delone.cli.constraints import constraint_rows
 from delone.cli.exits import Exit, Failure
 
 if TYPE_CHECKING:
@@ -92,9 +93,7 @@ def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
     """
     angle, area = figures["smallest_angle_degrees"], figures["area"]
     return [
-        ("points read", f"{figures['points']:,}"),
-        ("distinct", f"{figures['distinct']:,}"),
-        ("duplicates", _duplicates(figures["duplicates"])),
+        *_input_rows(figures),
         ("hull vertices", f"{figures['hull_vertices']:,}"),
         ("triangles", _against(figures["triangles"], "2n - h - 2")),
         ("edges", _against(figures["edges"], "3n - h - 3")),
@@ -123,8 +122,21 @@ def memory_text(size: int | None) -> str:
     return "unknown" if size is None else f"{size / 2**20:,.0f} MiB"
 
 
-def _against(counted: dict[str, int], formula: str) -> str:
+def _input_rows(figures: dict[str, Any]) -> list[Row]:
+    if "constraints" in figures:
+        given = figures["points"] - figures["constraints"]["added"]
+        return [("points", f"{given:,}"), *constraint_rows(figures["constraints"])]
+    return [
+        ("points read", f"{figures['points']:,}"),
+        ("distinct", f"{figures['distinct']:,}"),
+        ("duplicates", _duplicates(figures["duplicates"])),
+    ]
+
+
+def _against(counted: dict[str, int | None], formula: str) -> str:
     count, expected = counted["count"], counted["expected"]
+    if expected is None:
+        return f"{count:,}"
     verdict = "=" if count == expected else f"IS NOT {expected:,} ="
     return f"{count:,} {verdict} {formula}"
 

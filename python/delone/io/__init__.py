@@ -1,25 +1,32 @@
-"""Points from files, triangulations to files.
+"""Points from files, triangulations and rasters to files.
 
 `read_points` and `write_mesh` choose by the suffix of the file; one module of this package knows
 one family of formats, and imports the library it needs when it is used.
 """
 
+from delone.io.geometryset import GeometrySet
 from delone.io.pointset import PointSet
+from delone.io.raster import raster_suffixes, write_raster
 from delone.io.registry import (
     MeshFile,
     input_suffixes,
     output_suffixes,
+    read_geometries,
     read_mesh,
     read_points,
     write_mesh,
 )
 
 __all__ = [
+    "GeometrySet",
     "MeshFile",
     "PointSet",
     "input_suffixes",
     "output_suffixes",
+    "raster_suffixes",
+    "read_geometries",
     "read_mesh",
     "read_points",
     "write_mesh",
+    "write_raster",
 ]

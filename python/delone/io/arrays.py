@@ -16,6 +16,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points, as_simplices
+from delone.constrained import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.delaunay import Delaunay
+    from delone.io.registry import Mesh
 
-__all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
+__all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 # Deflate expands one byte to at most 1032; small members have headers of their own.
 _EXPANSION, _SLACK = 1032, 1 << 16
@@ -58,6 +59,8 @@ def read_points(
 def read_mesh(path: Path) -> MeshFile:
     """Read triangles from an npz file; see `delone.io.read_mesh`."""
     source = str(path)
+    if is_constrained(path):
+        return _kept(path)
     with _torn_is_an_error(source), zipfile.ZipFile(path) as archive:
         names = _names(archive)
         if not {"points", "simplices"} <= names:
@@ -69,13 +72,35 @@ def read_mesh(path: Path) -> MeshFile:
     return MeshFile(points=points, simplices=simplices, neighbors=neighbors, z=z, source=source)
 
 
+def is_constrained(path: Path) -> bool:
+    """Tell whether a file is one that `ConstrainedDelaunay.save` wrote."""
+    if path.suffix.lower() != ".npz":
+        return False
+    with _torn_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+        return {"points", "simplices", "constrained"} <= _names(archive)
+
+
+def _kept(path: Path) -> MeshFile:
+    """Read a constrained triangulation without the triangles that have been removed."""
+    mesh = ConstrainedDelaunay.load(path)
+    with _torn_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+        z = _member(archive, "z") if "z" in _names(archive) else None
+    return MeshFile(
+        points=mesh.points,
+        simplices=mesh.simplices,
+        neighbors=mesh.neighbors,
+        z=as_values(z, mesh.npoints),
+        source=str(path),
+    )
+
+
 def require_libraries() -> None:
     """Need nothing: NumPy writes these files."""
 
 
 def write_mesh(
     path: Path,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -92,10 +117,10 @@ def write_mesh(
         further["z"] = heights
     if crs is not None:
         further["crs"] = np.array(crs)
-    taken = {"format", "version", "points", "simplices", "neighbors", "duplicates"} & set(further)
-    if taken:
-        raise FileFormatError(f"an npz file has its own {taken.pop()!r}; rename the attribute")
     with zipfile.ZipFile(path, "a") as archive:
+        taken = _names(archive) & set(further)
+        if taken:
+            raise FileFormatError(f"an npz file has its own {taken.pop()!r}; rename the attribute")
         for name, array in further.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                 np.lib.format.write_array(member, array, allow_pickle=False)

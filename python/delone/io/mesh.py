@@ -18,6 +18,7 @@ import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone.errors import DeloneError, FileFormatError, InputError
+from delone.io.cells import cell_values
 from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.pointset import PointSet
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.delaunay import Delaunay
+    from delone.io.registry import Mesh
 
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
@@ -204,7 +205,7 @@ def require_libraries() -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -221,6 +222,8 @@ def write_mesh(
     of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
     if given and suffix in (".obj", ".stl"):
         raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .ply")
+    if suffix in (".vtu", ".msh"):
+        of_cells = cell_values(triangulation, edges=edges) | of_cells
     heights = as_values(z, triangulation.npoints)
     if heights is not None and suffix == ".vtu":
         of_points = {"z": heights, **of_points}

@@ -5,6 +5,7 @@ Only the columns of the coordinates are read. A Parquet file with geometries is 
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,27 +15,58 @@ from delone.errors import DeloneError, FileFormatError, InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
-from delone.io.vector import from_frame
+from delone.io.vector import from_frame, geometries_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-__all__ = ["read_points"]
+    from delone.io.geometryset import GeometrySet
+
+__all__ = ["holds_geometries", "read_geometries", "read_points"]
 
 
 def read_points(
     path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
 ) -> PointSet:
     """Read points from a table; see `delone.io.read_points`."""
-    require("pyarrow", extra="geo", what=f"reading {path.suffix}")
-    source = str(path)
-    try:
+    with _torn_is_an_error(path):
         if path.suffix.lower() == ".parquet":
             return _parquet(path, columns, attributes)
         return _feather(path, columns, attributes)
+
+
+def holds_geometries(path: Path) -> bool:
+    """Tell whether a file is GeoParquet."""
+    with _torn_is_an_error(path):
+        if path.suffix.lower() != ".parquet":
+            return False
+        parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
+        with parquet.ParquetFile(path) as file:
+            return b"geo" in (file.schema_arrow.metadata or {})
+
+
+def read_geometries(
+    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+) -> GeometrySet:
+    """Read points, lines and areas from GeoParquet; see `delone.io.read_geometries`."""
+    if layer is not None:
+        raise FileFormatError(f"{path}: {path.suffix} files have no layers")
+    if not holds_geometries(path):
+        raise FileFormatError(f"{path} is a table without geometries")
+    with _torn_is_an_error(path):
+        geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
+        return geometries_of(geopandas.read_parquet(path), columns=columns, source=str(path))
+
+
+@contextmanager
+def _torn_is_an_error(path: Path) -> Iterator[None]:
+    require("pyarrow", extra="geo", what=f"reading {path.suffix}")
+    source = str(path)
+    try:
+        yield
     except InputError as error:
         raise FileFormatError(f"{source}: {error}") from error
     except (DeloneError, FileNotFoundError, PermissionError):

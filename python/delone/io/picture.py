@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone.delaunay import Delaunay
+    from delone.io.registry import Mesh
 
 __all__ = ["require_libraries", "write_mesh"]
 
@@ -25,7 +25,7 @@ def require_libraries() -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,

@@ -9,10 +9,11 @@ import importlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.atomic import replacing
 from delone.errors import FileFormatError
+from delone.io.compressed import SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -20,25 +21,31 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.constrained import ConstrainedDelaunay
     from delone.delaunay import Delaunay
+    from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
+
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
 
 __all__ = [
     "MeshFile",
+    "holds_geometries",
     "input_suffixes",
     "output_suffixes",
+    "read_geometries",
     "read_mesh",
     "read_points",
     "write_mesh",
 ]
 
-_COMPRESSED = (".gz", ".xz", ".bz2")
+_JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
 _READERS = {
     **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
     **dict.fromkeys((".npy", ".npz"), "arrays"),
     **dict.fromkeys((".las", ".laz"), "las"),
-    **dict.fromkeys((".geojson", ".json", ".gpkg", ".shp", ".fgb"), "vector"),
+    **dict.fromkeys((*_JSON, ".gpkg", ".shp", ".fgb"), "vector"),
     **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
     **dict.fromkeys(_MESHES, "mesh"),
 }
@@ -48,6 +55,7 @@ _WRITERS = {
     ".npz": "arrays",
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
+_GEOMETRIES = ("vector", "parquet")
 _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh")}
 
 
@@ -123,7 +131,7 @@ def read_points(
     Parameters
     ----------
     path : str or path-like
-        CSV, TSV, TXT, XYZ, PTS or DAT (also .gz, .xz, .bz2), npy, npz, LAS, LAZ, GeoJSON,
+        CSV, TSV, TXT, XYZ, PTS, DAT or GeoJSON (these also .gz, .xz, .bz2), npy, npz, LAS, LAZ,
         GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, or the vertices of a
         mesh.
     columns : sequence of str or int, optional
@@ -188,6 +196,90 @@ def read_points(
     return read(file, **options)
 
 
+def holds_geometries(path: str | os.PathLike[str]) -> bool:
+    """Tell whether a file is one of those that `read_geometries` reads.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+
+    Returns
+    -------
+    bool
+        By the suffix; Parquet files are asked whether they are GeoParquet.
+
+    Raises
+    ------
+    FileNotFoundError, FileFormatError, MissingExtraError
+        As for `read_geometries`; an unknown suffix is no error.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io.registry import holds_geometries
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "survey.csv"
+    ...     _ = file.write_text("1,2")
+    ...     holds_geometries(file)
+    False
+    """
+    file = _existing(path)
+    module = _READERS.get(_suffix(file))
+    if module != "parquet":
+        return module == "vector"
+    return bool(importlib.import_module("delone.io.parquet").holds_geometries(file))
+
+
+def read_geometries(
+    path: str | os.PathLike[str],
+    *,
+    columns: Sequence[str | int] | None = None,
+    layer: str | None = None,
+) -> GeometrySet:
+    """Read points, lines and areas from a file; its suffix tells the format.
+
+    Parameters
+    ----------
+    path : str or path-like
+        GeoJSON (also .gz, .xz, .bz2), GeoPackage, Shapefile, FlatGeobuf or GeoParquet.
+    columns : sequence of str or int, optional
+        The one attribute that is the height of each feature, as contour lines have it. By default
+        heights are those of the coordinates, where there are any.
+    layer : str, optional
+        The layer, for files that have several.
+
+    Returns
+    -------
+    GeometrySet
+        One geometry for each feature, in the order of the file; `delone.from_geometry` takes its
+        ``geometries``.
+
+    Raises
+    ------
+    FileNotFoundError, FileFormatError, MissingExtraError
+        As for `read_points`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io import read_geometries
+    >>> text = '{"type": "LineString", "coordinates": [[0, 0], [4, 4]]}'
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "line.geojson"
+    ...     _ = file.write_text(text)
+    ...     read_geometries(file).geometries
+    array([<LINESTRING (0 0, 4 4)>], dtype=object)
+    """
+    file = _existing(path)
+    modules = {suffix: name for suffix, name in _READERS.items() if name in _GEOMETRIES}
+    module = _module(modules, _suffix(file), file, "read geometries from")
+    read: Callable[..., GeometrySet] = module.read_geometries
+    return read(file, columns=columns, layer=layer)
+
+
 def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     """Read triangles from a file, as they are.
 
@@ -230,7 +322,7 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
 
 def write_mesh(
     path: str | os.PathLike[str],
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -244,7 +336,7 @@ def write_mesh(
     path : str or path-like
         VTU, PLY, OBJ, STL, MSH, GeoPackage, GeoJSON, npz, PNG or SVG. A file that is there is
         replaced when the new one is whole.
-    triangulation : Delaunay
+    triangulation : Delaunay or ConstrainedDelaunay
         What to write.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.
@@ -270,6 +362,10 @@ def write_mesh(
     -----
     Vertex numbers in the file are the rows of ``triangulation.points``; duplicates stay as points
     that no triangle uses. Coordinates are written as doubles, or with all their digits.
+
+    Of a `ConstrainedDelaunay` the triangles that are kept are written. VTU, MSH, GeoPackage and
+    GeoJSON have their `region`, and `polygon` if there are some, as attributes; edges have 1 in
+    ``segment`` where they are part of one, else 0. An npz file holds the whole object.
 
     Examples
     --------
@@ -323,10 +419,12 @@ def writer(path: str | os.PathLike[str]) -> Callable[..., None]:
 
 def _suffix(file: Path) -> str:
     suffixes = [suffix.lower() for suffix in file.suffixes]
-    if suffixes and suffixes[-1] in _COMPRESSED:
+    if suffixes and suffixes[-1] in SUFFIXES:
         suffixes.pop()
-        if suffixes and _READERS.get(suffixes[-1]) != "text":
-            raise FileFormatError(f"{file}: only text files are read compressed; decompress it")
+        if suffixes and _READERS.get(suffixes[-1]) != "text" and suffixes[-1] not in _JSON:
+            raise FileFormatError(
+                f"{file}: only text files and GeoJSON are read compressed; decompress it"
+            )
     return suffixes[-1] if suffixes else ""
 
 

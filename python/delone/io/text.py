@@ -7,21 +7,18 @@ nearest doubles. Rows are numbered from 0, without header, comments and blank li
 
 from __future__ import annotations
 
-import bz2
-import gzip
 import io
 import itertools
-import lzma
 import re
-import zlib
 from collections import Counter
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
 from delone.errors import FileFormatError
+from delone.io.compressed import opened, torn_is_an_error
 from delone.io.pointset import PointSet, choose_columns, find_column
 
 if TYPE_CHECKING:
@@ -34,8 +31,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read_points"]
 
-_OPENERS: dict[str, Any] = {".gz": gzip.open, ".xz": lzma.open, ".bz2": bz2.open}
-_TORN = (EOFError, gzip.BadGzipFile, lzma.LZMAError, zlib.error)
 _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
 _SAMPLE_ROWS = 50
@@ -59,7 +54,7 @@ def read_points(
 ) -> PointSet:
     """Read points from a text file; see `delone.io.read_points`."""
     source = str(path)
-    with _torn_is_an_error(source):
+    with _no_text_is_an_error(source):
         layout = _layout(path, source)
         chosen = choose_columns(layout.names, columns, source, named=layout.named)
         extra = [find_column(layout.names, name, source) for name in attributes]
@@ -77,25 +72,16 @@ def read_points(
 
 
 @contextmanager
-def _torn_is_an_error(source: str) -> Iterator[None]:
+def _no_text_is_an_error(source: str) -> Iterator[None]:
     try:
-        yield
-    except _TORN as error:
-        raise FileFormatError(
-            f"{source} is torn or not compressed as its name says: {error}"
-        ) from (error)
-    except OSError as error:
-        if error.errno is not None:
-            raise
-        # bz2 has no class of its own for a stream that is none.
-        raise FileFormatError(f"{source} is not compressed as its name says: {error}") from error
+        with torn_is_an_error(source):
+            yield
     except UnicodeDecodeError as error:
         raise FileFormatError(f"{source} is not a text file: {error.reason}") from error
 
 
 def _opened(path: Path) -> IO[str]:
-    opener = _OPENERS.get(path.suffix.lower(), open)
-    binary: IO[bytes] = opener(path, "rb")
+    binary = opened(path)
     try:
         sample = binary.read(_SAMPLE_BYTES)
         binary.seek(0)

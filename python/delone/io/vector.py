@@ -1,19 +1,24 @@
 """Points, triangles and edges as geometries: GeoJSON, GeoPackage, Shapefile, FlatGeobuf.
 
 By pyogrio, geopandas and shapely (extra ``geo``). Only points are read as points: the vertices of
-lines and areas are another question, and to answer it silently would be wrong.
+lines and areas are another question, and to answer it silently would be wrong. Who wants those
+asks for geometries.
 """
 
 from __future__ import annotations
 
 import warnings
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone.errors import DeloneError, FileFormatError
+from delone.io.cells import cell_values
+from delone.io.compressed import SUFFIXES, opened, torn_is_an_error
 from delone.io.extras import require
+from delone.io.geometryset import GeometrySet
 from delone.io.heights import as_values, split_attributes
 from delone.io.pointset import PointSet, find_column
 
@@ -23,11 +28,17 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.delaunay import Delaunay
+    from delone.io.registry import Mesh
 
-__all__ = ["from_frame", "read_points", "require_libraries", "write_mesh"]
+__all__ = [
+    "from_frame",
+    "geometries_of",
+    "read_geometries",
+    "read_points",
+    "require_libraries",
+    "write_mesh",
+]
 
-_POINTS = (0, 4)  # shapely's numbers of Point and MultiPoint
 # Layers are written in parts, so that the geometries of one part are in memory at a time.
 _PART = 1 << 18
 
@@ -40,23 +51,51 @@ def read_points(
     layer: str | None,
 ) -> PointSet:
     """Read points from a file of geometries; see `delone.io.read_points`."""
+    frame = _read(path, columns, attributes, layer)
+    return from_frame(frame, columns=columns, attributes=attributes, source=str(path))
+
+
+def read_geometries(
+    path: Path, *, columns: Sequence[str | int] | None, layer: str | None
+) -> GeometrySet:
+    """Read points, lines and areas; see `delone.io.read_geometries`."""
+    frame = _read(path, columns, (), layer)
+    return geometries_of(frame, columns=columns, source=str(path))
+
+
+def _read(
+    path: Path,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+    layer: str | None,
+) -> Any:
+    """Return a GeoDataFrame of all features and the columns that are wanted."""
     pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
     require("geopandas", extra="geo", what=f"reading {path.suffix}")
     source = str(path)
     with _torn_is_an_error(source):
-        layer = _layer(pyogrio, path, layer)
-        facts = pyogrio.read_info(path, layer=layer, force_feature_count=True)
+        content = _content(path)
+        layer = _layer(pyogrio, content, layer, source)
+        facts = pyogrio.read_info(content, layer=layer, force_feature_count=True)
         names = list(facts["fields"])
         kept = [
             names[find_column(names, name, source)] for name in (*_height(columns), *attributes)
         ]
-        frame = pyogrio.read_dataframe(path, layer=layer, columns=kept)
+        frame = pyogrio.read_dataframe(content, layer=layer, columns=kept)
     if len(frame) < facts["features"]:
         claimed = facts["features"]
         raise FileFormatError(
             f"{source} announces {claimed} features and holds {len(frame)}: it is cut short"
         )
-    return from_frame(frame, columns=columns, attributes=attributes, source=source)
+    return frame
+
+
+def _content(path: Path) -> Path | bytes:
+    """Return what pyogrio is to read: the file, or the bytes that are compressed in it."""
+    if path.suffix.lower() not in SUFFIXES:
+        return path
+    with torn_is_an_error(str(path)), opened(path) as file:
+        return file.read()
 
 
 def from_frame(
@@ -86,32 +125,43 @@ def from_frame(
         A geometry is missing, empty or no point.
     """
     shapely = require("shapely", extra="geo", what="reading geometries")
+    found = geometries_of(frame, columns=columns, source=source)
+    points = found.as_points()
+    index = np.repeat(np.arange(len(found)), shapely.get_num_coordinates(found.geometries))
+    values = {name: np.asarray(frame[_same(frame, name, source)])[index] for name in attributes}
+    return replace(points, attributes=values)
+
+
+def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: str) -> GeometrySet:
+    """Take geometries from a GeoDataFrame.
+
+    Parameters
+    ----------
+    frame : GeoDataFrame
+        Geometries of any kind.
+    columns : sequence of str, or None
+        The one column that is z; None for the z of the geometries.
+    source : str
+        The file.
+
+    Returns
+    -------
+    GeometrySet
+        One geometry for each row.
+
+    Raises
+    ------
+    FileFormatError
+        There are no geometries.
+    """
     if not hasattr(frame, "geometry") or not len(frame):
         raise FileFormatError(f"{source} holds no points")
-    geometries = np.asarray(frame.geometry.values)
-    kinds = shapely.get_type_id(geometries)
-    other = ~np.isin(kinds, _POINTS) | shapely.is_empty(geometries)
-    if other.any():
-        row = int(np.flatnonzero(other)[0])
-        kind = getattr(geometries[row], "geom_type", "no geometry")
-        empty = "an empty " if kinds[row] in _POINTS else ""
-        raise FileFormatError(
-            f"{source}: feature {row} is {empty}{kind}; delone reads points. "
-            f"{int(other.sum())} of {len(other)} features are not points"
-        )
-    coordinates, index = shapely.get_coordinates(geometries, include_z=True, return_index=True)
-    z: Any = coordinates[:, 2]
-    chosen = _height(columns)
-    if chosen:
-        z = np.asarray(frame[_same(frame, chosen[0], source)], dtype=np.float64)[index]
-    elif not shapely.has_z(geometries).any():
-        z = None
-    return PointSet(
-        points=np.ascontiguousarray(coordinates[:, :2]),
-        z=as_values(z, len(coordinates)),
-        attributes={
-            name: np.asarray(frame[_same(frame, name, source)])[index] for name in attributes
-        },
+    heights = None
+    for name in _height(columns):
+        heights = np.asarray(frame[_same(frame, name, source)], dtype=np.float64)
+    return GeometrySet(
+        geometries=np.asarray(frame.geometry.values),
+        heights=heights,
         crs=None if frame.crs is None else str(frame.crs.to_string()),
         source=source,
     )
@@ -130,13 +180,15 @@ def _same(frame: Any, name: str | int, source: str) -> str:
     return names[find_column(names, name, source)]
 
 
-def _layer(pyogrio: Any, path: Path, layer: str | None) -> str | None:
-    names = [str(name) for name, _ in pyogrio.list_layers(path)]
+def _layer(pyogrio: Any, content: Path | bytes, layer: str | None, source: str) -> str | None:
+    if layer is not None and isinstance(content, bytes):
+        raise FileFormatError(f"{source}: compressed files of geometries have no layers")
+    names = [str(name) for name, _ in pyogrio.list_layers(content)]
     if layer is not None and layer not in names:
-        raise FileFormatError(f"{path} has no layer {layer!r}; its layers are {', '.join(names)}")
+        raise FileFormatError(f"{source} has no layer {layer!r}; its layers are {', '.join(names)}")
     if layer is None and len(names) > 1:
         raise FileFormatError(
-            f"{path} has several layers; choose one (--layer): {', '.join(names)}"
+            f"{source} has several layers; choose one (--layer): {', '.join(names)}"
         )
     return layer
 
@@ -147,6 +199,8 @@ def _torn_is_an_error(source: str) -> Iterator[None]:
         with warnings.catch_warnings():
             # What GDAL merely remarks upon is no matter for whoever reads points.
             warnings.filterwarnings("ignore", category=RuntimeWarning, module="pyogrio")
+            # NaN is refused where it is used, by the number of its feature.
+            warnings.filterwarnings("ignore", category=RuntimeWarning, module="shapely")
             yield
     except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
         raise
@@ -163,7 +217,7 @@ def require_libraries() -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Delaunay,
+    triangulation: Mesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -177,6 +231,7 @@ def write_mesh(
     cells = triangulation.edges if edges else triangulation.simplices
     given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     _, of_cells = split_attributes(given, triangulation.npoints, len(cells))
+    of_cells = cell_values(triangulation, edges=edges) | of_cells
     points = triangulation.points
     system = _system(crs, path.suffix.lower())
     # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.

@@ -1,0 +1,231 @@
+"""The command ``voronoi``: cells of the sites in a file, cut to an outline, with their attributes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import Voronoi, __version__
+from delone.atomic import check_target, replacing
+from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
+from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
+from delone.io import input_suffixes, read_points
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from delone.io import PointSet
+
+__all__ = ["voronoi"]
+
+_DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
+_GEOMETRIES = (".geojson", ".json", ".gpkg", ".shp", ".fgb")
+_SUFFIXES = (*_DRIVERS, ".parquet")
+_AREAS = (3, 6)  # shapely's numbers of Polygon and MultiPolygon
+
+
+def voronoi(
+    source: Annotated[
+        Path, typer.Argument(metavar="INPUT", help="File of sites: " + " ".join(input_suffixes()))
+    ],
+    *,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File of cells, once or more: " + " ".join(_SUFFIXES),
+        ),
+    ] = None,
+    clip: Annotated[
+        str,
+        typer.Option(
+            help="Where cells end: a file of polygons, XMIN,YMIN,XMAX,YMAX, or box: that of the sites."
+        ),
+    ] = "box",
+    fix: Annotated[bool, typer.Option("--fix", help="Repair an invalid outline.")] = False,
+    weights: Annotated[
+        str | None, typer.Option(help="Column of weights, for the cells of a power diagram.")
+    ] = None,
+    attributes: Annotated[
+        str | None,
+        typer.Option(help="Columns to carry; by default all of a file of geometries."),
+    ] = None,
+    columns: Annotated[
+        str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
+    ] = None,
+    layer: Annotated[
+        str | None, typer.Option(help="Layer of a file that has several.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Threads; by default one for each core.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")
+    ] = False,
+) -> None:
+    """Cut the Voronoi cells of sites to an outline, and write them with the sites' attributes."""
+    with writing():
+        for path in output or ():
+            _ready(path)
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            sites = _sites(source, _split(columns), layer, _split(attributes), weights)
+            outline = _outline(clip, sites.crs)
+        say(f"computing {len(sites):,} cells")
+        with watch.stage("diagram"):
+            diagram = _diagram(sites, outline, clip, fix=fix, weights=weights, workers=workers)
+        with watch.stage("clip"):
+            areas = diagram.cell_areas
+        _write(diagram, sites, output or [], watch)
+    distinct = np.unique(diagram.duplicate_of)
+    figures: dict[str, Any] = {
+        "delone": __version__,
+        "input": str(source),
+        "crs": sites.crs,
+        "sites": diagram.npoints,
+        "distinct": len(distinct),
+        "hidden": len(diagram.hidden),
+        "empty": int((areas[np.setdiff1d(distinct, diagram.hidden)] == 0).sum()),
+        "vertices": len(diagram.vertices),
+        "ridges": len(diagram.ridge_points),
+        "area": finite_or_none(float(areas[distinct].sum())),
+        "stages": watch.rows(diagram.npoints),
+        "outputs": [str(path) for path in output or ()],
+        "peak_memory_bytes": peak_memory(),
+    }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        _print(figures, str(source))
+
+
+def _print(figures: dict[str, Any], source: str) -> None:
+    names = ("sites", "distinct", "hidden", "empty", "vertices", "ridges")
+    rows = [(name, f"{figures[name]:,}") for name in names if figures[name] or name != "hidden"]
+    if figures["area"] is not None:
+        rows.append(("area", f"{figures['area']:.10g}"))
+    rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
+    rows += [("written", path) for path in figures["outputs"]]
+    print_rows(source, rows)
+    print_stages(figures["stages"])
+
+
+def _split(text: str | None) -> list[str] | None:
+    return None if text is None else [part.strip() for part in text.split(",")]
+
+
+def _ready(path: Path) -> None:
+    """Make sure that a file can be written before any work is spent on it."""
+    if path.suffix.lower() not in _SUFFIXES:
+        raise Failure(f"{path}: cells are written to {' '.join(_SUFFIXES)}", Exit.USAGE)
+    require("geopandas", extra="geo", what="writing cells")
+    check_target(path)
+
+
+def _sites(
+    source: Path,
+    columns: list[str] | None,
+    layer: str | None,
+    attributes: list[str] | None,
+    weights: str | None,
+) -> PointSet:
+    names = _all_attributes(source, layer) if attributes is None else attributes
+    if weights is not None and weights not in names:
+        names = [*names, weights]
+    return read_points(source, columns=columns, layer=layer, attributes=names)
+
+
+def _all_attributes(source: Path, layer: str | None) -> list[str]:
+    """The names of all attributes of a file of geometries; of other files none."""
+    if source.suffix.lower() not in _GEOMETRIES or not source.exists():
+        return []
+    pyogrio = require("pyogrio", extra="geo", what=f"reading {source.suffix}")
+    try:
+        return [str(name) for name in pyogrio.read_info(source, layer=layer)["fields"]]
+    except (ValueError, pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError):
+        return []  # What is wrong with the file is said by whoever reads it.
+
+
+def _outline(clip: str, crs: str | None) -> Any:
+    """What --clip names: a word, four numbers or one geometry of all areas in a file."""
+    if clip == "box":
+        return clip
+    parts = clip.split(",")
+    if len(parts) == 4:
+        try:
+            return [float(part) for part in parts]
+        except ValueError:
+            pass
+    geopandas = require("geopandas", extra="geo", what="reading an outline")
+    shapely = require("shapely", extra="geo", what="reading an outline")
+    if not Path(clip).exists():
+        raise Failure(f"{clip}: no such file, nor box, nor four numbers", Exit.INPUT)
+    try:
+        frame = geopandas.read_file(clip)
+    except Exception as error:
+        raise FileFormatError(f"{clip} cannot be read: {error}") from error
+    geometries = np.asarray(frame.geometry.dropna().values)
+    if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():
+        raise FileFormatError(f"{clip} must hold polygons, and nothing else")
+    if crs is not None and frame.crs is not None and frame.crs != crs:
+        raise FileFormatError(
+            f"{clip} is in {frame.crs.to_string()}, the sites in {crs}: bring both to one system"
+        )
+    return geometries[0] if len(geometries) == 1 else _joined(shapely, geometries)
+
+
+def _joined(shapely: Any, geometries: Any) -> Any:
+    """All areas as one; parts that are invalid stay so, and are named later."""
+    if shapely.is_valid(geometries).all():
+        return shapely.union_all(geometries)
+    return shapely.multipolygons(shapely.get_parts(geometries))
+
+
+def _diagram(
+    sites: PointSet,
+    outline: Any,
+    clip: str,
+    *,
+    fix: bool,
+    weights: str | None,
+    workers: int | None,
+) -> Voronoi:
+    heavy = None if weights is None else sites.attributes[weights]
+    try:
+        return Voronoi(sites.points, clip=outline, fix=fix, weights=heavy, workers=workers)
+    except (DegenerateInputError, NonFiniteError):
+        raise
+    except InputError as error:
+        raise Failure(f"{clip}: {error}", Exit.INPUT) from error
+
+
+def _write(diagram: Voronoi, sites: PointSet, output: list[Path], watch: Stopwatch) -> None:
+    if not output:
+        return
+    with writing():
+        carried = dict(sites.attributes) or {"site": np.arange(diagram.npoints)}
+        table = diagram.to_geopandas(carried, crs=sites.crs)
+        for path in output:
+            with watch.stage(f"write {path.name}"), replacing(path) as beside:
+                _write_table(table, beside, path.suffix.lower())
+
+
+def _write_table(table: Any, path: Path, suffix: str) -> None:
+    if suffix == ".parquet":
+        table.to_parquet(path, index=False)
+        return
+    pyogrio = require("pyogrio", extra="geo", what="writing cells")
+    # Seventeen digits bring back every double.
+    exact = {"SIGNIFICANT_FIGURES": 17} if suffix == ".geojson" else {}
+    pyogrio.write_dataframe(
+        table, path, layer="cells", driver=_DRIVERS[suffix], promote_to_multi=True, **exact
+    )

@@ -1,0 +1,240 @@
+"""Lines and polygons of a file: how they are read and triangulated, and what is said of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import Delaunay, from_geometry
+from delone.cli.exits import Exit, Failure
+from delone.errors import CrossingSegmentsError, NonFiniteError
+from delone.io import GeometrySet, read_geometries, read_points
+from delone.io.registry import holds_geometries
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from delone import ConstrainedDelaunay
+    from delone.cli.show import Row
+    from delone.io import PointSet
+    from delone.io.registry import Mesh
+
+__all__ = ["Constraints", "constraint_figures", "constraint_rows", "read_input", "triangulated"]
+
+_FIRST = 3
+
+
+class Constraints(NamedTuple):
+    """What the command line says of lines and polygons.
+
+    Parameters
+    ----------
+    crossing : str or None
+        What happens where segments cross; None where nothing is said.
+    outline, conforming : bool
+        Drop what lies outside; add vertices until all segments are Delaunay edges.
+    max_vertices : int or None
+        How many vertices may be added.
+    """
+
+    crossing: str | None
+    outline: bool
+    conforming: bool
+    max_vertices: int | None
+
+    def require_none(self, source: str) -> None:
+        """Refuse options that have no meaning for points.
+
+        Parameters
+        ----------
+        source : str
+            The file.
+
+        Raises
+        ------
+        Failure
+            One of them was given.
+        """
+        given = [f"--{name.replace('_', '-')}" for name in self._fields if self._is_given(name)]
+        if given:
+            raise Failure(
+                f"{given[0]} is for lines and polygons; {source} holds points alone", Exit.USAGE
+            )
+
+    def _is_given(self, name: str) -> bool:
+        return getattr(self, name) not in (None, False)
+
+
+def read_input(
+    source: Path,
+    *,
+    columns: Sequence[str | int] | None,
+    classes: Sequence[int] | None,
+    layer: str | None,
+    attributes: Sequence[str] = (),
+) -> PointSet | GeometrySet:
+    """Read points, or geometries where lines or areas are among them.
+
+    Parameters
+    ----------
+    source : Path
+        The file.
+    columns, classes, layer, attributes
+        As `delone.io.read_points` takes them.
+
+    Returns
+    -------
+    PointSet or GeometrySet
+        What the file holds.
+    """
+    if classes is None and holds_geometries(source):
+        found = read_geometries(source, columns=columns, layer=layer)
+        return found.as_points() if found.only_points else found
+    return read_points(
+        source, columns=columns, classes=classes, layer=layer, attributes=tuple(attributes)
+    )
+
+
+def triangulated(
+    survey: PointSet | GeometrySet, constraints: Constraints, **options: Any
+) -> tuple[Mesh, NDArray[np.float64] | None]:
+    """Triangulate what was read.
+
+    Parameters
+    ----------
+    survey : PointSet or GeometrySet
+        Points, or lines and polygons as well.
+    constraints : Constraints
+        What is wanted of those.
+    **options
+        `method` and `workers`.
+
+    Returns
+    -------
+    mesh : Delaunay or ConstrainedDelaunay
+        The triangulation.
+    z : ndarray of float64, shape (n,), or None
+        Heights of its points.
+    """
+    if not isinstance(survey, GeometrySet):
+        constraints.require_none(survey.source)
+        return Delaunay(survey.points, **options), survey.z
+    options |= {
+        "crossing": constraints.crossing or "split",
+        "conforming": constraints.conforming,
+        "max_vertices": constraints.max_vertices,
+        "boundary": _boundary(survey, constraints.outline),
+    }
+    try:
+        mesh = from_geometry(survey.geometries, **options)
+    except CrossingSegmentsError as error:
+        raise Failure(f"{survey.source}: {_crossing(error)}", Exit.DEGENERATE) from error
+    except NonFiniteError as error:
+        first = ", ".join(map(str, error.rows.tolist())) + (", ..." if error.count > 10 else "")
+        raise Failure(
+            f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE
+        ) from error
+    if not mesh.nsimplex:
+        raise Failure(f"{survey.source}: no line or ring encloses anything", Exit.DEGENERATE)
+    return mesh, survey.z_of(mesh)
+
+
+def _crossing(error: CrossingSegmentsError) -> str:
+    points = [f"({x!r}, {y!r})" for x, y in error.points[:_FIRST].tolist()]
+    pairs = "1 pair of segments crosses" if len(error.pairs) == 1 else (
+        f"{len(error.pairs):,} pairs of segments cross"
+    )  # fmt: skip
+    more = ", ..." if len(error.pairs) > _FIRST else ""
+    return f"{pairs}, at {', '.join(points)}{more}; --crossing split makes vertices there"
+
+
+def _boundary(survey: GeometrySet, outline: bool) -> str:
+    """Say what is to be triangulated: lines alone have no inside but what they enclose."""
+    if not outline:
+        return "hull"
+    return "polygons" if len(survey.areas) else "outline"
+
+
+def constraint_figures(mesh: ConstrainedDelaunay, survey: GeometrySet) -> dict[str, Any]:
+    """Return what became of lines and polygons.
+
+    Parameters
+    ----------
+    mesh : ConstrainedDelaunay
+        The triangulation.
+    survey : GeometrySet
+        What it was made of.
+
+    Returns
+    -------
+    dict
+        Counts, and the first crossings.
+    """
+    report = mesh.report
+    names = ("repeated", "overlaps", "through", "zero", "steiner")
+    return {
+        "features": len(survey),
+        "segments": len(mesh.input_segments),
+        "pieces": len(mesh.segments),
+        "added": mesh.nadded,
+        "regions": len(np.unique(mesh.region)),
+        "crossings": {"count": len(report.crossings), "first": _first(mesh, report.crossings)},
+        **{name: len(getattr(report, name)) for name in names},
+    }
+
+
+def _first(mesh: ConstrainedDelaunay, crossings: NDArray[np.int32]) -> list[dict[str, Any]]:
+    features = mesh.geometry_of_segment[crossings[:_FIRST, :2]].tolist()
+    points = mesh.points[crossings[:_FIRST, 2]].tolist()
+    return [
+        {"features": pair, "x": x, "y": y} for pair, (x, y) in zip(features, points, strict=True)
+    ]
+
+
+def constraint_rows(figures: dict[str, Any]) -> list[Row]:
+    """Return the rows of the report that speak of lines and polygons.
+
+    Parameters
+    ----------
+    figures : dict
+        As `constraint_figures` returns them.
+
+    Returns
+    -------
+    list of tuple of str
+        Names and values; what did not occur has no row.
+    """
+    rows = [
+        ("features", f"{figures['features']:,}"),
+        ("segments", f"{figures['segments']:,} in {figures['pieces']:,} pieces"),
+    ]
+    rows += [
+        (name, f"{figures[key]:,}")
+        for name, key in (
+            ("repeated segments", "repeated"),
+            ("overlapping pairs", "overlaps"),
+            ("segments of no length", "zero"),
+            ("points on segments", "through"),
+        )
+        if figures[key]
+    ]
+    if figures["crossings"]["count"]:
+        rows.append(("crossings", _crossings(figures["crossings"])))
+    if figures["added"]:
+        rows.append(("added vertices", f"{figures['added']:,}"))
+    return [*rows, ("regions", f"{figures['regions']:,}")]
+
+
+def _crossings(crossings: dict[str, Any]) -> str:
+    lines = [f"{crossings['count']:,}, split"]
+    for each in crossings["first"]:
+        a, b = each["features"]
+        who = f"feature {a} crosses itself" if a == b else f"features {a} and {b} cross"
+        lines.append(f"{who} at ({each['x']!r}, {each['y']!r})")
+    if crossings["count"] > len(crossings["first"]):
+        lines.append("...")
+    return "\n".join(lines)

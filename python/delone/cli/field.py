@@ -1,0 +1,305 @@
+"""The commands of fields: ``interpolate`` to rasters and to points, ``crossval`` of methods."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import __version__
+from delone.atomic import check_target, replacing
+from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
+from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
+from delone.interpolate.methods import METHODS
+from delone.io import PointSet, raster_suffixes, read_points
+from delone.io.raster import raster_writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+__all__ = ["crossval", "interpolate"]
+
+Source = Annotated[Path, typer.Argument(metavar="INPUT", help="File of points with values.")]
+Value = Annotated[
+    str | None, typer.Option(help="Column of the values, by name; by default that of heights.")
+]
+Columns = Annotated[
+    str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
+]
+Classes = Annotated[
+    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
+]
+Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
+Duplicates = Annotated[
+    str,
+    typer.Option(
+        help="Points that come again with another value: error, mean, first, last, min, max."
+    ),
+]
+Nan = Annotated[
+    str, typer.Option(help="Values that are NaN: error, drop or (no raster) propagate.")
+]
+Gradients = Annotated[
+    str | None, typer.Option(help="Gradients of the smooth methods: global or local.")
+]
+Workers = Annotated[int | None, typer.Option(help="Threads; by default one for each core.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+_NAMES = " ".join(METHODS)
+_SMOOTH = ("clough-tocher", "sibson1", "farin")
+
+
+def interpolate(
+    source: Source,
+    *,
+    value: Value = None,
+    method: Annotated[str, typer.Option(help=f"How: {_NAMES}.")] = "sibson",
+    size: Annotated[
+        str | None, typer.Option("--grid", help="Columns and rows of the raster: 500x400.")
+    ] = None,
+    resolution: Annotated[
+        str | None, typer.Option(help="Size of a cell in units of the points: 0.01 or 0.02,0.01.")
+    ] = None,
+    bounds: Annotated[
+        str | None,
+        typer.Option(help="Left, bottom, right, top; by default the box of the points."),
+    ] = None,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(raster_suffixes()),
+        ),
+    ] = None,
+    extrapolate: Annotated[
+        str, typer.Option(help="Outside of the hull: nan, nearest or linear.")
+    ] = "nan",
+    duplicates: Duplicates = "error",
+    nan: Nan = "error",
+    gradients: Gradients = None,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Interpolate the values of points to a raster, and write it to files and pictures."""
+    where = _raster_options(size, resolution, bounds)
+    with writing():
+        writers = {path: (raster_writer(path), check_target(path))[0] for path in output or ()}
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        survey, values, name = _read(source, value, columns, classes, layer, watch, say)
+        say(f"triangulating {len(survey):,} points")
+        options = {"extrapolate": extrapolate, "duplicates": duplicates, "nan": nan}
+        with watch.stage("triangulate"):
+            made = _made(method, survey, values, gradients, options | {"workers": workers})
+        with watch.stage("interpolate"):
+            found = grid(made, **where, progress=_told(say, "interpolating"))
+        _write(writers, found, name, survey.crs, watch, say)
+        figures = _figures(source, survey, made, method, found) | {
+            "stages": watch.rows(found.values.size),
+            "outputs": [str(path) for path in writers],
+            "peak_memory_bytes": peak_memory(),
+        }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        print_rows(str(source), _rows(figures, list(writers)))
+        print_stages(figures["stages"])
+
+
+def crossval(
+    source: Source,
+    *,
+    value: Value = None,
+    methods: Annotated[
+        str, typer.Option("--method", help=f"One or more, by commas: {_NAMES}.")
+    ] = "linear,nearest,sibson,laplace",
+    folds: Annotated[
+        int | None, typer.Option(help="Parts to deal the points into; by default leave one out.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the dealing.")] = 0,
+    duplicates: Duplicates = "error",
+    nan: Nan = "error",
+    gradients: Gradients = None,
+    columns: Columns = None,
+    classes: Classes = None,
+    layer: Layer = None,
+    workers: Workers = None,
+    as_json: Json = False,
+) -> None:
+    """Predict each value from the others, and say how far off each method is."""
+    names = [name.strip() for name in methods.split(",")]
+    watch = Stopwatch()
+    found: dict[str, dict[str, Any]] = {}
+    with spinner(as_json) as say:
+        survey, values, _ = _read(source, value, columns, classes, layer, watch, say)
+        for name in names:
+            options = {} if gradients is None or name not in _SMOOTH else {"gradients": gradients}
+            with watch.stage(name):
+                result = cross_validate(
+                    survey.points,
+                    values,
+                    name,
+                    folds=folds,
+                    seed=seed,
+                    duplicates=duplicates,
+                    nan=nan,
+                    workers=workers,
+                    progress=_told(say, name),
+                    **options,
+                )
+            found[name] = {
+                "rmse": finite_or_none(float(result.rmse)),
+                "mae": finite_or_none(float(result.mae)),
+                "predicted": result.count,
+            }
+    if as_json:
+        stages = watch.rows(len(survey))
+        print_json(
+            {"delone": __version__, "input": str(source), "methods": found, "stages": stages}
+        )
+        return
+    left_out = f"one of {folds} parts" if folds else "one"
+    rows = [("points", f"{len(survey):,}"), ("left out", left_out)]
+    rows += [
+        (name, f"rmse {each['rmse']:.6g}, mae {each['mae']:.6g}, {each['predicted']:,} predicted")
+        if each["predicted"]
+        else (name, "nothing predicted")
+        for name, each in found.items()
+    ]
+    print_rows(str(source), rows)
+
+
+def _told(say: Callable[[str], None], name: str) -> Callable[[float], None]:
+    return lambda share: say(f"{name}: {share:.0%} done")
+
+
+def _read(  # noqa: PLR0917
+    source: Path,
+    value: str | None,
+    columns: str | None,
+    classes: str | None,
+    layer: str | None,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+) -> tuple[PointSet, NDArray[Any], str]:
+    """Points, values and their name."""
+    say(f"reading {source.name}")
+    with reading(), watch.stage("read"):
+        survey = read_points(
+            source,
+            columns=None if columns is None else [part.strip() for part in columns.split(",")],
+            classes=None if classes is None else _numbers(classes, int, "--classes"),
+            layer=layer,
+            attributes=() if value is None else (value,),
+        )
+    if value is not None:
+        return survey, np.asarray(survey.attributes[value]), value
+    if survey.z is None:
+        raise Failure(f"{source}: which column is to be interpolated? Give --value", Exit.USAGE)
+    return survey, survey.z, "z"
+
+
+def _made(
+    method: str,
+    survey: PointSet,
+    values: NDArray[Any],
+    gradients: str | None,
+    options: dict[str, Any],
+) -> Interpolator:
+    if gradients is not None:
+        options["gradients"] = gradients
+        if method not in _SMOOTH:
+            raise Failure(f"--gradients is for {', '.join(_SMOOTH)}, not {method}", Exit.USAGE)
+    return interpolator(method, survey.points, values, **options)
+
+
+def _raster_options(size: str | None, resolution: str | None, bounds: str | None) -> dict[str, Any]:
+    if (size is None) == (resolution is None):
+        raise Failure("give the raster as --grid 500x400 or as --resolution 0.01", Exit.USAGE)
+    found: dict[str, Any] = {}
+    if size is not None:
+        found["shape"] = tuple(_numbers(size.replace("x", ","), int, "--grid"))
+        if len(found["shape"]) != 2:
+            raise Failure(f"--grid takes columns and rows, as 500x400; got {size!r}", Exit.USAGE)
+    if resolution is not None:
+        cells = _numbers(resolution, float, "--resolution")
+        if len(cells) > 2:
+            raise Failure(f"--resolution takes one or two numbers, got {resolution!r}", Exit.USAGE)
+        found["resolution"] = cells[0] if len(cells) == 1 else tuple(cells)
+    if bounds is not None:
+        found["bounds"] = _numbers(bounds, float, "--bounds")
+    return found
+
+
+def _numbers(text: str, kind: type, option: str) -> list[Any]:
+    try:
+        return [kind(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
+
+
+def _write(  # noqa: PLR0917
+    writers: dict[Path, Callable[..., None]],
+    found: Grid,
+    name: str,
+    crs: str | None,
+    watch: Stopwatch,
+    say: Callable[[str], None],
+) -> None:
+    """Write all files beside their targets, and rename them when the last one is whole."""
+    with writing(), contextlib.ExitStack() as stack:
+        for path, write in writers.items():
+            say(f"writing {path.name}")
+            with watch.stage(f"write {path.name}"):
+                write(stack.enter_context(replacing(path)), found, name=name, crs=crs)
+
+
+def _figures(
+    source: Path, survey: PointSet, made: Interpolator, method: str, found: Grid
+) -> dict[str, Any]:
+    known = found.values[np.isfinite(found.values)]
+    return {
+        "delone": __version__,
+        "input": str(source),
+        "crs": survey.crs,
+        "points": len(survey),
+        "sites": made.triangulation.npoints - len(made.triangulation.coplanar),
+        "method": method,
+        "columns": len(found.x),
+        "rows": len(found.y),
+        "cell": list(found.cell),
+        "extent": list(found.extent),
+        "without_value": int(found.values.size - known.size),
+        "least": float(known.min()) if known.size else None,
+        "greatest": float(known.max()) if known.size else None,
+    }
+
+
+def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]:
+    cells = figures["columns"] * figures["rows"]
+    rows = [
+        ("points read", f"{figures['points']:,}"),
+        ("sites", f"{figures['sites']:,}"),
+        ("method", figures["method"]),
+        ("raster", f"{figures['columns']:,} x {figures['rows']:,} = {cells:,} cells"),
+        ("cell", " x ".join(f"{side:.6g}" for side in figures["cell"])),
+        ("without a value", f"{figures['without_value']:,} cells, outside of the hull"),
+    ]
+    if figures["least"] is not None:
+        rows.append(("values", f"{figures['least']:.6g} to {figures['greatest']:.6g}"))
+    rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
+    return rows + [("written", str(path)) for path in outputs]

@@ -1,0 +1,187 @@
+"""What a file of geometries holds, kept as geometries: lines and areas besides points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import FileFormatError
+from delone.io.extras import require
+from delone.io.heights import as_values
+from delone.io.pointset import PointSet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.constrained import ConstrainedDelaunay
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["GeometrySet"]
+
+_POINTS = (0, 4)  # shapely's numbers of Point and MultiPoint
+_LINES = (1, 2, 5)  # LineString, LinearRing and MultiLineString
+_AREAS = (3, 6)  # Polygon and MultiPolygon
+_COLLECTION = 7
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GeometrySet:
+    """Geometries as a file holds them, one for each feature.
+
+    Parameters
+    ----------
+    geometries : ndarray of shapely geometries, shape (g,)
+        None where a feature has no geometry.
+    heights : ndarray of float64, shape (g,), optional
+        The height of each feature, from a column; None where the heights are those of the
+        coordinates, if there are any.
+    crs : str, optional
+        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None where the file has none.
+    source : str, optional
+        The file.
+
+    Examples
+    --------
+    >>> import numpy as np, shapely
+    >>> from delone.io import GeometrySet
+    >>> square = np.array([shapely.box(0, 0, 1, 1)])
+    >>> coast = GeometrySet(geometries=square)
+    >>> len(coast), coast.only_points
+    (1, False)
+    """
+
+    geometries: NDArray[Any]
+    heights: Floats | None = None
+    crs: str | None = None
+    source: str = ""
+
+    def __len__(self) -> int:
+        return len(self.geometries)
+
+    @property
+    def only_points(self) -> bool:
+        """Whether no line and no area is among the geometries."""
+        kinds = _shapely().get_type_id(_parts(self.geometries))
+        return not bool(np.isin(kinds, _LINES + _AREAS).any())
+
+    @property
+    def areas(self) -> NDArray[Any]:
+        """The polygons among the geometries, those of MultiPolygons one by one."""
+        shapely = _shapely()
+        parts = _parts(self.geometries)
+        areas = parts[np.isin(shapely.get_type_id(parts), _AREAS)]
+        polygons: NDArray[Any] = shapely.get_parts(areas)
+        full: NDArray[Any] = polygons[~shapely.is_empty(polygons)]
+        return full
+
+    def as_points(self) -> PointSet:
+        """Return points, those of a MultiPoint one after the other.
+
+        Returns
+        -------
+        PointSet
+            Without attributes.
+
+        Raises
+        ------
+        FileFormatError
+            A geometry is missing, empty or no point.
+        """
+        shapely = _shapely()
+        kinds = shapely.get_type_id(self.geometries)
+        other = ~np.isin(kinds, _POINTS) | shapely.is_empty(self.geometries)
+        if other.any():
+            row = int(np.flatnonzero(other)[0])
+            kind = getattr(self.geometries[row], "geom_type", "no geometry")
+            empty = "an empty " if kinds[row] in _POINTS else ""
+            raise FileFormatError(
+                f"{self.source}: feature {row} is {empty}{kind}; delone reads points. "
+                f"{int(other.sum())} of {len(other)} features are not points"
+            )
+        return self.coordinates()
+
+    def coordinates(self) -> PointSet:
+        """Return all coordinates, those of lines and rings included.
+
+        Returns
+        -------
+        PointSet
+            In the order of the features; a closed ring has its first point twice.
+        """
+        points, z = self._coordinates()
+        return PointSet(points=points, z=z, crs=self.crs, source=self.source)
+
+    def z_of(self, mesh: ConstrainedDelaunay) -> Floats | None:
+        """Return the heights of the vertices of a triangulation of these geometries.
+
+        Parameters
+        ----------
+        mesh : ConstrainedDelaunay
+            What `delone.from_geometry` made of the geometries.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,), or None
+            The height of the first coordinate pair at each point; that of an added vertex follows
+            from the ends of the first segment that it lies on. None where there are no heights.
+
+        Examples
+        --------
+        >>> import delone, numpy as np, shapely
+        >>> lines = ["LINESTRING Z (0 0 1, 4 4 3)", "LINESTRING Z (0 4 9, 4 0 9)"]
+        >>> valley = delone.io.GeometrySet(geometries=shapely.from_wkt(lines))
+        >>> valley.z_of(delone.from_geometry(valley.geometries))
+        array([1., 3., 9., 9., 2.])
+        """
+        coordinates, known = self._coordinates()
+        if known is None:
+            return None
+        own = mesh.points[: mesh.npoints - mesh.nadded]
+        x, y = np.concatenate((own, coordinates)).T
+        # A point comes before the coordinates that are equal to it, the first of them next.
+        order = np.lexsort((y, x))
+        at = np.flatnonzero(order < len(own))
+        z = np.full(mesh.npoints, np.nan)
+        z[order[at]] = known[order[at + 1] - len(own)]
+        _interpolate_added(mesh, z)
+        return z
+
+    def _coordinates(self) -> tuple[Floats, Floats | None]:
+        shapely = _shapely()
+        coordinates, feature = shapely.get_coordinates(
+            self.geometries, include_z=True, return_index=True
+        )
+        z: Any = coordinates[:, 2]
+        if self.heights is not None:
+            z = self.heights[feature]
+        elif not shapely.has_z(self.geometries).any():
+            z = None
+        return np.ascontiguousarray(coordinates[:, :2]), as_values(z, len(coordinates))
+
+
+def _shapely() -> Any:
+    return require("shapely", extra="geo", what="reading geometries")
+
+
+def _parts(geometries: NDArray[Any]) -> NDArray[Any]:
+    """Take collections apart."""
+    shapely = _shapely()
+    while (shapely.get_type_id(geometries) == _COLLECTION).any():
+        geometries = shapely.get_parts(geometries)
+    return geometries
+
+
+def _interpolate_added(mesh: ConstrainedDelaunay, z: Floats) -> None:
+    """Give added vertices heights between those of the ends of a row that they lie on."""
+    start, source = mesh.segment_source
+    row = np.tile(source[start[:-1]], 2)
+    vertex = mesh.segments.T.ravel()
+    added = vertex >= mesh.npoints - mesh.nadded
+    vertex, first = np.unique(vertex[added], return_index=True)
+    a, b = mesh.input_segments[row[added][first]].T
+    whole, part = mesh.points[b] - mesh.points[a], mesh.points[vertex] - mesh.points[a]
+    share = np.hypot(*part.T) / np.hypot(*whole.T)
+    z[vertex] = (1 - share) * z[a] + share * z[b]

@@ -1,0 +1,234 @@
+"""Rasters to files: GeoTIFF, NetCDF, CSV and pictures.
+
+GeoTIFF needs rasterio (extra ``raster``), NetCDF xarray (extra ``xarray``), pictures matplotlib.
+
+A raster is anything with `values` (rows, columns), `x` and `y`, its rows from the lowest to the
+highest y, as `delone.interpolate.grid` makes it. What a format orders otherwise is turned here.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from delone.atomic import replacing
+from delone.errors import FileFormatError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["raster_suffixes", "raster_writer", "write_raster"]
+
+# Differences of nodes that are the same but for rounding.
+_EVEN = 1e-6
+
+
+class Raster(Protocol):
+    """What is written."""
+
+    @property
+    def values(self) -> NDArray[Any]:
+        """Values, (rows, columns)."""
+
+    @property
+    def x(self) -> Floats:
+        """Abscissas, (columns,), ascending."""
+
+    @property
+    def y(self) -> Floats:
+        """Ordinates, (rows,), ascending."""
+
+
+def raster_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of the files that `write_raster` writes.
+
+    Returns
+    -------
+    tuple of str
+        With the dot.
+
+    Examples
+    --------
+    >>> from delone.io import raster_suffixes
+    >>> ".tif" in raster_suffixes()
+    True
+    """
+    return tuple(_WRITERS)
+
+
+def write_raster(
+    path: str | os.PathLike[str],
+    raster: Raster,
+    *,
+    name: str = "z",
+    crs: str | None = None,
+) -> None:
+    """Write a raster to a file; its suffix tells the format.
+
+    Parameters
+    ----------
+    path : str or path-like
+        TIF or TIFF, NC, CSV (one line ``x,y,value`` for each node that has a value), PNG or SVG. A
+        file that is there is replaced when the new one is whole.
+    raster : Grid
+        Real values of shape (rows, columns), as `delone.interpolate.grid` returns them.
+    name : str, optional
+        What the values are called, in the formats that have names.
+    crs : str, optional
+        Coordinate reference system, for GeoTIFF, NetCDF and the labels of pictures.
+
+    Raises
+    ------
+    FileFormatError
+        Unknown suffix; complex or several values a node; cells that a GeoTIFF cannot have, because
+        nodes are not evenly spaced.
+    MissingExtraError
+        The library for this format is not installed.
+    OSError
+        The file cannot be written.
+
+    Notes
+    -----
+    A GeoTIFF has its highest row first, as is customary; NaN marks cells without a value.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.interpolate import grid
+    >>> from delone.io import write_raster
+    >>> ramp = grid([(0, 0), (4, 0), (0, 4)], [0.0, 4.0, 4.0], resolution=2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_raster(Path(folder) / "ramp.csv", ramp)
+    ...     print((Path(folder) / "ramp.csv").read_text())
+    x,y,z
+    1.0,1.0,2.0
+    3.0,1.0,4.0
+    1.0,3.0,4.0
+    <BLANKLINE>
+    """
+    write = raster_writer(path)
+    with replacing(path) as beside:
+        write(beside, raster, name=name, crs=crs)
+
+
+def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
+    """Return the function that writes rasters to files of this suffix, its library at hand.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file to be written.
+
+    Returns
+    -------
+    callable
+        Takes what `write_raster` takes, and writes in place.
+
+    Raises
+    ------
+    FileFormatError
+        Unknown suffix.
+    MissingExtraError
+        The library for this format is not installed.
+    """
+    file = Path(path)
+    if file.suffix.lower() not in _WRITERS:
+        raise FileFormatError(f"{file}: cannot write rasters to it; known are {' '.join(_WRITERS)}")
+    module, extra, write = _WRITERS[file.suffix.lower()]
+    if module is not None:
+        require(module, extra=extra, what=f"writing {file.suffix} files")
+    return write
+
+
+def _checked(path: Path, raster: Raster) -> Floats:
+    values = np.asarray(raster.values)
+    if values.dtype.kind == "c":
+        raise FileFormatError(f"{path}: complex values; write their real and imaginary parts apart")
+    if values.shape != (len(raster.y), len(raster.x)):
+        raise FileFormatError(f"{path}: a raster has one value a node, this one {values.shape[2:]}")
+    return values.astype(np.float64, copy=False)
+
+
+def _cell(nodes: Floats, path: Path) -> float:
+    """The distance of nodes, which a GeoTIFF wants to be the same everywhere."""
+    if len(nodes) < 2:
+        raise FileFormatError(f"{path}: a GeoTIFF needs two rows and two columns for its cells")
+    steps = np.diff(nodes)
+    step = float((nodes[-1] - nodes[0]) / (len(nodes) - 1))
+    if np.abs(steps - step).max() > _EVEN * step:
+        raise FileFormatError(
+            f"{path}: the cells of a GeoTIFF are all of one size; use .nc or .csv"
+        )
+    return step
+
+
+def _write_geotiff(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+    rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
+    values = _checked(path, raster)
+    width, height = _cell(raster.x, path), _cell(raster.y, path)
+    corner = float(raster.x[0] - width / 2), float(raster.y[-1] + height / 2)
+    profile = {
+        "driver": "GTiff",
+        "height": values.shape[0],
+        "width": values.shape[1],
+        "count": 1,
+        "dtype": "float64",
+        "nodata": np.nan,
+        "crs": crs,
+        "transform": rasterio.Affine(width, 0.0, corner[0], 0.0, -height, corner[1]),
+        "compress": "deflate",
+        "predictor": 3,
+        "tiled": True,
+        "BIGTIFF": "IF_SAFER",
+    }
+    with rasterio.open(path, "w", **profile) as file:
+        file.write(values[::-1], 1)
+        file.set_band_description(1, name)
+
+
+def _write_netcdf(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+    xarray = require("xarray", extra="xarray", what="writing NetCDF files")
+    attributes = {} if crs is None else {"crs": crs}
+    array = xarray.DataArray(
+        _checked(path, raster),
+        dims=("y", "x"),
+        coords={"y": raster.y, "x": raster.x},
+        name=name,
+        attrs=attributes,
+    )
+    array.to_netcdf(path, encoding={name: {"zlib": True}}, engine="netcdf4")
+
+
+def _write_csv(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+    values = _checked(path, raster)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.write(f"x,y,{name}\n")
+        for y, row in zip(raster.y.tolist(), values, strict=True):
+            known = np.flatnonzero(np.isfinite(row))
+            file.writelines(
+                f"{x!r},{y!r},{z!r}\n"
+                for x, z in zip(raster.x[known].tolist(), row[known].tolist(), strict=True)
+            )
+
+
+def _write_picture(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+    from delone.relief import draw_raster
+
+    draw_raster(path, _checked(path, raster), raster.x, raster.y, label=name, crs=crs)
+
+
+_WRITERS: dict[str, tuple[str | None, str, Callable[..., None]]] = {
+    **dict.fromkeys((".tif", ".tiff"), ("rasterio", "raster", _write_geotiff)),
+    ".nc": ("netCDF4", "xarray", _write_netcdf),
+    ".csv": (None, "", _write_csv),
+    **dict.fromkeys((".png", ".svg"), ("matplotlib.figure", "plot", _write_picture)),
+}

@@ -1,0 +1,97 @@
+"""delone interpolate and delone crossval."""
+
+import numpy as np
+import pytest
+
+from delone.io import read_points
+
+
+@pytest.fixture
+def soundings(tmp_path):
+    points = np.random.default_rng(1).random((300, 2))
+    depth = 2 * points[:, 0] - points[:, 1]
+    file = tmp_path / "soundings.csv"
+    table = np.column_stack((points, depth, np.arange(300)))
+    np.savetxt(file, table, delimiter=",", header="lon,lat,depth,id", comments="", fmt="%.17g")
+    return file
+
+
+def test_to_files(tmp_path, soundings, figures):
+    pytest.importorskip("rasterio")
+    outputs = [tmp_path / name for name in ("a.tif", "a.csv")]
+    options = [option for path in outputs for option in ("-o", path)]
+    found = figures(
+        "interpolate",
+        soundings,
+        "--value",
+        "depth",
+        "--method",
+        "sibson",
+        "--grid",
+        "50x40",
+        *options,
+    )
+    assert (found["columns"], found["rows"], found["points"]) == (50, 40, 300)
+    assert found["outputs"] == [str(path) for path in outputs]
+    assert [path for path in outputs if not path.is_file()] == []
+    raster = read_points(outputs[1], columns=["x", "y", "depth"])
+    assert len(raster) == 2000 - found["without_value"]
+    x, y = raster.points.T
+    np.testing.assert_allclose(raster.z, 2 * x - y, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["linear", "nearest", "clough-tocher", "farin"])
+def test_methods_and_the_report(soundings, command, method):
+    code, out, err = command(
+        "interpolate",
+        soundings,
+        "--method",
+        method,
+        "--resolution",
+        "0.1",
+        "--extrapolate",
+        "nearest",
+        "--bounds",
+        "0,0,1,2",
+    )
+    assert (code, err) == (0, "")
+    assert "10 x 20 = 200 cells" in out and method in out and "0 cells, outside" in out
+
+
+def test_crossval(soundings, figures, command):
+    found = figures("crossval", soundings, "--method", "nearest,sibson,farin")
+    assert list(found["methods"]) == ["nearest", "sibson", "farin"]
+    assert found["methods"]["sibson"]["rmse"] < 1e-12 < found["methods"]["nearest"]["rmse"]
+    code, out, _ = command("crossval", soundings, "--folds", "5", "--value", "id")
+    assert code == 0 and "one of 5 parts" in out and "rmse" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        ((), 2, "--grid"),
+        (("--grid", "9x9", "--resolution", "1"), 2, "--grid"),
+        (("--grid", "9"), 2, "columns and rows"),
+        (("--grid", "axb"), 2, "numbers"),
+        (("--resolution", "1,2,3"), 2, "one or two"),
+        (("--resolution", "-1"), 2, "above 0"),
+        (("--grid", "9x9", "--bounds", "1,2"), 2, "bounds"),
+        (("--grid", "9x9", "--method", "kriging"), 2, "method must be"),
+        (("--grid", "9x9", "--gradients", "local"), 2, "--gradients is for"),
+        (("--grid", "9x9", "--value", "height"), 3, "height"),
+        (("--grid", "9x9", "-o", "a.asc"), 5, "known are"),
+        (("--grid", "9000000x9000000"), 7, "GB"),
+        (("--grid", "9x9", "--bounds", "0,0,9,9", "--extrapolate", "error"), 2, "outside"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_line(soundings, command, arguments, code, words):
+    found, out, err = command("interpolate", soundings, *arguments)
+    assert (found, out) == (code, "")
+    assert words in err and err.count("\n") == 1
+
+
+def test_without_values(tmp_path, command):
+    file = tmp_path / "a.csv"
+    file.write_text("x,y\n0,0\n1,0\n0,1\n")
+    code, _, err = command("interpolate", file, "--grid", "3x3")
+    assert code == 2 and "--value" in err
