@@ -22,9 +22,10 @@ CARGO_TEST := cargo test --workspace --exclude delone-bindings
 # What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
 NEEDS_build :=
 NEEDS_demo := -E cli,las,mesh,plot
-NEEDS_test := -E cli,geo,las,mesh,plot -G test
-NEEDS_docs := -E cli,geo,las,mesh,plot -G test,docs
-NEEDS_bench := -E cli,geo,las,mesh,plot -G bench
+EXTRAS := cli,geo,las,mesh,plot,raster,xarray,dask,learn
+NEEDS_test := -E $(EXTRAS) -G test
+NEEDS_docs := -E $(EXTRAS) -G test,docs
+NEEDS_bench := -E $(EXTRAS) -G bench
 
 .PHONY: help need build demo test lint docs bench fuzz clean
 .DEFAULT_GOAL := help
@@ -106,6 +107,7 @@ bench: export MALLOC_TRIM_THRESHOLD_ := 16000000000
 bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/wheels.py $(BENCH)
 	$(BIN)/python benchmarks/crates.py $(BENCH)
+	$(BIN)/python benchmarks/constrained.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
 
 fuzz: need

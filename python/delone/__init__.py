@@ -12,8 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from delone import predicates
 from delone._core import __version__
+from delone.constrained import ConstrainedDelaunay
+from delone.constrained_validation import ConstrainedReport
 from delone.delaunay import Delaunay
+from delone.editing import Editing
 from delone.errors import (
+    BudgetExceededError,
+    CrossingSegmentsError,
     DegenerateInputError,
     DeloneError,
     DtypeError,
@@ -26,38 +31,56 @@ from delone.errors import (
     ShapeError,
 )
 from delone.lawson import LawsonResult, lawson
+from delone.polygons import PolygonTriangles, from_geometry, triangulate_polygon
+from delone.regular import RegularTriangulation
+from delone.segments import SegmentReport
 from delone.validation import ValidationReport
+from delone.voronoi import LloydResult, Voronoi, lloyd
 
 if TYPE_CHECKING:
-    from delone import compat, datasets, io, plot, reference, testing
+    from delone import compat, datasets, interpolate, io, plot, reference, testing
 
 __all__ = [
+    "BudgetExceededError",
+    "ConstrainedDelaunay",
+    "ConstrainedReport",
+    "CrossingSegmentsError",
     "DegenerateInputError",
     "Delaunay",
     "DeloneError",
     "DtypeError",
+    "Editing",
     "FileFormatError",
     "InputError",
     "InternalError",
     "LawsonResult",
     "LimitError",
+    "LloydResult",
     "MissingExtraError",
     "NonFiniteError",
+    "PolygonTriangles",
+    "RegularTriangulation",
+    "SegmentReport",
     "ShapeError",
     "ValidationReport",
+    "Voronoi",
     "__version__",
     "compat",
     "datasets",
+    "from_geometry",
+    "interpolate",
     "io",
     "lawson",
+    "lloyd",
     "plot",
     "predicates",
     "reference",
     "testing",
+    "triangulate_polygon",
 ]
 
 # Modules that not every program needs; they are imported when they are first asked for.
-_LATER = frozenset({"compat", "datasets", "io", "plot", "reference", "testing"})
+_LATER = frozenset({"compat", "datasets", "interpolate", "io", "plot", "reference", "testing"})
 
 
 def __getattr__(name: str) -> Any:

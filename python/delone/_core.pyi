@@ -1,22 +1,36 @@
 """The compiled core. All arrays are C-contiguous; inputs must be of the dtypes given here."""
 
-from typing import Final
+from typing import Any, Final, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "Locator2",
     "__version__",
+    "combine2",
+    "components2",
+    "constrained2",
     "find_simplex2",
+    "gradients_global2",
+    "gradients_local2",
     "incircle",
     "insphere",
     "lawson2",
+    "measures2",
     "methods2",
     "neighbors2",
     "orient2d",
     "orient3d",
+    "periodic2",
+    "polygon2",
+    "refine2",
+    "regular2",
+    "touched2",
     "triangulate2",
     "validate2",
+    "voronoi2",
+    "voronoi_clip2",
 ]
 
 __version__: Final[str]
@@ -35,6 +49,119 @@ def find_simplex2(
     xi: NDArray[np.float64],
     workers: int,
 ) -> NDArray[np.int32]: ...
+def constrained2(
+    points: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    split: bool,
+    conforming: bool,
+    max_vertices: int,
+    method: str,
+    workers: int,
+) -> dict[str, Any]: ...
+def components2(
+    neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
+) -> NDArray[np.int32]: ...
+def polygon2(
+    points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
+@final
+class Locator2:
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+    ) -> Locator2: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+    def locate(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.float64],
+    ]: ...
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+    def along(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.int32]: ...
+    def linear(
+        self, values: NDArray[np.float64], xi: NDArray[np.float64], order: int, workers: int
+    ) -> NDArray[np.float64]: ...
+    def clough_tocher(
+        self,
+        values: NDArray[np.float64],
+        gradients: NDArray[np.float64],
+        xi: NDArray[np.float64],
+        barrier: NDArray[np.bool_] | None,
+        order: int,
+        workers: int,
+    ) -> NDArray[np.float64]: ...
+    def clough_tocher_weights(
+        self, xi: NDArray[np.float64], barrier: NDArray[np.bool_] | None, workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]: ...
+    def natural(
+        self,
+        kind: str,
+        xi: NDArray[np.float64],
+        barrier: NDArray[np.bool_] | None,
+        workers: int,
+    ) -> tuple[
+        NDArray[np.int64],
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.float64] | None,
+        NDArray[np.int32],
+    ]: ...
+    def natural_values(
+        self,
+        kind: str,
+        values: NDArray[np.float64],
+        gradients: NDArray[np.float64] | None,
+        xi: NDArray[np.float64],
+        barrier: NDArray[np.bool_] | None,
+        order: int,
+        workers: int,
+    ) -> NDArray[np.float64]: ...
+    def leave_one_out(
+        self, kind: str, workers: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]: ...
+
+def refine2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    labels: NDArray[np.int32],
+    areas: NDArray[np.float64],
+    segments: NDArray[np.int32],
+    frozen: NDArray[np.bool_],
+    min_angle: float,
+    max_vertices: int,
+) -> dict[str, Any]: ...
+def combine2(
+    indptr: NDArray[np.int64],
+    indices: NDArray[np.int32],
+    weights: NDArray[np.float64],
+    values: NDArray[np.float64],
+    slopes: NDArray[np.float64] | None,
+    gradients: NDArray[np.float64] | None,
+    workers: int,
+) -> NDArray[np.float64]: ...
+def gradients_global2(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    tol: float,
+    maxiter: int,
+    workers: int,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
+def gradients_local2(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    degree: int,
+    workers: int,
+) -> NDArray[np.float64]: ...
 def lawson2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], record: bool
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], int, NDArray[np.int32] | None]: ...
@@ -63,3 +190,36 @@ def insphere(
     e: NDArray[np.float64],
     canonical: bool,
 ) -> NDArray[np.int8]: ...
+def voronoi2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> dict[str, NDArray[Any]]: ...
+def voronoi_clip2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    diagram: dict[str, NDArray[Any]],
+    bounds: tuple[float, float, float, float],
+    workers: int,
+) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+def measures2(
+    starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def touched2(
+    starts: NDArray[np.int32],
+    corners: NDArray[np.float64],
+    ridges: NDArray[np.int32],
+    segments: NDArray[np.float64],
+) -> tuple[NDArray[np.int32], int]: ...
+def regular2(
+    points: NDArray[np.float64], weights: NDArray[np.float64]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
+def periodic2(
+    points: NDArray[np.float64],
+    periods: tuple[float, float],
+    taken: NDArray[np.int32],
+) -> tuple[
+    NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]
+]: ...

@@ -22,7 +22,16 @@ CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
 FOUNDATION = {"errors", "_arrays"}
-PUBLIC = {"delone", "errors", "delaunay", "datasets", "lawson", "predicates", "validation"}
+PUBLIC = {
+    "delone",
+    "errors",
+    "constrained",
+    "delaunay",
+    "datasets",
+    "lawson",
+    "predicates",
+    "validation",
+}
 PYTHON: dict[str, set[str]] = {
     "errors": set(),
     "_arrays": {"errors"},
@@ -34,40 +43,86 @@ PYTHON: dict[str, set[str]] = {
     "lawson": {"_core"} | FOUNDATION,
     "atomic": set(),
     "archive": {"atomic", "predicates", "topology", "errors"},
-    "delaunay": {"_core", "archive", "geometry", "plot", "topology", "validation"} | FOUNDATION,
-    "compat": {"delaunay", "predicates", "topology"} | FOUNDATION,
+    "location": {"_core"} | FOUNDATION,
+    "triangulation": {"_core", "geometry", "location", "plot", "topology"} | FOUNDATION,
+    "delaunay": {"_core", "archive", "triangulation", "validation"} | FOUNDATION,
+    "segments": {"topology"},
+    "regions": {"_core"},
+    "coverage": {"topology"},
+    "geodata": {"errors"},
+    "constrained_validation": {"_core", "topology", "validation"},
+    "segmented": {"_core", "coverage", "regions", "segments", "topology", "triangulation"}
+    | FOUNDATION,
+    "constrained": {
+        "_core",
+        "archive",
+        "constrained_validation",
+        "editing",
+        "geodata",
+        "location",
+        "regions",
+        "segmented",
+        "topology",
+        "triangulation",
+    }
+    | FOUNDATION,
+    "editing": {"constrained", "topology", "triangulation"} | FOUNDATION,
+    "polygons": {"_core", "constrained", "geodata", "triangulation"} | FOUNDATION,
+    "regular": {"_core", "triangulation"} | FOUNDATION,
+    "voronoi": {"_core", "delaunay", "io", "regular", "triangulation"} | FOUNDATION,
+    "interpolate": {"_core", "delaunay", "location", "topology", "triangulation"} | FOUNDATION,
+    "compat": {
+        "_core",
+        "delaunay",
+        "interpolate",
+        "io",
+        "predicates",
+        "topology",
+        "triangulation",
+    }
+    | FOUNDATION,
     "reference": FOUNDATION,
     "testing": {"reference"} | FOUNDATION,
     "samples": FOUNDATION,
     "datasets": {"samples"} | FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"atomic", "plot", "_arrays"},
+    "io": PUBLIC | {"atomic", "plot", "relief", "_arrays"},
     "shading": PUBLIC,
-    "plot": PUBLIC | {"atomic", "io", "shading"},
+    "cartography": PUBLIC | {"io", "shading"},
+    "plot": PUBLIC | {"atomic", "cartography", "io", "shading"},
+    "relief": PUBLIC | {"io", "plot", "shading"},
     "report": PUBLIC | {"io"},
-    "cli": PUBLIC | {"atomic", "io", "plot", "report"},
+    "cli": PUBLIC | {"atomic", "interpolate", "io", "plot", "report", "voronoi"},
     "__main__": PUBLIC | {"cli"},
     # The package itself re-exports.
     "delone": {
         "_core",
         "compat",
+        "constrained",
+        "constrained_validation",
         "datasets",
         "delaunay",
+        "editing",
         "errors",
+        "interpolate",
         "io",
         "lawson",
         "plot",
+        "polygons",
         "predicates",
         "reference",
+        "regular",
+        "segments",
         "testing",
         "validation",
+        "voronoi",
     },
 }
 
 # What each module of the core may use, of the core and of other crates.
 GROUND = {"error", "memory", "watch"}
 CORE: dict[str, set[str]] = {
-    "error": set(),
+    "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
     "parallel": GROUND,
@@ -76,11 +131,18 @@ CORE: dict[str, set[str]] = {
     # Topology alone: neither coordinates nor predicates.
     "mesh2": {"parallel"} | GROUND,
     "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
+    "refine": {"constrained", "delaunay2", "mesh2", "delone_predicates"} | GROUND,
+    "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "wide": {"delone_predicates"},
+    "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
+    "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "interpolate": {"locate", "delaunay2", "parallel", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.
 NEEDS = {
     "predicates": set[str](),
-    "core": {"delone-predicates", "thiserror", "libc"},
+    "core": {"delone-predicates", "num-bigint", "thiserror", "libc"},
     "bindings": {"delone-core", "delone-predicates", "pyo3", "numpy"},
 }
 NAMES_OF_CRATES = ("delone_predicates", "delone_core", "pyo3", "numpy", "libc")
@@ -209,9 +271,10 @@ def test_crates_need_what_they_may() -> None:
     assert crate_faults(CRATES) == []
 
 
-# Arrows up, which only the inside of a function may have: delaunay asks plot to draw, and io to
-# write pictures; plot knows Delaunay and how io replaces files.
-LAZY = {("delaunay", "plot"), ("io", "plot")}
+# Arrows up, which only the inside of a function may have: triangulation asks plot to draw, and io to
+# write pictures; plot knows Delaunay and how io replaces files. A constrained triangulation begins
+# edits, which make another one.
+LAZY = {("triangulation", "plot"), ("io", "plot"), ("io", "relief"), ("constrained", "editing")}
 
 
 def test_the_tables_have_no_cycle_but_the_lazy_ones() -> None:

@@ -7,9 +7,7 @@ use delone_core::interpolate::{
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
-use numpy::{
-    PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
-};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -81,9 +79,9 @@ pub fn linear_of(
     let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let columns = values.shape()[1];
     let items = flat(values, "values").map_err(fail)?;
-    let found = locator.run(py, queries.len(), |at, watch| {
-        let field = Field::new(&at.given, items, None, columns)?;
-        linear(at, field, queries, order, workers, watch)
+    let found = locator.batch(py, queries, workers, |batch| {
+        let field = Field::new(&batch.locator.given, items, None, columns)?;
+        linear(batch, field, order)
     })?;
     table_of(py, found, queries.len(), columns, order)
 }
@@ -119,16 +117,16 @@ pub fn smooth_of(
     let items = flat(given.values, "values").map_err(fail)?;
     let slopes = given.gradients.map(|g| flat(g, "gradients"));
     let slopes = slopes.transpose().map_err(fail)?;
-    if slopes.is_none() && kind.is_none_or(Kind::is_smooth) {
+    if slopes.is_none() & kind.is_none_or(Kind::is_smooth) {
         return Err(PyValueError::new_err("this kind needs gradients"));
     }
     let barrier = barrier_of(given.barrier, locator.triangles(py)).map_err(fail)?;
     let workers = given.workers;
-    let found = locator.run(py, queries.len(), |at, watch| {
-        let field = Field::new(&at.given, items, slopes, columns)?;
+    let found = locator.batch(py, queries, workers, |batch| {
+        let field = Field::new(&batch.locator.given, items, slopes, columns)?;
         match kind {
-            None => clough_tocher(at, field, queries, barrier, order, workers, watch),
-            Some(kind) => natural_values(at, kind, field, queries, barrier, order, workers, watch),
+            None => clough_tocher(batch, field, barrier, order),
+            Some(kind) => natural_values(batch, kind, field, barrier, order),
         }
     })?;
     table_of(py, found, queries.len(), columns, order)
@@ -146,8 +144,8 @@ pub fn corner_weights_of(
     let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
     let n = queries.len();
-    let found = locator.run(py, n, |at, watch| {
-        clough_tocher_weights(at, queries, barrier, workers, watch)
+    let found = locator.batch(py, queries, workers, |batch| {
+        clough_tocher_weights(batch, barrier)
     })?;
     Ok((
         column(py, found.triangle),
@@ -172,9 +170,8 @@ pub fn natural_of(
     let fail = |e: Error| raise(py, &e);
     let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
-    let (found, triangle) = locator.run(py, queries.len(), |at, watch| {
-        natural(at, kind, queries, barrier, workers, watch)
-    })?;
+    let (found, triangle) =
+        locator.batch(py, queries, workers, |batch| natural(batch, kind, barrier))?;
     let entries = found.indices.len();
     let slopes = if kind.is_smooth() {
         Some(shaped(py, found.slopes, [entries, 2])?)
@@ -207,16 +204,15 @@ pub fn leave_one_out_of(
     } = locator.run(py, usize::MAX, |at, watch| {
         leave_one_out(at.given, method, workers, watch)
     })?;
-    Ok((
-        column(py, indptr),
-        column(py, indices),
-        column(py, weights),
-    ))
+    Ok((column(py, indptr), column(py, indices), column(py, weights)))
 }
 
 /// Sums of weights times values, row by row.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the door takes arrays one by one"
+)]
 pub fn combine2(
     py: Python<'_>,
     indptr: PyReadonlyArray1<'_, i64>,
@@ -249,7 +245,10 @@ pub fn combine2(
 
 /// Gradients of least bending, and the sweeps for each column.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the door takes arrays one by one"
+)]
 pub fn gradients_global2(
     py: Python<'_>,
     points: Points<'_>,
@@ -276,7 +275,6 @@ pub fn gradients_global2(
 
 /// Gradients of polynomials fitted around each vertex.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
 pub fn gradients_local2(
     py: Python<'_>,
     points: Points<'_>,

@@ -1,12 +1,11 @@
 //! Point location on arrays.
 
+use delone_core::Point2;
 use delone_core::delaunay2::validate::Given;
 use delone_core::error::{Error, Result};
-use delone_core::locate::{Kept, Locator, along, coordinates, find, nearest};
+use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
 use delone_core::watch::Watch;
-use numpy::{
-    PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
-};
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{column, rows, shaped};
@@ -80,6 +79,24 @@ impl Locator2 {
         }
         watched(py, |watch| work(&locator, watch))
     }
+
+    /// Calls `work` with a batch of queries.
+    pub fn batch<T: Send>(
+        &self,
+        py: Python<'_>,
+        queries: &[Point2],
+        workers: usize,
+        work: impl FnOnce(&Batch) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        self.run(py, queries.len(), |locator, watch| {
+            work(&Batch {
+                locator: *locator,
+                queries,
+                workers,
+                watch,
+            })
+        })
+    }
 }
 
 #[pymethods]
@@ -109,9 +126,7 @@ impl Locator2 {
         workers: usize,
     ) -> PyResult<Py<PyAny>> {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-        let found = self.run(py, queries.len(), |locator, watch| {
-            find(locator, queries, workers, watch)
-        })?;
+        let found = self.batch(py, queries, workers, find)?;
         Ok(column(py, found))
     }
 
@@ -124,9 +139,7 @@ impl Locator2 {
     ) -> PyResult<Places> {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
         let n = queries.len();
-        let found = self.run(py, n, |locator, watch| {
-            coordinates(locator, queries, workers, watch)
-        })?;
+        let found = self.batch(py, queries, workers, coordinates)?;
         Ok((
             column(py, found.triangle),
             shaped(py, found.weights, [n, 3])?,
@@ -144,9 +157,7 @@ impl Locator2 {
         workers: usize,
     ) -> PyResult<Py<PyAny>> {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-        let found = self.run(py, queries.len(), |locator, watch| {
-            nearest(locator, queries, workers, watch)
-        })?;
+        let found = self.batch(py, queries, workers, nearest)?;
         Ok(column(py, found))
     }
 
@@ -179,7 +190,10 @@ impl Locator2 {
     }
 
     /// Clough-Tocher interpolation: values, gradients or Hessians.
-    #[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the door takes arrays one by one"
+    )]
     fn clough_tocher(
         &self,
         py: Python<'_>,
@@ -225,7 +239,10 @@ impl Locator2 {
     }
 
     /// Natural neighbour interpolation: values, gradients or Hessians.
-    #[expect(clippy::too_many_arguments, reason = "the door takes arrays one by one")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the door takes arrays one by one"
+    )]
     fn natural_values(
         &self,
         py: Python<'_>,
@@ -273,7 +290,12 @@ pub fn find_simplex2(
     let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| {
         let kept = Kept::of(&given)?;
-        find(&Locator::new(given, &kept), queries, workers, watch)
+        find(&Batch {
+            locator: Locator::new(given, &kept),
+            queries,
+            workers,
+            watch,
+        })
     })?;
     Ok(column(py, found))
 }

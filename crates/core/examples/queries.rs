@@ -7,7 +7,7 @@ use std::time::Instant;
 use delone_core::Point2;
 use delone_core::delaunay2::validate::Given;
 use delone_core::delaunay2::{Method, triangulate};
-use delone_core::locate::{Kept, Locator, find, nearest};
+use delone_core::locate::{Batch, Kept, Locator, find, nearest};
 use delone_core::memory::with_room;
 use delone_core::watch::Watch;
 
@@ -22,7 +22,9 @@ fn main() {
     let workers = workers.and_then(|w| w.parse().ok()).unwrap_or(1);
     let mut points = random(n, 1);
     if std::env::var("SORTED").is_ok() {
-        let rows = delone_core::order::curve::order_of(&points, 1).expect("an order").concat();
+        let rows = delone_core::order::curve::order_of(&points, 1)
+            .expect("an order")
+            .concat();
         points = rows.into_iter().map(|row| points[row as usize]).collect();
     }
     let made = triangulate(&points, Method::Auto, 2, &Watch::idle()).expect("a triangulation");
@@ -46,15 +48,20 @@ fn main() {
             let best = (0..runs).map(time).fold(f64::INFINITY, f64::min);
             println!("{set:8} {name:12} {best:8.1} ns");
         };
-        let watch = Watch::idle();
+        let batch = Batch {
+            locator,
+            queries,
+            workers,
+            watch: &Watch::idle(),
+        };
         tell("order", &|| {
             delone_core::order::curve::order_of(queries, workers).expect("an order");
         });
         tell("find", &|| {
-            find(&locator, queries, workers, &watch).expect("triangles");
+            find(&batch).expect("triangles");
         });
         tell("nearest", &|| {
-            nearest(&locator, queries, workers, &watch).expect("vertices");
+            nearest(&batch).expect("vertices");
         });
         tell("one by one", &|| {
             for q in queries.iter().take(queries.len() / 10) {
@@ -92,6 +99,7 @@ fn spent() -> f64 {
     let told = told.and_then(|s| s.split(' ').next()?.parse().ok());
     told.unwrap_or_else(|| {
         let now = std::time::SystemTime::now();
-        now.duration_since(std::time::UNIX_EPOCH).map_or(0.0, |d| d.as_secs_f64() * 1e9)
+        now.duration_since(std::time::UNIX_EPOCH)
+            .map_or(0.0, |d| d.as_secs_f64() * 1e9)
     })
 }

@@ -64,6 +64,7 @@ fn nearer_exact(o: Point2, a: Point2, b: Point2) -> Sign {
 /// The sign, for differences of `D` limbs.
 fn determinant<const D: usize, const D2: usize>(points: &[Point2; 3], low: i32) -> Sign {
     let [a, b] = differences::<D, 2, 3, 2>(points, low);
-    let squared = |p: &[Integer<D>; 2]| -> Integer<D2> { p[0].times(&p[0]).plus(&p[1].times(&p[1])) };
+    let squared =
+        |p: &[Integer<D>; 2]| -> Integer<D2> { p[0].times(&p[0]).plus(&p[1].times(&p[1])) };
     squared(&b).minus(&squared(&a)).sign()
 }

@@ -1,4 +1,4 @@
-"""The place of ``scipy.spatial.Delaunay`` taken by delone, in the plane.
+"""The place of ``scipy.spatial``'s Delaunay and Voronoi taken by delone, and of its interpolators.
 
 >>> from delone.compat.scipy import Delaunay
 >>> tri = Delaunay([(0, 0), (0, 1.1), (1, 0), (1, 1)])
@@ -18,6 +18,10 @@ The signature, attributes, dtypes, errors and the mutability of arrays are SciPy
 * Complex numbers, masked queries, and integers which float64 does not hold, are refused rather than
   rounded or unmasked.
 * `add_points` triangulates anew, which takes the time of a triangulation, not of an insertion.
+
+`Voronoi` and `voronoi_plot_2d` are here by name; `delone.compat.scipy_voronoi` has them and what
+differs. The interpolators of ``scipy.interpolate`` are here by name; `delone.compat.interpolate`
+has them and what differs.
 """
 
 from __future__ import annotations
@@ -30,7 +34,15 @@ import numpy as np
 from delone import delaunay, topology
 from delone._arrays import as_points, as_vectors
 from delone.compat.furthest import furthest_site as furthest_triangles
+from delone.compat.interpolate import (
+    CloughTocher2DInterpolator,
+    LinearNDInterpolator,
+    NearestNDInterpolator,
+    estimate_gradients_2d_global,
+    griddata,
+)
 from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.compat.scipy_voronoi import Voronoi, voronoi_plot_2d
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
@@ -51,7 +63,19 @@ else:
             """Degenerate input or an unknown option; SciPy's own class where it is installed."""
 
 
-__all__ = ["Delaunay", "DimensionError", "QhullError", "tsearch"]
+__all__ = [
+    "CloughTocher2DInterpolator",
+    "Delaunay",
+    "DimensionError",
+    "LinearNDInterpolator",
+    "NearestNDInterpolator",
+    "QhullError",
+    "Voronoi",
+    "estimate_gradients_2d_global",
+    "griddata",
+    "tsearch",
+    "voronoi_plot_2d",
+]
 
 # SciPy's bound on the reciprocal condition number below which a transform is not given.
 _ILL_CONDITIONED = 1000 * np.finfo(np.float64).eps
@@ -151,11 +175,11 @@ class Delaunay:
             self._options = QhullOptions.parse(qhull_options, incremental=self._open)
         except UnknownOptionError as error:
             raise QhullError(str(error)) from error
-        self._set(_as_plane_points(points))
+        self._set(as_plane_points(points))
 
     def _set(self, points: Floats) -> None:
         """Triangulate; nothing changes where that fails."""
-        mesh = _triangulate(points, self.furthest_site)
+        mesh = triangulate(points, self.furthest_site)
         self._points = points
         self._mesh = mesh
         for name in _FOLLOWING:
@@ -189,7 +213,7 @@ class Delaunay:
         """
         if not self._open:
             raise RuntimeError("points can be added with incremental=True only, and before close()")
-        self._set(np.concatenate((self._points, _as_plane_points(points))))
+        self._set(np.concatenate((self._points, as_plane_points(points))))
 
     def close(self) -> None:
         """End incremental mode; `add_points` is refused from then on."""
@@ -433,7 +457,21 @@ def tsearch(tri: Any, xi: ArrayLike) -> Indices:
     return found
 
 
-def _triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
+def triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
+    """Triangulate as SciPy does, and refuse with its kinds of errors.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Points.
+    furthest : bool
+        Whether circles are to hold all points, rather than none.
+
+    Returns
+    -------
+    delone.Delaunay
+        The triangulation.
+    """
     if len(points) == 0:
         raise ShapeError("no points given")
     try:
@@ -457,8 +495,19 @@ def _triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
     return delaunay.Delaunay._from_arrays(arrays, {}, None)
 
 
-def _as_plane_points(points: ArrayLike) -> Floats:
-    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors."""
+def as_plane_points(points: ArrayLike) -> Floats:
+    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 2)
+        The same.
+    """
     if isinstance(points, np.ma.MaskedArray):
         return as_points(points, ndim=2)  # which refuses it by name
     try:

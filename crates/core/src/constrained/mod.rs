@@ -75,8 +75,11 @@ pub struct Constrained {
 /// What becomes of the segments, in vertices of the mesh.
 #[derive(Debug, Default)]
 struct Laid {
-    /// Subsegments as vertices, each with its row and along it; an edge once for each of its rows.
+    /// Subsegments as vertices, each with a row that covers it and directed as that; an edge once for
+    /// each of its rows.
     pieces: Vec<([u32; 2], u32)>,
+    /// Whether they go by row and along it.
+    sorted: bool,
     /// Whether an edge may come more than once.
     repeated: bool,
     through: Vec<[u32; 2]>,
@@ -175,6 +178,7 @@ impl<'a> Work<'a> {
         let mut laid = Laid {
             pieces: with_room(self.ends.len())?,
             repeated: present.repeated,
+            sorted: true,
             ..Laid::default()
         };
         let mut cavity = Cavity::default();
@@ -278,6 +282,23 @@ impl<'a> Work<'a> {
         Ok(place[n..].to_vec())
     }
 
+    /// Puts pieces in the order of their rows and along them.
+    fn sort(&self, pieces: &mut [([u32; 2], u32)]) {
+        let at = |v: u32| self.marked.at(v);
+        pieces.sort_unstable_by(|(s, i), (t, j)| {
+            i.cmp(j).then_with(|| {
+                let [a, b] = self.ends[*i as usize].map(at);
+                let along = (lexicographic(at(s[0]), at(t[0])))
+                    .then_with(|| lexicographic(at(s[1]), at(t[1])));
+                if lexicographic(a, b).is_lt() {
+                    along
+                } else {
+                    along.reverse()
+                }
+            })
+        });
+    }
+
     /// The vertices behind the `n` points of the input; those that are new get their rows.
     fn added(&mut self, n: usize) -> Vec<Point2> {
         let later = &self.marked.points[self.rows.len()..self.marked.count];
@@ -295,6 +316,10 @@ impl<'a> Work<'a> {
         workers: usize,
         mut clock: Clock,
     ) -> Result<Constrained> {
+        let mut pieces = laid.pieces;
+        if !laid.sorted {
+            self.sort(&mut pieces);
+        }
         let added = self.added(n);
         let rows = self.rows;
         let row_of = |v: u32| rows[v as usize];
@@ -309,7 +334,6 @@ impl<'a> Work<'a> {
         crossings.iter_mut().for_each(|c| c[2] = row_of(c[2]));
         crossings.sort_unstable();
         crossings.dedup();
-        let mut pieces = laid.pieces;
         pieces.iter_mut().for_each(|p| p.0 = p.0.map(row_of));
         let zero = (0u32..).zip(&self.ends).filter(|(_, e)| e[0] == e[1]);
         let zero = zero.map(|(row, _)| row).collect();

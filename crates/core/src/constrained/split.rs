@@ -165,6 +165,7 @@ impl<'a> Splitter<'a> {
         Laid {
             pieces: self.all_pieces(),
             repeated: true,
+            sorted: false,
             through: self.through,
             crossings: self.crossings,
         }
@@ -274,7 +275,7 @@ impl<'a> Splitter<'a> {
         self.marked.legalise()
     }
 
-    /// All pieces by row and along it, directed as the row is.
+    /// All pieces, directed as their rows are, in no order.
     fn all_pieces(&self) -> Vec<([u32; 2], u32)> {
         let mut all = Vec::new();
         for (&[u, v], covers) in &self.pieces {
@@ -284,14 +285,6 @@ impl<'a> Splitter<'a> {
                 all.push((if with { [u, v] } else { [v, u] }, row));
             }
         }
-        let at = |v: u32| self.marked.at(v);
-        all.sort_by(|(s, i), (t, j)| {
-            let [a, b] = self.given[*i as usize].map(at);
-            let up = lexicographic(a, b).is_lt();
-            let by = |k: usize| lexicographic(at(s[k]), at(t[k]));
-            let along = by(0).then_with(|| by(1));
-            i.cmp(j).then(if up { along } else { along.reverse() })
-        });
         all
     }
 }

@@ -19,9 +19,8 @@ use super::number::{Jet, Number};
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
 use crate::locate::{
-    Located, Locator, Output, Place, Side, barycentric, cross, each, next, prev, seen_from,
+    Batch, Located, Output, Place, Side, barycentric, cross, next, prev, seen_from,
 };
-use crate::watch::Watch;
 
 /// What of a triangle the cubics depend on, apart from values and gradients.
 #[derive(Debug, Clone, Copy)]
@@ -196,19 +195,16 @@ fn jets(given: &Given, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
 
 /// Values, gradients or Hessians at the queries, a row each; NaN outside.
 pub fn clough_tocher(
-    locator: &Locator,
+    batch: &Batch,
     field: Field,
-    queries: &[Point2],
     barrier: Barrier,
     order: Order,
-    workers: usize,
-    watch: &Watch,
 ) -> Result<Vec<f64>> {
-    let given = &locator.given;
+    let given = &batch.locator.given;
     let width = field.columns * order.components();
-    let out = Output::filled(queries.len() * width, f64::NAN)?;
+    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
     let state = Last::default;
-    each(locator, queries, workers, watch, state, |last, row, q, at| {
+    batch.each(state, |last, row, q, at| {
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -253,27 +249,24 @@ pub struct CornerWeights {
 }
 
 /// The weights that [`clough_tocher`] gives to values and gradients.
-pub fn clough_tocher_weights(
-    locator: &Locator,
-    queries: &[Point2],
-    barrier: Barrier,
-    workers: usize,
-    watch: &Watch,
-) -> Result<CornerWeights> {
-    let given = &locator.given;
-    let n = queries.len();
+pub fn clough_tocher_weights(batch: &Batch, barrier: Barrier) -> Result<CornerWeights> {
+    let given = &batch.locator.given;
+    let n = batch.queries.len();
     let triangle = Output::filled(n, -1)?;
     let weights = Output::filled(3 * n, f64::NAN)?;
     let slopes = Output::filled(6 * n, f64::NAN)?;
-    each(locator, queries, workers, watch, || None, |last, row, q, at| {
-        if let Located::Inside(place) = at {
-            let (w, s) = basis(given, barrier, last, &place, q);
-            triangle.set(row, place.triangle as i32);
-            weights.set_all(3 * row, &w);
-            slopes.set_all(6 * row, s.as_flattened());
-        }
-        Ok(())
-    })?;
+    batch.each(
+        || None,
+        |last, row, q, at| {
+            if let Located::Inside(place) = at {
+                let (w, s) = basis(given, barrier, last, &place, q);
+                triangle.set(row, place.triangle as i32);
+                weights.set_all(3 * row, &w);
+                slopes.set_all(6 * row, s.as_flattened());
+            }
+            Ok(())
+        },
+    )?;
     Ok(CornerWeights {
         triangle: triangle.into_vec(),
         weights: weights.into_vec(),
@@ -300,8 +293,7 @@ fn basis(
             let functions = std::array::from_fn(|f| {
                 let unit = |g| f64::from(u8::from(f == g));
                 let values = std::array::from_fn(&unit);
-                let gradients =
-                    std::array::from_fn(|k| [unit(3 + 2 * k), unit(4 + 2 * k)]);
+                let gradients = std::array::from_fn(|k| [unit(3 + 2 * k), unit(4 + 2 * k)]);
                 Ordinates::of(&frame, values, gradients)
             });
             &mut last.insert((place.triangle, functions)).1

@@ -90,9 +90,16 @@ pub fn global_gradients(
         let det = m[0] * m[2] - m[1] * m[1];
         inverses.push([m[2] / det, -m[1] / det, m[0] / det]);
     }
+    let network = Network {
+        adjacency,
+        edges,
+        inverses,
+        tol,
+        maxiter,
+    };
     let columns = (0..field.columns).collect();
     let solved = parallel::map(workers, columns, |column| {
-        sweeps(adjacency, &edges, &inverses, &field, column, tol, maxiter, watch)
+        network.sweep(&field, column, watch)
     });
     let mut gradients = filled(2 * points.len() * field.columns, 0.0)?;
     let mut counts = Vec::with_capacity(field.columns);
@@ -107,52 +114,70 @@ pub fn global_gradients(
     Ok((gradients, counts))
 }
 
-/// Sweeps over one column.
-#[expect(clippy::too_many_arguments, reason = "one loop of one caller")]
-fn sweeps(
-    adjacency: Adjacency,
-    edges: &[Edge],
-    inverses: &[[f64; 3]],
-    field: &Field,
-    column: usize,
+/// The equations of all vertices.
+struct Network<'a> {
+    adjacency: Adjacency<'a>,
+    /// Beside `adjacency.indices`.
+    edges: Vec<Edge>,
+    /// For each vertex the inverse of its matrix: xx, xy, yy.
+    inverses: Vec<[f64; 3]>,
     tol: f64,
     maxiter: usize,
-    watch: &Watch,
-) -> Result<(Vec<[f64; 2]>, i64)> {
-    let n = inverses.len();
-    let mut gradients = filled(n, [0.0; 2])?;
-    for sweep in 1..=maxiter {
-        let mut worst: f64 = 0.0;
-        for v in 0..n {
-            if v % SHARE == 0 {
-                watch.check()?;
+}
+
+impl Network<'_> {
+    /// Sweeps over one column until its gradients are still.
+    fn sweep(&self, field: &Field, column: usize, watch: &Watch) -> Result<(Vec<[f64; 2]>, i64)> {
+        let n = self.inverses.len();
+        let mut gradients = filled(n, [0.0; 2])?;
+        for sweep in 1..=self.maxiter {
+            let mut worst: f64 = 0.0;
+            for v in 0..n {
+                if v % SHARE == 0 {
+                    watch.check()?;
+                }
+                let Some(new) = self.solve(field, column, v, &gradients) else {
+                    continue;
+                };
+                let old = std::mem::replace(&mut gradients[v], new);
+                let change = (new[0] - old[0]).abs().max((new[1] - old[1]).abs());
+                let size = new[0].abs().max(new[1].abs()).max(1.0);
+                worst = worst.max(change / size);
             }
-            let range = adjacency.range(v);
-            if range.is_empty() {
-                continue;
+            if worst < self.tol {
+                return Ok((gradients, sweep as i64));
             }
-            let value = field.value(v as i32, column);
-            let mut s = [0.0; 2];
-            for (edge, &other) in edges[range.clone()].iter().zip(&adjacency.indices[range]) {
-                let g = gradients[other as usize];
-                let slope = edge.way[0] * g[0] + edge.way[1] * g[1];
-                let rise = field.value(other, column) - value;
-                let pull = (6.0 * rise - 2.0 * slope) * edge.weight;
-                s[0] += pull * edge.way[0];
-                s[1] += pull * edge.way[1];
-            }
-            let [xx, xy, yy] = inverses[v];
-            let new = [xx * s[0] + xy * s[1], xy * s[0] + yy * s[1]];
-            let old = std::mem::replace(&mut gradients[v], new);
-            let change = (new[0] - old[0]).abs().max((new[1] - old[1]).abs());
-            let size = new[0].abs().max(new[1].abs()).max(1.0);
-            worst = worst.max(change / size);
         }
-        if worst < tol {
-            return Ok((gradients, sweep as i64));
-        }
+        Ok((gradients, 0))
     }
-    Ok((gradients, 0))
+
+    /// The best gradient at one vertex; nothing for one without neighbours.
+    #[inline]
+    fn solve(
+        &self,
+        field: &Field,
+        column: usize,
+        v: usize,
+        gradients: &[[f64; 2]],
+    ) -> Option<[f64; 2]> {
+        let range = self.adjacency.range(v);
+        if range.is_empty() {
+            return None;
+        }
+        let value = field.value(v as i32, column);
+        let mut s = [0.0; 2];
+        let others = &self.adjacency.indices[range.clone()];
+        for (edge, &other) in self.edges[range].iter().zip(others) {
+            let g = gradients[other as usize];
+            let slope = edge.way[0] * g[0] + edge.way[1] * g[1];
+            let rise = field.value(other, column) - value;
+            let pull = (6.0 * rise - 2.0 * slope) * edge.weight;
+            s[0] += pull * edge.way[0];
+            s[1] += pull * edge.way[1];
+        }
+        let [xx, xy, yy] = self.inverses[v];
+        Some([xx * s[0] + xy * s[1], xy * s[0] + yy * s[1]])
+    }
 }
 
 /// Gradients of polynomials of degree 1 or 2 through each vertex that fit its surroundings in the
@@ -220,7 +245,9 @@ impl Fit {
             [q[0] - p[0], q[1] - p[1]]
         });
         let ways: Vec<Point2> = ways.collect();
-        let size = ways.iter().fold(0.0, |most: f64, w| most.max(w[0].hypot(w[1])));
+        let size = ways
+            .iter()
+            .fold(0.0, |most: f64, w| most.max(w[0].hypot(w[1])));
         if !(size > 0.0 && size.is_finite()) {
             return None;
         }
@@ -240,7 +267,9 @@ impl Fit {
         let (gx, gy) = last_two(&mut basis)?;
         let factors = gx.iter().zip(&gy).zip(&weights);
         Some(Self {
-            factors: factors.map(|((x, y), w)| [x * w / size, y * w / size]).collect(),
+            factors: factors
+                .map(|((x, y), w)| [x * w / size, y * w / size])
+                .collect(),
         })
     }
 
@@ -276,7 +305,7 @@ fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
             column.iter_mut().zip(q).for_each(|(x, y)| *x -= part * y);
         }
         let left = dot(column, column).sqrt();
-        if !(left > DEPENDENT * length) || length == 0.0 {
+        if left.is_nan() || left <= DEPENDENT * length {
             return None;
         }
         column.iter_mut().for_each(|x| *x /= left);

@@ -14,7 +14,7 @@ use super::weights::{Kind, Weights};
 use crate::delaunay2::validate::Given;
 use crate::delaunay2::{self, triangulate};
 use crate::error::Result;
-use crate::locate::{Kept, Locator, Located, Side, barycentric_weights, next, prev};
+use crate::locate::{Kept, Located, Locator, Side, barycentric_weights, next, prev};
 use crate::memory::filled;
 use crate::parallel;
 use crate::watch::Watch;
@@ -50,12 +50,7 @@ impl Method {
 
 /// For each vertex the weights of the others; empty for corners of the hull and for rows that are no
 /// vertex. The triangulation must be Delaunay.
-pub fn leave_one_out(
-    given: Given,
-    method: Method,
-    workers: usize,
-    watch: &Watch,
-) -> Result<Rows> {
+pub fn leave_one_out(given: Given, method: Method, workers: usize, watch: &Watch) -> Result<Rows> {
     let n = given.points.len();
     let mut stars = filled(n, None)?;
     for (triangle, vertices) in given.simplices.iter().enumerate() {
@@ -203,7 +198,11 @@ impl Hole {
             });
             // There always is one, in a hole of a Delaunay triangulation.
             let Some(i) = ear else { break };
-            triangles.push([self.rest[(i + n - 1) % n], self.rest[i], self.rest[(i + 1) % n]]);
+            triangles.push([
+                self.rest[(i + n - 1) % n],
+                self.rest[i],
+                self.rest[(i + 1) % n],
+            ]);
             self.rest.remove(i);
         }
         if let [a, b, c] = self.rest[..] {

@@ -6,36 +6,33 @@ use super::Order;
 use super::field::Field;
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
-use crate::locate::{Located, Locator, Output, Place, barycentric, cross, each, seen_from};
-use crate::watch::Watch;
+use crate::locate::{Batch, Located, Output, Place, barycentric, cross, seen_from};
 
 /// Values, or gradients, at the queries, a row each; NaN outside.
-pub fn linear(
-    locator: &Locator,
-    field: Field,
-    queries: &[Point2],
-    order: Order,
-    workers: usize,
-    watch: &Watch,
-) -> Result<Vec<f64>> {
-    let given = &locator.given;
+pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
+    let given = &batch.locator.given;
     let width = field.columns * order.components();
-    let out = Output::filled(queries.len() * width, f64::NAN)?;
-    each(locator, queries, workers, watch, || (), |(), row, q, at| {
-        if let Located::Inside(place) = at {
-            match order {
-                Order::Value => value(given, &field, &place, q, |c, z| out.set(row * width + c, z)),
-                Order::Gradient => {
-                    for column in 0..field.columns {
-                        let g = gradient(given, &field, place.triangle, column);
-                        out.set_all(row * width + 2 * column, &g);
+    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
+    batch.each(
+        || (),
+        |(), row, q, at| {
+            if let Located::Inside(place) = at {
+                match order {
+                    Order::Value => {
+                        value(given, &field, &place, q, |c, z| out.set(row * width + c, z))
                     }
+                    Order::Gradient => {
+                        for column in 0..field.columns {
+                            let g = gradient(given, &field, place.triangle, column);
+                            out.set_all(row * width + 2 * column, &g);
+                        }
+                    }
+                    Order::Hessian => out.set_all(row * width, &vec![0.0; width]),
                 }
-                Order::Hessian => out.set_all(row * width, &vec![0.0; width]),
             }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
     Ok(out.into_vec())
 }
 

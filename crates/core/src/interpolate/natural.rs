@@ -9,8 +9,7 @@ use super::weights::{Kind, Weights};
 use super::{Order, Rows};
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
-use crate::locate::{Located, Locator, Output, Place, Side, barycentric, each};
-use crate::watch::Watch;
+use crate::locate::{Batch, Located, Output, Place, Side, barycentric};
 
 /// What a thread computes with.
 #[derive(Default)]
@@ -42,18 +41,11 @@ impl<T: Number> Room<T> {
 }
 
 /// The weights of each query: sparse rows, empty outside.
-pub fn natural(
-    locator: &Locator,
-    kind: Kind,
-    queries: &[Point2],
-    barrier: Barrier,
-    workers: usize,
-    watch: &Watch,
-) -> Result<(Rows, Vec<i32>)> {
-    let given = &locator.given;
-    let triangles = Output::filled(queries.len(), -1)?;
+pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec<i32>)> {
+    let given = &batch.locator.given;
+    let triangles = Output::filled(batch.queries.len(), -1)?;
     let state = || (Room::<f64>::default(), Part::default());
-    let parts = each(locator, queries, workers, watch, state, |state, row, q, at| {
+    let parts = batch.each(state, |state, row, q, at| {
         let (room, part) = state;
         let Located::Inside(place) = at else {
             return Ok(());
@@ -73,7 +65,7 @@ pub fn natural(
         Ok(())
     })?;
     let parts = parts.into_iter().map(|(_, part)| part).collect();
-    let rows = Rows::of_parts(queries.len(), parts, kind.is_smooth())?;
+    let rows = Rows::of_parts(batch.queries.len(), parts, kind.is_smooth())?;
     Ok((rows, triangles.into_vec()))
 }
 
@@ -110,39 +102,61 @@ impl Part {
 
 /// Values, gradients or Hessians at the queries, a row each; NaN outside.
 pub fn natural_values(
-    locator: &Locator,
+    batch: &Batch,
     kind: Kind,
     field: Field,
-    queries: &[Point2],
     barrier: Barrier,
     order: Order,
-    workers: usize,
-    watch: &Watch,
 ) -> Result<Vec<f64>> {
     let width = field.columns * order.components();
-    let out = Output::filled(queries.len() * width, f64::NAN)?;
-    let given = &locator.given;
+    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
     if order == Order::Value {
-        let state = Room::<f64>::default;
-        each(locator, queries, workers, watch, state, |room, row, q, at| {
-            let Located::Inside(place) = at else {
-                return Ok(());
-            };
-            if let Some(corner) = place.site() {
-                let vertex = given.simplices[place.triangle][corner];
-                out.set_all(row * width, field.row(vertex));
-                return Ok(());
-            }
-            room.compute(kind, given, barrier, &place, q)?;
-            for column in 0..field.columns {
-                out.set(row * width + column, value(room, &field, column));
-            }
-            Ok(())
-        })?;
-        return Ok(out.into_vec());
+        sums(batch, kind, &field, barrier, &out)?;
+    } else {
+        slopes(batch, kind, &field, barrier, order, &out)?;
     }
-    let state = Room::<Jet>::default;
-    each(locator, queries, workers, watch, state, |room, row, q, at| {
+    Ok(out.into_vec())
+}
+
+fn sums(
+    batch: &Batch,
+    kind: Kind,
+    field: &Field,
+    barrier: Barrier,
+    out: &Output<f64>,
+) -> Result<()> {
+    let given = &batch.locator.given;
+    let width = field.columns;
+    batch.each(Room::<f64>::default, |room, row, q, at| {
+        let Located::Inside(place) = at else {
+            return Ok(());
+        };
+        if let Some(corner) = place.site() {
+            let vertex = given.simplices[place.triangle][corner];
+            out.set_all(row * width, field.row(vertex));
+            return Ok(());
+        }
+        room.compute(kind, given, barrier, &place, q)?;
+        for column in 0..width {
+            out.set(row * width + column, value(room, field, column));
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+fn slopes(
+    batch: &Batch,
+    kind: Kind,
+    field: &Field,
+    barrier: Barrier,
+    order: Order,
+    out: &Output<f64>,
+) -> Result<()> {
+    let given = &batch.locator.given;
+    let components = order.components();
+    let start = |row, column| components * (row * field.columns + column);
+    batch.each(Room::<Jet>::default, |room, row, q, at| {
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -150,22 +164,22 @@ pub fn natural_values(
             if order == Order::Gradient && kind.is_smooth() {
                 let vertex = given.simplices[place.triangle][corner];
                 for column in 0..field.columns {
-                    out.set_all(row * width + 2 * column, &field.gradient(vertex, column));
+                    out.set_all(start(row, column), &field.gradient(vertex, column));
                 }
             }
             return Ok(());
         }
         room.compute(kind, given, barrier, &place, q)?;
         for column in 0..field.columns {
-            let sum = derivatives(room, &field, column);
+            let sum = derivatives(room, field, column);
             match order {
-                Order::Hessian => out.set_all(row * width + 3 * column, &sum.hessian),
-                _ => out.set_all(row * width + 2 * column, &sum.gradient),
+                Order::Hessian => out.set_all(start(row, column), &sum.hessian),
+                _ => out.set_all(start(row, column), &sum.gradient),
             }
         }
         Ok(())
     })?;
-    Ok(out.into_vec())
+    Ok(())
 }
 
 /// The sum of weights times values and gradients.

@@ -148,6 +148,10 @@ impl Sub for Jet {
     }
 }
 
+#[expect(
+    clippy::suspicious_arithmetic_impl,
+    reason = "the product rule is a sum"
+)]
 impl Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -185,6 +189,11 @@ mod tests {
         assert_eq!(f.gradient, [-6.0, 27.0]);
         assert_eq!(f.hessian, [16.0, -33.0, 54.0]);
         let same = (f * f).sqrt();
-        assert!(same.hessian.iter().zip(f.hessian).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!(
+            same.hessian
+                .iter()
+                .zip(f.hessian)
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        );
     }
 }

@@ -123,7 +123,10 @@ impl Table<'_> {
     #[inline]
     fn combine_row(&self, row: usize, field: &Field, mut set: impl FnMut(usize, f64)) {
         let entries = self.indptr[row] as usize..self.indptr[row + 1] as usize;
-        let (indices, weights) = (&self.indices[entries.clone()], &self.weights[entries.clone()]);
+        let (indices, weights) = (
+            &self.indices[entries.clone()],
+            &self.weights[entries.clone()],
+        );
         for column in 0..field.columns {
             // The first that counts is where the sum begins, so that one value of weight 1 comes
             // out as it is, its sign of zero included.
@@ -134,7 +137,10 @@ impl Table<'_> {
                     add(w * field.value(vertex, column));
                 }
             }
-            for (&vertex, s) in indices.iter().zip(self.slopes.map_or(&[][..], |s| &s[entries.clone()])) {
+            for (&vertex, s) in indices
+                .iter()
+                .zip(self.slopes.map_or(&[][..], |s| &s[entries.clone()]))
+            {
                 if *s != [0.0; 2] {
                     let g = field.gradient(vertex, column);
                     add(s[0] * g[0] + s[1] * g[1]);

@@ -22,11 +22,10 @@ pub fn weights(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
     let (seen, unit) = seen_from(q, corners);
     let mut areas = [0.0; 3];
     for k in 0..3 {
-        areas[k] = plain(seen[next(k)], seen[prev(k)]).unwrap_or(f64::NAN);
+        areas[k] = plain(seen[next(k)], seen[prev(k)]).unwrap_or(f64::NAN); // not accurate
     }
     let sum = areas[0] + areas[1] + areas[2];
-    // NaN, where one of them is not accurate, goes the long way, too.
-    if !(sum > 0.0) || on != [false; 3] || areas.iter().any(|&a| a < 0.0) {
+    if sum.is_nan() || sum <= 0.0 || on != [false; 3] || areas.iter().any(|&a| a < 0.0) {
         return with_care(corners, seen, unit, on, q);
     }
     areas.map(|a| a / sum)

@@ -27,46 +27,64 @@ const GATHER: usize = 1 << 9;
 /// starts is cheaper: its depth costs about as much as a dozen triangles. Squared.
 const REACH: f64 = 64.0;
 
-/// Goes to each finite query, in an order and by threads of its own choice; `visit` gets the state
-/// of its part of the queries, the row, the query and where that is. Returns the states.
-pub fn each<S: Send>(
-    locator: &Locator,
-    queries: &[Point2],
-    workers: usize,
-    watch: &Watch,
-    state: impl Fn() -> S + Sync,
-    visit: impl Fn(&mut S, usize, Point2, Located) -> Result<()> + Sync,
-) -> Result<Vec<S>> {
-    if locator.given.simplices.is_empty() {
-        return Ok(Vec::new());
-    }
-    if queries.len() <= FEW || comes_in_order(queries) {
-        let share = queries.len().div_ceil(4 * workers.max(1)).max(SHARE);
-        let tasks = (0..).step_by(share).zip(queries.chunks(share)).collect();
-        let ends = parallel::map(workers, tasks, |(first, part)| {
-            let rows = (first..).zip(part.iter().copied());
+/// Queries of one call.
+#[derive(Clone, Copy)]
+pub struct Batch<'a> {
+    /// Where to look.
+    pub locator: Locator<'a>,
+    /// What for.
+    pub queries: &'a [Point2],
+    /// How many threads may work.
+    pub workers: usize,
+    /// Asked now and then whether to stop.
+    pub watch: &'a Watch<'a>,
+}
+
+impl Batch<'_> {
+    /// Goes to each finite query, in an order and by threads of its own choice; `visit` gets the
+    /// state of its part of the queries, the row, the query and where that is. Returns the states.
+    pub fn each<S: Send>(
+        &self,
+        state: impl Fn() -> S + Sync,
+        visit: impl Fn(&mut S, usize, Point2, Located) -> Result<()> + Sync,
+    ) -> Result<Vec<S>> {
+        let Self {
+            locator,
+            queries,
+            workers,
+            watch,
+        } = *self;
+        if locator.given.simplices.is_empty() {
+            return Ok(Vec::new());
+        }
+        if queries.len() <= FEW || comes_in_order(queries) {
+            let share = queries.len().div_ceil(4 * workers.max(1)).max(SHARE);
+            let tasks = (0..).step_by(share).zip(queries.chunks(share)).collect();
+            let ends = parallel::map(workers, tasks, |(first, part)| {
+                let rows = (first..).zip(part.iter().copied());
+                let mut state = state();
+                Walker::new(&locator, watch).walk(rows, &mut state, &visit)?;
+                Ok(state)
+            });
+            return ends.into_iter().collect();
+        }
+        let parts = curve::order_of(queries, workers)?;
+        watch.check()?;
+        let ends = parallel::map(workers, parts, |rows| {
+            // Loads that do not wait for each other: gathering ahead hides that they miss the cache.
+            let mut gathered = with_room(GATHER)?;
+            let mut walker = Walker::new(&locator, watch);
             let mut state = state();
-            Walker::new(locator, watch).walk(rows, &mut state, &visit)?;
+            for run in rows.chunks(GATHER) {
+                gathered.clear();
+                gathered.extend(run.iter().map(|&row| queries[row as usize]));
+                let rows = run.iter().map(|&row| row as usize);
+                walker.walk(rows.zip(gathered.iter().copied()), &mut state, &visit)?;
+            }
             Ok(state)
         });
-        return ends.into_iter().collect();
+        ends.into_iter().collect()
     }
-    let parts = curve::order_of(queries, workers)?;
-    watch.check()?;
-    let ends = parallel::map(workers, parts, |rows| {
-        // Loads that do not wait for each other: gathering ahead hides that they miss the cache.
-        let mut gathered = with_room(GATHER)?;
-        let mut walker = Walker::new(locator, watch);
-        let mut state = state();
-        for run in rows.chunks(GATHER) {
-            gathered.clear();
-            gathered.extend(run.iter().map(|&row| queries[row as usize]));
-            let rows = run.iter().map(|&row| row as usize);
-            walker.walk(rows.zip(gathered.iter().copied()), &mut state, &visit)?;
-        }
-        Ok(state)
-    });
-    ends.into_iter().collect()
 }
 
 /// Whether most queries are about as near to the one before as an order along the curve would make
@@ -77,9 +95,8 @@ fn comes_in_order(queries: &[Point2]) -> bool {
     let finite = probes().map(|w| w[0]).filter(|&p| is_finite(p));
     let side = Extent::of(finite).side();
     let near = 4.0 * side / (queries.len() as f64).sqrt();
-    let is_near = |w: &&[Point2]| {
-        (w[1][0] - w[0][0]).abs() <= near && (w[1][1] - w[0][1]).abs() <= near
-    };
+    let is_near =
+        |w: &&[Point2]| (w[1][0] - w[0][0]).abs() <= near && (w[1][1] - w[0][1]).abs() <= near;
     let count = probes().count();
     10 * probes().filter(is_near).count() >= 9 * count
 }

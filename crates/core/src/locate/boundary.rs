@@ -82,20 +82,21 @@ impl Boundary {
 }
 
 fn clamp(along: f64) -> f64 {
-    along.max(0.0).min(1.0)
+    // Of NaN, where the edge has no length, its start.
+    if along > 0.0 { along.min(1.0) } else { 0.0 }
 }
 
 /// Where `q` is beside a boundary edge, 0 at its start and 1 at its end, and its squared distance.
 fn project(given: &Given, side: Side, q: Point2) -> (f64, f64) {
-    let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| {
-        given.point(given.vertex(Side { corner, ..side }))
-    });
-    let ([u, v], unit) = seen_from(q, [u, v]);
-    let d = [v[0] - u[0], v[1] - u[1]];
-    let along = -(u[0] * d[0] + u[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let [u, v] = [next(side.corner), prev(side.corner)]
+        .map(|corner| given.point(given.vertex(Side { corner, ..side })));
+    // Each in a unit of its own: the edge may be very short beside the distance.
+    let ([d], short) = seen_from(u, [v]);
+    let ([w], long) = seen_from(u, [q]);
+    let along = (w[0] * d[0] + w[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]) * (long / short);
     let t = clamp(along);
-    let near = [u[0] + t * d[0], u[1] + t * d[1]];
-    (along, near[0].hypot(near[1]) * unit)
+    let near = [0, 1].map(|k| u[k] + t * (v[k] - u[k]));
+    (along, (near[0] - q[0]).hypot(near[1] - q[1]))
 }
 
 /// The boundary edges in order, where they are one cycle.

@@ -1,12 +1,9 @@
 //! Triangles with barycentric coordinates, and outside the nearest point of the boundary.
 
-use delone_predicates::Point2;
-
-use super::batch::{Output, each};
+use super::batch::{Batch, Output};
 use super::tiling::{Side, next, prev};
-use super::{Located, Locator, barycentric};
+use super::{Located, barycentric};
 use crate::error::Result;
-use crate::watch::Watch;
 
 /// Where queries are, row by row.
 #[derive(Debug)]
@@ -24,36 +21,35 @@ pub struct Coordinates {
 }
 
 /// Locates queries; those that are not finite are nowhere.
-pub fn coordinates(
-    locator: &Locator,
-    queries: &[Point2],
-    workers: usize,
-    watch: &Watch,
-) -> Result<Coordinates> {
-    let n = queries.len();
+pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
+    let n = batch.queries.len();
+    let locator = &batch.locator;
     let given = &locator.given;
     let triangle = Output::filled(n, -1)?;
     let weights = Output::filled(3 * n, f64::NAN)?;
     let beside = Output::filled(n, -1)?;
     let edge = Output::filled(2 * n, -1)?;
     let along = Output::filled(n, f64::NAN)?;
-    each(locator, queries, workers, watch, || (), |(), row, q, at| {
-        match at {
-            Located::Inside(place) => {
-                triangle.set(row, place.triangle as i32);
-                weights.set_all(3 * row, &barycentric(given, &place, q));
+    batch.each(
+        || (),
+        |(), row, q, at| {
+            match at {
+                Located::Inside(place) => {
+                    triangle.set(row, place.triangle as i32);
+                    weights.set_all(3 * row, &barycentric(given, &place, q));
+                }
+                Located::Outside(from) => {
+                    let (side, t) = locator.boundary()?.nearest(given, from, q);
+                    let ends = [next(side.corner), prev(side.corner)];
+                    let ends = ends.map(|corner| given.vertex(Side { corner, ..side }));
+                    beside.set(row, side.triangle as i32);
+                    edge.set_all(2 * row, &ends);
+                    along.set(row, t);
+                }
             }
-            Located::Outside(from) => {
-                let (side, t) = locator.boundary()?.nearest(given, from, q);
-                let ends = [next(side.corner), prev(side.corner)];
-                let ends = ends.map(|corner| given.vertex(Side { corner, ..side }));
-                beside.set(row, side.triangle as i32);
-                edge.set_all(2 * row, &ends);
-                along.set(row, t);
-            }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
     Ok(Coordinates {
         triangle: triangle.into_vec(),
         weights: weights.into_vec(),

@@ -23,7 +23,7 @@ use std::sync::OnceLock;
 use delone_predicates::Point2;
 
 pub use barycentric::{barycentric, weights as barycentric_weights};
-pub use batch::{Output, each};
+pub use batch::{Batch, Output};
 pub use boundary::Boundary;
 pub use coordinates::{Coordinates, coordinates};
 pub use cross::cross;
@@ -35,7 +35,6 @@ pub use tiling::{Side, next, prev};
 
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
-use crate::watch::Watch;
 use boxes::Boxes;
 use start::Start;
 use walk::{Found, walk};
@@ -151,18 +150,16 @@ fn is_finite(q: Point2) -> bool {
 
 /// For each query the first triangle that holds it, boundary included, or -1: outside, or not
 /// finite.
-pub fn find(
-    locator: &Locator,
-    queries: &[Point2],
-    workers: usize,
-    watch: &Watch,
-) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(queries.len(), -1)?;
-    each(locator, queries, workers, watch, || (), |(), row, _, at| {
-        if let Located::Inside(place) = at {
-            found.set(row, place.triangle as i32);
-        }
-        Ok(())
-    })?;
+pub fn find(batch: &Batch) -> Result<Vec<i32>> {
+    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
+    batch.each(
+        || (),
+        |(), row, _, at| {
+            if let Located::Inside(place) = at {
+                found.set(row, place.triangle as i32);
+            }
+            Ok(())
+        },
+    )?;
     Ok(found.into_vec())
 }

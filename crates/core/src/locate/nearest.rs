@@ -8,23 +8,17 @@
 
 use delone_predicates::{Point2, Sign, nearer};
 
-use super::batch::{Output, each};
+use super::Located;
+use super::batch::{Batch, Output};
 use super::tiling::{Side, next, prev};
-use super::{Located, Locator};
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
-use crate::watch::Watch;
 
 /// For each query the nearest vertex, of several the first row; -1 for what is not finite.
-pub fn nearest(
-    locator: &Locator,
-    queries: &[Point2],
-    workers: usize,
-    watch: &Watch,
-) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(queries.len(), -1)?;
-    let given = &locator.given;
-    each(locator, queries, workers, watch, Vec::new, |ties, row, q, at| {
+pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
+    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
+    let given = &batch.locator.given;
+    batch.each(Vec::new, |ties, row, q, at| {
         let start = match at {
             Located::Inside(place) => match place.site() {
                 Some(corner) => {

@@ -31,7 +31,9 @@ pub fn in_unit(origin: Point2, p: Point2, unit: f64) -> Point2 {
 #[inline]
 fn largest(points: &[Point2]) -> f64 {
     let coordinates = points.as_flattened();
-    coordinates.iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
+    coordinates
+        .iter()
+        .fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
 }
 
 #[cold]

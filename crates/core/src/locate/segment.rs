@@ -35,7 +35,9 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
             inside(start, a, b).run(|t| met.push(t as i32))?;
         }
         (None, Some(end)) => {
-            inside(end, b, a).right_handed().run(|t| met.push(t as i32))?;
+            inside(end, b, a)
+                .right_handed()
+                .run(|t| met.push(t as i32))?;
             met.reverse();
         }
         (None, None) => {
@@ -52,9 +54,8 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
 fn entry(locator: &Locator, a: Point2, b: Point2) -> Result<Option<Side>> {
     let given = &locator.given;
     let enters = |side: &&Side| {
-        let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| {
-            given.point(given.vertex(Side { corner, ..**side }))
-        });
+        let [u, v] = [next(side.corner), prev(side.corner)]
+            .map(|corner| given.point(given.vertex(Side { corner, ..**side })));
         // a is strictly beyond the edge and b strictly before it; u is left of the line.
         orient2d(u, v, a) == Sign::Negative
             && orient2d(u, v, b) == Sign::Positive

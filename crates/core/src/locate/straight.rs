@@ -77,7 +77,7 @@ impl<'a> Trace<'a> {
         };
         trace.state = match corners[..] {
             [] => State::Within(t),
-            [k] => trace.from_edge(side(k)),
+            [k] => trace.leave_edge(side(k)),
             // Of three corners the one that is opposite neither edge.
             [k, l, ..] => State::Vertex(side(3 - k - l)),
         };
@@ -151,7 +151,7 @@ impl<'a> Trace<'a> {
     }
 
     /// The start in the open edge opposite a corner.
-    fn from_edge(&self, side: Side) -> State {
+    fn leave_edge(&self, side: Side) -> State {
         let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
         let [p, q] = [u, v].map(|s| self.given.point(self.given.vertex(s)));
         match orient2d(p, q, self.b) {

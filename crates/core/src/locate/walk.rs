@@ -102,3 +102,49 @@ pub fn straight(given: &Given, from: usize, q: Point2) -> Result<Found> {
         End::Left(side) => Found::Beyond(side),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A centre, two rings of points around it, the outer one turned by some phase, and triangles
+    /// (after L. De Floriani et al., 1991).
+    fn pinwheel(phase: f64) -> (Vec<Point2>, Vec<[i32; 3]>, Vec<[i32; 3]>) {
+        let turn = |r: f64, i: i32, phase: f64| {
+            let angle = (f64::from(i) + phase) * std::f64::consts::TAU / 6.0;
+            [r * angle.cos(), r * angle.sin()]
+        };
+        let mut points: Vec<Point2> = (0..6).map(|i| turn(1.0, i, 0.0)).collect();
+        points.extend((0..6).map(|i| turn(4.0, i, phase)));
+        points.push([0.0, 0.0]);
+        let (mut simplices, mut neighbors) = (Vec::new(), Vec::new());
+        for i in 0..6 {
+            let (j, h) = ((i + 1) % 6, (i + 5) % 6);
+            simplices.extend([[12, i, j], [i, i + 6, j], [j, i + 6, j + 6]]);
+            neighbors.extend([
+                [3 * i + 1, 3 * j, 3 * h],
+                [3 * i + 2, 3 * i, 3 * h + 2],
+                [-1, 3 * j + 1, 3 * i + 1],
+            ]);
+        }
+        (points, simplices, neighbors)
+    }
+
+    #[test]
+    fn the_straight_walk_ends_where_the_other_turns_in_circles() {
+        let (points, simplices, neighbors) = pinwheel(1.2);
+        let given = Given {
+            points: &points,
+            simplices: &simplices,
+            neighbors: &neighbors,
+        };
+        let (q, expected) = ([0.1, 0.03], Ok(Found::Inside(0, [false; 3])));
+        let mut circles = 0;
+        for from in 0..simplices.len() {
+            circles += usize::from(visibility(&given, from, q, 1000).is_none());
+            assert_eq!(walk(&given, from, q), expected);
+            assert_eq!(straight(&given, from, q), expected);
+        }
+        assert!(circles > 0);
+    }
+}

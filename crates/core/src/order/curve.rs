@@ -113,7 +113,12 @@ pub fn order_of(points: &[Point2], workers: usize) -> Result<Vec<Vec<u32>>> {
     let extents = parallel::map(workers, shares(), |share| {
         Extent::of(share.iter().copied().filter(is_finite))
     });
-    let extent = Extent::of(extents.iter().flat_map(|e| [e.min, e.max]).filter(is_finite));
+    let extent = Extent::of(
+        extents
+            .iter()
+            .flat_map(|e| [e.min, e.max])
+            .filter(is_finite),
+    );
     let cells = Cells::of(&extent);
     let low_bit = 32 - fine_bits(points.len());
     let mask = u64::MAX << (32 + low_bit);
@@ -126,12 +131,20 @@ pub fn order_of(points: &[Point2], workers: usize) -> Result<Vec<Vec<u32>>> {
         Ok(items)
     });
     let sorted = sorted.into_iter().collect::<Result<Vec<Vec<u64>>>>()?;
-    let tasks = if sorted.len() > 1 { 4 * workers as u64 } else { 1 };
+    let tasks = if sorted.len() > 1 {
+        4 * workers as u64
+    } else {
+        1
+    };
     let cut = |part: u64| ((u128::from(part) << 64) / u128::from(tasks)) as u64;
     let parts = parallel::map(workers, (0..tasks).collect(), |part| {
         let within = |items: &[u64]| {
             let place = |cut| items.partition_point(|&item| item < cut);
-            let end = if part + 1 < tasks { place(cut(part + 1)) } else { items.len() };
+            let end = if part + 1 < tasks {
+                place(cut(part + 1))
+            } else {
+                items.len()
+            };
             place(cut(part))..end
         };
         let mut items = with_room(sorted.iter().map(|s| within(s).len()).sum())?;

@@ -1,0 +1,471 @@
+"""The place of SciPy's interpolators of scattered points taken by delone, in the plane.
+
+`delone.compat.scipy` has these names. Signatures, attributes, shapes and errors are SciPy's. What
+differs:
+
+* At a site the value comes back bit for bit, and on the hull it is never the fill value; a query
+  outside by a rounding error is outside, for there is no tolerance.
+* Only points in the plane; other dimensions are refused by a `DimensionError` that names SciPy.
+* Of equally near sites the one of the smallest row is the nearest.
+* Other norms than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
+  no effect.
+* A triangulation of ``scipy.spatial.Delaunay`` stands for its points.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import delaunay
+from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
+from delone.interpolate import CloughTocher, Linear, Nearest
+from delone.interpolate.values import as_field
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "CloughTocher2DInterpolator",
+    "LinearNDInterpolator",
+    "NearestNDInterpolator",
+    "estimate_gradients_2d_global",
+    "griddata",
+]
+
+# Distances that are compared at a time where points lie on one line.
+_BLOCK = 1 << 22
+
+
+class _Scale:
+    """Points moved and stretched to the unit square, where that is asked for."""
+
+    def __init__(self, points: Floats, wanted: bool) -> None:
+        self.offset = points.mean(axis=0) if wanted else None
+        extent = np.ptp(points, axis=0)
+        self.scale = np.where(extent > 0, extent, 1.0) if wanted else None
+
+    def __call__(self, points: Floats) -> Floats:
+        if self.offset is None or self.scale is None:
+            return points
+        scaled: Floats = (points - self.offset) / self.scale
+        return scaled
+
+
+class _Triangulated:
+    """What the interpolators on triangles share."""
+
+    points: Floats
+    values: NDArray[Any]
+    tri: Any
+    fill_value: Any
+    _interpolator: Linear | CloughTocher
+
+    def _set(self, points: Any, values: ArrayLike, fill_value: Any, rescale: bool) -> None:
+        """Triangulate, and keep what SciPy keeps."""
+        from delone.compat import scipy as drop_in
+
+        self.tri = None
+        if hasattr(points, "simplices"):
+            if rescale:
+                raise InputError(
+                    "Rescaling is not supported when passing a Delaunay triangulation as "
+                    "``points``."
+                )
+            self.tri = points
+            self.points = np.asarray(points.points)
+        else:
+            self.points = _coordinates(points)
+        self._scale = _Scale(self.points, rescale)
+        own = self.tri if isinstance(self.tri, drop_in.Delaunay) else None
+        if own is None:
+            own = drop_in.Delaunay(self._scale(self.points))
+        if self.tri is None:
+            self.tri = own
+        if own.furthest_site:
+            raise InputError("a furthest-site triangulation is not one to interpolate on")
+        self._mesh: delaunay.Delaunay = own._mesh
+        self.values = np.asarray(values)
+        self.is_complex = self.values.dtype.kind == "c"
+        self.fill_value = (complex if self.is_complex else float)(fill_value)
+
+    def __call__(self, *args: ArrayLike) -> NDArray[Any]:
+        """Interpolate at points.
+
+        Parameters
+        ----------
+        *args
+            One array of shape (..., 2), a tuple of two arrays, or the two arrays themselves.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Values; the fill value outside of the hull.
+        """
+        queries = self._scale(_queries(args))
+        found = self._interpolator(queries)
+        if np.isnan(self.fill_value):
+            # Both parts of complex values, as SciPy has them.
+            if self.is_complex:
+                found[self._mesh.find_simplex(queries) < 0] = self.fill_value
+            return found
+        found[self._mesh.find_simplex(queries) < 0] = self.fill_value
+        return found
+
+
+class LinearNDInterpolator(_Triangulated):
+    """Piecewise linear interpolation with the interface of SciPy.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), tuple of two arrays, or Delaunay
+        Sites, or a triangulation of them.
+    values : array_like, shape (npoints, ...)
+        Real or complex values.
+    fill_value : float, optional
+        What there is outside of the hull.
+    rescale : bool, optional
+        Triangulate the points scaled to the unit square.
+
+    Raises
+    ------
+    QhullError
+        The points span no area.
+    ValueError
+        Arrays do not fit; a triangulation is to be rescaled.
+
+    See Also
+    --------
+    delone.interpolate.Linear : Extrapolation, weights, slopes, policies.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import LinearNDInterpolator
+    >>> height = LinearNDInterpolator([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0], fill_value=-1)
+    >>> height([1, 9], [1, 9])
+    array([ 4., -1.])
+    """
+
+    def __init__(
+        self,
+        points: Any,
+        values: ArrayLike,
+        fill_value: Any = np.nan,
+        rescale: bool = False,
+    ) -> None:
+        self._set(points, values, fill_value, rescale)
+        self._interpolator = Linear(self._mesh, values, duplicates="first", nan="propagate")
+
+
+class CloughTocher2DInterpolator(_Triangulated):
+    """Piecewise cubic, smooth interpolation with the interface of SciPy.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), tuple of two arrays, or Delaunay
+        Sites, or a triangulation of them.
+    values : array_like, shape (npoints, ...)
+        Real or complex values.
+    fill_value : float, optional
+        What there is outside of the hull.
+    tol : float, optional
+        Tolerance of the estimation of gradients.
+    maxiter : int, optional
+        Its greatest number of sweeps.
+    rescale : bool, optional
+        Triangulate the points scaled to the unit square.
+
+    Attributes
+    ----------
+    grad : ndarray, shape (npoints, nvalues, 2)
+        Gradients at the sites, which may be changed.
+
+    Raises
+    ------
+    QhullError
+        The points span no area.
+    ValueError
+        Arrays do not fit; a triangulation is to be rescaled.
+
+    See Also
+    --------
+    delone.interpolate.CloughTocher : Extrapolation, weights, derivatives, policies.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.compat.scipy import CloughTocher2DInterpolator
+    >>> points = [(0, 0), (4, 0), (0, 4), (4, 4), (1, 2)]
+    >>> plane = CloughTocher2DInterpolator(points, [0, 4, 8, 12, 5])
+    >>> plane(3, 1).round(4)
+    np.float64(5.0)
+    """
+
+    def __init__(  # noqa: PLR0917 (as in SciPy)
+        self,
+        points: Any,
+        values: ArrayLike,
+        fill_value: Any = np.nan,
+        tol: float = 1e-6,
+        maxiter: int = 400,
+        rescale: bool = False,
+    ) -> None:
+        self._set(points, values, fill_value, rescale)
+        self._interpolator = _GivenGradients(
+            self._mesh, values, tol=tol, maxiter=maxiter, duplicates="first", nan="propagate"
+        )
+        found = self._interpolator.site_gradients()
+        self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))
+
+    def __call__(self, *args: ArrayLike) -> NDArray[Any]:
+        """Interpolate at points; see `LinearNDInterpolator`."""
+        self._interpolator.given = self.grad  # type: ignore[union-attr]
+        return super().__call__(*args)
+
+
+class _GivenGradients(CloughTocher):
+    """Clough-Tocher interpolation from gradients that somebody else may change."""
+
+    given: NDArray[Any] | None = None
+
+    def gradients(self, columns: Floats) -> Floats:
+        """Return the gradients given, those that are estimated where there are none."""
+        if self.given is None:
+            return super().gradients(columns)
+        if self.given.dtype.kind != "c":
+            return np.ascontiguousarray(self.given, dtype=np.float64)
+        parts = np.stack((self.given.real, self.given.imag), axis=2)
+        return np.ascontiguousarray(parts.reshape(len(parts), -1, 2))
+
+
+class NearestNDInterpolator:
+    """Interpolation by the nearest site with the interface of SciPy.
+
+    Parameters
+    ----------
+    x : array_like, shape (npoints, 2), or tuple of two arrays
+        Sites.
+    y : array_like, shape (npoints, ...)
+        Real or complex values.
+    rescale : bool, optional
+        Measure distances between points scaled to the unit square.
+    tree_options : dict, optional
+        Accepted as in SciPy, without effect.
+
+    Raises
+    ------
+    ValueError
+        Arrays do not fit.
+
+    See Also
+    --------
+    delone.interpolate.Nearest : Weights, policies.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import NearestNDInterpolator
+    >>> NearestNDInterpolator([(0, 0), (1, 0), (0, 1)], [10, 20, 30])(0.9, 5.0)
+    array(30.)
+    """
+
+    def __init__(
+        self,
+        x: Any,
+        y: ArrayLike,
+        rescale: bool = False,
+        tree_options: dict[str, Any] | None = None,
+    ) -> None:
+        self.points = _coordinates(x)
+        self.values = np.asarray(y)
+        self._scale = _Scale(self.points, rescale)
+        self._field = as_field(self.values, len(self.points))
+        self._scaled = np.ascontiguousarray(self._scale(self.points))
+        try:
+            mesh = delaunay.Delaunay(self._scaled)
+            self._interpolator: Nearest | None = Nearest(mesh)
+        except DegenerateInputError as error:
+            self._interpolator, self._chain = None, error.chain
+
+    def __call__(
+        self,
+        *args: ArrayLike,
+        eps: float = 0,
+        p: float = 2,
+        distance_upper_bound: float = np.inf,
+        workers: int = 1,
+    ) -> NDArray[Any]:
+        """Return the values of the nearest sites.
+
+        Parameters
+        ----------
+        *args
+            One array of shape (..., 2), a tuple of two arrays, or the two arrays themselves.
+        eps, workers
+            Accepted as in SciPy, without effect.
+        p : float, optional
+            The norm by which distances are measured; others than 2 are left to SciPy.
+        distance_upper_bound : float, optional
+            Sites as far as this or farther do not count.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Values; NaN where no site counts.
+        """
+        queries = self._scale(_queries(args))
+        flat = queries.reshape(-1, 2)
+        rows = self._nearest(flat, p)
+        offset = self._scaled[rows] - flat
+        distance = np.linalg.norm(offset, ord=p, axis=1)
+        # NaN is not below the bound.
+        counts = (rows >= 0) & (distance < distance_upper_bound)
+        found = np.where(counts[:, None], self._field.columns[rows], np.nan)
+        return self._field.shaped(found, queries.shape[:-1])
+
+    def _nearest(self, queries: Floats, p: float) -> NDArray[np.integer]:
+        if p != 2:
+            return self._nearest_by_tree(queries, p)
+        if self._interpolator is not None:
+            return self._interpolator.triangulation.nearest(queries)  # type: ignore[attr-defined]
+        sites = self._scaled[self._chain]
+        found = np.full(len(queries), -1)
+        finite = np.flatnonzero(np.isfinite(queries).all(axis=1))
+        share = max(1, _BLOCK // len(sites))
+        for start in range(0, len(finite), share):
+            some = finite[start : start + share]
+            offset = queries[some, None] - sites
+            found[some] = self._chain[np.hypot(offset[..., 0], offset[..., 1]).argmin(axis=1)]
+        return found
+
+    def _nearest_by_tree(self, queries: Floats, p: float) -> NDArray[np.integer]:
+        try:
+            from scipy.spatial import KDTree
+        except ImportError as error:
+            raise MissingExtraError(
+                "norms other than p=2 need SciPy, which is not installed: pip install scipy",
+                extra="learn",
+            ) from error
+        rows: NDArray[np.integer] = KDTree(self._scaled).query(queries, p=p)[1]
+        return rows
+
+
+def griddata(  # noqa: PLR0917 (as in SciPy)
+    points: Any,
+    values: ArrayLike,
+    xi: Any,
+    method: str = "linear",
+    fill_value: Any = np.nan,
+    rescale: bool = False,
+) -> NDArray[Any]:
+    """Interpolate scattered values in the plane, with the interface of SciPy.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or tuple of two arrays
+        Sites.
+    values : array_like, shape (n, ...)
+        Real or complex values.
+    xi : array_like, shape (..., 2), or tuple of two arrays
+        Where to interpolate.
+    method : {"linear", "nearest", "cubic"}, optional
+        `LinearNDInterpolator`, `NearestNDInterpolator` or `CloughTocher2DInterpolator`.
+    fill_value : float, optional
+        What there is outside of the hull; without effect for ``"nearest"``.
+    rescale : bool, optional
+        Scale the points to the unit square before.
+
+    Returns
+    -------
+    ndarray of float64 or complex128
+        Values.
+
+    Raises
+    ------
+    ValueError
+        The method is unknown; arrays do not fit.
+    DimensionError
+        The points are not in the plane.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import griddata
+    >>> griddata([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0], ([1, 9], [1, 9]), method="nearest")
+    array([1., 5.])
+    """
+    if method == "nearest":
+        return NearestNDInterpolator(points, values, rescale=rescale)(xi)
+    if method == "linear":
+        linear = LinearNDInterpolator(points, values, fill_value=fill_value, rescale=rescale)
+        return linear(xi)
+    if method == "cubic":
+        cubic = CloughTocher2DInterpolator(points, values, fill_value=fill_value, rescale=rescale)
+        return cubic(xi)
+    raise InputError(f"unknown interpolation method {method!r} for points in the plane")
+
+
+def estimate_gradients_2d_global(
+    tri: Any, y: ArrayLike, maxiter: int = 400, tol: float = 1e-6
+) -> NDArray[Any]:
+    """Estimate gradients at the points of a triangulation so that edges bend least.
+
+    Parameters
+    ----------
+    tri : Delaunay
+        A triangulation.
+    y : array_like, shape (npoints, ...)
+        Values.
+    maxiter : int, optional
+        Greatest number of sweeps.
+    tol : float, optional
+        Relative change at which sweeps end.
+
+    Returns
+    -------
+    ndarray of float64 or complex128
+        Of the shape of the values, and 2.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import Delaunay, estimate_gradients_2d_global
+    >>> tri = Delaunay([(0, 0), (1, 0), (0, 1), (1, 1)])
+    >>> estimate_gradients_2d_global(tri, [0.0, 2.0, 3.0, 5.0])[0].round(4)
+    array([2., 3.])
+    """
+    made = CloughTocher2DInterpolator(tri, y, tol=tol, maxiter=maxiter)
+    return made.grad.reshape((*np.shape(y), 2))
+
+
+def _coordinates(points: Any) -> Floats:
+    """Points from an array, or from one array for each coordinate, as SciPy takes them."""
+    from delone.compat import scipy as drop_in
+
+    if isinstance(points, tuple) and points and np.ndim(points[0]) == 1:
+        lengths = {np.shape(part) for part in points}
+        if len(lengths) > 1:
+            raise ShapeError(f"coordinate arrays have different shapes: {sorted(lengths)}")
+        points = np.column_stack(points)
+    shape = np.shape(points)
+    if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
+        raise drop_in.DimensionError(
+            "delone interpolates in the plane; on a line use scipy.interpolate"
+        )
+    return drop_in.as_plane_points(points)
+
+
+def _queries(args: tuple[Any, ...]) -> Floats:
+    """Queries from an array, a tuple of arrays, or several arguments, as SciPy takes them."""
+    parts = args[0] if len(args) == 1 else args
+    if isinstance(parts, tuple):
+        if len(parts) != 2:
+            raise ShapeError(f"queries need 2 coordinates, got {len(parts)}")
+        x, y = np.broadcast_arrays(*parts)
+        return np.stack((x, y), axis=-1).astype(np.float64)
+    xi = np.asarray(parts, dtype=np.float64)
+    if xi.ndim == 1 and xi.size % 2 == 0:
+        return xi.reshape(-1, 2)
+    if xi.ndim == 0 or xi.shape[-1] != 2:
+        raise ShapeError(f"queries must have shape (..., 2), got {xi.shape}")
+    return np.ascontiguousarray(xi)

@@ -1,0 +1,333 @@
+"""The place of ``scipy.spatial.Voronoi`` and ``voronoi_plot_2d`` taken by delone, in the plane.
+
+`delone.compat.scipy` has both by name. What differs from SciPy:
+
+* Sites on one circle share one vertex whatever their coordinates, so that no ridge has length 0, and
+  vertices, ridges and regions come in delone's order.
+* Every distinct point has a region; duplicates share that of their first row, as in SciPy.
+* `add_points` computes the diagram anew.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.errors import ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Voronoi", "voronoi_plot_2d"]
+
+
+class Voronoi:
+    """Voronoi diagram with the interface of ``scipy.spatial.Voronoi``.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2)
+        The sites.
+    furthest_site : bool, optional
+        Whether to compute the furthest-site diagram, in which each cell is nearer to all other
+        sites.
+    incremental : bool, optional
+        Whether `add_points` may be called.
+    qhull_options : str, optional
+        As in SciPy, and as for `delone.compat.scipy.Delaunay`. With ``Qz``, which is in the default
+        ``"Qbb Qc Qz"`` (but not in incremental mode), the first region is the empty one of a point
+        at infinity. Without ``Qc`` a duplicate has the region -1.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, 2)
+        The sites; the array given where it is of this dtype and layout, as in SciPy.
+    vertices : ndarray of float64, shape (nvertices, 2)
+        Vertices, accurate to a few units in the last place.
+    ridge_points : ndarray of int32, shape (nridges, 2)
+        The two sites of each ridge.
+    ridge_vertices : list of list of int
+        The two vertices of each ridge; -1, which comes first, where it is unbounded.
+    ridge_dict : dict
+        The vertices of each ridge by the pair of its sites.
+    regions : list of list of int
+        For each region its vertices, in order around it; -1 where it is unbounded.
+    point_region : ndarray of int64, shape (npoints,)
+        The region of each site.
+    furthest_site : bool
+        As given.
+    ndim, npoints : int
+        Sizes.
+    min_bound, max_bound : ndarray of float64, shape (2,)
+        The least and the greatest coordinates.
+
+    Raises
+    ------
+    QhullError
+        Fewer than three points are distinct, or all lie on one line; a coordinate is infinite; an
+        option is unknown. (`delone.Voronoi` has diagrams of any number of sites.)
+    ValueError
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for another
+        diagram.
+    DimensionError
+        The points have more than two coordinates.
+
+    Notes
+    -----
+    The module's documentation lists what differs from SciPy.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import Voronoi
+    >>> points = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)]
+    >>> vor = Voronoi(points)
+    >>> sorted(vor.vertices.tolist())
+    [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]]
+    >>> len(vor.ridge_points), vor.regions[0], len(vor.regions[vor.point_region[4]])
+    (12, [], 4)
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        furthest_site: bool = False,
+        incremental: bool = False,
+        qhull_options: str | None = None,
+    ) -> None:
+        from delone.compat import scipy
+
+        self.furthest_site = bool(furthest_site)
+        self._open = bool(incremental)
+        if qhull_options is None:
+            qhull_options = "Qc" if self._open else "Qbb Qc Qz"
+        try:
+            self._options = QhullOptions.parse(qhull_options, incremental=self._open)
+        except UnknownOptionError as error:
+            raise scipy.QhullError(str(error)) from error
+        self._set(_plane_points(points))
+
+    def _set(self, points: Floats) -> None:
+        """Compute the diagram; nothing changes where that fails."""
+        from delone.compat import scipy
+
+        mesh = scipy.triangulate(points, self.furthest_site)
+        dual = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
+        self._points, self._mesh, self._dual = points, mesh, dual
+        for name in _FOLLOWING:
+            self.__dict__.pop(name, None)
+        self.ndim, self.npoints = 2, len(points)
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Add points and compute the diagram anew.
+
+        Parameters
+        ----------
+        points : array_like, shape (k, 2)
+            What to append to `points`.
+        restart : bool, optional
+            Accepted as in SciPy. The result is the same.
+
+        Raises
+        ------
+        RuntimeError
+            `incremental` was not set, or `close` has been called.
+        QhullError, ValueError
+            As in the constructor; then nothing has changed.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import Voronoi
+        >>> vor = Voronoi([(0, 0), (2, 0), (0, 2)], incremental=True)
+        >>> vor.add_points([(2, 2)])
+        >>> vor.vertices
+        array([[1., 1.]])
+        """
+        if not self._open:
+            raise RuntimeError("points can be added with incremental=True only, and before close()")
+        self._set(np.concatenate((self._points, _plane_points(points))))
+
+    def close(self) -> None:
+        """End incremental mode; `add_points` is refused from then on."""
+        self._open = False
+
+    @property
+    def points(self) -> Floats:
+        """The sites."""
+        return self._points
+
+    @cached_property
+    def vertices(self) -> Floats:
+        """Vertices."""
+        found: Floats = self._dual["vertices"].copy()
+        return found
+
+    @cached_property
+    def ridge_points(self) -> Indices:
+        """The two sites of each ridge."""
+        found: Indices = self._dual["sites"].copy()
+        return found
+
+    @cached_property
+    def ridge_vertices(self) -> list[list[int]]:
+        """The two vertices of each ridge; -1 where it is unbounded."""
+        found: list[list[int]] = np.maximum(self._dual["ends"], -1).tolist()
+        return found
+
+    @cached_property
+    def ridge_dict(self) -> dict[tuple[int, ...], list[int]]:
+        """The vertices of each ridge by the pair of its sites."""
+        pairs = map(tuple, self.ridge_points.tolist())
+        return dict(zip(pairs, self.ridge_vertices, strict=True))
+
+    @cached_property
+    def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
+        starts = self._dual["starts"].tolist()
+        entries = self._dual["region_vertices"].tolist()
+        cells = [_gaps_once(entries[a:b]) for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        of_point = self._dual["region"].astype(np.int64)
+        infinite = self._options.infinite_point and not self.furthest_site
+        lists: list[list[int]] = [[]] if infinite else []
+        of_point[of_point >= 0] += len(lists)
+        lists += cells
+        # Sites without a cell (inner ones, of a furthest-site diagram) have an empty one each.
+        rows = np.flatnonzero((of_point < 0) & (self._first_rows == np.arange(self.npoints)))
+        of_point[rows] = len(lists) + np.arange(len(rows))
+        lists += [[] for _ in rows]
+        if self._options.coplanar:
+            return lists, of_point[self._first_rows]
+        return lists, of_point
+
+    @cached_property
+    def _first_rows(self) -> NDArray[np.int64]:
+        from delone.triangulation import first_rows
+
+        return first_rows(self._mesh.points)
+
+    @property
+    def regions(self) -> list[list[int]]:
+        """For each region its vertices, -1 where it is unbounded."""
+        return self._regions[0]
+
+    @property
+    def point_region(self) -> NDArray[np.int64]:
+        """The region of each site."""
+        return self._regions[1]
+
+    @cached_property
+    def min_bound(self) -> Floats:
+        """The least coordinates."""
+        return self._mesh.min_bound.copy()
+
+    @cached_property
+    def max_bound(self) -> Floats:
+        """The greatest coordinates."""
+        return self._mesh.max_bound.copy()
+
+
+# What is computed from the diagram on first use.
+_FOLLOWING = [name for name, value in vars(Voronoi).items() if isinstance(value, cached_property)]
+
+
+def _gaps_once(region: list[int]) -> list[int]:
+    """A cell with each run of -1 written once, also where it runs over the end."""
+    return [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0] or region[:1]
+
+
+def _plane_points(points: ArrayLike) -> Floats:
+    from delone.compat import scipy
+
+    return scipy.as_plane_points(points)
+
+
+def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
+    """Draw a Voronoi diagram as SciPy does.
+
+    Parameters
+    ----------
+    vor : Voronoi
+        A diagram; that of SciPy and that of `delone.Voronoi` do as well.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on new axes.
+    **kw
+        ``show_points``, ``show_vertices`` (bool), ``line_colors``, ``line_width``, ``line_alpha``,
+        ``point_size``: as in SciPy.
+
+    Returns
+    -------
+    matplotlib Figure
+        The figure of the axes.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    ValueError
+        The diagram is not in the plane.
+
+    Notes
+    -----
+    Unbounded ridges, dashed, go as far as SciPy draws them: by the longer side of the box of the
+    sites times its aspect ratio, away from the mean of all sites.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> matplotlib.use("Agg")
+    >>> from delone.compat.scipy import Voronoi, voronoi_plot_2d
+    >>> figure = voronoi_plot_2d(Voronoi([(0, 0), (0, 1), (1, 0), (1, 1)]))
+    >>> len(figure.axes[0].collections)
+    2
+    """
+    from delone.io.extras import require
+
+    lines = require("matplotlib.collections", extra="plot", what="drawing")
+    if vor.points.shape[1] != 2:
+        raise ShapeError("the Voronoi diagram is not in the plane")
+    ax = ax or require("matplotlib.pyplot", extra="plot", what="drawing").figure().gca()
+    if kw.get("show_points", True):
+        ax.plot(*vor.points.T, ".", markersize=kw.get("point_size"))
+    if kw.get("show_vertices", True):
+        ax.plot(*vor.vertices.T, "o")
+    look = {
+        "colors": kw.get("line_colors", "k"),
+        "lw": kw.get("line_width", 1.0),
+        "alpha": kw.get("line_alpha", 1.0),
+    }
+    pairs = np.asarray(vor.ridge_vertices).reshape(-1, 2)
+    finite = (pairs >= 0).all(axis=1)
+    inner = [*vor.vertices[pairs[finite]]]
+    ax.add_collection(lines.LineCollection(inner, linestyle="solid", **look))
+    outer = [*_far_segments(vor, pairs)]
+    ax.add_collection(lines.LineCollection(outer, linestyle="dashed", **look))
+    margin = 0.1 * np.ptp(vor.points, axis=0)
+    low, high = vor.points.min(axis=0) - margin, vor.points.max(axis=0) + margin
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    return ax.figure
+
+
+def _far_segments(vor: Any, pairs: Indices) -> Floats:
+    """The unbounded ridges that have a vertex, as far as they are drawn."""
+    rows = np.flatnonzero((pairs < 0).any(axis=1) & (pairs >= 0).any(axis=1))
+    start = vor.vertices[pairs[rows].max(axis=1)]
+    first, second = vor.points[np.asarray(vor.ridge_points)[rows]].swapaxes(0, 1)
+    along = second - first
+    along = along / np.hypot(*along.T)[:, None]
+    normal = np.column_stack((-along[:, 1], along[:, 0]))
+    outward = ((first + second) / 2 - vor.points.mean(axis=0)) * normal
+    sign = np.sign(outward.sum(axis=1))
+    if vor.furthest_site:
+        sign = -sign
+    extent = np.ptp(vor.points, axis=0)
+    with np.errstate(divide="ignore"):
+        reach = extent.max() * abs(extent.max() / extent.min())
+    end = start + sign[:, None] * normal * reach
+    segments: Floats = np.stack((start, end), axis=1)
+    return segments

@@ -1,0 +1,267 @@
+"""Interpolation of what xarray holds (extra ``xarray``): ``import delone.interpolate.accessor``.
+
+The import registers ``.delone`` on DataArray and Dataset. Scattered points are one dimension with
+two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``, ``lat(j,
+i)``). The weights of the target points are computed once; every other dimension (time, level) is a
+field more to which they are applied, chunk by chunk where the data are Dask arrays.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError, MissingExtraError
+from delone.interpolate.methods import interpolator
+from delone.interpolate.raster import raster_nodes
+
+try:
+    import xarray
+except ImportError as error:
+    raise MissingExtraError(
+        "delone.interpolate.accessor needs xarray, which is not installed: "
+        'pip install "delone[xarray]"',
+        extra="xarray",
+    ) from error
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from delone.interpolate.weights import Weights
+
+__all__ = ["ArrayInterpolation", "DatasetInterpolation"]
+
+_NAMES = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("easting", "northing"))
+
+
+@xarray.register_dataarray_accessor("delone")
+class ArrayInterpolation:
+    """Interpolation of one array: ``array.delone``.
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        Values at scattered points.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray
+    >>> import delone.interpolate.accessor
+    >>> stations = xarray.DataArray(
+    ...     [1.0, 5.0, 9.0],
+    ...     dims="station",
+    ...     coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
+    ...     attrs={"units": "m"},
+    ... )
+    >>> found = stations.delone.interp([0, 1], [0, 1, 2])
+    >>> found.dims, found.attrs, found.values[:, 1].tolist()
+    (('y', 'x'), {'units': 'm'}, [2.0, 4.0, 6.0])
+    """
+
+    def __init__(self, array: Any) -> None:
+        self._array = array
+
+    def interp(
+        self,
+        x: Any,
+        y: Any,
+        *,
+        coords: Sequence[str] | None = None,
+        method: str = "linear",
+        **options: Any,
+    ) -> Any:
+        """Interpolate to other points.
+
+        Parameters
+        ----------
+        x, y : array_like or xarray.DataArray
+            Plain arrays of one axis are the nodes of a grid. DataArrays are points, one for each
+            entry of what they broadcast to.
+        coords : pair of str, optional
+            Names of the coordinates of the array; by default x and y, lon and lat, longitude and
+            latitude, or easting and northing.
+        method : str, optional
+            As in `interpolator`.
+        **options
+            As the interpolator takes them: ``extrapolate``, ``respect_constraints``, ``workers``,
+            and so on. NaN among the values propagates unless ``nan="error"`` is given.
+
+        Returns
+        -------
+        xarray.DataArray
+            In place of the dimensions of the points, those of the targets; name, attributes and
+            other dimensions as they were.
+
+        Raises
+        ------
+        InputError
+            The coordinates are not found, or ``nan="drop"`` is asked for, which would need other
+            triangles for each field.
+        """
+        return _interpolated(
+            self._array, _target(x, y, coords, self._array), coords, method, options
+        )
+
+    def grid(
+        self,
+        *,
+        resolution: Any = None,
+        shape: tuple[int, int] | None = None,
+        bounds: Sequence[float] | None = None,
+        coords: Sequence[str] | None = None,
+        method: str = "linear",
+        **options: Any,
+    ) -> Any:
+        """Interpolate to a raster.
+
+        Parameters
+        ----------
+        resolution, shape, bounds
+            As in `delone.interpolate.grid`.
+        coords, method, **options
+            As in `interp`.
+
+        Returns
+        -------
+        xarray.DataArray
+            With the dimensions y and x, or as the coordinates are called, in place of the points.
+        """
+        nodes = _raster(self._array, coords, resolution, shape, bounds)
+        return self.interp(*nodes, coords=coords, method=method, **options)
+
+
+@xarray.register_dataset_accessor("delone")
+class DatasetInterpolation:
+    """Interpolation of all variables of a dataset that have the points: ``dataset.delone``.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Values at scattered points. Variables without these dimensions stay as they are.
+    """
+
+    def __init__(self, dataset: Any) -> None:
+        self._dataset = dataset
+
+    def interp(
+        self,
+        x: Any,
+        y: Any,
+        *,
+        coords: Sequence[str] | None = None,
+        method: str = "linear",
+        **options: Any,
+    ) -> Any:
+        """Interpolate to other points; see `ArrayInterpolation.interp`."""
+        target = _target(x, y, coords, self._dataset)
+        return _interpolated(self._dataset, target, coords, method, options)
+
+    def grid(
+        self,
+        *,
+        resolution: Any = None,
+        shape: tuple[int, int] | None = None,
+        bounds: Sequence[float] | None = None,
+        coords: Sequence[str] | None = None,
+        method: str = "linear",
+        **options: Any,
+    ) -> Any:
+        """Interpolate to a raster; see `ArrayInterpolation.grid`."""
+        nodes = _raster(self._dataset, coords, resolution, shape, bounds)
+        return self.interp(*nodes, coords=coords, method=method, **options)
+
+
+def _coordinates(data: Any, coords: Sequence[str] | None) -> tuple[Any, Any]:
+    """The two coordinates, broadcast against each other."""
+    pairs = _NAMES if coords is None else (tuple(coords),)
+    for pair in pairs:
+        if len(pair) == 2 and all(name in data.coords for name in pair):
+            return tuple(xarray.broadcast(*(data.coords[name] for name in pair)))
+    wanted = ", or ".join(" and ".join(map(str, pair)) for pair in pairs)
+    raise InputError(f"there are no coordinates {wanted}; name two by coords=")
+
+
+def _target(x: Any, y: Any, coords: Sequence[str] | None, data: Any) -> tuple[Any, Any]:
+    """Targets as two arrays of the same dimensions, with coordinates that say where they are."""
+    if isinstance(x, xarray.DataArray) and isinstance(y, xarray.DataArray):
+        return tuple(xarray.broadcast(x, y))
+    nodes = [np.asarray(axis, dtype=np.float64) for axis in (x, y)]
+    if any(axis.ndim != 1 for axis in nodes):
+        raise InputError("x and y are both DataArrays, or both arrays of one axis: nodes of a grid")
+    names = [coordinate.name for coordinate in _coordinates(data, coords)]
+    across, up = (
+        xarray.DataArray(axis, dims=name, coords={name: axis})
+        for axis, name in zip(nodes, names, strict=True)
+    )
+    up, across = xarray.broadcast(up, across)
+    return across, up
+
+
+def _raster(
+    data: Any,
+    coords: Sequence[str] | None,
+    resolution: Any,
+    shape: tuple[int, int] | None,
+    bounds: Sequence[float] | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    places = [np.asarray(part, dtype=np.float64) for part in _coordinates(data, coords)]
+    low, high = ([float(reduce(part)) for part in places] for reduce in (np.nanmin, np.nanmax))
+    return raster_nodes((low, high), resolution=resolution, shape=shape, bounds=bounds)
+
+
+def _interpolated(
+    data: Any,
+    target: tuple[Any, Any],
+    coords: Sequence[str] | None,
+    method: str,
+    options: dict[str, Any],
+) -> Any:
+    if options.get("nan") == "drop":
+        raise InputError("nan='drop' needs other triangles for each field; fill or drop NaN before")
+    places = _coordinates(data, coords)
+    points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
+    queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
+    table = interpolator(method, points, **({"nan": "propagate"} | options)).weights(queries)
+    # Coordinates of the points are not those of the result.
+    dims = places[0].dims
+    gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
+    plain = data.drop_vars(gone)
+    if isinstance(plain, xarray.Dataset):
+        names = [name for name, part in plain.data_vars.items() if set(dims) <= set(part.dims)]
+        found = {name: _applied(plain[name], table, dims, target) for name in names}
+        return plain.drop_vars(names).assign(found)
+    return _applied(plain, table, dims, target)
+
+
+def _applied(array: Any, table: Weights, dims: tuple[Any, ...], target: tuple[Any, Any]) -> Any:
+    across, _ = target
+    kind = np.complex128 if np.issubdtype(array.dtype, np.complexfloating) else np.float64
+    found = xarray.apply_ufunc(
+        _last_axes,
+        array,
+        kwargs={"table": table, "count": len(dims)},
+        input_core_dims=[dims],
+        output_core_dims=[across.dims],
+        exclude_dims=set(dims),
+        dask="parallelized",
+        output_dtypes=[kind],
+        dask_gufunc_kwargs={
+            "output_sizes": dict(zip(across.dims, across.shape, strict=True)),
+            "allow_rechunk": True,
+        },
+        keep_attrs=True,
+    )
+    return found.assign_coords(across.coords)
+
+
+def _last_axes(values: NDArray[Any], table: Weights, count: int) -> NDArray[Any]:
+    """Interpolate along the last axes, which are the points, all other axes being fields."""
+    leading = values.shape[: values.ndim - count]
+    fields = np.moveaxis(values.reshape(*leading, -1), -1, 0)
+    found = table.apply(fields)
+    width = len(table.shape)
+    order = (*range(width, found.ndim), *range(width))
+    return np.ascontiguousarray(found.transpose(order))

@@ -1,0 +1,370 @@
+"""What interpolators share: points or a triangulation, policies for values, queries of any shape.
+
+A subclass says what the interpolant and its derivatives are worth inside (`_derived`), what counts
+beyond the hull (`_terms`), and which sites count at all (`_table`). Everything else is here: the
+mesh, the policies for NaN, duplicates and extrapolation, shapes, complex numbers.
+
+Rows of points come in two kinds: the caller's, and those of the mesh, from which ``nan="drop"`` has
+left some out.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from delone._arrays import as_vectors, as_workers
+from delone.delaunay import Delaunay
+from delone.errors import DtypeError, InputError
+from delone.interpolate.hull import summed
+from delone.interpolate.values import (
+    DUPLICATES,
+    NAN,
+    Field,
+    as_field,
+    chosen,
+    require_finite_values,
+)
+from delone.interpolate.weights import joined
+from delone.triangulation import Triangulation, own_copy
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.interpolate.hull import Terms
+    from delone.interpolate.weights import Table, Weights
+    from delone.location import Location
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.int64]
+
+__all__ = ["Interpolator", "shaped_derivatives"]
+
+_NAMED = 5
+
+
+class Interpolator:
+    """Values between scattered points; the base of the public classes.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or a triangulation
+        Sites. A triangulation of delone is used as it is.
+    values : array_like, shape (n,) or (n, ...), optional
+        Values at the sites.
+    extrapolate, duplicates, nan, respect_constraints, workers
+        As in `Linear`.
+    """
+
+    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "error")
+
+    def __init__(
+        self,
+        points: ArrayLike | Triangulation,
+        values: ArrayLike | None = None,
+        *,
+        extrapolate: str = "nan",
+        duplicates: str = "error",
+        nan: str = "error",
+        respect_constraints: bool = False,
+        workers: int | None = None,
+    ) -> None:
+        self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
+        self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
+        self._nan = chosen("nan", nan, NAN)
+        self._workers = workers
+        self._respect_constraints = bool(respect_constraints)
+        self._cache: dict[str, Any] = {}
+        self._other: Self | None = None
+        as_workers(workers)
+        given = points if isinstance(points, Triangulation) else None
+        self._sites: Floats = points.points if isinstance(points, Triangulation) else _own(points)
+        self._constrained = getattr(given, "constrained", None) is not None
+        field = None if values is None else as_field(values, len(self._sites))
+        self._kept = self._kept_rows(field)
+        self._mesh: Triangulation = self._triangulated() if given is None else given
+        if given is not None and self._kept is not None:
+            self._mesh = self._triangulated()
+        self._field = None if field is None else (field, self.settled(field))
+
+    @property
+    def triangulation(self) -> Triangulation:
+        """The triangulation of the sites; without those that ``nan="drop"`` left out."""
+        return self._mesh
+
+    @property
+    def npoints(self) -> int:
+        """How many sites were given, duplicates and dropped ones included."""
+        return len(self._sites)
+
+    def __call__(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
+        """Interpolate.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Where. NaN gives NaN.
+        values : array_like, shape (n,) or (n, ...), optional
+            Another field on the same sites; by default that of the constructor.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Of the shape of the queries and that of one value.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` or `values` have a wrong shape, or are no numbers.
+        NonFiniteError
+            Values are not finite, and ``nan="error"``.
+        InputError
+            No values are there; duplicates have different ones; a query is outside of the hull, and
+            ``extrapolate="error"``.
+        """
+        interpolator, field, columns = self._with(values)
+        queries = as_vectors(xi, 2, name="xi")
+        found = interpolator._interpolated(queries.reshape(-1, 2), columns)
+        return field.shaped(found, queries.shape[:-1])
+
+    def gradient(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
+        """Return the slope of the interpolant.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Where.
+        values : array_like, shape (n,) or (n, ...), optional
+            Another field on the same sites.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Of the shape of the queries, that of one value, and 2: the derivatives by x and by y.
+            Outside of the hull NaN, or with ``extrapolate="linear"`` the slope with which the
+            interpolant goes on there.
+        """
+        interpolator, field, columns = self._with(values)
+        queries = as_vectors(xi, 2, name="xi")
+        slopes = interpolator._sloped(queries.reshape(-1, 2), columns)
+        return shaped_derivatives(slopes, field, queries.shape[:-1])
+
+    def weights(self, xi: ArrayLike) -> Weights:
+        """Return which sites count at each query, and how much.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Where.
+
+        Returns
+        -------
+        Weights
+            A table that turns any number of fields into interpolated ones by one product each.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
+        InputError
+            A query is outside of the hull, and ``extrapolate="error"``.
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        return self._table(queries.reshape(-1, 2), queries.shape[:-1])
+
+    # What subclasses say.
+
+    def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        """Values (k, c), derivatives (k, c, 2) or second ones (k, c, 3); NaN outside."""
+        raise NotImplementedError
+
+    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+        """What counts a step away from the nearest points of the hull."""
+        raise NotImplementedError
+
+    def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
+        """Weights of the rows that `settled` has."""
+        raise NotImplementedError
+
+    def gradients(self, columns: Floats) -> Floats | None:
+        """Return gradients at the sites, None where the interpolant needs none.
+
+        Parameters
+        ----------
+        columns : ndarray of float64, shape (n, c)
+            Values at the sites, as `settled` returns them.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, c, 2), or None
+            Derivatives by x and y.
+        """
+        return None
+
+    # What they share.
+
+    @property
+    def workers(self) -> int | None:
+        """How many threads may work; None for one each core."""
+        return self._workers
+
+    def settled(self, field: Field) -> Floats:
+        """Return values for the vertices of the mesh, by the policies.
+
+        Parameters
+        ----------
+        field : Field
+            Values in the caller's rows.
+
+        Returns
+        -------
+        ndarray of float64
+            One row for each point of the mesh.
+
+        Raises
+        ------
+        InputError
+            A policy refuses them.
+        """
+        if self._kept is not None:
+            field = field.at(self._kept)
+        if self._nan == "error":
+            require_finite_values(field)
+        return field.merged(self._mesh.duplicate_of, self._duplicates).columns
+
+    def caller_rows(self) -> NDArray[np.int32]:
+        """Return which of the caller's rows stands for each point of the mesh.
+
+        Returns
+        -------
+        ndarray of int32
+            Of points that coincide the first, or the last with ``duplicates="last"``.
+        """
+        rows = np.arange(self._mesh.npoints, dtype=np.int32)
+        if self._duplicates == "last":
+            # Assignments to the same row happen in order, so the last one stays.
+            rows[self._mesh.duplicate_of] = rows.copy()
+        return rows if self._kept is None else self._kept[rows].astype(np.int32)
+
+    def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
+        found = self._derived(queries, columns, 0)
+        if self._extrapolate == "nan":
+            return found
+        rows, place = self._outside(queries, found)
+        if rows.size:
+            terms = self._terms_beyond(queries[rows], place)
+            found[rows] = summed(terms, columns, self.gradients(columns))
+        return found
+
+    def _sloped(self, queries: Floats, columns: Floats) -> Floats:
+        found = self._derived(queries, columns, 1)
+        if self._extrapolate in ("linear", "error"):
+            rows, place = self._outside(queries, found[..., 0])
+            for axis, step in enumerate(np.eye(2)) if rows.size else ():
+                terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
+                found[rows, :, axis] = summed(terms, columns, self.gradients(columns))
+        return found
+
+    def _completed(self, table: Table, queries: Floats, known: Floats) -> Table:
+        """A table of queries inside with what counts outside, where that is asked for."""
+        if self._extrapolate == "nan":
+            return table
+        rows, place = self._outside(queries, known)
+        return joined(table, rows, self._terms_beyond(queries[rows], place))
+
+    def _terms_beyond(self, queries: Floats, place: Location) -> Terms:
+        step = queries - place.nearest
+        if self._extrapolate == "nearest":
+            step = np.zeros_like(step)
+        return self._terms(place, step, True)
+
+    def _outside(self, queries: Floats, found: Floats | None) -> tuple[Rows, Location]:
+        """The finite queries outside of the hull, refused where that is the policy."""
+        suspects = np.arange(len(queries))
+        if found is not None and found.shape[1]:
+            suspects = np.flatnonzero(np.isnan(found[:, 0]))
+        place = self._located(queries[suspects])
+        outside = np.flatnonzero(place.beside >= 0)
+        rows = suspects[outside]
+        if rows.size and self._extrapolate == "error":
+            first = ", ".join(map(str, rows[:_NAMED].tolist()))
+            more = ", ..." if len(rows) > _NAMED else ""
+            raise InputError(
+                f"xi: {len(rows)} of {len(queries)} queries are outside of the hull: rows {first}"
+                f"{more}; choose extrapolate='nan', 'nearest' or 'linear'"
+            )
+        return rows, place.at(outside)
+
+    def _located(self, queries: Floats) -> Location:
+        return self._mesh.locate(queries)
+
+    def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
+        """The interpolator, the field, its settled columns; those of the constructor for None."""
+        if values is None:
+            if self._field is None:
+                raise InputError("there are no values: give them to the constructor or the call")
+            return self, *self._field
+        field = as_field(values, len(self._sites))
+        kept = self._kept_rows(field)
+        if self._nan != "drop" or _same(kept, self._kept):
+            return self, field, self.settled(field)
+        other = self._other
+        if other is None or not _same(kept, other._kept):
+            other = copy.copy(self)
+            other._kept, other._cache, other._other, other._field = kept, {}, None, None
+            other._mesh = other._triangulated()
+            self._other = other
+        return other, field, other.settled(field)
+
+    def _kept_rows(self, field: Field | None) -> Rows | None:
+        if self._nan != "drop" or field is None or not (dropped := field.not_finite).size:
+            return None
+        if self._constrained:
+            raise InputError("nan='drop' would take vertices out of a constrained triangulation")
+        return np.delete(np.arange(len(field)), dropped)
+
+    def _triangulated(self) -> Delaunay:
+        sites = self._sites if self._kept is None else self._sites[self._kept]
+        return Delaunay(sites, workers=self._workers)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Indices over triangles are not to be written down; they are made again.
+        return self.__dict__ | {"_cache": {}, "_other": None}
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} on {self._mesh!r}>"
+
+
+def _own(points: ArrayLike) -> Floats:
+    if hasattr(points, "simplices"):
+        raise DtypeError(f"{type(points).__name__} is no triangulation of delone; pass its points")
+    return own_copy(points)
+
+
+def _same(a: Rows | None, b: Rows | None) -> bool:
+    return (a is b) if a is None or b is None else np.array_equal(a, b)
+
+
+def shaped_derivatives(derivatives: Floats, field: Field, leading: tuple[int, ...]) -> NDArray[Any]:
+    """Return derivatives of real columns in the shape and kind of the values.
+
+    Parameters
+    ----------
+    derivatives : ndarray of float64, shape (k, c, d)
+        Derivatives of each column.
+    field : Field
+        The values.
+    leading : tuple of int
+        Shape of the queries.
+
+    Returns
+    -------
+    ndarray of float64 or complex128
+        Of the shape of the queries, that of one value, and d.
+    """
+    found: NDArray[Any] = derivatives
+    if field.is_complex:
+        found = found[:, 0::2] + 1j * found[:, 1::2]
+    return found.reshape(leading + field.trailing + derivatives.shape[2:])

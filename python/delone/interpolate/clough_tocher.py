@@ -1,0 +1,128 @@
+"""Clough-Tocher: on each triangle three cubics that meet smoothly, with each other and beyond.
+
+The scheme is the reduced one: the derivative across an edge is linear along it, in the direction
+that joins the centroids of its two triangles (P. Alfeld, "A trivariate Clough-Tocher scheme for
+tetrahedral data", 1984; G. Farin, "Triangular Bernstein-Bézier patches", 1986). Gradients at the
+sites minimise the curvature along the edges (G. M. Nielson, "A method for interpolating scattered
+data based upon a minimum norm network", 1983) or come from a least-squares quadric.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.interpolate.smooth import Smooth
+from delone.interpolate.weights import Weights
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.triangulation import Triangulation
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["CloughTocher"]
+
+
+class CloughTocher(Smooth):
+    """Piecewise cubic interpolation with continuous first derivatives.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or a triangulation
+        Sites.
+    values : array_like, shape (n,) or (n, ...), optional
+        Real or complex values at the sites. They may be left out where calls bring theirs.
+    gradients : {"global", "local"}, optional
+        How gradients at the sites are estimated: so that the curvature along all edges together is
+        least, as SciPy does; or at each site by the quadric through it that fits its neighbours and
+        theirs best, nearer ones counting more.
+    tol : float, optional
+        Relative change at which the global estimation ends.
+    maxiter : int, optional
+        Number of sweeps after which it ends in any case, with a `GradientWarning`.
+    extrapolate : {"nan", "nearest", "linear", "error"}, optional
+        What there is outside of the hull: NaN; the value at the nearest point of the hull; from
+        there on, along the hull as it goes and across it by the gradients of its sites; an error.
+    duplicates, nan : str, optional
+        As in `Linear`.
+    respect_constraints : bool, optional
+        On a constrained triangulation: the surface may break along constraints, and nothing of one
+        side shows on the other but the values on the constraint.
+    workers : int, optional
+        Number of threads; by default one for each core. The answer is the same.
+
+    Raises
+    ------
+    InputError, NonFiniteError, DegenerateInputError, ShapeError, DtypeError
+        As in `Linear`.
+
+    Notes
+    -----
+    With local gradients linear and quadratic functions are reproduced up to rounding, with global
+    ones linear functions up to `tol`. Local gradients take O(n), each sweep of the global
+    estimation as well; sweeps are few where the sites are spread evenly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.interpolate import CloughTocher
+    >>> x, y = np.random.default_rng(3).random((2, 200))
+    >>> bowl = CloughTocher(np.column_stack((x, y)), x**2 + y**2, gradients="local")
+    >>> bowl((0.5, 0.5)).round(9), bowl.gradient((0.5, 0.5)).round(9)
+    (np.float64(0.5), array([1., 1.]))
+    >>> bowl.hessian((0.5, 0.5)).round(6) + 0.0
+    array([[2., 0.],
+           [0., 2.]])
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike | Triangulation,
+        values: ArrayLike | None = None,
+        *,
+        gradients: str = "global",
+        tol: float = 1e-6,
+        maxiter: int = 400,
+        extrapolate: str = "nan",
+        duplicates: str = "error",
+        nan: str = "error",
+        respect_constraints: bool = False,
+        workers: int | None = None,
+    ) -> None:
+        super().__init__(
+            points,
+            values,
+            gradients=gradients,
+            tol=tol,
+            maxiter=maxiter,
+            extrapolate=extrapolate,
+            duplicates=duplicates,
+            nan=nan,
+            respect_constraints=respect_constraints,
+            workers=workers,
+        )
+
+    def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        sheet = self._sheet
+        return sheet.locator.clough_tocher(
+            columns,
+            self.gradients(columns),
+            queries,
+            sheet.barrier,
+            order,
+            as_workers(self._workers),
+        )
+
+    def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
+        sheet = self._sheet
+        triangle, weights, slopes = sheet.locator.clough_tocher_weights(
+            queries, sheet.barrier, as_workers(self._workers)
+        )
+        counts = (triangle >= 0)[:, None] & ((weights != 0) | (slopes != 0).any(axis=2))
+        indptr = np.concatenate(([0], np.cumsum(counts.sum(axis=1))))
+        table = (indptr, sheet.simplices[triangle][counts], weights[counts], slopes[counts])
+        return Weights(*self._completed(table, queries, weights), shape, self)

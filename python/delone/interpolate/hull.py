@@ -1,0 +1,150 @@
+"""Beyond the hull: what counts at the nearest point of the boundary, and a step away from it.
+
+On a boundary edge the interpolants here depend on the two ends alone, linearly or (the smooth ones)
+as the cubic with their values and slopes. So they are evaluated there without asking on which side
+of the edge its rounded point lies.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from delone import _core
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.location import Location
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Terms", "edge_terms", "plane_gradients", "summed"]
+
+
+class Terms(NamedTuple):
+    """Vertices, their weights, and those of their gradients, as many for each query.
+
+    Parameters
+    ----------
+    rows : ndarray of int32, shape (k, v)
+        Vertices.
+    weights : ndarray of float64, shape (k, v)
+        Weights of their values.
+    slopes : ndarray of float64, shape (k, v, 2), or None
+        Weights of their gradients.
+    """
+
+    rows: Indices
+    weights: Floats
+    slopes: Floats | None
+
+
+def edge_terms(
+    points: Floats, place: Location, step: Floats, *, cubic: bool, base: bool = True
+) -> Terms:
+    """Return the terms of an interpolant on the boundary, and of how it goes on from there.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    place : Location
+        Queries outside, flat.
+    step : ndarray of float64, shape (k, 2)
+        How far to go from the nearest points of the boundary.
+    cubic : bool
+        Whether the interpolant is cubic on the boundary, by values and gradients of the ends;
+        otherwise it is linear.
+    base : bool, optional
+        Count the value at the nearest point; otherwise only what the step adds.
+
+    Returns
+    -------
+    Terms
+        For the ends of the boundary edges; without slopes where nothing goes by gradients.
+
+    Notes
+    -----
+    Along the edge the step goes by the interpolant's own derivative, across it by the gradients of
+    the ends, linearly from one to the other. The triangle at the boundary is not asked: those are
+    often so thin that their planes say nothing.
+    """
+    u, v = place.edge.T
+    s = place.along
+    edge = points[v] - points[u]
+    normal = np.column_stack((-edge[:, 1], edge[:, 0]))
+    with np.errstate(all="ignore"):
+        squared = (edge * edge).sum(axis=1)
+        ahead, aside = (step * edge).sum(axis=1) / squared, (step * normal).sum(axis=1) / squared
+    if not cubic:
+        weights = np.stack((-ahead, ahead), axis=1)
+        if base:
+            weights += np.stack((1 - s, s), axis=1)
+        if not step.any():
+            return Terms(place.edge, weights, None)
+        tangents = np.zeros_like(weights)
+    else:
+        bump = 6 * s * (1 - s) * ahead
+        weights = np.stack((-bump, bump), axis=1)
+        tangents = np.stack((ahead * (1 - s) * (1 - 3 * s), ahead * s * (3 * s - 2)), axis=1)
+        if base:
+            weights += np.stack(((1 - s) ** 2 * (1 + 2 * s), s**2 * (3 - 2 * s)), axis=1)
+            tangents += np.stack((s * (1 - s) ** 2, -(s**2) * (1 - s)), axis=1)
+    normals = np.stack((aside * (1 - s), aside * s), axis=1)
+    slopes = tangents[..., None] * edge[:, None] + normals[..., None] * normal[:, None]
+    return Terms(place.edge, weights, slopes)
+
+
+def plane_gradients(
+    points: Floats, neighborhood: tuple[Indices, Indices], columns: Floats, workers: int
+) -> Floats:
+    """Return the slopes of the planes through points that fit their neighbours best.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    neighborhood : tuple of ndarray of int32
+        Neighbours of vertices as compressed rows (indptr, indices).
+    columns : ndarray of float64, shape (n, c)
+        Values at the vertices.
+    workers : int
+        Number of threads.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, c, 2)
+        Derivatives by x and y.
+    """
+    return _core.gradients_local2(points, *neighborhood, columns, 1, workers)
+
+
+def summed(terms: Terms, columns: Floats, gradients: Floats | None) -> Floats:
+    """Return the sums of terms.
+
+    Parameters
+    ----------
+    terms : Terms
+        Which vertices count, and how much.
+    columns : ndarray of float64, shape (n, c)
+        Values at the vertices.
+    gradients : ndarray of float64, shape (n, c, 2), or None
+        Gradients at the vertices.
+
+    Returns
+    -------
+    ndarray of float64, shape (k, c)
+        The sums. What has no weight is not looked at, NaN and the sign of zero included.
+    """
+    found = np.full((len(terms.rows), columns.shape[1]), -0.0)
+    for k in range(terms.rows.shape[1]):
+        rows, weight = terms.rows[:, k], terms.weights[:, k, None]
+        found += np.where(weight == 0, -0.0, weight * columns[rows])
+        if terms.slopes is not None and gradients is not None:
+            slope = terms.slopes[:, k]
+            rise = np.einsum("kcj,kj->kc", gradients[rows], slope)
+            found += np.where((slope == 0).all(axis=1)[:, None], -0.0, rise)
+    return found

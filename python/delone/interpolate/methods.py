@@ -1,0 +1,71 @@
+"""Interpolators by name, for rasters, cross-validation, the command and other libraries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from delone.interpolate.clough_tocher import CloughTocher
+from delone.interpolate.linear import Linear
+from delone.interpolate.natural import NaturalNeighbor
+from delone.interpolate.nearest import Nearest
+from delone.interpolate.values import chosen
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from delone.interpolate.base import Interpolator
+    from delone.triangulation import Triangulation
+
+__all__ = ["METHODS", "interpolator"]
+
+METHODS: Mapping[str, tuple[type[Interpolator], dict[str, Any]]] = {
+    "linear": (Linear, {}),
+    "nearest": (Nearest, {}),
+    "clough-tocher": (CloughTocher, {}),
+    "sibson": (NaturalNeighbor, {"kind": "sibson"}),
+    "laplace": (NaturalNeighbor, {"kind": "laplace"}),
+    "sibson1": (NaturalNeighbor, {"kind": "sibson1"}),
+    "farin": (NaturalNeighbor, {"kind": "farin"}),
+}
+
+
+def interpolator(
+    method: str,
+    points: ArrayLike | Triangulation,
+    values: ArrayLike | None = None,
+    **options: Any,
+) -> Interpolator:
+    """Return the interpolator of a name.
+
+    Parameters
+    ----------
+    method : str
+        ``"linear"``, ``"nearest"``, ``"clough-tocher"``, ``"sibson"``, ``"laplace"``,
+        ``"sibson1"`` or ``"farin"``.
+    points : array_like, shape (n, 2), or a triangulation
+        Sites.
+    values : array_like, shape (n,) or (n, ...), optional
+        Values at the sites.
+    **options
+        As the class takes them.
+
+    Returns
+    -------
+    Interpolator
+        Of the class `Linear`, `Nearest`, `CloughTocher` or `NaturalNeighbor`.
+
+    Raises
+    ------
+    InputError
+        There is no such method; and what the class raises.
+
+    Examples
+    --------
+    >>> from delone.interpolate import interpolator
+    >>> interpolator("nearest", [(0, 0), (1, 0), (0, 1)], [1, 2, 3])((2, 0))
+    array(2.)
+    """
+    kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
+    return kind(points, values, **fixed, **options)

@@ -1,0 +1,163 @@
+"""Natural neighbours: a query counts its neighbours by what its Voronoi cell would take of theirs.
+
+Sibson's weights are areas (R. Sibson, "A vector identity for the Dirichlet tessellation", 1980),
+Laplace's are lengths over distances (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links
+and plaquettes in a random lattice", 1982). Sibson's C1 interpolant ("A brief description of natural
+neighbour interpolation", 1981) and Farin's ("Surfaces over Dirichlet tessellations", 1990) add
+gradients at the sites.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.delaunay import Delaunay
+from delone.errors import InputError
+from delone.interpolate.hull import Terms, edge_terms, plane_gradients
+from delone.interpolate.smooth import Smooth
+from delone.interpolate.values import chosen
+from delone.interpolate.weights import Weights
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.location import Location
+    from delone.triangulation import Triangulation
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["KINDS", "NaturalNeighbor"]
+
+KINDS = ("sibson", "laplace", "sibson1", "farin")
+_WITH_GRADIENTS = ("sibson1", "farin")
+
+
+class NaturalNeighbor(Smooth):
+    """Interpolation from natural neighbours, smooth but at the sites, or there as well.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or a triangulation
+        Sites. A constrained triangulation needs ``respect_constraints=True``.
+    values : array_like, shape (n,) or (n, ...), optional
+        Real or complex values at the sites. They may be left out where calls bring theirs.
+    kind : {"sibson", "laplace", "sibson1", "farin"}, optional
+        Weights by area, smooth but at the sites; by length, continuous and faster; Sibson's and
+        Farin's interpolants from values and gradients, smooth everywhere.
+    gradients : {"local", "global"}, optional
+        How ``"sibson1"`` and ``"farin"`` get the gradients at the sites; as in `CloughTocher`.
+    tol, maxiter : optional
+        As in `CloughTocher`.
+    extrapolate : {"nan", "nearest", "linear", "error"}, optional
+        What there is outside of the hull: NaN; the value at the nearest point of the hull; from
+        there on, as in `Linear`, or with gradients by these; an error.
+    duplicates, nan : str, optional
+        As in `Linear`.
+    respect_constraints : bool, optional
+        On a constrained triangulation: neighbours are those that are seen past no constraint.
+    workers : int, optional
+        Number of threads; by default one for each core. The answer is the same.
+
+    Raises
+    ------
+    InputError, NonFiniteError, DegenerateInputError, ShapeError, DtypeError
+        As in `Linear`.
+
+    Notes
+    -----
+    Weights of ``"sibson"`` and ``"laplace"`` are not negative, sum to 1 and have the query as their
+    mean, so that linear functions are reproduced up to rounding; on an edge of the hull the
+    interpolant is linear between its ends. ``"farin"`` with local gradients reproduces quadratic
+    functions, ``"sibson1"`` those that are round. Each query takes time in the number of its
+    neighbours, about six. At a site the derivatives of ``"sibson"`` and ``"laplace"`` do not exist
+    and are NaN.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.interpolate import NaturalNeighbor
+    >>> sites = np.array([(0, 0), (4, 0), (4, 4), (0, 4), (2, 3)])
+    >>> area = NaturalNeighbor(sites, [0.0, 4.0, 8.0, 4.0, 5.0])
+    >>> area([(2, 1), (2, 3), (3, 0)]).round(12)
+    array([3., 5., 3.])
+    >>> table = area.weights((2, 1))
+    >>> (table.weights @ sites[table.indices]).round(12)
+    array([2., 1.])
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike | Triangulation,
+        values: ArrayLike | None = None,
+        *,
+        kind: str = "sibson",
+        gradients: str = "local",
+        tol: float = 1e-6,
+        maxiter: int = 400,
+        extrapolate: str = "nan",
+        duplicates: str = "error",
+        nan: str = "error",
+        respect_constraints: bool = False,
+        workers: int | None = None,
+    ) -> None:
+        self._kind = chosen("kind", kind, KINDS)
+        super().__init__(
+            points,
+            values,
+            gradients=gradients,
+            tol=tol,
+            maxiter=maxiter,
+            extrapolate=extrapolate,
+            duplicates=duplicates,
+            nan=nan,
+            respect_constraints=respect_constraints,
+            workers=workers,
+        )
+        barred = self._respect_constraints and self._constrained
+        if not (barred or isinstance(self._mesh, Delaunay)):
+            raise InputError(
+                "natural neighbours are those of a Delaunay triangulation; on a constrained one "
+                "choose respect_constraints=True, or pass its points"
+            )
+
+    @property
+    def kind(self) -> str:
+        """Which weights are used."""
+        return self._kind
+
+    def gradients(self, columns: Floats) -> Floats | None:  # type: ignore[override]
+        """Return gradients at the sites, None where the kind needs none."""
+        if self._kind in _WITH_GRADIENTS:
+            return super().gradients(columns)
+        if self._extrapolate != "linear":
+            return None
+        threads = as_workers(self._workers)
+        return plane_gradients(self._sheet.points, self._around(), columns, threads)
+
+    def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        sheet = self._sheet
+        return sheet.locator.natural_values(
+            self._kind,
+            columns,
+            self.gradients(columns) if self._kind in _WITH_GRADIENTS else None,
+            queries,
+            sheet.barrier,
+            order,
+            as_workers(self._workers),
+        )
+
+    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+        cubic = self._kind in _WITH_GRADIENTS
+        return edge_terms(self._sheet.points, place, step, cubic=cubic, base=base)
+
+    def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
+        sheet = self._sheet
+        *table, triangle = sheet.locator.natural(
+            self._kind, queries, sheet.barrier, as_workers(self._workers)
+        )
+        inner = (table[0], table[1], table[2], table[3])
+        known = np.where(triangle >= 0, 0.0, np.nan)[:, None]
+        return Weights(*self._completed(inner, queries, known), shape, self)

@@ -1,0 +1,149 @@
+"""Interpolation by the nearest site: one value for each cell of the Voronoi diagram."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.delaunay import Delaunay
+from delone.interpolate.base import Interpolator
+from delone.interpolate.weights import Weights, rectangular
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.triangulation import Triangulation
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Nearest"]
+
+
+class Nearest(Interpolator):
+    """The value of the nearest site.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or a triangulation
+        Sites.
+    values : array_like, shape (n,) or (n, ...), optional
+        Real or complex values at the sites. They may be left out where calls bring theirs.
+    extrapolate : {"nearest", "nan", "error"}, optional
+        What there is outside of the hull: the value of the nearest site there, too; NaN; an error.
+    duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
+        Which value a point has that comes several times with different ones.
+    nan : {"error", "drop", "propagate"}, optional
+        What becomes of sites whose value is NaN or infinite; as in `Linear`.
+    respect_constraints : bool, optional
+        On a constrained triangulation: the nearest site that is seen from the query, past no
+        constraint.
+    workers : int, optional
+        Number of threads; by default one for each core. The answer is the same.
+
+    Raises
+    ------
+    InputError, NonFiniteError, DegenerateInputError, ShapeError, DtypeError
+        As in `Linear`.
+
+    Notes
+    -----
+    Exact: distances are compared by predicates, and of equally near sites the smallest row counts.
+    With constraints respected, sites are compared by rounded distances among the neighbours that
+    the query would have as a vertex; the nearest visible one is always among them.
+
+    Examples
+    --------
+    >>> from delone.interpolate import Nearest
+    >>> kind = Nearest([(0, 0), (1, 0), (0, 1)], [10, 20, 30])
+    >>> kind([(0.9, 0.2), (0.1, 5), (float("nan"), 0)])
+    array([20., 30., nan])
+    """
+
+    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nearest", "nan", "error")
+
+    def __init__(
+        self,
+        points: ArrayLike | Triangulation,
+        values: ArrayLike | None = None,
+        *,
+        extrapolate: str = "nearest",
+        duplicates: str = "error",
+        nan: str = "error",
+        respect_constraints: bool = False,
+        workers: int | None = None,
+    ) -> None:
+        super().__init__(
+            points,
+            values,
+            extrapolate=extrapolate,
+            duplicates=duplicates,
+            nan=nan,
+            respect_constraints=respect_constraints,
+            workers=workers,
+        )
+
+    def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        rows = self._rows(queries)
+        known = rows >= 0
+        if order:
+            found = np.full((len(rows), columns.shape[1], 2), np.nan)
+            found[known] = 0.0
+            return found
+        return np.where(known[:, None], columns[rows], np.nan)
+
+    def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
+        return self._derived(queries, columns, 0)
+
+    def _sloped(self, queries: Floats, columns: Floats) -> Floats:
+        return self._derived(queries, columns, 1)
+
+    def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
+        rows = self._rows(queries)[:, None]
+        table = rectangular(rows, np.where(rows >= 0, 1.0, np.nan))
+        return Weights(*table, shape, self)
+
+    def _rows(self, queries: Floats) -> Indices:
+        """The site of each query, -1 where there is none."""
+        if self._respect_constraints and self._constrained:
+            return self._seen(queries)
+        rows = self._open._locator.nearest(queries, as_workers(self._workers))
+        if self._extrapolate == "nearest":
+            return rows
+        place = self._mesh.locate(queries)
+        if self._extrapolate == "error":
+            self._outside(queries, None)
+        return np.where(place.simplex >= 0, rows, np.int32(-1))
+
+    @property
+    def _open(self) -> Delaunay:
+        """A Delaunay triangulation of the sites."""
+        if isinstance(self._mesh, Delaunay):
+            return self._mesh
+        if "open" not in self._cache:
+            self._cache["open"] = Delaunay(self._mesh.points, workers=self._workers)
+        mesh: Delaunay = self._cache["open"]
+        return mesh
+
+    def _seen(self, queries: Floats) -> Indices:
+        """The nearest of the neighbours that queries would have in the constrained mesh."""
+        mesh = self._mesh
+        barrier = mesh.constrained  # type: ignore[attr-defined]
+        indptr, rows, _, _, _ = mesh._locator.natural(
+            "laplace", queries, barrier, as_workers(self._workers)
+        )
+        found = np.full(len(queries), -1, dtype=np.int32)
+        count = np.diff(indptr)
+        some = np.flatnonzero(count)
+        if some.size:
+            owner = np.repeat(np.arange(len(queries)), count)
+            distance = np.hypot(*(mesh.points[rows] - queries[owner]).T)
+            order = np.lexsort((rows, distance, owner))
+            found[some] = rows[order[indptr[some]]]
+        if self._extrapolate != "nan":
+            outside, place = self._outside(queries, None)
+            end = np.where(place.along <= 0.5, place.edge[:, 0], place.edge[:, 1])
+            found[outside] = end
+        return found

@@ -1,0 +1,283 @@
+"""Rasters: an interpolant on the nodes of a regular grid.
+
+A node is the centre of a cell; rows go from the lowest to the highest y. Nodes are gone through in
+blocks of rows, so that beyond the result little memory is needed; the result itself is estimated
+before anything is computed.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_count
+from delone.errors import InputError, ShapeError
+from delone.interpolate.base import Interpolator
+from delone.interpolate.methods import interpolator
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.triangulation import Triangulation
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Grid", "grid", "raster_nodes"]
+
+# Queries at a time: few enough for their coordinates and weights to stay in the cache.
+_BLOCK = 1 << 18
+# Beside the result: a block of queries, and room for whoever looks at the result.
+_SPARE = 1 << 26
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Values on the nodes of a regular grid.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows, columns) or (rows, columns, ...)
+        Values; NaN where there is none.
+    x : ndarray of float64, shape (columns,)
+        Abscissas, ascending.
+    y : ndarray of float64, shape (rows,)
+        Ordinates, ascending.
+
+    Examples
+    --------
+    >>> from delone.interpolate import grid
+    >>> found = grid([(0, 0), (4, 0), (4, 4), (0, 4)], [0.0, 4.0, 4.0, 0.0], resolution=2)
+    >>> found.values
+    array([[1., 3.],
+           [1., 3.]])
+    >>> found.extent
+    (0.0, 4.0, 0.0, 4.0)
+    """
+
+    values: NDArray[Any]
+    x: Floats
+    y: Floats
+
+    @property
+    def cell(self) -> tuple[float, float]:
+        """Width and height of a cell; 0 where there is but one."""
+        return _step(self.x), _step(self.y)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top of the outermost cells, as matplotlib's imshow takes them."""
+        half_x, half_y = (side / 2 for side in self.cell)
+        x, y = self.x, self.y
+        return (
+            float(x[0] - half_x),
+            float(x[-1] + half_x),
+            float(y[0] - half_y),
+            float(y[-1] + half_y),
+        )
+
+
+def grid(
+    points: ArrayLike | Triangulation | Interpolator,
+    values: ArrayLike | None = None,
+    *,
+    resolution: float | tuple[float, float] | None = None,
+    shape: tuple[int, int] | None = None,
+    x: ArrayLike | None = None,
+    y: ArrayLike | None = None,
+    bounds: Sequence[float] | None = None,
+    method: str = "linear",
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Grid:
+    """Interpolate scattered values to a raster.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), a triangulation, or an interpolator
+        Sites, or what has been made of them.
+    values : array_like, shape (n,) or (n, ...), optional
+        Values at the sites; by default those of the interpolator.
+    resolution : float or pair of float, optional
+        Width and height of a cell, in the units of the points.
+    shape : pair of int, optional
+        Numbers of columns and of rows, in place of `resolution`.
+    x, y : array_like, shape (columns,) and (rows,), optional
+        The nodes themselves, ascending, in place of `resolution`.
+    bounds : sequence of four floats, optional
+        Left, bottom, right and top of the raster; by default the box of the points.
+    method : str, optional
+        As in `interpolator`; not together with an interpolator.
+    progress : callable, optional
+        Is told from time to time which share of the nodes is done, from 0 to 1.
+    **options
+        As the interpolator takes them: ``extrapolate``, ``duplicates``, ``nan``, ``workers``.
+
+    Returns
+    -------
+    Grid
+        Values and nodes.
+
+    Raises
+    ------
+    InputError
+        Not exactly one of `resolution`, `shape` and nodes is given, or they are no raster.
+    MemoryError
+        The result would not fit into the memory that is free; raised before anything is computed.
+
+    Notes
+    -----
+    A box that is no whole number of cells wide is filled up to the right and to the top.
+
+    Examples
+    --------
+    >>> from delone.interpolate import grid
+    >>> ramp = grid([(0, 0), (4, 0), (0, 4)], [0.0, 4.0, 4.0], x=[0, 1, 2], y=[0, 2])
+    >>> ramp.values
+    array([[0., 1., 2.],
+           [2., 3., 4.]])
+    """
+    if isinstance(points, Interpolator):
+        if options or method != "linear":
+            raise InputError(
+                "the interpolator is made already: no method and no options of its own"
+            )
+        made = points
+    else:
+        made = interpolator(method, points, values, **options)
+        values = None
+    field, columns = made._with(values)[1:]
+    nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
+    _require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
+    found = np.empty((len(nodes_y), len(nodes_x), *field.trailing), _dtype(field.is_complex))
+    rows = max(1, _BLOCK // len(nodes_x))
+    for start in range(0, len(nodes_y), rows):
+        some = nodes_y[start : start + rows]
+        queries = np.stack(np.meshgrid(nodes_x, some), axis=-1)
+        found[start : start + rows] = made(queries, values=values)
+        if progress is not None:
+            progress(min(1.0, (start + rows) / len(nodes_y)))
+    return Grid(found, nodes_x, nodes_y)
+
+
+def _nodes(  # noqa: PLR0917
+    made: Interpolator,
+    resolution: float | tuple[float, float] | None,
+    shape: tuple[int, int] | None,
+    x: ArrayLike | None,
+    y: ArrayLike | None,
+    bounds: Sequence[float] | None,
+) -> tuple[Floats, Floats]:
+    if x is None and y is None:
+        mesh = made.triangulation
+        box = mesh.min_bound.tolist(), mesh.max_bound.tolist()
+        return raster_nodes(box, resolution=resolution, shape=shape, bounds=bounds)
+    if x is None or y is None or not (resolution is None and shape is None and bounds is None):
+        raise InputError("nodes are both x and y, without resolution, shape or bounds")
+    return _ascending(x, "x"), _ascending(y, "y")
+
+
+def raster_nodes(
+    box: tuple[Sequence[float], Sequence[float]],
+    *,
+    resolution: float | tuple[float, float] | None = None,
+    shape: tuple[int, int] | None = None,
+    bounds: Sequence[float] | None = None,
+) -> tuple[Floats, Floats]:
+    """Return the nodes of a raster, the centres of its cells.
+
+    Parameters
+    ----------
+    box : tuple of two points
+        Least and greatest coordinates, for the lack of bounds.
+    resolution, shape, bounds
+        As in `grid`.
+
+    Returns
+    -------
+    x, y : ndarray of float64, shape (columns,) and (rows,)
+        The nodes, ascending.
+
+    Raises
+    ------
+    InputError, MemoryError
+        As in `grid`.
+    """
+    if (resolution is None) == (shape is None):
+        raise InputError("give one of resolution, shape, or x and y")
+    low, high = box if bounds is None else _bounded(bounds)
+    if shape is not None:
+        counts = [as_count(count, name="shape") for count in shape]
+        if len(counts) != 2 or min(counts) < 1:
+            raise InputError(f"shape must be two numbers of at least 1, got {shape!r}")
+        cells = [(high[k] - low[k]) / counts[k] for k in range(2)]
+    else:
+        cells = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
+        if not all(0 < cell < math.inf for cell in cells):
+            raise InputError(f"resolution must be above 0, got {resolution!r}")
+        counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
+    _require_memory(counts[0], counts[1], 1)
+    x, y = (low[k] + cells[k] * (np.arange(counts[k]) + 0.5) for k in range(2))
+    return x, y
+
+
+def _cells(length: float, cell: float) -> int:
+    """How many cells cover a length; a rounding error more does not ask for another one."""
+    count = length / cell
+    if not math.isfinite(count):
+        raise InputError(f"cells of {cell} are too small for a box of {length}")
+    return round(count) if abs(count - round(count)) < 1e-9 * count else math.ceil(count)
+
+
+def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
+    box = [float(bound) for bound in bounds]
+    if len(box) != 4 or not (box[0] < box[2] and box[1] < box[3] and np.isfinite(box).all()):
+        raise InputError(f"bounds must be left, bottom, right, top; got {bounds!r}")
+    return box[:2], box[2:]
+
+
+def _ascending(nodes: ArrayLike, name: str) -> Floats:
+    array = np.array(nodes, dtype=np.float64)
+    if array.ndim != 1 or not len(array):
+        raise ShapeError(f"{name} must have shape (k,) with k of at least 1, got {array.shape}")
+    if not np.isfinite(array).all() or not (np.diff(array) > 0).all():
+        raise InputError(f"{name} must be finite and ascending")
+    return array
+
+
+def _require_memory(columns: int, rows: int, values: int) -> None:
+    needed = 8 * columns * rows * max(1, values)
+    free = _free_memory()
+    if free is not None and needed + _SPARE > free:
+        raise MemoryError(
+            f"a raster of {columns:,} x {rows:,} cells needs {needed / 1e9:,.1f} GB, and "
+            f"{free / 1e9:,.1f} GB are free; choose larger cells, or parts by bounds"
+        )
+
+
+def _free_memory() -> int | None:
+    """Bytes that can be had without swapping, None where the system does not tell."""
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024 * int(line.split()[1])
+    except (OSError, ValueError):
+        pass
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return None
+
+
+def _step(nodes: Floats) -> float:
+    return float((nodes[-1] - nodes[0]) / (len(nodes) - 1)) if len(nodes) > 1 else 0.0
+
+
+def _dtype(is_complex: bool) -> type[np.generic]:
+    return np.complex128 if is_complex else np.float64

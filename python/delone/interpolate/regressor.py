@@ -1,0 +1,162 @@
+"""Interpolation as an estimator of scikit-learn (extra ``learn``).
+
+This module needs scikit-learn when it is imported; `delone.interpolate.DelaunayRegressor` imports
+it when it is asked for.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone.errors import MissingExtraError
+from delone.interpolate.methods import interpolator
+
+try:
+    from sklearn.base import BaseEstimator, RegressorMixin
+    from sklearn.utils.validation import check_is_fitted, validate_data
+except ImportError as error:
+    raise MissingExtraError(
+        'DelaunayRegressor needs scikit-learn, which is not installed: pip install "delone[learn]"',
+        extra="learn",
+    ) from error
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["DelaunayRegressor"]
+
+
+class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
+    """Predict from scattered points in the plane by interpolation.
+
+    Parameters
+    ----------
+    method : str, optional
+        As in `interpolator`.
+    extrapolate : {"nearest", "linear", "nan", "error"}, optional
+        What there is outside of the hull of the training points.
+    duplicates : str, optional
+        Which value a training point has that comes several times with different ones; as in
+        `Linear`, but by default their mean.
+    columns : pair of int, optional
+        Which two features are the coordinates. By default there must be exactly two.
+    workers : int, optional
+        Number of threads.
+
+    Attributes
+    ----------
+    interpolator_ : Interpolator
+        Made by `fit`.
+    n_features_in_ : int
+        How many features there are.
+
+    Notes
+    -----
+    With exactly two features, or with `columns`, it passes scikit-learn's own checks of estimators.
+    Training points must span an area.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.interpolate import DelaunayRegressor
+    >>> X = np.random.default_rng(0).random((200, 2))
+    >>> model = DelaunayRegressor("linear").fit(X, X[:, 0] + 2 * X[:, 1])
+    >>> model.predict([[0.5, 0.25]]).round(9)
+    array([1.])
+    """
+
+    def __init__(
+        self,
+        method: str = "linear",
+        *,
+        extrapolate: str = "nearest",
+        duplicates: str = "mean",
+        columns: tuple[int, int] | None = None,
+        workers: int | None = None,
+    ) -> None:
+        self.method = method
+        self.extrapolate = extrapolate
+        self.duplicates = duplicates
+        self.columns = columns
+        self.workers = workers
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> Self:  # noqa: N803
+        """Triangulate training points.
+
+        Parameters
+        ----------
+        X : array_like, shape (n, 2)
+            Training points.
+        y : array_like, shape (n,) or (n, k)
+            Their values.
+
+        Returns
+        -------
+        DelaunayRegressor
+            Itself.
+
+        Raises
+        ------
+        ValueError
+            There are not two features, or the points span no area.
+        """
+        X, y = validate_data(  # noqa: N806
+            self, X, y, multi_output=True, y_numeric=True, ensure_min_samples=3, dtype=np.float64
+        )
+        self.interpolator_ = interpolator(
+            self.method,
+            self._plane(X),
+            np.asarray(y, dtype=np.float64),
+            extrapolate=self.extrapolate,
+            duplicates=self.duplicates,
+            workers=self.workers,
+        )
+        return self
+
+    def predict(self, X: ArrayLike) -> NDArray[np.float64]:  # noqa: N803
+        """Interpolate.
+
+        Parameters
+        ----------
+        X : array_like, shape (n, 2)
+            Points.
+
+        Returns
+        -------
+        ndarray of float64, shape (n,) or (n, k)
+            Values.
+        """
+        check_is_fitted(self)
+        X = validate_data(self, X, reset=False, dtype=np.float64)  # noqa: N806
+        return self.interpolator_(self._plane(X))
+
+    def _plane(self, X: Any) -> NDArray[np.float64]:  # noqa: N803
+        """The two features that are coordinates."""
+        if self.columns is None:
+            if self.n_features_in_ != 2:
+                raise ValueError(
+                    "DelaunayRegressor takes points in the plane: 2 features, not "
+                    f"{self.n_features_in_} feature(s); choose two by columns="
+                )
+            return np.asarray(X)
+        first, second = self.columns
+        if (
+            not -self.n_features_in_
+            <= min(first, second)
+            <= max(first, second)
+            < self.n_features_in_
+        ):
+            raise ValueError(
+                f"columns={self.columns} are not among {self.n_features_in_} feature(s)"
+            )
+        return np.ascontiguousarray(np.asarray(X)[:, [first, second]])
+
+    def __sklearn_tags__(self) -> Any:
+        """Return what scikit-learn wants to know of an estimator."""
+        tags = super().__sklearn_tags__()
+        tags.target_tags.multi_output = True
+        # Random features are more than two, and a plane does not fit them.
+        tags.regressor_tags.poor_score = True
+        return tags

@@ -1,0 +1,279 @@
+"""What interpolants with gradients share: how gradients are estimated, and faults that part them.
+
+With constraints respected, the triangles are cut along them: a vertex on a constraint stands in as
+many rows as there are sectors between constraints around it, each with a gradient of its own from
+the vertices of its sector. Nothing of one side then reaches the other but the values on the
+constraint.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core, location, topology
+from delone._arrays import as_count, as_vectors, as_workers
+from delone.errors import InputError
+from delone.interpolate.base import Interpolator, shaped_derivatives
+from delone.interpolate.hull import Terms, edge_terms
+from delone.interpolate.values import chosen
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.interpolate.values import Field
+    from delone.location import Location
+    from delone.triangulation import Triangulation
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Bools = NDArray[np.bool_]
+
+__all__ = ["GRADIENTS", "GradientWarning", "Smooth", "cut"]
+
+GRADIENTS = ("global", "local")
+
+
+class GradientWarning(UserWarning):
+    """The estimation of gradients stopped before it had converged."""
+
+
+class Sheet(NamedTuple):
+    """Triangles as they are evaluated: those of the mesh, cut along constraints where that matters.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    locator : Locator2
+        The index over them.
+    barrier : ndarray of bool, shape (m, 3), or None
+        The edges beyond which nothing counts.
+    source : ndarray of int32, shape (n,), or None
+        The row of the mesh that each row is; None where they are the same.
+    """
+
+    points: Floats
+    simplices: Indices
+    locator: _core.Locator2
+    barrier: Bools | None
+    source: Indices | None
+
+
+class Smooth(Interpolator):
+    """Interpolation from values and gradients; the base of `CloughTocher` and `NaturalNeighbor`."""
+
+    def __init__(
+        self,
+        points: ArrayLike | Triangulation,
+        values: ArrayLike | None = None,
+        *,
+        gradients: str,
+        tol: float,
+        maxiter: int,
+        **options: Any,
+    ) -> None:
+        self._estimate = chosen("gradients", gradients, GRADIENTS)
+        self._tol = float(tol)
+        self._maxiter = as_count(maxiter, name="maxiter")
+        if not self._tol > 0:
+            raise InputError(f"tol must be above 0, got {tol}")
+        super().__init__(points, values, **options)
+
+    def hessian(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
+        """Return the second derivatives of the interpolant.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Where.
+        values : array_like, shape (n,) or (n, ...), optional
+            Another field on the same sites.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Of the shape of the queries, that of one value, and (2, 2). NaN outside of the hull.
+        """
+        interpolator, field, columns = self._with(values)
+        queries = as_vectors(xi, 2, name="xi")
+        found = interpolator._derived(queries.reshape(-1, 2), columns, 2)
+        full = shaped_derivatives(found[..., [0, 1, 1, 2]], field, queries.shape[:-1])
+        return full.reshape((*full.shape[:-1], 2, 2))
+
+    def site_gradients(self, *, values: ArrayLike | None = None) -> NDArray[Any]:
+        """Return the gradients at the sites, from which the interpolant is made.
+
+        Parameters
+        ----------
+        values : array_like, shape (n,) or (n, ...), optional
+            Another field on the same sites.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            One for each point of `triangulation`, of the shape of one value and 2. With constraints
+            respected the points on them have one on each side; these come after the others.
+        """
+        interpolator, field, columns = self._with(values)
+        found = interpolator.gradients(columns)
+        return shaped_derivatives(found, field, found.shape[:1])
+
+    def gradients(self, columns: Floats) -> Floats:
+        """Return gradients at the sites; see `Interpolator.gradients`."""
+        own = self._field is not None and columns is self._field[1]
+        if own and "gradients" in self._cache:
+            known: Floats = self._cache["gradients"]
+            return known
+        found = self._estimated(columns)
+        if own:
+            self._cache["gradients"] = found
+        return found
+
+    def _estimated(self, columns: Floats) -> Floats:
+        points, workers = self._sheet.points, as_workers(self._workers)
+        around = self._around()
+        if self._estimate == "local":
+            return _core.gradients_local2(points, *around, columns, 2, workers)
+        found, iterations = _core.gradients_global2(
+            points, *around, columns, self._tol, self._maxiter, workers
+        )
+        if len(columns) and not iterations.all():
+            warnings.warn(
+                f"gradients have not converged to tol={self._tol} in {self._maxiter} iterations",
+                GradientWarning,
+                stacklevel=5,
+            )
+        return found
+
+    def settled(self, field: Field) -> Floats:
+        """Return values for the rows of the sheet; see `Interpolator.settled`."""
+        columns = super().settled(field)
+        source = self._sheet.source
+        return columns if source is None else np.ascontiguousarray(columns[source])
+
+    def caller_rows(self) -> Indices:
+        """Return the caller's rows for those of the sheet; see `Interpolator.caller_rows`."""
+        rows = super().caller_rows()
+        source = self._sheet.source
+        return rows if source is None else rows[source]
+
+    @property
+    def _sheet(self) -> Sheet:
+        if "sheet" not in self._cache:
+            self._cache["sheet"] = self._laid_out()
+        sheet: Sheet = self._cache["sheet"]
+        return sheet
+
+    def _laid_out(self) -> Sheet:
+        mesh = self._mesh
+        if not (self._respect_constraints and self._constrained):
+            return Sheet(mesh.points, mesh.simplices, mesh._locator, None, None)
+        barrier: Bools = np.ascontiguousarray(mesh.constrained)  # type: ignore[attr-defined]
+        simplices, source = cut(mesh.simplices, mesh.neighbors, barrier, mesh.npoints)
+        points = mesh.points[source]
+        index = location.locator(points, simplices, mesh.neighbors)
+        return Sheet(points, simplices, index, barrier, source)
+
+    def _around(self) -> tuple[Indices, Indices]:
+        """Neighbours of the rows of the sheet, as compressed rows (indptr, indices)."""
+        sheet = self._sheet
+        if sheet.source is None:
+            return self._mesh.vertex_neighbor_vertices
+        if "around" not in self._cache:
+            self._cache["around"] = topology.vertex_neighbor_vertices(
+                _sides(sheet.simplices), len(sheet.points)
+            )
+        around: tuple[Indices, Indices] = self._cache["around"]
+        return around
+
+    def _located(self, queries: Floats) -> Location:
+        return location.locate(self._sheet.locator, self._sheet.points, queries, self._workers)
+
+    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+        return edge_terms(self._sheet.points, place, step, cubic=True, base=base)
+
+
+def cut(
+    simplices: Indices, neighbors: Indices, barrier: Bools, npoints: int
+) -> tuple[Indices, Indices]:
+    """Give vertices a row for each sector between barriers around them.
+
+    Parameters
+    ----------
+    simplices, neighbors : ndarray of int32, shape (m, 3)
+        Triangles.
+    barrier : ndarray of bool, shape (m, 3)
+        Edges, by the corner opposite, along which to cut.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles; rows from `npoints` on are further sectors.
+    source : ndarray of int32, shape (npoints + further,)
+        The vertex of each row.
+
+    Notes
+    -----
+    Corners of triangles that share an edge without a barrier are joined; labels spread along rings
+    of corners with jumps, in O(log degree) rounds.
+
+    Examples
+    --------
+    A square, cut along its diagonal:
+
+    >>> import numpy as np
+    >>> from delone.interpolate.smooth import cut
+    >>> simplices = np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
+    >>> neighbors = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
+    >>> barrier = neighbors >= 0
+    >>> cut(simplices, neighbors, barrier, 4)[1]
+    array([0, 1, 2, 3, 0, 2], dtype=int32)
+    """
+    label = _joined(_corner_pairs(simplices, neighbors, ~barrier), simplices.size)
+    first, sector = np.unique(label, return_inverse=True)
+    vertex = simplices.reshape(-1)[first]
+    _, keeps = np.unique(vertex, return_index=True)
+    row = np.empty(len(first), dtype=np.int32)
+    further = np.delete(np.arange(len(first)), keeps)
+    row[keeps] = vertex[keeps]
+    row[further] = npoints + np.arange(len(further))
+    source = np.concatenate((np.arange(npoints), vertex[further])).astype(np.int32)
+    return row[sector.reshape(-1)].reshape(-1, 3), source
+
+
+def _corner_pairs(simplices: Indices, neighbors: Indices, is_open: Bools) -> NDArray[np.int64]:
+    """Corners (as 3 t + k) of one vertex in two triangles that share an open edge."""
+    t, k = np.nonzero(is_open & (neighbors >= 0))
+    beyond = neighbors[t, k].astype(np.int64)
+    pairs = []
+    for side in (1, 2):
+        here = (k + side) % 3
+        there = (simplices[beyond] == simplices[t, here][:, None]).argmax(axis=1)
+        pairs.append(np.column_stack((3 * t + here, 3 * beyond + there)))
+    return np.concatenate(pairs)
+
+
+def _joined(pairs: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """The smallest element of the set of each element, when pairs are joined."""
+    label = np.arange(count)
+    while True:
+        before = label.copy()
+        np.minimum.at(label, pairs[:, 0], label[pairs[:, 1]])
+        # A label is itself an element of the set: its own label is nearer to the smallest.
+        label = label[label]
+        if np.array_equal(label, before):
+            return label
+
+
+def _sides(simplices: Indices) -> Indices:
+    """Every side of the triangles once, the smaller vertex first, rows ascending."""
+    pairs = np.sort(simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    sides: Indices = np.unique(pairs, axis=0)
+    return sides

@@ -1,0 +1,241 @@
+"""Weights of sites at queries: a geometry that is computed once and applied to many fields.
+
+Row i of the table has the sites that count at query i and how much each counts. Smooth interpolants
+count the gradients of the sites as well; those are estimated from each field anew. A query without
+an answer has an empty row, and gets NaN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.errors import InputError, MissingExtraError
+from delone.interpolate.values import as_field
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.interpolate.hull import Terms
+    from delone.interpolate.values import Field
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Table: TypeAlias = tuple[NDArray[np.int64], Indices, Floats, Floats | None]
+
+__all__ = ["Sites", "Weights", "joined", "rectangular"]
+
+
+class Sites(Protocol):
+    """What a table must know of the sites: an interpolator."""
+
+    npoints: int
+    workers: int | None
+
+    def settled(self, field: Field) -> Floats:
+        """Columns of values for the rows that a table speaks of, by the policies."""
+
+    def gradients(self, columns: Floats) -> Floats | None:
+        """Gradients (n, c, 2) of these columns, where the interpolant needs them."""
+
+    def caller_rows(self) -> Indices:
+        """The caller's row that stands for each row that a table speaks of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weights:
+    """Which sites count at each query, and how much.
+
+    Parameters
+    ----------
+    indptr : ndarray of int64, shape (k + 1,)
+        The entries of query i, in the order of the flat queries, are those from ``indptr[i]`` to
+        ``indptr[i + 1]``. None where there is no answer.
+    rows : ndarray of int32, shape (nnz,)
+        Sites as the interpolator numbers them; `indices` has the caller's rows.
+    weights : ndarray of float64, shape (nnz,)
+        Their weights, of sum 1 for each query, up to rounding.
+    slopes : ndarray of float64, shape (nnz, 2), or None
+        Weights of their gradients, where the interpolant has some.
+    shape : tuple of int
+        Shape of the queries, without their last axis.
+    sites : Interpolator
+        Where the table comes from.
+
+    Examples
+    --------
+    >>> from delone.interpolate import Linear
+    >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights([(0.25, 0.25), (1, 0)])
+    >>> table.apply([0.0, 4.0, 8.0])
+    array([3., 4.])
+    >>> table.indptr.tolist()
+    [0, 3, 4]
+    """
+
+    indptr: NDArray[np.int64]
+    rows: Indices
+    weights: Floats
+    slopes: Floats | None
+    shape: tuple[int, ...]
+    sites: Sites
+
+    def __len__(self) -> int:
+        return len(self.indptr) - 1
+
+    @property
+    def indices(self) -> Indices:
+        """The rows of the caller's points, (nnz,); of duplicates the one that counts."""
+        found: Indices = self.sites.caller_rows()[self.rows]
+        return found
+
+    def apply(self, values: ArrayLike) -> NDArray[Any]:
+        """Interpolate a field.
+
+        Parameters
+        ----------
+        values : array_like, shape (n,) or (n, ...)
+            Real or complex numbers.
+
+        Returns
+        -------
+        ndarray of float64 or complex128
+            Of the shape of the queries and that of one value; NaN where there is no answer.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            The values do not fit the points, or are no numbers.
+        InputError
+            The policies of the interpolator refuse them.
+
+        Notes
+        -----
+        Sites that ``nan="drop"`` left out when the table was made stay out; NaN at other sites
+        shows in what they count for.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights((0.5, 0.5))
+        >>> [float(table.apply(month)) for month in ([0, 1, 2], [0, 3, 5])]
+        [1.5, 4.0]
+        """
+        field = as_field(values, self.sites.npoints)
+        columns = self.sites.settled(field)
+        gradients = None if self.slopes is None else self.sites.gradients(columns)
+        found = _core.combine2(
+            self.indptr,
+            self.rows,
+            self.weights,
+            columns,
+            self.slopes,
+            gradients,
+            as_workers(self.sites.workers),
+        )
+        return field.shaped(found, self.shape)
+
+    def __matmul__(self, values: ArrayLike) -> NDArray[Any]:
+        return self.apply(values)
+
+    def csr(self) -> Any:
+        """Return the table as a sparse matrix of SciPy, whose product with values is `apply`.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (k, n)
+            The weights; the queries are flat. Rows without an answer hold one NaN.
+
+        Raises
+        ------
+        MissingExtraError
+            SciPy is not installed.
+        InputError
+            The interpolant needs gradients, which a matrix of values does not give: those of smooth
+            methods, and all with ``extrapolate="linear"``.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> table = Linear([(0, 0), (1, 0), (0, 1)]).weights([(0.25, 0.25), (1, 0)])
+        >>> (table.csr() @ [0.0, 4.0, 8.0]).tolist()
+        [3.0, 4.0]
+        """
+        if self.slopes is not None:
+            raise InputError("this interpolant needs gradients, which no matrix has; use apply")
+        try:
+            from scipy.sparse import csr_array
+        except ImportError as error:
+            raise MissingExtraError(
+                'a sparse matrix needs SciPy, which is not installed: pip install "delone[learn]"',
+                extra="learn",
+            ) from error
+        empty = np.flatnonzero(np.diff(self.indptr) == 0)
+        ends = self.indptr[empty]
+        indptr = self.indptr + np.concatenate(([0], np.cumsum(np.diff(self.indptr) == 0)))
+        parts = (np.insert(self.weights, ends, np.nan), np.insert(self.indices, ends, 0), indptr)
+        return csr_array(parts, shape=(len(self), self.sites.npoints))
+
+
+def rectangular(rows: Indices, weights: Floats) -> Table:
+    """Return the table of as many sites for each query, zeros and NaN taken out.
+
+    Parameters
+    ----------
+    rows : ndarray of int32, shape (k, m)
+        Sites; any where the weight is NaN.
+    weights : ndarray of float64, shape (k, m)
+        Their weights; all NaN where there is no answer.
+
+    Returns
+    -------
+    tuple
+        indptr, rows, weights and None, as `Weights` has them.
+    """
+    # NaN is neither.
+    keep = (weights > 0) | (weights < 0)
+    count, width = weights.shape
+    if keep.all():
+        indptr = np.arange(0, count * width + 1, width, dtype=np.int64)
+        return indptr, rows.reshape(-1), weights.reshape(-1), None
+    indptr = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(keep.sum(axis=1), out=indptr[1:])
+    return indptr, rows[keep], weights[keep], None
+
+
+def joined(inner: Table, outside: NDArray[np.int64], terms: Terms) -> Table:
+    """Put the terms of queries outside into the empty rows of a table.
+
+    Parameters
+    ----------
+    inner : tuple
+        indptr, rows, weights and slopes of the queries inside.
+    outside : ndarray of int
+        The queries of the terms, ascending.
+    terms : Terms
+        What counts there.
+
+    Returns
+    -------
+    tuple
+        indptr, rows, weights and slopes of all.
+    """
+    indptr, rows, weights, slopes = inner
+    counts = (terms.weights != 0) & ~np.isnan(terms.weights)
+    if terms.slopes is not None:
+        counts |= (terms.slopes != 0).any(axis=2)
+        slopes = np.zeros((len(rows), 2)) if slopes is None else slopes
+    number = counts.sum(axis=1)
+    place = np.repeat(indptr[outside], number)
+    count = np.diff(indptr)
+    count[outside] = number
+    indptr = np.concatenate(([0], np.cumsum(count)))
+    rows = np.insert(rows, place, terms.rows[counts])
+    weights = np.insert(weights, place, terms.weights[counts])
+    if slopes is not None:
+        more = np.zeros((len(place), 2)) if terms.slopes is None else terms.slopes[counts]
+        slopes = np.insert(slopes, place, more, axis=0)
+    return indptr, rows, weights, slopes

@@ -1,0 +1,187 @@
+"""Where points lie in a triangulation: the triangle, the weights of its corners, the hull beside.
+
+The core keeps an index of starts for the walks (`Locator2`); a triangulation makes it on the first
+query and holds it. Decisions are exact; weights and the nearest points of the boundary are rounded
+results of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_vectors, as_workers
+from delone.errors import ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Location", "along", "locate", "locator"]
+
+
+@dataclass(frozen=True, eq=False)
+class Location:
+    """Where points lie.
+
+    Parameters
+    ----------
+    simplex : ndarray of int32, shape (...)
+        The triangle that holds the point, the first one where there are several; -1 outside.
+    barycentric : ndarray of float64, shape (..., 3)
+        Weights of the corners of that triangle: none below 0, of sum 1 up to rounding, exactly 1 at
+        a corner. NaN outside.
+    nearest : ndarray of float64, shape (..., 2)
+        The point itself inside; outside the nearest point of the boundary, rounded. NaN where the
+        query is not finite.
+    beside : ndarray of int32, shape (...)
+        Outside, the triangle at that point of the boundary; else -1.
+    edge : ndarray of int32, shape (..., 2)
+        Outside, the boundary edge with that point, the triangle to its left; else -1.
+    along : ndarray of float64, shape (...)
+        Outside, how far along that edge the point is, from 0 to 1; else NaN.
+    """
+
+    simplex: Indices
+    barycentric: Floats
+    nearest: Floats
+    beside: Indices
+    edge: Indices
+    along: Floats
+
+    def at(self, rows: NDArray[np.integer]) -> Location:
+        """Return some of the places.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Which, along the first axis.
+
+        Returns
+        -------
+        Location
+            Those.
+        """
+        return Location(*(getattr(self, each.name)[rows] for each in fields(self)))
+
+
+def locator(points: Floats, simplices: Indices, neighbors: Indices) -> _core.Locator2:
+    """Return the core's index over triangles, for any number of queries by any number of threads.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices, neighbors : ndarray of int32, shape (m, 3)
+        Triangles, and the ones across their edges.
+
+    Returns
+    -------
+    Locator2
+        Its methods are those of the core.
+    """
+    return _core.Locator2(points, simplices, neighbors)
+
+
+def locate(index: _core.Locator2, points: Floats, xi: ArrayLike, workers: int | None) -> Location:
+    """Tell where queries lie.
+
+    Parameters
+    ----------
+    index : Locator2
+        The index over the triangles.
+    points : ndarray of float64, shape (n, 2)
+        Coordinates of the vertices.
+    xi : array_like, shape (..., 2)
+        Queries.
+    workers : int or None
+        Number of threads.
+
+    Returns
+    -------
+    Location
+        In the shape of the queries.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `xi` is no array of real points in the plane.
+    """
+    queries = as_vectors(xi, 2, name="xi")
+    flat, leading = queries.reshape(-1, 2), queries.shape[:-1]
+    simplex, barycentric, beside, edge, share = index.locate(flat, as_workers(workers))
+    nearest = np.where((simplex >= 0)[:, None], flat, np.nan)
+    rows = np.flatnonzero(beside >= 0)
+    nearest[rows] = on_edges(points, edge[rows], share[rows])
+    return Location(
+        simplex.reshape(leading),
+        barycentric.reshape((*leading, 3)),
+        nearest.reshape((*leading, 2)),
+        beside.reshape(leading),
+        edge.reshape((*leading, 2)),
+        share.reshape(leading),
+    )
+
+
+def on_edges(points: Floats, edge: Indices, share: Floats) -> Floats:
+    """Return points of edges, exactly the ends where the share is 0 or 1.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    edge : ndarray of int32, shape (k, 2)
+        Ends of the edges.
+    share : ndarray of float64, shape (k,)
+        From 0 to 1.
+
+    Returns
+    -------
+    ndarray of float64, shape (k, 2)
+        The points.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.location import on_edges
+    >>> on_edges(np.array([(0.0, 0), (4, 2)]), np.array([(0, 1)]), np.array([0.25]))
+    array([[1. , 0.5]])
+    """
+    weight = share[:, None]
+    start, end = points[edge[:, 0]], points[edge[:, 1]]
+    return (1.0 - weight) * start + weight * end
+
+
+def along(index: _core.Locator2, a: ArrayLike, b: ArrayLike) -> Indices:
+    """Return the triangles along a segment.
+
+    Parameters
+    ----------
+    index : Locator2
+        The index over the triangles.
+    a, b : array_like, shape (2,)
+        Ends of the segment, finite.
+
+    Returns
+    -------
+    ndarray of int32, shape (k,)
+        Triangles from a to b.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        An end is no finite point.
+    """
+    return index.along(_end(a, "a"), _end(b, "b"))
+
+
+def _end(point: ArrayLike, name: str) -> Floats:
+    end = as_vectors(point, 2, name=name)
+    if end.ndim != 1 or not np.isfinite(end).all():
+        raise ShapeError(f"{name} must be one finite point, got {end.tolist()}")
+    return end

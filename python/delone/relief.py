@@ -1,0 +1,167 @@
+"""Pictures of rasters: colour by value, light and shadow by slope, contours where they help.
+
+Needs matplotlib (extra ``plot``). Colours and light are those of `delone.plot`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import plot
+from delone.errors import InputError
+from delone.io.extras import require
+from delone.shading import Raster, relief
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["draw_raster", "plot_raster"]
+
+
+def plot_raster(
+    values: Floats,
+    x: Floats,
+    y: Floats,
+    ax: Any = None,
+    *,
+    contours: Any = None,
+    shade: bool = True,
+    cmap: Any = None,
+    colorbar: bool = True,
+    label: str = "z",
+    title: str | None = None,
+) -> Any:
+    """Draw a raster as a relief map.
+
+    Parameters
+    ----------
+    values : ndarray of float64, shape (rows, columns)
+        Values, the first row lowest; NaN where there is nothing.
+    x, y : ndarray of float64, shape (columns,) and (rows,)
+        Nodes, evenly spaced.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on the axes of a new pyplot figure.
+    contours : int or sequence of float, optional
+        Draw lines of equal value: about so many, or at these values.
+    shade : bool, optional
+        Add light and shadow.
+    cmap : str or matplotlib Colormap, optional
+        Colours; by default those of land, or of water where nothing lies above zero.
+    colorbar : bool, optional
+        Add the scale of the colours.
+    label : str, optional
+        What the values are.
+    title : str, optional
+        Title of the axes.
+
+    Returns
+    -------
+    matplotlib Axes
+        What was drawn on.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        No value is finite.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> matplotlib.use("Agg")
+    >>> from delone.interpolate import grid
+    >>> from delone.relief import plot_raster
+    >>> ramp = grid([(0, 0), (4, 0), (4, 4), (0, 4)], [0.0, 4.0, 4.0, 0.0], shape=(40, 40))
+    >>> plot_raster(ramp.values, ramp.x, ramp.y, contours=4).get_aspect()
+    1.0
+    """
+    if not np.isfinite(values).any():
+        raise InputError("the raster has no finite value to be drawn")
+    if ax is None:
+        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    colours = plot._colours(values, cmap)
+    rgba = colours.to_rgba(values)
+    extent = _extent(x, y)
+    if shade:
+        light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
+        rgba[..., :3] = plot._shaded(rgba[..., :3], light)
+    rgba[..., 3] = np.isfinite(values)
+    image = np.round(rgba * 255).astype(np.uint8)
+    ax.imshow(image, extent=extent, origin="lower", interpolation="auto", zorder=0)
+    if contours is not None:
+        ax.contour(
+            x,
+            y,
+            np.ma.masked_invalid(values),
+            levels=contours,
+            colors="black",
+            linewidths=0.4,
+            linestyles="solid",
+            alpha=0.45,
+        )
+    if colorbar:
+        plot._add_bar(ax, colours, values, label)
+    if title:
+        ax.set_title(title, fontsize="medium")
+    return ax
+
+
+def draw_raster(
+    path: Path,
+    values: Floats,
+    x: Floats,
+    y: Floats,
+    *,
+    label: str = "z",
+    crs: str | None = None,
+    size: float = 10.0,
+    dpi: int = 160,
+) -> None:
+    """Draw a raster as a relief map into a PNG or SVG file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    values, x, y
+        As in `plot_raster`.
+    label : str, optional
+        What the values are.
+    crs : str, optional
+        Coordinate reference system, which names the axes where pyproj is installed.
+    size : float, optional
+        Longer side of the picture in inches.
+    dpi : int, optional
+        Pixels per inch.
+    """
+    figure_module = require("matplotlib.figure", extra="plot", what="drawing")
+    left, right, bottom, top = _extent(x, y)
+    ratio = min(max((right - left) / (top - bottom), 0.4), 2.5)
+    inner = size - 1.9
+    width, height = (inner, inner / ratio) if ratio >= 1 else (inner * ratio, inner)
+    figure = figure_module.Figure(
+        figsize=(width + 1.9, height + 0.9), dpi=dpi, layout="constrained"
+    )
+    ax = plot_raster(values, x, y, figure.add_subplot(), label=label)
+    xlabel, ylabel = plot._axis_names(crs)
+    ax.set(xlabel=xlabel, ylabel=ylabel)
+    figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def _extent(x: Floats, y: Floats) -> tuple[float, float, float, float]:
+    half_x, half_y = (
+        (nodes[-1] - nodes[0]) / max(len(nodes) - 1, 1) / 2 or 0.5 for nodes in (x, y)
+    )
+    return (
+        float(x[0] - half_x),
+        float(x[-1] + half_x),
+        float(y[0] - half_y),
+        float(y[-1] + half_y),
+    )

@@ -1,0 +1,575 @@
+"""The class Voronoi: the diagram of points in the plane as immutable arrays.
+
+The core makes the arrays of the whole diagram (see `dual`); what follows from them, and what a clip
+leaves of the cells, is computed on first use and kept.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.delaunay import Delaunay
+from delone.errors import DegenerateInputError
+from delone.regular import RegularTriangulation, as_weights, triangulated
+from delone.triangulation import counted, first_rows, kept, own_copy, sealed
+from delone.voronoi import clipping, dual, shapes
+from delone.voronoi.cells import Cell, Neighbors, Rays
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.voronoi.clipping import Clipped
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Voronoi"]
+
+
+class Voronoi:
+    """The Voronoi diagram of points in the plane, whole or clipped.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        The sites, finite, in any unit. They are copied and taken as the exact numbers which they
+        denote.
+    clip : "box", sequence of 4 floats, or geometry, optional
+        What to cut the cells to: the box of the sites; the box
+        ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without holes.
+        Sites may lie outside.
+    fix : bool, optional
+        Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of refusing
+        it.
+    weights : array_like, shape (n,), optional
+        Weights of the sites, in the square of the unit of the points: then this is the power
+        diagram, in which a place belongs to the site with the least ``|x - p|**2 - w``.
+    workers : int, optional
+        How many threads may work; by default one for each core. The answer is the same.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        The sites.
+    weights : ndarray of float64, shape (n,), or None
+        Their weights.
+    vertices : ndarray of float64, shape (k, 2)
+        The vertices of the whole diagram.
+    ridge_points : ndarray of int32, shape (r, 2)
+        The two sites between which each ridge (an edge of cells) lies.
+    ridge_vertices : ndarray of int32, shape (r, 2)
+        The two vertices of each ridge; -1, which comes first, where it goes on for ever.
+    regions : list of list of int
+        For each cell its vertices, counter-clockwise, with -1 where it is open.
+    point_region : ndarray of int32, shape (n,)
+        The cell of each point, as an index of `regions`. Points with the same coordinates share
+        their cell. -1 for a site that weights leave without a cell.
+    furthest_site : bool
+        False.
+    npoints, ndim : int
+        Number of points, and 2.
+
+    Raises
+    ------
+    DegenerateInputError
+        There is no point at all.
+    NonFiniteError
+        A coordinate is NaN or infinite; ``error.rows`` tells where.
+    ShapeError, DtypeError
+        `points` is no array of real points in the plane, or there are not as many weights.
+    InputError
+        `clip` has no area, is no polygon, or is invalid; the message says where.
+    MissingExtraError
+        `clip` is a geometry, and shapely is not installed.
+
+    Notes
+    -----
+    The diagram is the dual of the exact Delaunay triangulation (with weights, of the regular one),
+    and all that is combinatorial in it is exact: sites on one circle share one vertex, whatever their number, and no ridge has length 0.
+    One thing is rounded, the coordinates of vertices: each is within 4 units in the last place of
+    the true one (:doc:`/mathematics/voronoi`). A vertex beyond the range of doubles is not listed;
+    ridges that lead to it end in -1 and have a ray in its direction.
+
+    Names and meanings are those of ``scipy.spatial.Voronoi``. What SciPy refuses is no exception
+    here: one site has the whole plane for its cell, two have half-planes, and sites on one line
+    have strips between two half-planes.
+
+    With weights a cell need not hold its site, and a site may have no cell: it is *hidden*. Edges
+    lie on radical axes instead of bisectors.
+
+    In a `clip`, areas, centroids, perimeters, neighbours and polygons are those of what is left of
+    the cells; the attributes listed above remain those of the whole diagram. In a box the exact
+    areas of the polygons sum to that of the box without any rounding.
+
+    Arrays are read-only and attributes cannot be set; the attributes not listed above are computed
+    on first use and kept. Time is that of the triangulation and O(n) for the rest; clipping to an
+    outline costs O(s + c) more for its s segments, and the intersection of each of the c cells on it.
+
+    See Also
+    --------
+    delone.Delaunay : The dual.
+    delone.RegularTriangulation : The dual of power diagrams.
+    delone.compat.scipy.Voronoi : SciPy's interface to the letter.
+
+    References
+    ----------
+    G. Voronoï, "Nouvelles applications des paramètres continus à la théorie des formes
+    quadratiques", Journal für die reine und angewandte Mathematik 134 (1908).
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> diagram = Voronoi([(0, 0), (4, 0), (4, 4), (0, 4), (2, 2)], clip=(-1, -1, 5, 5))
+    >>> diagram
+    <Voronoi diagram of 5 points: 4 vertices, 8 ridges, clipped to a box>
+    >>> diagram.cell_areas.tolist(), diagram.cell_areas.sum()
+    ([7.0, 7.0, 7.0, 7.0, 8.0], np.float64(36.0))
+    >>> region = diagram.regions[diagram.point_region[4]]
+    >>> sorted(diagram.vertices[region].tolist())
+    [[0.0, 2.0], [2.0, 0.0], [2.0, 4.0], [4.0, 2.0]]
+    """
+
+    __slots__ = (
+        "__weakref__",
+        "_cache",
+        "_clip",
+        "_dual",
+        "_lock",
+        "_mesh",
+        "_points",
+        "_weights",
+        "_workers",
+    )
+
+    _cache: dict[str, Any]
+    _clip: clipping.Clip | None
+    _dual: dict[str, NDArray[Any]]
+    _lock: threading.RLock
+    _mesh: Delaunay | RegularTriangulation | None
+    _points: Floats
+    _weights: Floats | None
+    _workers: int
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        *,
+        clip: Any = None,
+        fix: bool = False,
+        weights: ArrayLike | None = None,
+        workers: int | None = None,
+    ) -> None:
+        if hasattr(self, "_points"):
+            raise AttributeError("a Voronoi never changes: make another one")
+        threads = as_workers(workers)
+        own = own_copy(points)
+        heavy = None if weights is None else as_weights(weights, len(own))
+        mesh, arrays = _dual(own, threads) if heavy is None else _power_dual(own, heavy, threads)
+        where = clipping.as_clip(clip, own, fix=fix)
+        self._fill(points=own, weights=heavy, mesh=mesh, dual=arrays, clip=where, workers=threads)
+
+    def _fill(
+        self,
+        *,
+        dual: dict[str, NDArray[Any]],
+        points: Floats,
+        weights: Floats | None,
+        **rest: Any,
+    ) -> None:
+        """Set everything there is; afterwards nothing can be set."""
+        values = {
+            "_cache": {},
+            "_lock": threading.RLock(),
+            "_points": sealed(points),
+            "_weights": None if weights is None else sealed(weights),
+            "_dual": {name: sealed(array) for name, array in dual.items()},
+        }
+        for name, value in (values | {f"_{name}": value for name, value in rest.items()}).items():
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def _from_parts(cls, parts: dict[str, Any]) -> Voronoi:
+        diagram = cls.__new__(cls)
+        diagram._fill(**parts)
+        return diagram
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("points", "weights", "mesh", "dual", "clip", "workers")
+        return self._from_parts, ({name: getattr(self, f"_{name}") for name in names},)
+
+    @property
+    def points(self) -> Floats:
+        """The sites, (n, 2)."""
+        return self._points
+
+    @property
+    def weights(self) -> Floats | None:
+        """The weights, (n,); None without."""
+        return self._weights
+
+    @property
+    def clip(self) -> Any:
+        """Where cells end: a box ``(xmin, ymin, xmax, ymax)``, a geometry, or None."""
+        if self._clip is None:
+            return None
+        return self._clip.bounds if self._clip.outline is None else self._clip.outline
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, duplicates included."""
+        return len(self._points)
+
+    @property
+    def ndim(self) -> int:
+        """Number of coordinates, 2."""
+        return 2
+
+    @property
+    def furthest_site(self) -> bool:
+        """Whether cells belong to the furthest site; False."""
+        return False
+
+    @property
+    def triangulation(self) -> Delaunay | RegularTriangulation | None:
+        """The triangulation whose dual this is; None where all sites lie on one line."""
+        return self._mesh
+
+    @property
+    def vertices(self) -> Floats:
+        """The vertices of the whole diagram, (k, 2)."""
+        return self._dual["vertices"]
+
+    @property
+    def ridge_points(self) -> Indices:
+        """The two sites of each ridge, (r, 2).
+
+        The first lies to the left of the way from the first of its `ridge_vertices` to the second.
+        """
+        return self._dual["sites"]
+
+    @property
+    @kept
+    def ridge_vertices(self) -> Indices:
+        """The two vertices of each ridge, (r, 2); -1, which comes first, where it is open."""
+        ends = self._dual["ends"]
+        return ends if not len(self._dual["rays"]) else sealed(np.maximum(ends, -1))
+
+    @property
+    @kept
+    def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
+        """The two vertices of each ridge by the pair of its sites."""
+        pairs = map(tuple, self.ridge_points.tolist())
+        return dict(zip(pairs, self.ridge_vertices.tolist(), strict=True))
+
+    @property
+    @kept
+    def regions(self) -> list[list[int]]:
+        """For each cell its vertices, counter-clockwise, with -1 where it is open."""
+        indptr, indices = (array.tolist() for array in self.region_vertices)
+        lists = [indices[a:b] for a, b in zip(indptr[:-1], indptr[1:], strict=True)]
+        if len(self._dual["rays"]):
+            return [_without_repeated_gaps(region) for region in lists]
+        return lists
+
+    @property
+    def region_vertices(self) -> tuple[Indices, Indices]:
+        """`regions` as compressed rows (indptr, indices), with a -1 for each open end of a ridge."""
+        return self._dual["starts"], self._dual["region_vertices"]
+
+    @property
+    def point_region(self) -> Indices:
+        """The cell of each point, (n,), as an index of `regions`."""
+        return self._dual["region"]
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The site of each row, (n,): the first row with the same coordinates (and weight)."""
+        found = np.arange(self.npoints, dtype=np.int32)
+        has_cell = self.point_region >= 0
+        found[has_cell] = self._dual["site"][self.point_region[has_cell]]
+        return sealed(found)
+
+    @property
+    @kept
+    def hidden(self) -> Indices:
+        """The rows that have no cell, ascending: none without weights."""
+        return sealed(np.flatnonzero(self.point_region < 0).astype(np.int32))
+
+    @property
+    def triangle_vertices(self) -> Indices:
+        """The vertex of each triangle of `triangulation`, (m,); -1 beyond the range of doubles."""
+        return self._dual["triangle_vertex"]
+
+    @property
+    @kept
+    def rays(self) -> Rays:
+        """The ridges that go on for ever, with origins and directions.
+
+        A ridge that lies beyond the range of doubles as a whole has no ray.
+        """
+        ends, directions = self._dual["ends"], self._dual["rays"]
+        ridge, which = np.nonzero(ends < 0)
+        other = ends[ridge, 1 - which]
+        a, b = self._points[self.ridge_points[ridge]].swapaxes(0, 1)
+        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge]].T
+        origin = dual.foot(a, b, heavy)
+        origin[other >= 0] = self.vertices[other[other >= 0]]
+        direction = directions[~ends[ridge, which]]
+        opposite = directions[np.where(other < 0, ~other, 0)]
+        there = (other >= 0) | ((direction * opposite).sum(axis=1) < 0)
+        found = ridge[there].astype(np.int32), origin[there], direction[there]
+        return Rays(*map(sealed, found))
+
+    @property
+    @kept
+    def _clipped(self) -> Clipped:
+        """What is left of the cells: all bounded ones where there is no clip."""
+        return clipping.cells(self._points, self._weights, self._dual, self._clip, self._workers)
+
+    @property
+    @kept
+    def cell_areas(self) -> Floats:
+        """Areas of the cells within the clip, (n,), in the square of the unit of the points.
+
+        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites. Rows
+        with the same coordinates share one cell and have the same area each.
+        """
+        return sealed(np.append(self._clipped.areas, 0.0)[self.point_region])
+
+    @property
+    @kept
+    def cell_perimeters(self) -> Floats:
+        """Perimeters of the cells within the clip, (n,), holes included."""
+        return sealed(np.append(self._clipped.perimeters, 0.0)[self.point_region])
+
+    @property
+    @kept
+    def cell_centroids(self) -> Floats:
+        """Centroids of the cells within the clip, (n, 2); NaN for unbounded and empty ones."""
+        nowhere = [[np.nan, np.nan]]
+        return sealed(np.concatenate((self._clipped.centroids, nowhere))[self.point_region])
+
+    @property
+    @kept
+    def neighbors(self) -> Neighbors:
+        """Sites whose cells have an edge in common, with its length, as compressed rows.
+
+        In a clip only what is left of an edge counts. A duplicate has no neighbours of its own:
+        those of its cell are with the first row.
+        """
+        lengths = self._clipped.ridge_lengths()
+        rows = np.flatnonzero(lengths > 0) if self._clip is not None else np.arange(len(lengths))
+        sites = self.ridge_points[rows].astype(np.int64)
+        return Neighbors(*map(sealed, _compressed(sites, lengths[rows], self.npoints)))
+
+    def cell(self, i: int) -> Cell:
+        """Return the cell of a site.
+
+        Parameters
+        ----------
+        i : int
+            Row of the site.
+
+        Returns
+        -------
+        Cell
+            Its vertices, what is left of it within the clip, neighbours and measures.
+
+        Raises
+        ------
+        IndexError
+            There is no such row.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> cell = Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1)).cell(0)
+        >>> cell.area, cell.neighbors.tolist(), cell.lengths.tolist()
+        (4.0, [1], [2.0])
+        >>> [ring.tolist() for ring in cell.parts[0]]
+        [[[-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]]]
+        """
+        region, site = int(self.point_region[i]), int(self.duplicate_of[i])
+        start, end = self._dual["starts"][region : region + 2] if region >= 0 else (0, 0)
+        entries = self._dual["region_vertices"][start:end]
+        bounded = region < 0 or (bool(len(entries)) and bool((entries >= 0).all()))
+        if not bounded and len(entries):
+            entries = np.roll(entries, -int(np.flatnonzero(entries < 0)[0]))
+        indptr, indices, lengths = self.neighbors
+        beside = slice(indptr[site], indptr[site + 1])
+        return Cell(
+            site=site,
+            vertices=self.vertices[entries[entries >= 0]],
+            bounded=bounded,
+            parts=self._clipped.parts(region) if region >= 0 else (),
+            neighbors=indices[beside],
+            lengths=lengths[beside],
+            area=float(self.cell_areas[i]),
+            perimeter=float(self.cell_perimeters[i]),
+            centroid=self.cell_centroids[i],
+        )
+
+    def polygons(self) -> NDArray[Any]:
+        """Return what is left of the cells as geometries of shapely (extra ``geo``).
+
+        Returns
+        -------
+        ndarray of object, shape (n,)
+            For each point a polygon, or a multipolygon where the outline cuts a cell into parts; an
+            empty polygon where nothing is left; None for an unbounded cell without a clip.
+
+        Raises
+        ------
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> left, right = Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1)).polygons()
+        >>> left.area, left.intersection(right).length
+        (4.0, 2.0)
+        """
+        return shapes.chosen(self._clipped.polygons(), self.point_region)
+
+    def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
+        """Return the cells as a table of geopandas (extra ``geo``).
+
+        Parameters
+        ----------
+        data : DataFrame or mapping, optional
+            Columns to carry, a row for each point. The geometry of a GeoDataFrame gives way to the
+            cells, and its reference system is kept.
+        crs : any, optional
+            Reference system, as geopandas takes it.
+
+        Returns
+        -------
+        GeoDataFrame
+            A row for each point, in the order of the points and with the index of `data`.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+        InputError
+            `data` has another number of rows.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> diagram = Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1))
+        >>> table = diagram.to_geopandas({"name": ["left", "right"]})
+        >>> table.columns.tolist(), table.area.tolist()
+        (['name', 'geometry'], [4.0, 4.0])
+        """
+        return shapes.table(self.polygons(), data, crs)
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the diagram with matplotlib (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on new axes.
+        **options
+            As in `delone.voronoi.shapes.draw`.
+
+        Returns
+        -------
+        matplotlib Axes
+            What was drawn on.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> ax = Voronoi([(0, 0), (2, 0), (1, 2)], clip="box").plot()
+        >>> ax.get_aspect()
+        1.0
+        """
+        return shapes.draw(self, ax, **options)
+
+    def __copy__(self) -> Voronoi:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Voronoi:
+        return self
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a Voronoi cannot be changed: {name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a Voronoi cannot be changed: {name}")
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_clip"):  # the constructor failed, or has not run
+            return "<Voronoi diagram of nothing yet>"
+        where = "" if self._clip is None else f", clipped to {self._clip.name}"
+        numbers = [counted(self.npoints, "point")]
+        vertices = len(self.vertices)
+        numbers.append(f"{vertices} vert{'ex' if vertices == 1 else 'ices'}")
+        numbers.append(counted(len(self.ridge_points), "ridge"))
+        return f"<Voronoi diagram of {numbers[0]}: {', '.join(numbers[1:])}{where}>"
+
+
+def _dual(points: Floats, workers: int) -> tuple[Delaunay | None, dict[str, NDArray[Any]]]:
+    """The triangulation, where there is one, and the arrays of the diagram."""
+    try:
+        mesh = Delaunay(points, workers=workers)
+    except DegenerateInputError as error:
+        if not len(error.chain):
+            raise
+        arrays = dual.of_chain(points, error.chain.astype(np.int32))
+        arrays["region"] = arrays["region"][first_rows(points)]
+        return None, arrays
+    arrays = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, workers)
+    duplicate, first = mesh._duplicates.T
+    arrays["region"][duplicate] = arrays["region"][first]
+    return mesh, arrays
+
+
+def _power_dual(
+    points: Floats, weights: Floats, workers: int
+) -> tuple[RegularTriangulation | None, dict[str, NDArray[Any]]]:
+    """The same with weights."""
+    found, chain = triangulated(points, weights)
+    mesh = None
+    if len(found["simplices"]):
+        mesh = RegularTriangulation._from_arrays(found, {}, None)
+        arrays = _core.voronoi2(points, weights, mesh.simplices, mesh.neighbors, workers)
+    elif len(chain):
+        arrays = dual.of_chain(points, chain)
+    else:
+        raise DegenerateInputError("there is no point", reason="too few points")
+    duplicate, first = found["duplicates"].T
+    arrays["region"][duplicate] = arrays["region"][first]
+    return mesh, arrays
+
+
+def _without_repeated_gaps(region: list[int]) -> list[int]:
+    """A cell with each run of -1 written once, also where it runs over the end."""
+    kept = [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0]
+    return kept or region[:1]
+
+
+def _compressed(
+    pairs: NDArray[np.int64], lengths: Floats, npoints: int
+) -> tuple[Indices, Indices, Floats]:
+    """Symmetric pairs as compressed rows, with what belongs to each pair."""
+    here = np.concatenate((pairs[:, 0], pairs[:, 1]))
+    there = np.concatenate((pairs[:, 1], pairs[:, 0]))
+    order = np.argsort(here * npoints + there)
+    indptr = np.zeros(npoints + 1, dtype=np.int32)
+    np.cumsum(np.bincount(here, minlength=npoints), out=indptr[1:])
+    return indptr, there[order].astype(np.int32), np.tile(lengths, 2)[order]

@@ -1,0 +1,117 @@
+"""The arrays of a diagram: from the core, or from the order of sites that lie on one line.
+
+A `Dual` is what the core's `voronoi2` returns, and means the same in both cases:
+
+* ridge r has the sites ``sites[r]`` and the ends ``ends[r]``: vertex v, or ``~i`` for ray i with
+  direction ``rays[i]``. Its first site lies to the left of the way from its first end to its second.
+* cell c has the site ``site[c]`` and the entries ``starts[c]:starts[c + 1]``: counter-clockwise, a
+  vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that leads on from there in
+  ``region_ridges``.
+* ``region[p]`` is the cell of point p; -1 where it has none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Dual = dict[str, NDArray[Any]]
+
+__all__ = ["foot", "of_chain"]
+
+
+def of_chain(points: Floats, chain: Indices) -> Dual:
+    """Return the diagram of distinct sites on one line: half-planes and strips.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    chain : ndarray of int32, shape (k,)
+        Rows of the sites in their order along the line, k > 0.
+
+    Returns
+    -------
+    dict
+        As from the core.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.dual import of_chain
+    >>> dual = of_chain(np.array([(0.0, 0), (2, 0)]), np.array([0, 1]))
+    >>> dual["sites"].tolist(), dual["ends"].tolist(), dual["rays"].tolist()
+    ([[0, 1]], [[-1, -2]], [[0.0, -1.0], [0.0, 1.0]])
+    """
+    k = len(chain)
+    ridges = np.arange(k - 1, dtype=np.int32)
+    region = np.full(len(points), -1, dtype=np.int32)
+    region[chain] = np.arange(k)
+    along = _directions(points[chain[:-1]], points[chain[1:]])
+    up = np.column_stack((-along[:, 1], along[:, 0]))
+    # Each cell has the ridge to the site after it, then that to the site before it.
+    entries = np.repeat(np.arange(k, dtype=np.int32), 2) - np.tile([0, 1], k).astype(np.int32)
+    kept = (entries >= 0) & (entries < k - 1)
+    counts = kept.reshape(k, 2).sum(axis=1)
+    return {
+        "vertices": np.empty((0, 2)),
+        "triangle_vertex": np.empty(0, dtype=np.int32),
+        "sites": np.column_stack((chain[:-1], chain[1:])).astype(np.int32),
+        "ends": ~np.column_stack((2 * ridges, 2 * ridges + 1)),
+        "rays": np.stack((-up, up), axis=1).reshape(-1, 2) + 0.0,
+        "region": region,
+        "site": chain.astype(np.int32),
+        "starts": np.concatenate(([0], np.cumsum(counts))).astype(np.int32),
+        "region_vertices": np.full(2 * (k - 1), -1, dtype=np.int32),
+        "region_ridges": entries[kept],
+    }
+
+
+def _directions(a: Floats, b: Floats) -> Floats:
+    """Vectors from a to b, which differ, made of length 1."""
+    with np.errstate(over="ignore"):
+        vector = b - a
+    overflown = ~np.isfinite(vector).all(axis=1)
+    vector[overflown] = b[overflown] / 2 - a[overflown] / 2
+    vector /= np.abs(vector).max(axis=1, initial=0.0)[:, None]
+    unit: Floats = vector / np.hypot(*vector.T)[:, None]
+    return unit
+
+
+def foot(a: Floats, b: Floats, weights: tuple[Floats, Floats] | None = None) -> Floats:
+    """Return the points of bisectors that lie on the lines through the two sites.
+
+    Parameters
+    ----------
+    a, b : ndarray of float64, shape (k, 2)
+        Sites, different in each row.
+    weights : tuple of two ndarrays of float64, shape (k,), optional
+        Weights of both.
+
+    Returns
+    -------
+    ndarray of float64, shape (k, 2)
+        Points.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.dual import foot
+    >>> a, b = np.array([(0.0, 0)]), np.array([(2.0, 0)])
+    >>> foot(a, b), foot(a, b, (np.array([4.0]), np.array([0.0])))
+    (array([[1., 0.]]), array([[2., 0.]]))
+    """
+    middle = a / 2 + b / 2
+    if weights is None:
+        return middle
+    unit = _directions(a, b)
+    distance = np.hypot(*(b - a).T)
+    shift = (weights[0] - weights[1]) / (2 * distance)
+    found: Floats = middle + unit * shift[:, None]
+    return found

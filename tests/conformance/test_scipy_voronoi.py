@@ -1,0 +1,209 @@
+"""SciPy's own tests of Voronoi and voronoi_plot_2d, as installed, run against the drop-ins.
+
+As in ``test_scipy``: SciPy's test modules are loaded a second time, the names through which they
+reach SciPy's classes are replaced, and each test that uses Voronoi in the plane is run.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import importlib.util
+import inspect
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone.compat import scipy as drop_in
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from types import ModuleType
+
+spatial = pytest.importorskip("scipy.spatial")
+
+# Tests that cannot hold, by pattern, each with its reason. Every pattern must match a test, and
+# every test that matches must fail.
+CANNOT_HOLD = {
+    "TestVoronoi::test_simple": (
+        "compares the rows of `vertices` with Qhull's order, and regions by where they begin"
+    ),
+    "TestVoronoi::test_furthest_site": (
+        "compares the rows of `vertices` with Qhull's order, and regions by where they begin"
+    ),
+    "TestVoronoi::test_ridges[[]pathological-2]": (
+        "one coordinate of the grid is off by one eps; the exact diagram has a vertex as far away as "
+        "its inverse, where the test's k-d tree cannot tell the sites apart; Qhull leaves it out"
+    ),
+    "TestVoronoi::test_incremental[[]pathological-2-*": (
+        "takes vertices that are close for one; the exact diagram has ridges as short as the eps by "
+        "which one coordinate of the grid is off, and Qhull merges them"
+    ),
+    "TestPlotting::test_gh_19653*": (
+        "compares the unbounded ridges in Qhull's order; the same segments are drawn"
+    ),
+}
+
+
+class NotReachedError(Exception):
+    """Raised when a test ends without a diagram in the plane."""
+
+
+def load(name: str) -> ModuleType | None:
+    """A copy of a test module of SciPy of our own, or None where it ships without tests."""
+    try:
+        spec = importlib.util.find_spec(f"scipy.spatial.tests.{name}")
+    except ModuleNotFoundError:
+        return None
+    if spec is None or spec.loader is None:
+        return None
+    module = importlib.util.module_from_spec(spec)
+    state = np.random.get_state()  # noqa: NPY002  (the module seeds it on import)
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        np.random.set_state(state)  # noqa: NPY002
+    return module
+
+
+def runs(function: Callable[..., Any]) -> list[dict[str, Any]]:
+    """Keyword arguments of each run of a test."""
+    found: list[dict[str, Any]] = [{}]
+    for mark in getattr(function, "pytestmark", []):
+        if mark.name != "parametrize":
+            continue
+        names = (
+            [name.strip() for name in mark.args[0].split(",")]
+            if isinstance(mark.args[0], str)
+            else list(mark.args[0])
+        )
+        rows = [row if len(names) > 1 else (row,) for row in mark.args[1]]
+        found = [run | dict(zip(names, row, strict=True)) for run in found for row in rows]
+    return found
+
+
+def is_planar(arguments: dict[str, Any]) -> bool:
+    return arguments.get("ndim", 2) == 2 and not any(
+        f"{d}d" in str(value) for d in range(3, 10) for value in arguments.values()
+    )
+
+
+def uses_voronoi(function: Callable[..., Any]) -> bool:
+    names = set(inspect.unwrap(function).__code__.co_names)
+    return bool({"Voronoi", "_compare_qvoronoi"} & names)
+
+
+def functions(module: ModuleType) -> Iterator[tuple[str, Any, Callable[[], Any]]]:
+    """Name, function and what makes it callable, of all tests of a module."""
+    for name, item in vars(module).items():
+        if name.startswith("test_") and callable(item):
+            yield name, item, lambda function=item: function
+        elif name.startswith("Test") and inspect.isclass(item):
+            for method, function in vars(item).items():
+                if method.startswith("test_"):
+                    yield (
+                        f"{name}::{method}",
+                        function,
+                        lambda function=function, owner=item: function.__get__(owner()),
+                    )
+
+
+def cases() -> Iterator[Any]:
+    for module_name in ("test_qhull", "test__plotutils"):
+        module = load(module_name)
+        if module is None:
+            continue
+        for name, function, bind in functions(module):
+            for arguments in runs(function):
+                by_parameter = any(value is spatial.Voronoi for value in arguments.values())
+                if not is_planar(arguments) or not (uses_voronoi(function) or by_parameter):
+                    continue
+                words = "-".join(str(getattr(v, "__name__", v)) for v in arguments.values())
+                identifier = f"{name}[{words}]" if words else name
+                reasons = [r for p, r in CANNOT_HOLD.items() if fnmatch.fnmatch(identifier, p)]
+                marks = [
+                    pytest.mark.xfail(reason=r, strict=True, raises=AssertionError) for r in reasons
+                ]
+                yield pytest.param(module, bind, arguments, id=identifier, marks=marks)
+
+
+CASES = list(cases())
+
+
+def replacement(calls: list[int]) -> type:
+    class Voronoi(drop_in.Voronoi):
+        def __new__(cls, points: Any, *args: Any, **options: Any) -> Any:
+            shape = np.shape(points)
+            if len(shape) == 2 and shape[1] > 2:
+                return spatial.Voronoi(points, *args, **options)
+            calls.append(len(shape))
+            return super().__new__(cls)
+
+    return Voronoi
+
+
+@pytest.mark.skipif(not CASES, reason="SciPy is installed without its tests")
+@pytest.mark.parametrize(("module", "bind", "arguments"), CASES)
+def test_holds(
+    module: ModuleType,
+    bind: Callable[[], Callable[..., None]],
+    arguments: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    calls: list[int] = []
+    diagram = replacement(calls)
+    monkeypatch.setattr(module, "Voronoi", diagram)
+    if hasattr(module, "qhull"):
+        names = vars(module.qhull) | {"Voronoi": diagram}
+        monkeypatch.setattr(module, "qhull", SimpleNamespace(**names))
+    if hasattr(module, "voronoi_plot_2d"):
+        pytest.importorskip("matplotlib").use("Agg")
+        monkeypatch.setattr(module, "voronoi_plot_2d", drop_in.voronoi_plot_2d)
+    replaced = {n: diagram if v is spatial.Voronoi else v for n, v in arguments.items()}
+    bind()(**replaced)
+    if not calls:
+        raise NotReachedError("the test never came to delone")
+
+
+@pytest.mark.skipif(not CASES, reason="SciPy is installed without its tests")
+def test_the_known_tests_are_there() -> None:
+    names = [case.id for case in CASES]
+    for pattern in CANNOT_HOLD:
+        assert fnmatch.filter(names, pattern), f"{pattern} matches no test"
+    assert sum(name.startswith("TestVoronoi::test_incremental") for name in names) >= 5
+    for expected in ("TestVoronoi::test_ridges*", "TestPlotting::test_voronoi"):
+        assert fnmatch.filter(names, expected)
+
+
+@pytest.mark.skipif(not CASES, reason="SciPy is installed without its tests")
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)],
+        [(0, 0), (0, 1), (1, 0), (0.5, 0.5), (1.1, 1.1)],
+    ],
+)
+@pytest.mark.parametrize("furthest_site", [False, True])
+def test_but_for_the_order_the_diagram_is_that_of_scipy(
+    points: list[tuple[float, float]], furthest_site: bool
+) -> None:
+    if furthest_site and len(points) == 9:
+        points = [*points, (2.5, 0.25)]
+    ours = drop_in.Voronoi(points, furthest_site=furthest_site)
+    theirs = spatial.Voronoi(points, furthest_site=furthest_site)
+
+    def ridges(vor: Any) -> set[Any]:
+        corners = [tuple(np.round(v, 9).tolist()) for v in vor.vertices] + ["open"]
+        return {
+            (frozenset(pair), frozenset(corners[v] for v in ends))
+            for pair, ends in zip(vor.ridge_points.tolist(), vor.ridge_vertices, strict=True)
+        }
+
+    def cells(vor: Any) -> list[Any]:
+        corners = [tuple(np.round(v, 9).tolist()) for v in vor.vertices] + ["open"]
+        return [{corners[v] for v in vor.regions[r]} for r in vor.point_region]
+
+    assert ridges(ours) == ridges(theirs)
+    assert cells(ours) == cells(theirs)
+    assert sorted(map(len, ours.regions)) == sorted(map(len, theirs.regions))

@@ -1,0 +1,149 @@
+"""locate, nearest and walk against their definitions."""
+
+from __future__ import annotations
+
+import threading
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets
+from delone.errors import DtypeError, ShapeError
+from delone.predicates import orient2d
+
+
+@pytest.mark.parametrize("name", ["uniform", "grid", "circle", "near_collinear", "duplicates"])
+def test_weights_are_those_of_a_mean(name: str) -> None:
+    mesh = Delaunay(datasets.GENERATORS[name](200, seed=1))
+    rng = np.random.default_rng(2)
+    queries = mesh.min_bound + rng.random((300, 2)) * (mesh.max_bound - mesh.min_bound)
+    place = mesh.locate(queries)
+    assert np.array_equal(place.simplex, mesh.find_simplex(queries))
+    inside = place.simplex >= 0
+    weights = place.barycentric[inside]
+    assert (weights >= 0).all()
+    np.testing.assert_allclose(weights.sum(axis=1), 1, rtol=4e-16)
+    means = np.einsum("kv,kvj->kj", weights, mesh.points[mesh.simplices[place.simplex[inside]]])
+    size = np.abs(mesh.points).max()
+    np.testing.assert_allclose(means, queries[inside], rtol=0, atol=1e-13 * size)
+    assert np.array_equal(place.nearest[inside], queries[inside])
+    assert (place.beside[inside] == -1).all() and np.isnan(place.along[inside]).all()
+
+
+def test_weights_at_sites_are_exactly_one() -> None:
+    mesh = Delaunay(datasets.tilted_grid(400))
+    place = mesh.locate(mesh.points)
+    best = place.barycentric.argmax(axis=1)
+    rows = np.arange(mesh.npoints)
+    assert np.array_equal(mesh.simplices[place.simplex, best], rows)
+    assert (place.barycentric[rows, best] == 1).all()
+    assert (np.sort(place.barycentric, axis=1)[:, :2] == 0).all()
+
+
+def test_outside_the_nearest_point_of_the_hull() -> None:
+    mesh = Delaunay(datasets.uniform(60, seed=4))
+    queries = np.random.default_rng(5).random((80, 2)) * 4 - 1.5
+    place = mesh.locate(queries)
+    ring = mesh.points[mesh.hull].tolist()
+    edges = list(zip(ring, ring[1:] + ring[:1], strict=True))
+    for i in np.flatnonzero(place.simplex < 0):
+        best = min(squared_distance(queries[i], u, v) for u, v in edges)
+        gap = queries[i] - place.nearest[i]
+        assert float(gap @ gap) == pytest.approx(float(best), rel=1e-12)
+        u, v = place.edge[i]
+        assert {u, v} <= set(mesh.simplices[place.beside[i]].tolist())
+        assert orient2d(mesh.points[u], mesh.points[v], queries[i]) < 0
+        assert 0 <= place.along[i] <= 1
+
+
+def squared_distance(q: Any, u: Any, v: Any) -> Fraction:
+    (qx, qy), (ux, uy), (vx, vy) = ([Fraction(float(x)) for x in point] for point in (q, u, v))
+    dx, dy = vx - ux, vy - uy
+    s = ((qx - ux) * dx + (qy - uy) * dy) / (dx * dx + dy * dy)
+    s = min(max(s, Fraction(0)), Fraction(1))
+    return (qx - ux - s * dx) ** 2 + (qy - uy - s * dy) ** 2
+
+
+def test_what_is_no_number_is_nowhere() -> None:
+    mesh = Delaunay(datasets.uniform(50))
+    place = mesh.locate([(np.nan, 0.5), (np.inf, 0.5)])
+    assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
+    assert np.isnan(place.barycentric).all() and np.isnan(place.nearest).all()
+    assert mesh.nearest([(np.nan, 0.5), (0.5, -np.inf)]).tolist() == [-1, -1]
+
+
+@pytest.mark.parametrize("shape", [(2,), (0, 2), (3, 4, 2), (2, 0, 2)])
+def test_any_leading_shape(shape: tuple[int, ...]) -> None:
+    mesh = Delaunay(datasets.uniform(50))
+    queries = np.random.default_rng(0).random(shape)
+    place = mesh.locate(queries)
+    assert place.simplex.shape == place.along.shape == shape[:-1]
+    assert place.barycentric.shape == (*shape[:-1], 3)
+    assert place.nearest.shape == place.edge.shape == shape
+    assert mesh.nearest(queries).shape == shape[:-1]
+
+
+@pytest.mark.parametrize("name", ["uniform", "grid", "duplicates", "integer_lattice"])
+def test_nearest_is_the_nearest_and_the_first_of_equals(name: str) -> None:
+    points = datasets.GENERATORS[name](150, seed=3)
+    mesh = Delaunay(points)
+    rng = np.random.default_rng(6)
+    low, high = mesh.min_bound, mesh.max_bound
+    queries = low - 0.3 * (high - low) + rng.random((120, 2)) * 1.6 * (high - low)
+    # Halfway between points, where ties are.
+    halves = (points[rng.integers(0, 150, 60)] + points[rng.integers(0, 150, 60)]) / 2
+    queries = np.concatenate((queries, halves, points[:20]))
+    exact = [tuple(map(Fraction, point)) for point in points.tolist()]
+    for query, found in zip(queries.tolist(), mesh.nearest(queries).tolist(), strict=True):
+        x, y = map(Fraction, query)
+        distance = [(x - px) ** 2 + (y - py) ** 2 for px, py in exact]
+        assert found == distance.index(min(distance))
+
+
+def test_walk_meets_all_triangles_on_the_way() -> None:
+    mesh = Delaunay(datasets.uniform(300, seed=7))
+    a, b = (-0.1, 0.2), (1.1, 0.7)
+    found = mesh.walk(a, b)
+    line = mesh.points[mesh.simplices]
+    sides = orient2d(np.array(a), np.array(b), line)
+    crossed = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0)
+    assert set(found.tolist()) == set(np.flatnonzero(crossed).tolist())
+    assert (mesh.neighbors[found[:-1]] == found[1:, None]).any(axis=1).all()
+    back = mesh.walk(b, a)
+    assert np.array_equal(back, found[::-1])
+    assert mesh.walk(a, a).size == 0
+    assert mesh.walk((0.5, 0.5), (0.5, 0.5)).tolist() == [int(mesh.find_simplex((0.5, 0.5)))]
+
+
+def test_bad_input_is_refused() -> None:
+    mesh = Delaunay(datasets.uniform(20))
+    for method in (mesh.locate, mesh.nearest):
+        with pytest.raises(ShapeError, match="xi"):
+            method([(1, 2, 3)])
+        with pytest.raises(DtypeError, match="xi"):
+            method([(1j, 0)])
+    for bad in ((0.0, np.nan), [(0, 0), (1, 1)], (1, 2, 3)):
+        with pytest.raises(ShapeError):
+            mesh.walk(bad, (0, 0))
+    with pytest.raises(ShapeError, match="b must be"):
+        mesh.walk((0, 0), (np.inf, 0))
+
+
+def test_many_threads_may_ask_at_once() -> None:
+    mesh = Delaunay(datasets.uniform(5000), workers=1)
+    queries = np.random.default_rng(8).random((20_000, 2))
+    found: list[Any] = []
+    threads = [
+        threading.Thread(target=lambda: found.append(mesh.locate(queries).barycentric))
+        for _ in range(4)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    expected = Delaunay(mesh.points, workers=3).locate(queries).barycentric
+    assert len(found) == 4
+    for each in found:
+        np.testing.assert_array_equal(each, expected)

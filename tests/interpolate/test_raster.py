@@ -1,0 +1,98 @@
+"""Rasters, and what huge ones get."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets
+from delone.errors import InputError, ShapeError
+from delone.interpolate import Linear, grid
+from delone.interpolate import raster as module
+
+SQUARE = [(0, 0), (4, 0), (4, 2), (0, 2)]
+VALUES = [0.0, 4.0, 6.0, 2.0]
+
+
+def test_nodes_are_centres_of_cells() -> None:
+    found = grid(SQUARE, VALUES, resolution=1)
+    assert found.x.tolist() == [0.5, 1.5, 2.5, 3.5] and found.y.tolist() == [0.5, 1.5]
+    assert found.values.tolist() == [[1, 2, 3, 4], [2, 3, 4, 5]]
+    assert found.extent == (0, 4, 0, 2) and found.cell == (1, 1)
+    assert grid(SQUARE, VALUES, shape=(4, 2)).x.tolist() == found.x.tolist()
+    assert grid(SQUARE, VALUES, resolution=(2, 0.5)).values.shape == (4, 2)
+    # No whole number of cells: one more, and no more than that for a rounding error.
+    assert len(grid(SQUARE, VALUES, resolution=3).x) == 2
+    assert len(grid(SQUARE, VALUES, bounds=(0, 0, 0.3, 0.3), resolution=0.1).x) == 3
+    assert grid(SQUARE, VALUES, bounds=(1, 1, 3, 2), shape=(2, 1)).values.tolist() == [[3, 4]]
+    assert grid(SQUARE, VALUES, x=[0, 4], y=[0, 2]).values.tolist() == [[0, 4], [2, 6]]
+
+
+def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    points = datasets.uniform(200)
+    values = np.column_stack((points[:, 0], points[:, 1])) * (1 + 2j)
+    whole = grid(points, values, shape=(31, 17), method="sibson")
+    told: list[float] = []
+    monkeypatch.setattr(module, "_BLOCK", 70)
+    parts = grid(points, values, shape=(31, 17), method="sibson", progress=told.append)
+    np.testing.assert_array_equal(parts.values, whole.values)
+    assert whole.values.shape == (17, 31, 2) and whole.values.dtype == np.complex128
+    assert told == sorted(told) and told[-1] == 1.0 and len(told) == 9
+
+
+def test_from_triangulations_and_interpolators() -> None:
+    mesh = Delaunay(SQUARE)
+    expected = grid(SQUARE, VALUES, resolution=1).values
+    np.testing.assert_array_equal(grid(mesh, VALUES, resolution=1).values, expected)
+    made = Linear(mesh, VALUES)
+    np.testing.assert_array_equal(grid(made, resolution=1).values, expected)
+    np.testing.assert_array_equal(
+        grid(made, np.array(VALUES) * 2, resolution=1).values, 2 * expected
+    )
+    with pytest.raises(InputError, match="made already"):
+        grid(made, resolution=1, method="sibson")
+
+
+def test_huge_rasters_are_refused_before_anything_is_computed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Linear, "_derived", lambda *_: pytest.fail("it was computed"))
+    with pytest.raises(MemoryError, match=r"10,000,000 x 10,000,000 cells needs 800,000\.0 GB"):
+        grid(SQUARE, VALUES, shape=(10**7, 10**7))
+    with pytest.raises(MemoryError, match="choose larger cells"):
+        grid(SQUARE, VALUES, resolution=1e-9)
+    monkeypatch.setattr(module, "_free_memory", lambda: (1 << 26) + 8 * 99)
+    with pytest.raises(MemoryError):
+        grid(SQUARE, VALUES, shape=(10, 10))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"resolution": 1, "shape": (2, 2)},
+        {"resolution": 0},
+        {"resolution": np.nan},
+        {"resolution": 1e-320},
+        {"shape": (0, 3)},
+        {"shape": (1, 2, 3)},
+        {"shape": (1.5, 2)},
+        {"x": [0, 1]},
+        {"x": [0, 1], "y": [1, 0]},
+        {"x": [0, 1], "y": [0, np.nan]},
+        {"x": [0, 1], "y": [0, 1], "resolution": 1},
+        {"resolution": 1, "bounds": (0, 0, 0, 1)},
+        {"resolution": 1, "bounds": (0, 0, 1)},
+        {"resolution": 1, "method": "spline"},
+    ],
+)
+def test_bad_rasters_are_refused(options: dict[str, Any]) -> None:
+    with pytest.raises(InputError):
+        grid(SQUARE, VALUES, **options)
+
+
+def test_nodes_have_one_axis() -> None:
+    with pytest.raises(ShapeError, match="x must"):
+        grid(SQUARE, VALUES, x=[[0, 1]], y=[0])

@@ -1,0 +1,90 @@
+"""Lloyd's method: energy falls, sites come to rest at centroids, densities draw them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from delone.datasets import uniform
+from delone.errors import InputError
+from delone.voronoi import lloyd
+
+BOX = (0, 0, 1, 1)
+
+
+def test_energy_falls_with_each_step() -> None:
+    steps: list[tuple[int, float, float]] = []
+    result = lloyd(
+        uniform(100, seed=1), BOX, iterations=30, progress=lambda *step: steps.append(step)
+    )
+    assert result.iterations == 30 and not result.converged
+    assert (np.diff(result.energies) < 0).all()
+    assert [step[0] for step in steps] == list(range(1, 31))
+    assert [step[1] for step in steps] == result.displacements.tolist()
+    assert [step[2] for step in steps] == result.energies[1:].tolist()
+
+
+def test_sites_come_to_rest_at_the_centroids_of_their_cells() -> None:
+    result = lloyd(uniform(20, seed=2), BOX, iterations=2000, tol=1e-9)
+    assert result.converged
+    assert result.displacements[-1] <= 1e-9 < result.displacements[-2]
+    assert np.allclose(result.points, result.diagram.cell_centroids, atol=1e-8)
+
+
+def test_the_energy_is_that_of_known_cells() -> None:
+    # Four quarters of a square, sites at their centres: 4 * (h^4 / 6) with h = 1 / 2.
+    points = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)]
+    result = lloyd(points, BOX, iterations=1, tol=0.0)
+    assert result.energies.tolist() == pytest.approx([4 * 0.5**4 / 6] * 2)
+    assert result.converged and result.displacements[0] < 1e-15
+
+
+def test_a_density_draws_sites_where_it_is_large() -> None:
+    flat = lloyd(uniform(200, seed=3), BOX, iterations=60)
+    steep = lloyd(uniform(200, seed=3), BOX, iterations=60, density=lambda p: np.exp(4 * p[:, 0]))
+    assert steep.points[:, 0].mean() > flat.points[:, 0].mean() + 0.05
+    one = lloyd([(0.1, 0.4)], BOX, iterations=1, density=lambda p: p[:, 0])
+    # The centroid of the unit square under the density x.
+    assert one.points.tolist() == [pytest.approx([2 / 3, 1 / 2])]
+
+
+def test_outlines_with_holes_and_notches() -> None:
+    shapely = pytest.importorskip("shapely")
+    outline = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 2, 2) - shapely.box(3, 3, 5, 5)
+    one = lloyd([(0.5, 0.5)], outline, iterations=1)
+    assert np.allclose(one.points, shapely.get_coordinates(outline.centroid))
+    result = lloyd(uniform(60, seed=4) * 4, outline, iterations=25)
+    assert (np.diff(result.energies) < 0).all()
+    # Who starts in the hole or the notch may have no cell, and stays.
+    assert not shapely.contains_xy(outline, result.points[result.empty]).any()
+    assert (result.diagram.cell_areas > 0).sum() == 60 - len(result.empty) >= 55
+
+
+def test_a_site_without_a_cell_stays_where_it_is() -> None:
+    result = lloyd([(0.5, 0.5), (9, 9), (9, 9)], BOX, iterations=3)
+    assert result.points.tolist() == [[0.5, 0.5], [9.0, 9.0], [9.0, 9.0]]
+    assert result.empty.tolist() == [1, 2]
+
+
+def test_the_box_of_the_sites_stays_that_of_the_first_ones() -> None:
+    result = lloyd([(0, 0), (1, 1), (0.3, 0.6)], "box", iterations=5)
+    assert result.diagram.clip == (0.0, 0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"clip": None}, "needs a clip"),
+        ({"iterations": -1}, "iterations"),
+        ({"tol": -1.0}, "tol"),
+        ({"tol": float("nan")}, "tol"),
+        ({"density": lambda p: p}, "shape"),
+        ({"density": lambda p: -p[:, 0]}, "not negative"),
+    ],
+)
+def test_bad_options_are_refused(options: dict[str, Any], message: str) -> None:
+    arguments = {"clip": BOX} | options
+    with pytest.raises(InputError, match=message):
+        lloyd([(0.5, 0.5), (0.25, 0.125)], arguments.pop("clip"), **arguments)
