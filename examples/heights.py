@@ -8,6 +8,7 @@ import numpy as np
 
 from delone import Delaunay
 from delone.datasets import ahn3
+from delone.interpolate import Linear
 
 
 def main() -> None:
@@ -18,15 +19,8 @@ def main() -> None:
     x, y = np.meshgrid(np.arange(low[0], high[0], 0.5), np.arange(low[1], high[1], 0.5))
     queries = np.column_stack([x.ravel(), y.ravel()])
 
-    triangle = mesh.find_simplex(queries)
-    inside = triangle >= 0
-    affine = mesh.transform[triangle[inside]]
-    first_two = np.einsum("kij,kj->ki", affine[:, :2], queries[inside] - affine[:, 2])
-    weights = np.column_stack([first_two, 1.0 - first_two.sum(axis=1)])
-
-    heights = np.full(len(queries), np.nan)
-    corners = mesh.simplices[triangle[inside]]
-    heights[inside] = (weights * survey.z[corners]).sum(axis=1)
+    heights = Linear(mesh, survey.z)(queries)
+    inside = np.isfinite(heights)
 
     assert np.nanmin(heights) >= survey.z.min() - 1e-6
     assert np.nanmax(heights) <= survey.z.max() + 1e-6

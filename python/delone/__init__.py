@@ -31,6 +31,7 @@ from delone.errors import (
     ShapeError,
 )
 from delone.lawson import LawsonResult, lawson
+from delone.periodic import PeriodicDelaunay
 from delone.polygons import PolygonTriangles, from_geometry, triangulate_polygon
 from delone.regular import RegularTriangulation
 from delone.segments import SegmentReport
@@ -58,6 +59,7 @@ __all__ = [
     "LloydResult",
     "MissingExtraError",
     "NonFiniteError",
+    "PeriodicDelaunay",
     "PolygonTriangles",
     "RegularTriangulation",
     "SegmentReport",

@@ -129,6 +129,14 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
     >>> as_vectors((0, 1), 2)
     array([0., 1.])
     """
+    if (
+        type(values) is np.ndarray
+        and values.dtype is _FLOAT64
+        and values.flags.carray
+        and values.ndim > 0
+        and values.shape[-1] == d
+    ):
+        return values
     array = _as_plain_array(values, name)
     if array.ndim == 0 or array.shape[-1] != d:
         _refuse_kind(array, name)

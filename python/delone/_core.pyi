@@ -1,5 +1,6 @@
 """The compiled core. All arrays are C-contiguous; inputs must be of the dtypes given here."""
 
+from collections.abc import Callable
 from typing import Any, Final, final
 
 import numpy as np
@@ -23,6 +24,7 @@ __all__ = [
     "orient2d",
     "orient3d",
     "periodic2",
+    "periodic_centers2",
     "polygon2",
     "refine2",
     "regular2",
@@ -135,6 +137,9 @@ def refine2(
     frozen: NDArray[np.bool_],
     min_angle: float,
     max_vertices: int,
+    lines: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]] | None = None,
+    circles: bool = False,
+    progress: Callable[[int, float], object] | None = None,
 ) -> dict[str, Any]: ...
 def combine2(
     indptr: NDArray[np.int64],
@@ -223,3 +228,10 @@ def periodic2(
 ) -> tuple[
     NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]
 ]: ...
+def periodic_centers2(
+    points: NDArray[np.float64],
+    periods: tuple[float, float],
+    corners: NDArray[np.int32],
+    apexes: NDArray[np.int32],
+    workers: int,
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]: ...

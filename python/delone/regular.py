@@ -1,7 +1,7 @@
-"""The class RegularTriangulation: the triangulation of weighted points, dual of their power diagram.
+"""The class RegularTriangulation: triangulations of weighted points, dual to power diagrams.
 
-Sites are lifted by their weights, and the core takes the lower side of their hull. What follows from
-the triangles is in `triangulation`, as for all classes of triangulations.
+Sites are lifted by their weights, and the core takes the lower side of their hull. What follows
+from the triangles is in `triangulation`, as for all classes of triangulations.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ class RegularTriangulation(Triangulation):
 
     Notes
     -----
-    The triangles are the lower side of the hull of the points lifted to ``x**2 + y**2 - w``. A point
-    whose lift lies above it is *hidden*: no place of the plane has its least power there, and it
-    is no vertex. With equal weights this is the Delaunay triangulation.
+    The triangles are the lower side of the hull of the points lifted to ``x**2 + y**2 - w``. A
+    point whose lift lies above it is *hidden*: no place of the plane has its least power there, and
+    it is no vertex. With equal weights this is the Delaunay triangulation.
 
     The answer is exact, and unique: ties are broken as in `delone.Delaunay`, so that a point whose
     lift lies on the hull without being a corner of it is hidden. Of points with the same

@@ -315,7 +315,7 @@ class Triangulation:
         --------
         >>> from delone import Delaunay
         >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
-        >>> len(mesh.walk((-1, 0.5), (5, 1.5)))
+        >>> len(mesh.walk((-1, 0.5), (5, 1)))
         3
         """
         return location.along(self._locator, a, b)

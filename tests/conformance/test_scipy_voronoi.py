@@ -33,12 +33,12 @@ CANNOT_HOLD = {
         "compares the rows of `vertices` with Qhull's order, and regions by where they begin"
     ),
     "TestVoronoi::test_ridges[[]pathological-2]": (
-        "one coordinate of the grid is off by one eps; the exact diagram has a vertex as far away as "
-        "its inverse, where the test's k-d tree cannot tell the sites apart; Qhull leaves it out"
+        "one coordinate of the grid is off by one eps; the exact diagram has a vertex as far away "
+        "as its inverse, where the test's k-d tree cannot tell the sites apart; Qhull leaves it out"
     ),
     "TestVoronoi::test_incremental[[]pathological-2-*": (
-        "takes vertices that are close for one; the exact diagram has ridges as short as the eps by "
-        "which one coordinate of the grid is off, and Qhull merges them"
+        "takes vertices that are close for one; the exact diagram has ridges as short as the eps "
+        "by which one coordinate of the grid is off, and Qhull merges them"
     ),
     "TestPlotting::test_gh_19653*": (
         "compares the unbounded ridges in Qhull's order; the same segments are drawn"

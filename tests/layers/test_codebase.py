@@ -129,6 +129,7 @@ PUBLIC_MODULES = (
     "delone.interpolate",
     "delone.io",
     "delone.location",
+    "delone.periodic",
     "delone.plot",
     "delone.polygons",
     "delone.predicates",

@@ -69,7 +69,8 @@ PYTHON: dict[str, set[str]] = {
     "editing": {"constrained", "topology", "triangulation"} | FOUNDATION,
     "polygons": {"_core", "constrained", "geodata", "triangulation"} | FOUNDATION,
     "regular": {"_core", "triangulation"} | FOUNDATION,
-    "voronoi": {"_core", "delaunay", "io", "regular", "triangulation"} | FOUNDATION,
+    "periodic": {"_core", "geometry", "triangulation"} | FOUNDATION,
+    "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
     "interpolate": {"_core", "delaunay", "location", "topology", "triangulation"} | FOUNDATION,
     "compat": {
         "_core",
@@ -107,6 +108,7 @@ PYTHON: dict[str, set[str]] = {
         "interpolate",
         "io",
         "lawson",
+        "periodic",
         "plot",
         "polygons",
         "predicates",
@@ -271,8 +273,8 @@ def test_crates_need_what_they_may() -> None:
     assert crate_faults(CRATES) == []
 
 
-# Arrows up, which only the inside of a function may have: triangulation asks plot to draw, and io to
-# write pictures; plot knows Delaunay and how io replaces files. A constrained triangulation begins
+# Arrows up, which only the inside of a function may have: triangulation asks plot to draw, and io
+# plot and relief to write pictures; plot knows Delaunay and how io replaces files. A constrained triangulation begins
 # edits, which make another one.
 LAZY = {("triangulation", "plot"), ("io", "plot"), ("io", "relief"), ("constrained", "editing")}
 

@@ -1,4 +1,4 @@
-"""Cells cut to boxes and outlines: they tile what they are cut to, exactly where that is promised."""
+"""Cells cut to boxes and outlines tile what they are cut to, exactly where that is promised."""
 
 from __future__ import annotations
 
@@ -48,8 +48,11 @@ OUTLINES = {
     "fine star": star(2000),
     "comb": comb(),
     "islands": shapely.MultiPolygon(
-        [shapely.box(0.1, 0.1, 0.3, 0.3), star(5), shapely.box(0.95, 0.9, 1.4, 1.2)][:1]
-        + [shapely.box(0.95, 0.9, 1.4, 1.2), shapely.Point(0.6, 0.5).buffer(0.2)]
+        [
+            *[shapely.box(0.1, 0.1, 0.3, 0.3), star(5), shapely.box(0.95, 0.9, 1.4, 1.2)][:1],
+            shapely.box(0.95, 0.9, 1.4, 1.2),
+            shapely.Point(0.6, 0.5).buffer(0.2),
+        ]
     ),
     "far away": shapely.box(5, 5, 6, 6),
     "within one cell": shapely.Point(0.5, 0.5).buffer(1e-4),
@@ -163,7 +166,7 @@ def test_corners_on_a_side_of_the_box_are_where_both_sites_are_equally_near() ->
 def test_neighbors_count_what_is_left_of_their_edge() -> None:
     points = [(0, 0), (2, 0), (0, 2), (2, 2)]
     outline = shapely.box(-1, -1, 3, 3) - shapely.box(0.5, -2, 1.5, 0.5)
-    indptr, indices, lengths = Voronoi(points, clip=outline).neighbors
+    _indptr, indices, lengths = Voronoi(points, clip=outline).neighbors
     assert indices.tolist() == [1, 2, 0, 3, 0, 3, 1, 2]
     # The notch takes half a unit of each of three edges, and all but half of the fourth.
     assert lengths.tolist() == pytest.approx([0.5, 2.0, 0.5, 2.0, 2.0, 2.0, 2.0, 2.0])

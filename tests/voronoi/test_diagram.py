@@ -1,4 +1,4 @@
-"""The whole diagram against exact arithmetic: duality, vertices, nearest sites, degenerate sites."""
+"""The whole diagram against exact arithmetic: duality, vertices, nearest and degenerate sites."""
 
 from __future__ import annotations
 

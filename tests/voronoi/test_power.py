@@ -101,7 +101,7 @@ def test_sites_in_line_and_alone() -> None:
     assert diagram.hidden.tolist() == [1]
     # The axis between 2 and 6 lies where x * x - ... are equal: at 4 - 8 / (2 * 4) = 3.
     assert diagram.cell_areas.tolist() == [4.0, 0.0, 4.0, 8.0]
-    ridge, origin, _ = diagram.rays
+    _ridge, origin, _ = diagram.rays
     assert origin[::2].tolist() == [[1.0, 0.0], [3.0, 0.0]]
     pair = Voronoi([(0, 0), (0, 0)], weights=[1, 2], clip=(0, 0, 1, 1))
     assert pair.cell_areas.tolist() == [0.0, 1.0]

@@ -1,7 +1,10 @@
 //! NumPy arrays as slices of small arrays and back, without a copy.
 
 use numpy::ndarray::{Dimension, IntoDimension};
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 use delone_core::error::{Error, Result};

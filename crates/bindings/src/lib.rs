@@ -43,5 +43,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::regular2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::periodic2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::periodic_centers2, m)?)?;
     Ok(())
 }

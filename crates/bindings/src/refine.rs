@@ -1,7 +1,9 @@
 //! Refined meshes as arrays.
 
+use std::time::{Duration, Instant};
+
 use delone_core::error::{Error, Result};
-use delone_core::refine::{Task, refine};
+use delone_core::refine::{Lines, Refined, Task, refine_telling};
 use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,8 +29,28 @@ fn each<'a, T: Element>(
     }
 }
 
-/// A refined triangulation, by name.
+/// Segments as vertices among `n` points.
+fn vertices(array: &PyReadonlyArray2<'_, i32>, n: usize, name: &str) -> Result<Vec<[u32; 2]>> {
+    let all: &[[i32; 2]] = rows(array, name)?;
+    in_range(all, 0, n, name)?;
+    Ok(all.iter().map(|s| s.map(|v| v as u32)).collect())
+}
+
+/// `(of, ends, on)`: the line of each segment, the ends of lines, the line of each point or -1.
+type Given<'py> = (
+    PyReadonlyArray1<'py, i32>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray1<'py, i32>,
+);
+
+/// Least time between two calls of `progress`.
+const BETWEEN: Duration = Duration::from_millis(100);
+
+/// A refined triangulation, by name. `progress` is called with the number of vertices added and the
+/// smallest angle now.
 #[pyfunction]
+#[pyo3(signature = (points, simplices, labels, areas, segments, frozen, min_angle, max_vertices,
+                    lines=None, circles=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one array each")]
 pub fn refine2<'py>(
     py: Python<'py>,
@@ -40,31 +62,75 @@ pub fn refine2<'py>(
     frozen: PyReadonlyArray1<'py, bool>,
     min_angle: f64,
     max_vertices: usize,
+    lines: Option<Given<'py>>,
+    circles: bool,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let ends = || -> Result<Vec<[u32; 2]>> {
+    let found = || -> Result<_> {
         let n = rows::<f64, 2>(&points, "points")?.len();
-        let all: &[[i32; 2]] = rows(&segments, "segments")?;
-        in_range(all, 0, n, "segments")?;
-        Ok(all.iter().map(|s| s.map(|v| v as u32)).collect())
+        let ends = lines.as_ref().map(|l| vertices(&l.1, n, "ends"));
+        Ok((vertices(&segments, n, "segments")?, ends.transpose()?))
     };
-    let ends = ends().map_err(|e| raise(py, &e))?;
+    let (pieces, ends) = found().map_err(|e| raise(py, &e))?;
     let task = || -> Result<Task<'_>> {
         let all = rows(&points, "points")?;
         let simplices = rows(&simplices, "simplices")?;
         in_range(simplices, 0, all.len(), "simplices")?;
+        let lines = match (&lines, &ends) {
+            (Some((of, _, on)), Some(ends)) => {
+                let of: &[[i32; 1]] = each(of, pieces.len(), "of")?.as_chunks().0;
+                in_range(of, 0, ends.len(), "of")?;
+                let on: &[[i32; 1]] = each(on, all.len(), "on")?.as_chunks().0;
+                in_range(on, -1, ends.len(), "on")?;
+                Some(Lines {
+                    of: of.as_flattened(),
+                    ends,
+                    on: on.as_flattened(),
+                })
+            }
+            _ => None,
+        };
+        let count = ends.as_ref().map_or(pieces.len(), Vec::len);
         Ok(Task {
             points: all,
             simplices,
             labels: each(&labels, simplices.len(), "labels")?,
             areas: each(&areas, simplices.len(), "areas")?,
-            segments: &ends,
-            frozen: each(&frozen, ends.len(), "frozen")?,
+            segments: &pieces,
+            lines,
+            frozen: each(&frozen, count, "frozen")?,
             min_angle,
+            circles,
             max_vertices,
         })
     };
     let task = task().map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| refine(task, watch))?;
+    let mut told = Instant::now();
+    let mut refused = None;
+    let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| -> Result<()> {
+        let Some(progress) = &progress else {
+            return Ok(());
+        };
+        if told.elapsed() < BETWEEN {
+            return Ok(());
+        }
+        let angle = smallest();
+        let answer = Python::attach(|py| progress.call1(py, (added, angle)).map(|_| ()));
+        told = Instant::now();
+        answer.map_err(|error| {
+            refused = Some(error);
+            Error::Interrupted
+        })
+    };
+    let outcome = watched(py, |watch| refine_telling(task, watch, &mut tell));
+    if let Some(error) = refused {
+        return Err(error);
+    }
+    dictionary(py, outcome?)
+}
+
+/// The arrays, by name.
+fn dictionary(py: Python<'_>, made: Refined) -> PyResult<Bound<'_, PyDict>> {
     let out = PyDict::new(py);
     out.set_item("added", table(py, made.added)?)?;
     out.set_item("on", column(py, made.on))?;

@@ -25,9 +25,8 @@ fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()>
 
 /// Checks that `starts` cuts `length` entries into pieces.
 fn are_starts(starts: &[i32], length: usize) -> Result<()> {
-    let right = starts.first() == Some(&0)
-        && starts.last() == Some(&(length as i32))
-        && starts.is_sorted();
+    let right =
+        starts.first() == Some(&0) && starts.last() == Some(&(length as i32)) && starts.is_sorted();
     if right {
         Ok(())
     } else {
@@ -48,7 +47,9 @@ pub fn voronoi2<'py>(
     let given = (|| {
         let given = Given {
             points: rows(&points, "points")?,
-            weights: weights.as_ref().map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            weights: weights
+                .as_ref()
+                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
             simplices: rows(&simplices, "simplices")?,
             neighbors: rows(&neighbors, "neighbors")?,
         };
@@ -59,7 +60,9 @@ pub fn voronoi2<'py>(
         if same && weighed {
             return Ok(given);
         }
-        Err(Error::Shape("arrays that belong together differ in length".into()))
+        Err(Error::Shape(
+            "arrays that belong together differ in length".into(),
+        ))
     })()
     .map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
@@ -90,9 +93,15 @@ pub fn voronoi_clip2<'py>(
     bounds: [f64; 4],
     workers: usize,
 ) -> PyResult<Cut> {
-    let pairs = |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> { Ok(item(diagram, name)?.extract()?) };
-    let codes = |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> { Ok(item(diagram, name)?.extract()?) };
-    let list = |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> { Ok(item(diagram, name)?.extract()?) };
+    let pairs = |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> {
+        item(diagram, name)?.extract()
+    };
+    let codes = |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> {
+        item(diagram, name)?.extract()
+    };
+    let list = |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> {
+        item(diagram, name)?.extract()
+    };
     let (vertices, rays) = (pairs("vertices")?, pairs("rays")?);
     let (sites, ends) = (codes("sites")?, codes("ends")?);
     let (site, starts) = (list("site")?, list("starts")?);
@@ -100,7 +109,9 @@ pub fn voronoi_clip2<'py>(
     let cells = (|| {
         let cells = Cells {
             points: rows(&points, "points")?,
-            weights: weights.as_ref().map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            weights: weights
+                .as_ref()
+                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
             vertices: rows(&vertices, "vertices")?,
             sites: rows(&sites, "sites")?,
             ends: rows(&ends, "ends")?,
@@ -112,10 +123,17 @@ pub fn voronoi_clip2<'py>(
         };
         in_range(cells.sites, 0, cells.points.len(), "sites")?;
         are_starts(cells.starts, cells.entry_vertices.len())?;
-        each_in_range(cells.entry_vertices, -1, cells.vertices.len(), "region_vertices")?;
+        each_in_range(
+            cells.entry_vertices,
+            -1,
+            cells.vertices.len(),
+            "region_vertices",
+        )?;
         each_in_range(cells.entry_ridges, 0, cells.sites.len(), "region_ridges")?;
         if cells.ends.len() != cells.sites.len() || cells.starts.len() != cells.site.len() + 1 {
-            return Err(Error::Shape("arrays that belong together differ in length".into()));
+            return Err(Error::Shape(
+                "arrays that belong together differ in length".into(),
+            ));
         }
         Ok(cells)
     })()
@@ -132,9 +150,12 @@ pub fn voronoi_clip2<'py>(
 }
 
 fn item<'py>(diagram: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    diagram
-        .get_item(name)?
-        .ok_or_else(|| raise(diagram.py(), &Error::Shape(format!("the diagram has no {name}"))))
+    diagram.get_item(name)?.ok_or_else(|| {
+        raise(
+            diagram.py(),
+            &Error::Shape(format!("the diagram has no {name}")),
+        )
+    })
 }
 
 /// `(areas, centroids, perimeters)` of polygons.
@@ -224,12 +245,16 @@ pub fn periodic2(
     let (points, taken) = (|| {
         let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
         let right = |t: &[i32; 3]| {
-            t[0] >= 0 && (t[0] as usize) < points.len() && t[1..].iter().all(|k| (-1..=1).contains(k))
+            t[0] >= 0
+                && (t[0] as usize) < points.len()
+                && t[1..].iter().all(|k| (-1..=1).contains(k))
         };
         if taken.iter().all(right) {
             return Ok((points, taken));
         }
-        Err(Error::Shape("copies are rows and periods of -1, 0 or 1".into()))
+        Err(Error::Shape(
+            "copies are rows and periods of -1, 0 or 1".into(),
+        ))
     })()
     .map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| regular::periodic(points, periods, taken, watch))?;
@@ -240,4 +265,43 @@ pub fn periodic2(
         column(py, made.rows),
         table(py, made.moved)?,
     ))
+}
+
+/// `(centers, shared)`: the centre of each triangle of copies, and whether it is that of the neighbour
+/// across each edge, whose apex is given; corners and apexes are rows and periods, three a triangle.
+#[pyfunction]
+pub fn periodic_centers2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    periods: [f64; 2],
+    corners: PyReadonlyArray2<'_, i32>,
+    apexes: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let (points, corners, apexes) = (|| {
+        let points = rows(&points, "points")?;
+        let (corners, apexes) = (
+            rows::<i32, 3>(&corners, "corners")?,
+            rows(&apexes, "apexes")?,
+        );
+        let right = |t: &[i32; 3]| {
+            t[0] >= 0
+                && (t[0] as usize) < points.len()
+                && t[1..].iter().all(|k| (-9..=9).contains(k))
+        };
+        if corners.len() == apexes.len()
+            && corners.len() % 3 == 0
+            && corners.iter().chain(apexes).all(right)
+        {
+            return Ok((points, corners, apexes));
+        }
+        Err(Error::Shape(
+            "copies are rows and small numbers of periods".into(),
+        ))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let (centers, shared) = watched(py, |watch| {
+        voronoi::centers(points, periods, corners, apexes, workers, watch)
+    })?;
+    Ok((table(py, centers)?, table(py, shared)?))
 }

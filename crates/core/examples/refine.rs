@@ -66,8 +66,10 @@ fn main() {
             labels: &labels,
             areas: &vec![area; labels.len()],
             segments: &segments,
+            lines: None,
             frozen: &frozen,
             min_angle: degrees,
+            circles: false,
             max_vertices: 20_000_000,
         };
         let made = refine(task, &Watch::idle()).expect("a mesh");

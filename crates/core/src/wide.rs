@@ -1,8 +1,8 @@
 //! Doubles as integers of any width, and quotients of such integers as doubles: the last resort of
 //! predicates and constructions that no filter decides, and rare enough to allocate.
 
-use delone_predicates::{Point2, Sign as Turn};
 use delone_predicates::arithmetic::decode_odd;
+use delone_predicates::{Point2, Sign as Turn};
 use num_bigint::{BigInt, Sign};
 
 /// Exponent of the least subnormal.
@@ -96,7 +96,10 @@ mod tests {
         assert_eq!(ratio(&-big(7), &big(5), -1074), Some(-5e-324));
         assert_eq!(ratio(&big(1), &big(2), -1074), Some(0.0));
         assert_eq!(ratio(&big(3), &big(2), -1074), Some(1e-323));
-        assert_eq!(ratio(&big((1 << 53) + 1), &big(1), 0), Some((1_u64 << 53) as f64));
+        assert_eq!(
+            ratio(&big((1 << 53) + 1), &big(1), 0),
+            Some((1_u64 << 53) as f64)
+        );
         assert_eq!(ratio(&big(1), &big(1), 1023), Some(2_f64.powi(1023)));
         assert_eq!(ratio(&big(1), &big(1), 1024), None);
         assert_eq!(ratio(&big(1), &big(1), -1300), Some(0.0));

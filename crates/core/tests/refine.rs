@@ -68,8 +68,10 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
         labels: &labels,
         areas: &areas,
         segments: &segments,
+        lines: None,
         frozen: &frozen,
         min_angle,
+        circles: false,
         max_vertices: 200_000,
     };
     let mut made = refine(task, &Watch::idle()).unwrap();

@@ -1,4 +1,4 @@
-"""The command ``voronoi``: cells of the sites in a file, cut to an outline, with their attributes."""
+"""The command ``voronoi``: cells of the sites in a file, cut to an outline, with attributes."""
 
 from __future__ import annotations
 
@@ -44,9 +44,7 @@ def voronoi(
     ] = None,
     clip: Annotated[
         str,
-        typer.Option(
-            help="Where cells end: a file of polygons, XMIN,YMIN,XMAX,YMAX, or box: that of the sites."
-        ),
+        typer.Option(help="A file of polygons; XMIN,YMIN,XMAX,YMAX; or box: that of the sites."),
     ] = "box",
     fix: Annotated[bool, typer.Option("--fix", help="Repair an invalid outline.")] = False,
     weights: Annotated[
@@ -59,16 +57,12 @@ def voronoi(
     columns: Annotated[
         str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
     ] = None,
-    layer: Annotated[
-        str | None, typer.Option(help="Layer of a file that has several.")
-    ] = None,
+    layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
     workers: Annotated[
         int | None, typer.Option(help="Threads; by default one for each core.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")
-    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Cut the Voronoi cells of sites to an outline, and write them with the sites' attributes."""
     with writing():

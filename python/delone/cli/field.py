@@ -47,7 +47,7 @@ Nan = Annotated[
     str, typer.Option(help="Values that are NaN: error, drop or (no raster) propagate.")
 ]
 Gradients = Annotated[
-    str | None, typer.Option(help="Gradients of the smooth methods: global or local.")
+    str | None, typer.Option(help="Gradients of the smooth methods: global, local or plane.")
 ]
 Workers = Annotated[int | None, typer.Option(help="Threads; by default one for each core.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
@@ -147,7 +147,9 @@ def crossval(
     with spinner(as_json) as say:
         survey, values, _ = _read(source, value, columns, classes, layer, watch, say)
         for name in names:
-            options = {} if gradients is None or name not in _SMOOTH else {"gradients": gradients}
+            options: dict[str, Any] = {}
+            if gradients is not None and name in _SMOOTH:
+                options["gradients"] = gradients
             with watch.stage(name):
                 result = cross_validate(
                     survey.points,

@@ -20,7 +20,7 @@ import numpy as np
 
 from delone import delaunay
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
-from delone.interpolate import CloughTocher, Linear, Nearest
+from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
 
 if TYPE_CHECKING:
@@ -284,10 +284,9 @@ class NearestNDInterpolator:
         self._field = as_field(self.values, len(self.points))
         self._scaled = np.ascontiguousarray(self._scale(self.points))
         try:
-            mesh = delaunay.Delaunay(self._scaled)
-            self._interpolator: Nearest | None = Nearest(mesh)
+            self._mesh: delaunay.Delaunay | None = delaunay.Delaunay(self._scaled)
         except DegenerateInputError as error:
-            self._interpolator, self._chain = None, error.chain
+            self._mesh, self._chain = None, error.chain
 
     def __call__(
         self,
@@ -328,8 +327,8 @@ class NearestNDInterpolator:
     def _nearest(self, queries: Floats, p: float) -> NDArray[np.integer]:
         if p != 2:
             return self._nearest_by_tree(queries, p)
-        if self._interpolator is not None:
-            return self._interpolator.triangulation.nearest(queries)  # type: ignore[attr-defined]
+        if self._mesh is not None:
+            return self._mesh.nearest(queries)
         sites = self._scaled[self._chain]
         found = np.full(len(queries), -1)
         finite = np.flatnonzero(np.isfinite(queries).all(axis=1))

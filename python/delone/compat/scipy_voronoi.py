@@ -2,14 +2,15 @@
 
 `delone.compat.scipy` has both by name. What differs from SciPy:
 
-* Sites on one circle share one vertex whatever their coordinates, so that no ridge has length 0, and
-  vertices, ridges and regions come in delone's order.
+* Sites on one circle share one vertex whatever their coordinates, so that no ridge has length 0,
+  and vertices, ridges and regions come in delone's order.
 * Every distinct point has a region; duplicates share that of their first row, as in SciPy.
 * `add_points` computes the diagram anew.
 """
 
 from __future__ import annotations
 
+import itertools
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -191,7 +192,7 @@ class Voronoi:
     def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
         starts = self._dual["starts"].tolist()
         entries = self._dual["region_vertices"].tolist()
-        cells = [_gaps_once(entries[a:b]) for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        cells = [_gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
         of_point = self._dual["region"].astype(np.int64)
         infinite = self._options.infinite_point and not self.furthest_site
         lists: list[list[int]] = [[]] if infinite else []

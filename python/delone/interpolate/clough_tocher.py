@@ -36,17 +36,18 @@ class CloughTocher(Smooth):
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
-    gradients : {"global", "local"}, optional
+    gradients : {"global", "local", "plane"}, optional
         How gradients at the sites are estimated: so that the curvature along all edges together is
-        least, as SciPy does; or at each site by the quadric through it that fits its neighbours and
-        theirs best, nearer ones counting more.
+        least, as SciPy does; at each site by the quadric through it that fits its neighbours and
+        theirs best, nearer ones counting more; by the plane that fits its neighbours. Planes know
+        least and are steadiest, where sites lie along lines above all.
     tol : float, optional
         Relative change at which the global estimation ends.
     maxiter : int, optional
         Number of sweeps after which it ends in any case, with a `GradientWarning`.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
         What there is outside of the hull: NaN; the value at the nearest point of the hull; from
-        there on, along the hull as it goes and across it by the gradients of its sites; an error.
+        there on the gradients of its sites; an error.
     duplicates, nan : str, optional
         As in `Linear`.
     respect_constraints : bool, optional

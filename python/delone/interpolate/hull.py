@@ -68,34 +68,22 @@ def edge_terms(
 
     Notes
     -----
-    Along the edge the step goes by the interpolant's own derivative, across it by the gradients of
-    the ends, linearly from one to the other. The triangle at the boundary is not asked: those are
+    A step goes by the gradients of the ends, linearly from one to the other, so that the whole is
+    continuous, at corners of the hull as well. The triangle at the boundary is not asked: those are
     often so thin that their planes say nothing.
     """
-    u, v = place.edge.T
     s = place.along
-    edge = points[v] - points[u]
-    normal = np.column_stack((-edge[:, 1], edge[:, 0]))
-    with np.errstate(all="ignore"):
-        squared = (edge * edge).sum(axis=1)
-        ahead, aside = (step * edge).sum(axis=1) / squared, (step * normal).sum(axis=1) / squared
-    if not cubic:
-        weights = np.stack((-ahead, ahead), axis=1)
-        if base:
-            weights += np.stack((1 - s, s), axis=1)
-        if not step.any():
-            return Terms(place.edge, weights, None)
-        tangents = np.zeros_like(weights)
-    else:
-        bump = 6 * s * (1 - s) * ahead
-        weights = np.stack((-bump, bump), axis=1)
-        tangents = np.stack((ahead * (1 - s) * (1 - 3 * s), ahead * s * (3 * s - 2)), axis=1)
-        if base:
-            weights += np.stack(((1 - s) ** 2 * (1 + 2 * s), s**2 * (3 - 2 * s)), axis=1)
-            tangents += np.stack((s * (1 - s) ** 2, -(s**2) * (1 - s)), axis=1)
-    normals = np.stack((aside * (1 - s), aside * s), axis=1)
-    slopes = tangents[..., None] * edge[:, None] + normals[..., None] * normal[:, None]
-    return Terms(place.edge, weights, slopes)
+    shares = np.stack((1 - s, s), axis=1)
+    slopes = shares[..., None] * step[:, None]
+    weights = np.zeros_like(shares)
+    if base and cubic:
+        weights = np.stack(((1 - s) ** 2 * (1 + 2 * s), s**2 * (3 - 2 * s)), axis=1)
+        tangents = np.stack((s * (1 - s) ** 2, -(s**2) * (1 - s)), axis=1)
+        edge = points[place.edge[:, 1]] - points[place.edge[:, 0]]
+        slopes += tangents[..., None] * edge[:, None]
+    elif base:
+        weights = shares
+    return Terms(place.edge, weights, slopes if cubic or step.any() else None)
 
 
 def plane_gradients(

@@ -31,8 +31,7 @@ class Linear(Interpolator):
         Real or complex values at the sites. They may be left out where calls bring theirs.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
         What there is outside of the hull: NaN; the value at the nearest point of the hull; from
-        there on, along the hull as it goes and across it by the plane that fits the neighbours of
-        its sites; an error.
+        there on the slope of the planes that fit its sites and their neighbours best; an error.
     duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
         Which value a point has that comes several times with different ones.
     nan : {"error", "drop", "propagate"}, optional

@@ -47,7 +47,7 @@ class NaturalNeighbor(Smooth):
     kind : {"sibson", "laplace", "sibson1", "farin"}, optional
         Weights by area, smooth but at the sites; by length, continuous and faster; Sibson's and
         Farin's interpolants from values and gradients, smooth everywhere.
-    gradients : {"local", "global"}, optional
+    gradients : {"local", "plane", "global"}, optional
         How ``"sibson1"`` and ``"farin"`` get the gradients at the sites; as in `CloughTocher`.
     tol, maxiter : optional
         As in `CloughTocher`.
@@ -155,9 +155,9 @@ class NaturalNeighbor(Smooth):
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         sheet = self._sheet
-        *table, triangle = sheet.locator.natural(
+        indptr, rows, weights, slopes, triangle = sheet.locator.natural(
             self._kind, queries, sheet.barrier, as_workers(self._workers)
         )
-        inner = (table[0], table[1], table[2], table[3])
+        inner = (indptr, rows, weights, slopes)
         known = np.where(triangle >= 0, 0.0, np.nan)[:, None]
         return Weights(*self._completed(inner, queries, known), shape, self)

@@ -223,7 +223,7 @@ def raster_nodes(
             raise InputError(f"resolution must be above 0, got {resolution!r}")
         counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
     _require_memory(counts[0], counts[1], 1)
-    x, y = (low[k] + cells[k] * (np.arange(counts[k]) + 0.5) for k in range(2))
+    x, y = (low[k] + cells[k] * (np.arange(counts[k], dtype=np.float64) + 0.5) for k in range(2))
     return x, y
 
 

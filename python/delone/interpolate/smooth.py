@@ -33,7 +33,9 @@ if TYPE_CHECKING:
 
 __all__ = ["GRADIENTS", "GradientWarning", "Smooth", "cut"]
 
-GRADIENTS = ("global", "local")
+GRADIENTS = ("global", "local", "plane")
+
+_DEGREES = {"local": 2, "plane": 1}
 
 
 class GradientWarning(UserWarning):
@@ -137,8 +139,9 @@ class Smooth(Interpolator):
     def _estimated(self, columns: Floats) -> Floats:
         points, workers = self._sheet.points, as_workers(self._workers)
         around = self._around()
-        if self._estimate == "local":
-            return _core.gradients_local2(points, *around, columns, 2, workers)
+        if self._estimate in _DEGREES:
+            degree = _DEGREES[self._estimate]
+            return _core.gradients_local2(points, *around, columns, degree, workers)
         found, iterations = _core.gradients_global2(
             points, *around, columns, self._tol, self._maxiter, workers
         )

@@ -33,8 +33,13 @@ __all__ = ["Sites", "Weights", "joined", "rectangular"]
 class Sites(Protocol):
     """What a table must know of the sites: an interpolator."""
 
-    npoints: int
-    workers: int | None
+    @property
+    def npoints(self) -> int:
+        """How many points the caller gave."""
+
+    @property
+    def workers(self) -> int | None:
+        """How many threads may work."""
 
     def settled(self, field: Field) -> Floats:
         """Columns of values for the rows that a table speaks of, by the policies."""

@@ -14,12 +14,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from delone.errors import InputError
-from delone.reference.exact import ExactNumber, ExactPoint, exact_point
+from delone.reference.exact import exact_point
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    Polygon = list[ExactPoint]
+    Point = tuple[Fraction, Fraction]
+    Polygon = list[Point]
 
 __all__ = ["natural_weights"]
 
@@ -58,18 +59,23 @@ def natural_weights(
     """
     if kind not in ("sibson", "laplace"):
         raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r}")
-    sites = [exact_point(point) for point in points]
-    q = exact_point(query)
+    sites = [_fractions(point) for point in points]
+    q = _fractions(query)
     if q in sites:
         return {sites.index(q): Fraction(1)}
     cell = _cell(sites, q)
     measure = _lost if kind == "sibson" else _shared
     parts = {row: measure(sites, row, q, cell) for row in range(len(sites))}
     total = sum(parts.values())
-    return {row: Fraction(part) / total for row, part in parts.items() if part > 0}
+    return {row: part / total for row, part in parts.items() if part > 0}
 
 
-def _cell(sites: list[ExactPoint], q: ExactPoint) -> Polygon:
+def _fractions(point: Sequence[Any]) -> Point:
+    x, y = exact_point(point)
+    return Fraction(x), Fraction(y)
+
+
+def _cell(sites: list[Point], q: Point) -> Polygon:
     """The Voronoi cell of the query among the sites."""
     spread = max(abs(x - q[0]) + abs(y - q[1]) for x, y in sites)
     size = 4 * spread
@@ -85,7 +91,7 @@ def _cell(sites: list[ExactPoint], q: ExactPoint) -> Polygon:
 _CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 
 
-def _clipped(polygon: Polygon, others: list[ExactPoint], to: ExactPoint) -> Polygon:
+def _clipped(polygon: Polygon, others: list[Point], to: Point) -> Polygon:
     """The part of a convex polygon that is nearer to a point than to others."""
     for other in others:
         if other != to:
@@ -93,14 +99,14 @@ def _clipped(polygon: Polygon, others: list[ExactPoint], to: ExactPoint) -> Poly
     return polygon
 
 
-def _half(polygon: Polygon, near: ExactPoint, far: ExactPoint) -> Polygon:
+def _half(polygon: Polygon, near: Point, far: Point) -> Polygon:
     """The part of a convex polygon that is nearer to the first point than to the second."""
     heights = [_nearer(corner, near, far) for corner in polygon]
     kept: Polygon = []
     for i, (corner, height) in enumerate(zip(polygon, heights, strict=True)):
         before, below = polygon[i - 1], heights[i - 1]
         if (height > 0 > below) or (height < 0 < below):
-            share = Fraction(below) / (below - height)
+            share = below / (below - height)
             kept.append(
                 (
                     before[0] + share * (corner[0] - before[0]),
@@ -112,16 +118,16 @@ def _half(polygon: Polygon, near: ExactPoint, far: ExactPoint) -> Polygon:
     return kept
 
 
-def _nearer(corner: ExactPoint, near: ExactPoint, far: ExactPoint) -> ExactNumber:
+def _nearer(corner: Point, near: Point, far: Point) -> Fraction:
     """How much the square of the distance to the first point is below that to the second."""
     return _squared(corner, far) - _squared(corner, near)
 
 
-def _squared(a: ExactPoint, b: ExactPoint) -> ExactNumber:
+def _squared(a: Point, b: Point) -> Fraction:
     return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
 
 
-def _lost(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> ExactNumber:
+def _lost(sites: list[Point], row: int, q: Point, cell: Polygon) -> Fraction:
     """Twice the area that a site loses to the query."""
     part = _clipped(cell, sites, sites[row])
     return sum(
@@ -130,7 +136,7 @@ def _lost(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> Ex
     )
 
 
-def _shared(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> ExactNumber:
+def _shared(sites: list[Point], row: int, q: Point, cell: Polygon) -> Fraction:
     """The length of the edge between the cells of a site and the query, over their distance."""
     site = sites[row]
     on_edge = [corner for corner in cell if _nearer(corner, q, site) == 0]
@@ -138,5 +144,5 @@ def _shared(sites: list[ExactPoint], row: int, q: ExactPoint, cell: Polygon) -> 
     turned = (q[1] - site[1], site[0] - q[0])
     places = [x * turned[0] + y * turned[1] for x, y in on_edge]
     if len(places) < 2:
-        return 0
-    return Fraction(max(places) - min(places)) / _squared(q, site)
+        return Fraction(0)
+    return (max(places) - min(places)) / _squared(q, site)

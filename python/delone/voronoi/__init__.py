@@ -2,7 +2,7 @@
 
 `diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
 is, `clipping` boxes and outlines, `shapes` geometries, tables and pictures, `centroidal` Lloyd's
-method.
+method, `torus` periodic sets.
 """
 
 from delone.voronoi.cells import Cell, Neighbors, Rays

@@ -18,8 +18,8 @@ __all__ = ["Cell", "Neighbors", "Rays"]
 class Rays(NamedTuple):
     """The ridges that go on for ever, each with where it begins and whither it goes.
 
-    A ridge between two sites alone, or between neighbours among sites on one line, is a line: it has
-    two rays, in opposite directions from one origin.
+    A ridge between two sites alone, or between neighbours among sites on one line, is a line: it
+    has two rays, in opposite directions from one origin.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ class Cell:
     site : int
         Row of the site.
     vertices : ndarray of float64, shape (k, 2)
-        The vertices of the whole cell, counter-clockwise. An unbounded one begins after the ray that
-        comes in and ends before the one that goes out.
+        The vertices of the whole cell, counter-clockwise. An unbounded one begins after the ray
+        that comes in and ends before the one that goes out.
     bounded : bool
         Whether the whole cell is bounded.
     parts : tuple of tuple of ndarray of float64, shape (j, 2)

@@ -1,4 +1,4 @@
-"""Centroidal diagrams by Lloyd's method: each site goes to the centroid of its cell, again and again.
+"""Centroidal diagrams by Lloyd's method: sites go to the centroids of their cells, repeatedly.
 
 S. P. Lloyd, "Least squares quantization in PCM", IEEE Transactions on Information Theory 28 (1982);
 Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi tessellations", SIAM Review 41 (1999).
@@ -117,9 +117,9 @@ def lloyd(
     The energy falls with each step, and sites converge to a place where each is the centroid of its
     cell: a local minimum, as a rule. Convergence is linear and slows down with the number of sites.
 
-    Integrals are exact up to rounding without `density`, and take its values at seven places in each
-    triangle between a cell's centroid and an edge with it. A site whose cell is empty stays where
-    it is, and sites with the same coordinates stay together.
+    Integrals are exact up to rounding without `density`, and take its values at seven places in
+    each triangle between a cell's centroid and an edge with it. A site whose cell is empty stays
+    where it is, and sites with the same coordinates stay together.
 
     Examples
     --------

@@ -1,11 +1,11 @@
 """What a clip leaves of cells: boxes by the core, outlines by shapely where the outline passes.
 
-A cell is convex, and most cells of a clipped diagram lie wholly inside or outside. The core cuts all
-cells to a box a little larger than the outline, finds the cells that the outline comes near, and
-joins the others to groups on one side of it; one point of each group tells on which. Only the cells
-that the outline comes near are intersected with it. Where the outline has many corners, cells and
-outline are halved together until there are few on both sides, so that no cell meets corners that
-are far from it.
+A cell is convex, and most cells of a clipped diagram lie wholly inside or outside. The core cuts
+all cells to a box a little larger than the outline, finds the cells that the outline comes near,
+and joins the others to groups on one side of it; one point of each group tells on which. Only the
+cells that the outline comes near are intersected with it. Where the outline has many corners, cells
+and outline are halved together until there are few on both sides, so that no cell meets corners
+that are far from it.
 """
 
 from __future__ import annotations
@@ -191,7 +191,7 @@ class Clipped:
         return self.corners[self.starts[cell] : self.starts[cell + 1]]
 
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
-        """Return the boundaries of all cells: cell, begin and end of each edge, cell to the left."""
+        """Return all boundaries: cell, begin and end of each edge, the cell to its left."""
         owner = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         return owner, self.corners, self.corners[self._next()]
 
@@ -384,7 +384,7 @@ def _sides(whole: Clipped, outline: Any) -> NDArray[np.int8]:
     coordinates, ring = shapely.get_coordinates(rings, return_index=True)
     same = ring[1:] == ring[:-1]
     segments = np.column_stack((coordinates[:-1][same], coordinates[1:][same]))
-    group, count = _core.touched2(
+    group, _count = _core.touched2(
         whole.starts, whole.corners, whole.ridges, np.ascontiguousarray(segments)
     )
     side = np.full(len(group), _CUT, dtype=np.int8)

@@ -6,6 +6,7 @@ leaves of the cells, is computed on first use and kept.
 
 from __future__ import annotations
 
+import itertools
 import threading
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -14,10 +15,11 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.delaunay import Delaunay
-from delone.errors import DegenerateInputError
+from delone.errors import DegenerateInputError, InputError
+from delone.periodic import PeriodicDelaunay
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.triangulation import counted, first_rows, kept, own_copy, sealed
-from delone.voronoi import clipping, dual, shapes
+from delone.voronoi import clipping, dual, shapes, torus
 from delone.voronoi.cells import Cell, Neighbors, Rays
 
 if TYPE_CHECKING:
@@ -41,14 +43,17 @@ class Voronoi:
         denote.
     clip : "box", sequence of 4 floats, or geometry, optional
         What to cut the cells to: the box of the sites; the box
-        ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without holes.
-        Sites may lie outside.
+        ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without
+        holes. Sites may lie outside.
     fix : bool, optional
         Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of refusing
         it.
     weights : array_like, shape (n,), optional
         Weights of the sites, in the square of the unit of the points: then this is the power
         diagram, in which a place belongs to the site with the least ``|x - p|**2 - w``.
+    periodic : tuple of two floats, optional
+        ``(Lx, Ly)``: the sites come again after these distances in x and in y, as for
+        `PeriodicDelaunay`. Goes with neither `clip` nor `weights`.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
 
@@ -90,10 +95,11 @@ class Voronoi:
     Notes
     -----
     The diagram is the dual of the exact Delaunay triangulation (with weights, of the regular one),
-    and all that is combinatorial in it is exact: sites on one circle share one vertex, whatever their number, and no ridge has length 0.
-    One thing is rounded, the coordinates of vertices: each is within 4 units in the last place of
-    the true one (:doc:`/mathematics/voronoi`). A vertex beyond the range of doubles is not listed;
-    ridges that lead to it end in -1 and have a ray in its direction.
+    and all that is combinatorial in it is exact: sites on one circle share one vertex, whatever
+    their number, and no ridge has length 0. One thing is rounded, the coordinates of vertices: each
+    is within 4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex
+    beyond the range of doubles is not listed; ridges that lead to it end in -1 and have a ray in
+    its direction.
 
     Names and meanings are those of ``scipy.spatial.Voronoi``. What SciPy refuses is no exception
     here: one site has the whole plane for its cell, two have half-planes, and sites on one line
@@ -102,13 +108,18 @@ class Voronoi:
     With weights a cell need not hold its site, and a site may have no cell: it is *hidden*. Edges
     lie on radical axes instead of bisectors.
 
+    With periods all cells are bounded, and their areas sum to that of one period. Each is given
+    around its site, where that is: vertices are listed with all translates that some cell or ridge
+    has, and `ridge_offsets` tells across which border of the period a neighbour lies.
+
     In a `clip`, areas, centroids, perimeters, neighbours and polygons are those of what is left of
     the cells; the attributes listed above remain those of the whole diagram. In a box the exact
     areas of the polygons sum to that of the box without any rounding.
 
     Arrays are read-only and attributes cannot be set; the attributes not listed above are computed
     on first use and kept. Time is that of the triangulation and O(n) for the rest; clipping to an
-    outline costs O(s + c) more for its s segments, and the intersection of each of the c cells on it.
+    outline costs O(s + c) more for its s segments, and the intersection of each of the c cells on
+    it.
 
     See Also
     --------
@@ -150,7 +161,7 @@ class Voronoi:
     _clip: clipping.Clip | None
     _dual: dict[str, NDArray[Any]]
     _lock: threading.RLock
-    _mesh: Delaunay | RegularTriangulation | None
+    _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
     _points: Floats
     _weights: Floats | None
     _workers: int
@@ -162,6 +173,7 @@ class Voronoi:
         clip: Any = None,
         fix: bool = False,
         weights: ArrayLike | None = None,
+        periodic: tuple[float, float] | None = None,
         workers: int | None = None,
     ) -> None:
         if hasattr(self, "_points"):
@@ -169,7 +181,15 @@ class Voronoi:
         threads = as_workers(workers)
         own = own_copy(points)
         heavy = None if weights is None else as_weights(weights, len(own))
-        mesh, arrays = _dual(own, threads) if heavy is None else _power_dual(own, heavy, threads)
+        mesh: Any
+        if periodic is not None:
+            if clip is not None or heavy is not None:
+                raise InputError("periodic goes with neither clip nor weights")
+            mesh, arrays = _periodic_dual(own, periodic, threads)
+        elif heavy is not None:
+            mesh, arrays = _power_dual(own, heavy, threads)
+        else:
+            mesh, arrays = _dual(own, threads)
         where = clipping.as_clip(clip, own, fix=fix)
         self._fill(points=own, weights=heavy, mesh=mesh, dual=arrays, clip=where, workers=threads)
 
@@ -235,7 +255,12 @@ class Voronoi:
         return False
 
     @property
-    def triangulation(self) -> Delaunay | RegularTriangulation | None:
+    def periods(self) -> tuple[float | None, float | None] | None:
+        """The periods in x and y; None without."""
+        return self._mesh.periods if isinstance(self._mesh, PeriodicDelaunay) else None
+
+    @property
+    def triangulation(self) -> Delaunay | RegularTriangulation | PeriodicDelaunay | None:
         """The triangulation whose dual this is; None where all sites lie on one line."""
         return self._mesh
 
@@ -251,6 +276,17 @@ class Voronoi:
         The first lies to the left of the way from the first of its `ridge_vertices` to the second.
         """
         return self._dual["sites"]
+
+    @property
+    @kept
+    def ridge_offsets(self) -> Indices:
+        """By how many periods the second site of each ridge is moved, (r, 2), seen from the first.
+
+        Zeros without periods. The vertices of a ridge lie where its first site sees them.
+        """
+        if "moved" in self._dual:
+            return self._dual["moved"]
+        return sealed(np.zeros((len(self.ridge_points), 2), dtype=np.int32))
 
     @property
     @kept
@@ -271,14 +307,14 @@ class Voronoi:
     def regions(self) -> list[list[int]]:
         """For each cell its vertices, counter-clockwise, with -1 where it is open."""
         indptr, indices = (array.tolist() for array in self.region_vertices)
-        lists = [indices[a:b] for a, b in zip(indptr[:-1], indptr[1:], strict=True)]
+        lists = [indices[a:b] for a, b in itertools.pairwise(indptr)]
         if len(self._dual["rays"]):
             return [_without_repeated_gaps(region) for region in lists]
         return lists
 
     @property
     def region_vertices(self) -> tuple[Indices, Indices]:
-        """`regions` as compressed rows (indptr, indices), with a -1 for each open end of a ridge."""
+        """`regions` as compressed rows (indptr, indices), a -1 for each open end of a ridge."""
         return self._dual["starts"], self._dual["region_vertices"]
 
     @property
@@ -317,7 +353,7 @@ class Voronoi:
         ridge, which = np.nonzero(ends < 0)
         other = ends[ridge, 1 - which]
         a, b = self._points[self.ridge_points[ridge]].swapaxes(0, 1)
-        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge]].T
+        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge]]
         origin = dual.foot(a, b, heavy)
         origin[other >= 0] = self.vertices[other[other >= 0]]
         direction = directions[~ends[ridge, which]]
@@ -337,8 +373,8 @@ class Voronoi:
     def cell_areas(self) -> Floats:
         """Areas of the cells within the clip, (n,), in the square of the unit of the points.
 
-        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites. Rows
-        with the same coordinates share one cell and have the same area each.
+        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites.
+        Rows with the same coordinates share one cell and have the same area each.
         """
         return sealed(np.append(self._clipped.areas, 0.0)[self.point_region])
 
@@ -366,7 +402,8 @@ class Voronoi:
         lengths = self._clipped.ridge_lengths()
         rows = np.flatnonzero(lengths > 0) if self._clip is not None else np.arange(len(lengths))
         sites = self.ridge_points[rows].astype(np.int64)
-        return Neighbors(*map(sealed, _compressed(sites, lengths[rows], self.npoints)))
+        indptr, indices, beside = _compressed(sites, lengths[rows], self.npoints)
+        return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
     def cell(self, i: int) -> Cell:
         """Return the cell of a site.
@@ -516,6 +553,7 @@ class Voronoi:
         if not hasattr(self, "_clip"):  # the constructor failed, or has not run
             return "<Voronoi diagram of nothing yet>"
         where = "" if self._clip is None else f", clipped to {self._clip.name}"
+        where += "" if self.periods is None else ", periodic"
         numbers = [counted(self.npoints, "point")]
         vertices = len(self.vertices)
         numbers.append(f"{vertices} vert{'ex' if vertices == 1 else 'ices'}")
@@ -555,6 +593,18 @@ def _power_dual(
     duplicate, first = found["duplicates"].T
     arrays["region"][duplicate] = arrays["region"][first]
     return mesh, arrays
+
+
+def _periodic_dual(
+    points: Floats, periods: Any, workers: int
+) -> tuple[PeriodicDelaunay, dict[str, NDArray[Any]]]:
+    """The same with periods."""
+    mesh = PeriodicDelaunay(points, periods)
+    if None in mesh.periods:
+        raise InputError(
+            "a diagram needs a period in x and in y; PeriodicDelaunay takes one alone, too"
+        )
+    return mesh, torus.of_periodic(mesh, workers)
 
 
 def _without_repeated_gaps(region: list[int]) -> list[int]:

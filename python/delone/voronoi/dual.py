@@ -3,10 +3,11 @@
 A `Dual` is what the core's `voronoi2` returns, and means the same in both cases:
 
 * ridge r has the sites ``sites[r]`` and the ends ``ends[r]``: vertex v, or ``~i`` for ray i with
-  direction ``rays[i]``. Its first site lies to the left of the way from its first end to its second.
+  direction ``rays[i]``. Its first site lies to the left of the way from its first end to its
+  second.
 * cell c has the site ``site[c]`` and the entries ``starts[c]:starts[c + 1]``: counter-clockwise, a
-  vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that leads on from there in
-  ``region_ridges``.
+  vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that leads on from there
+  in ``region_ridges``.
 * ``region[p]`` is the cell of point p; -1 where it has none.
 """
 
@@ -84,14 +85,14 @@ def _directions(a: Floats, b: Floats) -> Floats:
     return unit
 
 
-def foot(a: Floats, b: Floats, weights: tuple[Floats, Floats] | None = None) -> Floats:
+def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
     """Return the points of bisectors that lie on the lines through the two sites.
 
     Parameters
     ----------
     a, b : ndarray of float64, shape (k, 2)
         Sites, different in each row.
-    weights : tuple of two ndarrays of float64, shape (k,), optional
+    weights : ndarray of float64, shape (k, 2), optional
         Weights of both.
 
     Returns
@@ -104,7 +105,7 @@ def foot(a: Floats, b: Floats, weights: tuple[Floats, Floats] | None = None) -> 
     >>> import numpy as np
     >>> from delone.voronoi.dual import foot
     >>> a, b = np.array([(0.0, 0)]), np.array([(2.0, 0)])
-    >>> foot(a, b), foot(a, b, (np.array([4.0]), np.array([0.0])))
+    >>> foot(a, b), foot(a, b, np.array([[4.0, 0]]))
     (array([[1., 0.]]), array([[2., 0.]]))
     """
     middle = a / 2 + b / 2
@@ -112,6 +113,6 @@ def foot(a: Floats, b: Floats, weights: tuple[Floats, Floats] | None = None) -> 
         return middle
     unit = _directions(a, b)
     distance = np.hypot(*(b - a).T)
-    shift = (weights[0] - weights[1]) / (2 * distance)
+    shift = (weights[:, 0] - weights[:, 1]) / (2 * distance)
     found: Floats = middle + unit * shift[:, None]
     return found

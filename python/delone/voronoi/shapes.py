@@ -173,6 +173,8 @@ def _drawable(diagram: Voronoi) -> tuple[Voronoi, Floats, Floats]:
     if diagram._clip is not None:
         bounds = np.array(diagram._clip.bounds)
         return diagram, bounds[:2], bounds[2:]
+    if diagram.periods is not None:
+        return diagram, diagram.vertices.min(axis=0), diagram.vertices.max(axis=0)
     low, high = diagram.points.min(axis=0), diagram.points.max(axis=0)
     margin = _MARGIN * float((high - low).max()) or 1.0
     low, high = low - margin, high + margin

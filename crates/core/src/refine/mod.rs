@@ -27,6 +27,21 @@ use crate::memory::{filled, with_room};
 use crate::mesh2::{import, next, prev, triangle};
 use crate::watch::Watch;
 
+/// Straight lines that segments have been cut from before, as an earlier refinement does it.
+#[derive(Debug, Clone, Copy)]
+pub struct Lines<'a> {
+    /// The line of each segment.
+    pub of: &'a [i32],
+    /// The two ends of each line, as vertices.
+    pub ends: &'a [[u32; 2]],
+    /// For each row of points the line that it was put on, or -1.
+    pub on: &'a [i32],
+}
+
+/// Called now and then with the number of vertices added and a way to ask for the smallest angle that
+/// there is now, in degrees; an error ends the work.
+pub type Tell<'a> = &'a mut dyn FnMut(usize, &mut dyn FnMut() -> f64) -> Result<()>;
+
 /// A constrained triangulation to be refined, and how.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a> {
@@ -41,10 +56,15 @@ pub struct Task<'a> {
     pub areas: &'a [f64],
     /// Edges that are kept, as vertices.
     pub segments: &'a [[u32; 2]],
-    /// For each, whether it may not be split.
+    /// The lines that they are parts of; without it each is its own.
+    pub lines: Option<Lines<'a>>,
+    /// For each line, whether it may not be split.
     pub frozen: &'a [bool],
     /// No smaller angle is left, in degrees; below 60.
     pub min_angle: f64,
+    /// Whether the circles over subsegments are emptied, not only lenses: then all triangles are
+    /// Delaunay, also across segments.
+    pub circles: bool,
     /// Most vertices that may be added.
     pub max_vertices: usize,
 }
@@ -65,13 +85,13 @@ pub struct Counts {
 pub struct Refined {
     /// Vertices added.
     pub added: Vec<Point2>,
-    /// For each of those, the segment that it lies on, or -1.
+    /// For each of those, the line that it lies on, or -1.
     pub on: Vec<i32>,
     /// Triangles.
     pub simplices: Vec<[i32; 3]>,
     /// The triangle opposite each corner, -1 outside.
     pub neighbors: Vec<[i32; 3]>,
-    /// For each corner the segment that the edge opposite is a part of, or -1.
+    /// For each corner the line that the edge opposite is a part of, or -1.
     pub sides: Vec<[i32; 3]>,
     /// The label of each triangle; -1 outside of the domain.
     pub labels: Vec<i32>,
@@ -83,6 +103,11 @@ pub struct Refined {
 
 /// Refines a triangulation.
 pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
+    refine_telling(task, watch, &mut |_, _| Ok(()))
+}
+
+/// Refines a triangulation, and tells how far it is.
+pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     let (rows, own) = compact(task.points, task.simplices)?;
     let mut points = with_room(rows.len() + 1)?;
     points.extend(rows.iter().map(|&row| task.points[row as usize]));
@@ -93,27 +118,35 @@ pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
     for (v, &row) in (0..).zip(&rows) {
         place[row as usize] = v;
     }
-    let mut ends = with_room(task.segments.len())?;
-    ends.extend(
-        task.segments
-            .iter()
-            .map(|s| s.map(|row| place[row as usize])),
-    );
+    let placed = |segments: &[[u32; 2]]| -> Result<Vec<[u32; 2]>> {
+        let mut ends = with_room(segments.len())?;
+        ends.extend(segments.iter().map(|s| s.map(|row| place[row as usize])));
+        Ok(ends)
+    };
+    let pieces = placed(task.segments)?;
+    let lines = task.lines.map(|lines| placed(lines.ends)).transpose()?;
+    let lines = lines.as_ref().unwrap_or(&pieces);
+    let mut on = filled(rows.len(), -1)?;
+    if let Some(given) = task.lines {
+        for (on, &row) in on.iter_mut().zip(&rows) {
+            *on = given.on[row as usize];
+        }
+    }
     let mut caps = filled(marked.triangles() as usize, f64::INFINITY)?;
     for (t, (&label, &area)) in (0..).zip(task.labels.iter().zip(task.areas)) {
         // 0 is for ghosts and what lies outside.
         marked.patch().set_label(t, (label + 1).max(0) as u32);
         caps[t as usize] = 2.0 * area;
     }
-    for &[u, v] in &ends {
+    for &[u, v] in &pieces {
         if u.max(v) as usize >= rows.len() {
             return Err(Error::Shape("a segment ends in no vertex".into()));
         }
         let e = marked.edge(u, v)?;
         marked.patch().mark(e, true);
     }
-    let mut work = Work::new(marked, caps, &ends, task)?;
-    let exhausted = !work.run(watch)?;
+    let mut work = Work::new(marked, caps, on, [&pieces, lines], task)?;
+    let exhausted = !work.run(watch, tell)?;
     export(work, &rows, task.points.len(), exhausted)
 }
 

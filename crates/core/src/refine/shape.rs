@@ -2,6 +2,12 @@
 //! subsegments a vertex encroaches upon.
 
 use delone_predicates::Point2;
+use num_bigint::BigInt;
+
+use crate::wide::{lowest, scaled};
+
+/// Squares of cosines that differ by a smaller part are compared exactly: four roundings each.
+const UNSURE: f64 = 1e-14;
 
 /// The bounds.
 #[derive(Debug, Clone, Copy)]
@@ -10,6 +16,8 @@ pub struct Shape {
     cos2: f64,
     /// Distance of an off-centre from the shortest edge, in lengths of that edge.
     off: f64,
+    /// The squared cosine of the angle at which a lens is seen from its rim.
+    lens: f64,
 }
 
 /// Why a triangle is bad.
@@ -45,21 +53,41 @@ fn cross(a: Point2, b: Point2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+/// The smallest angle of a triangle in degrees.
+pub fn angle([a, b, c]: [Point2; 3]) -> f64 {
+    let edges = [minus(c, b), minus(a, c), minus(b, a)];
+    let at = |k: usize| -dot(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+    let largest = at(0).max(at(1)).max(at(2));
+    cross(edges[0], edges[1]).atan2(largest).to_degrees()
+}
+
 impl Shape {
-    /// Bounds for the smallest angle `degrees`, below 60.
-    pub fn new(degrees: f64) -> Self {
+    /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are circles.
+    pub fn new(degrees: f64, circles: bool) -> Self {
         let angle = degrees.to_radians();
+        // Where the squared cosine is a simple fraction, it is that one and not its neighbour.
+        let cos2 = match degrees {
+            30.0 => 0.75,
+            45.0 => 0.5,
+            _ => angle.cos() * angle.cos(),
+        };
         // The triangle of the shortest edge and the off-centre has this angle there; a little more,
         // so that roundings do not make it bad again.
         let off = 0.5 / (angle / 2.0).tan() * 0.95;
         Self {
-            cos2: angle.cos() * angle.cos(),
+            cos2,
+            lens: if circles {
+                0.0
+            } else {
+                (2.0 * cos2 - 1.0).powi(2)
+            },
             off: if degrees > 0.0 { off } else { f64::INFINITY },
         }
     }
 
     /// Looks at a triangle.
-    pub fn see(&self, [a, b, c]: [Point2; 3]) -> Seen {
+    pub fn see(&self, corners: [Point2; 3]) -> Seen {
+        let [a, b, c] = corners;
         let edges = [minus(c, b), minus(a, c), minus(b, a)];
         let lengths = edges.map(|e| dot(e, e));
         let apex = match lengths {
@@ -70,12 +98,31 @@ impl Shape {
         let [l, m] = [(apex + 1) % 3, (apex + 2) % 3];
         // The two edges at the apex run away from it and back to it.
         let cosine = -dot(edges[l], edges[m]);
+        let (square, bound) = (cosine * cosine, self.cos2 * lengths[l] * lengths[m]);
+        let skinny = if (square - bound).abs() > UNSURE * bound {
+            square > bound
+        } else {
+            self.is_skinny([corners[apex], corners[l], corners[m]])
+        };
         Seen {
             apex,
             shortest: lengths[apex],
             area2: cross(edges[0], edges[1]),
-            skinny: cosine > 0.0 && cosine * cosine > self.cos2 * lengths[l] * lengths[m],
+            skinny: cosine > 0.0 && skinny,
         }
+    }
+
+    /// Whether the angle at `a` is too small, exactly.
+    #[cold]
+    fn is_skinny(&self, [a, b, c]: [Point2; 3]) -> bool {
+        let low = lowest(&[a, b, c], &[]);
+        let [a, b, c] = [a, b, c].map(|p| p.map(|x| scaled(x, low)));
+        let [u, v] = [b, c].map(|p| [&p[0] - &a[0], &p[1] - &a[1]]);
+        let dot = |u: &[BigInt; 2], v: &[BigInt; 2]| &u[0] * &v[0] + &u[1] * &v[1];
+        let of_bound = lowest(&[[self.cos2, 1.0]], &[]);
+        let [bound, one] = [self.cos2, 1.0].map(|x| scaled(x, of_bound));
+        let cosine = dot(&u, &v);
+        &cosine * &cosine * one > dot(&u, &u) * dot(&v, &v) * bound
     }
 
     /// Why a triangle of at most twice the area `cap2` is bad, if it is.
@@ -116,8 +163,7 @@ impl Shape {
     pub fn in_lens(&self, p: Point2, q: Point2, r: Point2) -> bool {
         let (u, v) = (minus(p, r), minus(q, r));
         let cosine = dot(u, v);
-        let bound = 2.0 * self.cos2 - 1.0;
-        cosine < 0.0 && cosine * cosine >= bound * bound * dot(u, u) * dot(v, v)
+        cosine < 0.0 && cosine * cosine >= self.lens * dot(u, u) * dot(v, v)
     }
 }
 
@@ -128,7 +174,7 @@ mod tests {
     #[test]
     fn an_off_centre_makes_a_triangle_that_is_just_good() {
         for degrees in [20.0, 30.0, 34.0] {
-            let shape = Shape::new(degrees);
+            let shape = Shape::new(degrees, false);
             let thin = [[0.0, 0.0], [1.0, 0.0], [0.5, 9.0]];
             let seen = shape.see(thin);
             assert_eq!(seen.apex, 2);
@@ -143,9 +189,12 @@ mod tests {
 
     #[test]
     fn a_lens_is_thinner_than_the_circle() {
-        let shape = Shape::new(30.0);
+        let shape = Shape::new(30.0, false);
         let lens = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
         assert!(lens(0.57) && !lens(0.58));
         assert!(!shape.in_lens([-1.0, 0.0], [1.0, 0.0], [3.0, 0.0]));
+        let shape = Shape::new(30.0, true);
+        let circle = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
+        assert!(circle(0.99) && !circle(1.01));
     }
 }

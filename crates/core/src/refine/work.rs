@@ -13,12 +13,12 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::insert::{Cavity, Walk, walk};
 use super::queue::{Bad, Queue};
-use super::shape::{Reason, Seen, Shape};
-use super::{Counts, Task, corners};
+use super::shape::{Reason, Seen, Shape, angle};
+use super::{Counts, Task, Tell, corners};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
 use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::memory::with_room;
 use crate::mesh2::{Code, next, prev, triangle};
 use crate::watch::Watch;
 
@@ -40,13 +40,13 @@ pub struct Work<'a> {
     pub marked: Marked,
     /// Twice the largest area of each triangle.
     caps: Vec<f64>,
-    /// For each vertex the segment that it was put on, or -1.
+    /// For each vertex the line that it was put on, or -1.
     pub on: Vec<i32>,
     pub counts: Counts,
     task: Task<'a>,
-    /// The segments as vertices.
+    /// The lines as vertices.
     ends: &'a [[u32; 2]],
-    /// The segment between two vertices of the input.
+    /// The line between two vertices of the input.
     between: HashMap<[u32; 2], i32>,
     sharp: Vec<bool>,
     shape: Shape,
@@ -61,20 +61,24 @@ impl<'a> Work<'a> {
     pub fn new(
         marked: Marked,
         caps: Vec<f64>,
-        ends: &'a [[u32; 2]],
+        on: Vec<i32>,
+        [pieces, ends]: [&'a [[u32; 2]]; 2],
         task: Task<'a>,
     ) -> Result<Self> {
         let own = marked.count;
         let key = |&[u, v]: &[u32; 2]| [u.min(v), u.max(v)];
+        let line = |i: usize| task.lines.map_or(i as i32, |lines| lines.of[i]);
         Ok(Self {
             caps,
-            on: filled(own, -1)?,
+            on,
             counts: Counts::default(),
             task,
             ends,
-            between: (0..).zip(ends).map(|(i, e)| (key(e), i)).collect(),
-            sharp: corners::sharp(&marked.points, ends, own)?,
-            shape: Shape::new(task.min_angle),
+            between: (pieces.iter().enumerate())
+                .map(|(i, e)| (key(e), line(i)))
+                .collect(),
+            sharp: corners::sharp(&marked.points, pieces, own)?,
+            shape: Shape::new(task.min_angle, task.circles),
             queue: Queue::default(),
             encroached: with_room(64)?,
             cavity: Cavity::default(),
@@ -84,7 +88,7 @@ impl<'a> Work<'a> {
     }
 
     /// Works until nothing is bad; false where the limit on vertices came first.
-    pub fn run(&mut self, watch: &Watch) -> Result<bool> {
+    pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         for t in 0..self.marked.triangles() {
             self.judge(t);
             for e in 8 * t..8 * t + 3 {
@@ -96,6 +100,8 @@ impl<'a> Work<'a> {
             until_watch -= 1;
             if until_watch == 0 {
                 watch.check()?;
+                let added = self.marked.count - self.own;
+                tell(added, &mut || self.smallest())?;
                 until_watch = WATCH_EVERY;
             }
             if self.marked.count - self.own >= self.task.max_vertices {
@@ -115,6 +121,17 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// The smallest angle of the domain, in degrees.
+    fn smallest(&mut self) -> f64 {
+        let mut least: f64 = 180.0;
+        for t in 0..self.marked.triangles() {
+            if self.marked.patch().label(t) != 0 {
+                least = least.min(angle(self.points_of(t)));
+            }
+        }
+        least
+    }
+
     fn at(&self, v: u32) -> Point2 {
         self.marked.points[v as usize]
     }
@@ -124,7 +141,7 @@ impl<'a> Work<'a> {
         corners.map(|v| self.marked.points[v as usize])
     }
 
-    /// The segment that an edge between two vertices is a part of, or -1.
+    /// The line that an edge between two vertices is a part of, or -1.
     pub fn segment_of(&self, [u, v]: [u32; 2]) -> i32 {
         // One that was put on a segment is on no other.
         let on = self.on[u as usize].max(self.on[v as usize]);

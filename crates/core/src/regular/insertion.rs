@@ -19,7 +19,7 @@ use crate::watch::Watch;
 pub const GHOST: u32 = u32::MAX;
 const NONE: u32 = u32::MAX;
 /// Sites between two looks at the watch.
-const WATCH_EVERY: usize = 1 << 10;
+const WATCH_EVERY: u32 = 1 << 10;
 
 /// Distinct sites, known by numbers, and what an insertion asks of them.
 pub trait Sites {
@@ -60,7 +60,10 @@ pub trait Sites {
             }
         }
         let [o, p, q, r] = sites;
-        for (k, others) in [[p, q, r], [o, q, r], [o, p, r], [o, p, q]].into_iter().enumerate() {
+        for (k, others) in [[p, q, r], [o, q, r], [o, p, r], [o, p, q]]
+            .into_iter()
+            .enumerate()
+        {
             let turn = self.turn(others);
             if turn != Sign::Zero {
                 return turn.flip_if((k % 2 == 0) != odd);
@@ -106,7 +109,7 @@ pub fn insert_all<S: Sites>(
     };
     let mut mesh = Insertion::of(sites, n, third)?;
     for p in (2..n as u32).filter(|&p| p != third) {
-        if p as usize % WATCH_EVERY == 0 {
+        if p.is_multiple_of(WATCH_EVERY) {
             watch.check()?;
         }
         mesh.insert(p)?;
@@ -193,16 +196,22 @@ impl<'a, S: Sites> Insertion<'a, S> {
         // No walk in a regular triangulation comes back to a triangle, so it has no more steps.
         for _ in 0..=self.vertices.len() {
             let [a, b, c] = self.vertices[t as usize];
-            let step = [(b, c), (c, a), (a, b)].into_iter().enumerate().find(|&(k, (u, v))| {
-                self.neighbors[t as usize][k] != from && self.sites.turn([u, v, p]) == Sign::Negative
-            });
+            let step = [(b, c), (c, a), (a, b)]
+                .into_iter()
+                .enumerate()
+                .find(|&(k, (u, v))| {
+                    self.neighbors[t as usize][k] != from
+                        && self.sites.turn([u, v, p]) == Sign::Negative
+                });
             let Some((k, _)) = step else { return Ok(t) };
             (t, from) = (self.neighbors[t as usize][k], t);
             if self.vertices[t as usize].contains(&GHOST) {
                 return Ok(t);
             }
         }
-        Err(Error::Internal(format!("the walk to site {p} does not end")))
+        Err(Error::Internal(format!(
+            "the walk to site {p} does not end"
+        )))
     }
 
     /// Whether a triangle has to go for a site; remembered for this insertion.
@@ -238,11 +247,11 @@ impl<'a, S: Sites> Insertion<'a, S> {
             let corners = self.vertices[t as usize];
             let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
             let outside = self.neighbors[t as usize][k];
-            made.push(([p, u, v], outside, t));
+            made.push(([p, u, v], outside));
         }
         self.free.extend_from_slice(hole);
         let mut numbers = Vec::with_capacity(made.len());
-        for &(corners, outside, was) in &made {
+        for &(corners, outside) in &made {
             let number = match self.free.pop() {
                 Some(number) => number,
                 None => {
@@ -256,7 +265,6 @@ impl<'a, S: Sites> Insertion<'a, S> {
             self.begins[slot(corners[1], n)] = number;
             // The neighbour still names the triangle that went; others of the rim may have taken its
             // number already, so each link is found by its corners.
-            let _ = was;
             let back = (0..3).find(|&j| {
                 let o = self.vertices[outside as usize];
                 (o[(j + 1) % 3], o[(j + 2) % 3]) == (corners[2], corners[1])
@@ -264,7 +272,7 @@ impl<'a, S: Sites> Insertion<'a, S> {
             let back = back.ok_or_else(|| Error::Internal("a rim does not fit".into()))?;
             self.neighbors[outside as usize][back] = number;
         }
-        for (&(corners, outside, _), &number) in made.iter().zip(&numbers) {
+        for (&(corners, outside), &number) in made.iter().zip(&numbers) {
             // Across the edge from v to p lies the triangle whose outer edge begins at v.
             let next = self.begins[slot(corners[2], n)];
             self.vertices[number as usize] = corners;
@@ -296,9 +304,15 @@ impl<'a, S: Sites> Insertion<'a, S> {
             simplices: with_room(count as usize)?,
             neighbors: with_room(count as usize)?,
         };
-        for (t, corners) in self.vertices.iter().enumerate().filter(|&(t, _)| number[t] >= 0) {
+        for (t, corners) in self
+            .vertices
+            .iter()
+            .enumerate()
+            .filter(|&(t, _)| number[t] >= 0)
+        {
             out.simplices.push(corners.map(|v| v as i32));
-            out.neighbors.push(self.neighbors[t].map(|other| number[other as usize]));
+            out.neighbors
+                .push(self.neighbors[t].map(|other| number[other as usize]));
         }
         Ok(out)
     }

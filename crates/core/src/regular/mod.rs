@@ -13,8 +13,8 @@ use crate::order::arrange;
 use crate::points;
 use crate::watch::Watch;
 
-pub use insertion::Triangles;
-pub use periodic::{Copies, periodic};
+pub use insertion::{Sites, Triangles};
+pub use periodic::{Copies, Images, periodic};
 pub use power::power_sign;
 
 /// The regular triangulation of weighted points.

@@ -39,11 +39,13 @@ const RANGE: (f64, f64) = (
 );
 
 /// Copies of points.
-struct Images<'a> {
-    points: &'a [Point2],
-    periods: Point2,
+pub struct Images<'a> {
+    /// Coordinates.
+    pub points: &'a [Point2],
+    /// Lengths of the periods, 0 for none.
+    pub periods: Point2,
     /// The point, and by how many periods it is moved.
-    of: Vec<(u32, [i8; 2])>,
+    pub of: Vec<(u32, [i8; 2])>,
 }
 
 /// A triangulation of copies.
@@ -99,7 +101,11 @@ pub fn periodic(
         triangles,
         chain,
         rows: sites.of.iter().map(|&(row, _)| row as i32).collect(),
-        moved: sites.of.iter().map(|&(_, moved)| moved.map(i32::from)).collect(),
+        moved: sites
+            .of
+            .iter()
+            .map(|&(_, moved)| moved.map(i32::from))
+            .collect(),
     })
 }
 
@@ -122,28 +128,33 @@ impl Images<'_> {
         (found, most)
     }
 
-    /// Exact differences to the last site.
-    fn exact<const N: usize>(&self, sites: [u32; N], last: u32) -> [[BigInt; 2]; N] {
+    /// Exact coordinates, in units of a power of two, and its exponent.
+    pub fn coordinates<const N: usize>(&self, sites: [u32; N]) -> ([[BigInt; 2]; N], i64) {
         let mut corners = vec![self.periods];
         corners.extend(sites.map(|v| self.points[self.of[v as usize].0 as usize]));
-        corners.push(self.points[self.of[last as usize].0 as usize]);
         let low = lowest(&corners, &[]);
-        let at = |v: u32| {
+        let found = sites.map(|v| {
             let (row, moved) = self.of[v as usize];
             let p = self.points[row as usize];
             [0, 1].map(|k| scaled(p[k], low) + scaled(self.periods[k], low) * moved[k])
-        };
-        let origin = at(last);
-        sites.map(|v| {
-            let [x, y] = at(v);
-            [x - &origin[0], y - &origin[1]]
-        })
+        });
+        (found, low)
+    }
+
+    /// Exact differences to the last site.
+    fn seen_from_last<const N: usize, const M: usize>(&self, sites: [u32; N]) -> [[BigInt; 2]; M] {
+        const { assert!(M + 1 == N, "one site is the origin") }
+        let (at, _) = self.coordinates(sites);
+        std::array::from_fn(|i| [0, 1].map(|k| &at[i][k] - &at[M][k]))
     }
 }
 
 /// The largest of some coordinates, where all magnitudes are within the range of the filters.
 fn largest(points: &[Point2], most: f64) -> Option<f64> {
-    let largest = points.as_flattened().iter().fold(0.0_f64, |d, x| d.max(x.abs()));
+    let largest = points
+        .as_flattened()
+        .iter()
+        .fold(0.0_f64, |d, x| d.max(x.abs()));
     let inside = |x: f64| x > RANGE.0 && x < RANGE.1;
     (inside(largest) && inside(most)).then_some(largest)
 }
@@ -155,7 +166,7 @@ impl Sites for Images<'_> {
         match largest(&[p, q], most) {
             Some(d) if det.abs() > 32.0 * U * d * (most + d) => Sign::of(det),
             _ => {
-                let [p, q] = self.exact([a, b], c);
+                let [p, q] = self.seen_from_last([a, b, c]);
                 sign(&(&p[0] * &q[1] - &p[1] * &q[0]))
             }
         }
@@ -168,12 +179,15 @@ impl Sites for Images<'_> {
         let det = square(p) * cross(q, r) + square(q) * cross(r, p) + square(r) * cross(p, q);
         match largest(&[p, q, r], most) {
             Some(d) if det.abs() > 256.0 * U * d * d * d * (most + d) => Sign::of(det),
-            _ => determinant(&self.exact([a, b, c], d), [const { BigInt::ZERO }; 3]),
+            _ => determinant(
+                &self.seen_from_last([a, b, c, d]),
+                [const { BigInt::ZERO }; 3],
+            ),
         }
     }
 
     fn height_in_line(&self, [a, b, p]: [u32; 3]) -> Sign {
-        let [b, p] = self.exact([b, p], a);
+        let [b, p] = self.seen_from_last([b, p, a]);
         let height = |q: &[BigInt; 2]| &q[0] * &q[0] + &q[1] * &q[1];
         in_line([&b, &p], [height(&b), height(&p)])
     }
@@ -184,7 +198,7 @@ impl Sites for Images<'_> {
         if sure(d[0]) {
             return d[0] < 0.0;
         }
-        let [[x, y]] = self.exact([a], b);
+        let [[x, y]] = self.seen_from_last([a, b]);
         let zero = BigInt::ZERO;
         x < zero || (x == zero && y < zero)
     }

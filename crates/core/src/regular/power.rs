@@ -87,7 +87,10 @@ fn filter([a, b, c, d]: [Point2; 4], w: [f64; 4]) -> Option<Sign> {
     let [(ax, ay), (bx, by), (cx, cy)] = [a, b, c].map(|p| (p[0] - d[0], p[1] - d[1]));
     let [wa, wb, wc] = [w[3] - w[0], w[3] - w[1], w[3] - w[2]];
     let inside = |x: f64| x == 0.0 || (x.abs() > RANGE.0 && x.abs() < RANGE.1);
-    if ![ax, ay, bx, by, cx, cy, wa, wb, wc].iter().all(|&x| inside(x)) {
+    if ![ax, ay, bx, by, cx, cy, wa, wb, wc]
+        .iter()
+        .all(|&x| inside(x))
+    {
         return None;
     }
     let (bc, cb) = (bx * cy, by * cx);
@@ -137,7 +140,9 @@ mod tests {
     fn the_filter_agrees_with_integers() {
         let mut state = 3_u64;
         let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
         let mut sure = 0;

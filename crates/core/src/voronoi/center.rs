@@ -148,7 +148,7 @@ impl Corners {
         let half = left - right;
         let size = left.hi.abs() + right.hi.abs();
         // Thirteen u^2 is what a product and a sum may err by, see `Pair`.
-        if !(half.hi > 64.0 * U * U * size) {
+        if half.hi <= 64.0 * U * U * size {
             return None;
         }
         let (big_l, big_m) = (dd.hi + dw.hi.abs(), ee.hi + ew.hi.abs());
@@ -173,18 +173,27 @@ impl Corners {
     fn exact(&self) -> Center {
         let low = lowest(&self.points, &self.weights);
         let at = |x: f64| scaled(x, low);
-        let [a, b, c] = self.points.map(|p| p.map(at));
-        let [wa, wb, wc] = self.weights.map(|w| scaled(w, 2 * low));
-        let (dx, dy, ex, ey) = (&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]);
-        let l = &dx * &dx + &dy * &dy + &wa - wb;
-        let m = &ex * &ex + &ey * &ey + &wa - wc;
-        let den = (&dx * &ey - &dy * &ex) * 2;
-        let x = &ey * &l - &dy * &m + &a[0] * &den;
-        let y = &dx * &m - &ex * &l + &a[1] * &den;
-        match (ratio(&x, &den, low), ratio(&y, &den, low)) {
-            (Some(x), Some(y)) => Center::At([x, y]),
-            _ => Center::Beyond(direction(&x, &y)),
-        }
+        let weights = self.weights.map(|w| scaled(w, 2 * low));
+        meeting(&self.points.map(|p| p.map(at)), &weights, low)
+    }
+}
+
+/// The centre of three sites whose coordinates are integers in units of 2^low, and whose weights
+/// are in units of its square.
+pub(super) fn meeting(
+    [a, b, c]: &[[BigInt; 2]; 3],
+    [wa, wb, wc]: &[BigInt; 3],
+    low: i64,
+) -> Center {
+    let (dx, dy, ex, ey) = (&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]);
+    let l = &dx * &dx + &dy * &dy + wa - wb;
+    let m = &ex * &ex + &ey * &ey + wa - wc;
+    let den = (&dx * &ey - &dy * &ex) * 2;
+    let x = &ey * &l - &dy * &m + &a[0] * &den;
+    let y = &dx * &m - &ex * &l + &a[1] * &den;
+    match (ratio(&x, &den, low), ratio(&y, &den, low)) {
+        (Some(x), Some(y)) => Center::At([x, y]),
+        _ => Center::Beyond(direction(&x, &y)),
     }
 }
 
@@ -227,7 +236,9 @@ mod tests {
     fn the_stages_agree_as_far_as_they_promise() {
         let mut state = 7_u64;
         let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
         let mut plain = 0;
@@ -240,7 +251,11 @@ mod tests {
                 Turn::Negative => [a, c, b],
                 Turn::Zero => continue,
             };
-            let weights = if i % 5 == 0 { [next(), next(), next()] } else { NONE };
+            let weights = if i % 5 == 0 {
+                [next(), next(), next()]
+            } else {
+                NONE
+            };
             let corners = Corners::new(points, weights);
             let Center::At(exact) = corners.exact() else {
                 panic!("in range")
@@ -260,7 +275,10 @@ mod tests {
     #[test]
     fn a_center_beyond_the_range_has_a_direction() {
         let flat = [[0.0, 0.0], [1.0, 5e-324], [-1.0, 5e-324]];
-        assert_eq!(Corners::new(flat, NONE).center(), Center::Beyond([0.0, 1.0]));
+        assert_eq!(
+            Corners::new(flat, NONE).center(),
+            Center::Beyond([0.0, 1.0])
+        );
         let far = [[0.0, 0.0], [f64::MAX, 0.0], [0.0, f64::MAX]];
         let half = f64::MAX / 2.0;
         assert_eq!(Corners::new(far, NONE).center(), Center::At([half, half]));

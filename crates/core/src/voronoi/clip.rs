@@ -108,7 +108,8 @@ pub fn clip(
     out.starts.push(0);
     for part in parts {
         let before = out.points.len() as i32;
-        out.starts.extend(part.starts.iter().map(|end| before + end));
+        out.starts
+            .extend(part.starts.iter().map(|end| before + end));
         out.points.extend_from_slice(&part.points);
         out.ridges.extend_from_slice(&part.ridges);
     }
@@ -183,7 +184,10 @@ impl Cells<'_> {
     fn inside(&self, row: usize, min: Point2, max: Point2, out: &mut Polygons) -> Result<bool> {
         let (vertices, ridges) = self.entries(row)?;
         let within = |p: Point2| (0..2).all(|k| min[k] <= p[k] && p[k] <= max[k]);
-        if vertices.is_empty() || !vertices.iter().all(|&v| v >= 0 && within(self.vertices[v as usize]))
+        if vertices.is_empty()
+            || !vertices
+                .iter()
+                .all(|&v| v >= 0 && within(self.vertices[v as usize]))
         {
             return Ok(false);
         }
@@ -415,8 +419,18 @@ mod tests {
         };
         let found = clip(cells, [-1.0, -1.0], [4.0, 1.0], 1, &Watch::idle()).unwrap();
         assert_eq!(found.starts, [0, 4, 8]);
-        assert_eq!(clip(cells, [-1.0, -1.0], [0.0, 1.0], 1, &Watch::idle()).unwrap().starts, [0, 4, 4]);
-        assert_eq!(clip(cells, [1.0, -1.0], [2.0, 1.0], 1, &Watch::idle()).unwrap().starts, [0, 0, 4]);
+        assert_eq!(
+            clip(cells, [-1.0, -1.0], [0.0, 1.0], 1, &Watch::idle())
+                .unwrap()
+                .starts,
+            [0, 4, 4]
+        );
+        assert_eq!(
+            clip(cells, [1.0, -1.0], [2.0, 1.0], 1, &Watch::idle())
+                .unwrap()
+                .starts,
+            [0, 0, 4]
+        );
         let left = |p: &Point2| p[0] <= 0.5;
         assert!(found.points[..4].iter().all(left));
         assert!(found.points[4..].iter().all(|p| p[0] >= 0.5));

@@ -58,7 +58,9 @@ impl Given<'_> {
         if back < 3 && row[back] == t as i32 {
             return Ok(back);
         }
-        Err(Error::Shape(format!("triangle {other} is no neighbour of {t}")))
+        Err(Error::Shape(format!(
+            "triangle {other} is no neighbour of {t}"
+        )))
     }
 }
 
@@ -79,6 +81,9 @@ pub struct Diagram {
 /// of edge k is numbered with it.
 pub(super) const SHARED: u8 = 0b111;
 pub(super) const OWNED: u32 = 3;
+
+/// A triangle whose centre is beyond the range of doubles, and the direction of that.
+type Far = (usize, Point2);
 
 /// The diagram of a triangulation.
 pub fn diagram(given: Given, workers: usize, watch: &Watch) -> Result<Diagram> {
@@ -110,7 +115,7 @@ pub fn diagram(given: Given, workers: usize, watch: &Watch) -> Result<Diagram> {
 }
 
 /// The centre of each triangle, NaN for those beyond the range, which are listed.
-fn centers(given: Given, workers: usize) -> Result<(Vec<Point2>, Vec<(usize, Point2)>)> {
+fn centers(given: Given, workers: usize) -> Result<(Vec<Point2>, Vec<Far>)> {
     let mut centers = zeroed(given.simplices.len())?;
     let tasks = centers.chunks_mut(SHARE).enumerate().collect();
     let found = parallel::map(workers, tasks, |(i, part): (usize, &mut [Point2])| {
@@ -189,7 +194,7 @@ fn number(
     given: Given,
     masks: &[u8],
     centers: &mut Vec<Point2>,
-    beyond: &[(usize, Point2)],
+    beyond: &[Far],
 ) -> Result<(Vec<i32>, Vec<Point2>)> {
     const NONE: i32 = i32::MIN;
     let mut vertex = filled(masks.len(), NONE)?;

@@ -31,17 +31,24 @@ pub fn measures(starts: &[i32], points: &[Point2], workers: usize) -> Result<Mea
         centroids: zeroed(n)?,
         perimeters: filled(n, 0.0)?,
     };
-    let parts = out.areas.chunks_mut(SHARE).zip(out.centroids.chunks_mut(SHARE));
+    let parts = out
+        .areas
+        .chunks_mut(SHARE)
+        .zip(out.centroids.chunks_mut(SHARE));
     let parts = parts.zip(out.perimeters.chunks_mut(SHARE)).enumerate();
-    parallel::map(workers, parts.collect(), |(i, ((areas, centroids), perimeters))| {
-        for (k, ((area, centroid), perimeter)) in
-            areas.iter_mut().zip(centroids).zip(perimeters).enumerate()
-        {
-            let row = i * SHARE + k;
-            let corners = &points[starts[row] as usize..starts[row + 1] as usize];
-            (*area, *centroid, *perimeter) = measure(corners);
-        }
-    });
+    parallel::map(
+        workers,
+        parts.collect(),
+        |(i, ((areas, centroids), perimeters))| {
+            for (k, ((area, centroid), perimeter)) in
+                areas.iter_mut().zip(centroids).zip(perimeters).enumerate()
+            {
+                let row = i * SHARE + k;
+                let corners = &points[starts[row] as usize..starts[row + 1] as usize];
+                (*area, *centroid, *perimeter) = measure(corners);
+            }
+        },
+    );
     Ok(out)
 }
 
@@ -61,7 +68,11 @@ fn measure(corners: &[Point2]) -> (f64, Point2, f64) {
         last = here;
     }
     if twice > 0.0 {
-        return (twice / 2.0, [ox + x / twice / 3.0, oy + y / twice / 3.0], around);
+        return (
+            twice / 2.0,
+            [ox + x / twice / 3.0, oy + y / twice / 3.0],
+            around,
+        );
     }
     // As thin as rounding allows: the middle of the corners stands for the centre.
     let n = corners.len() as f64;
@@ -75,7 +86,12 @@ mod tests {
 
     #[test]
     fn a_rectangle_far_away() {
-        let corners = [[1e9, 1e9], [1e9 + 4.0, 1e9], [1e9 + 4.0, 1e9 + 2.0], [1e9, 1e9 + 2.0]];
+        let corners = [
+            [1e9, 1e9],
+            [1e9 + 4.0, 1e9],
+            [1e9 + 4.0, 1e9 + 2.0],
+            [1e9, 1e9 + 2.0],
+        ];
         let found = measures(&[0, 4, 4], &corners, 1).unwrap();
         assert_eq!(found.areas, [8.0, 0.0]);
         assert_eq!(found.centroids[0], [1e9 + 2.0, 1e9 + 1.0]);

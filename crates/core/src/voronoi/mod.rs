@@ -14,9 +14,11 @@ mod measure;
 mod outline;
 mod regions;
 mod ridges;
+mod torus;
 
 pub use center::{Center, Corners};
 pub use clip::{Cells, Polygons, clip};
 pub use dual::{Diagram, Given, diagram};
 pub use measure::{Measures, measures};
 pub use outline::touched;
+pub use torus::centers;

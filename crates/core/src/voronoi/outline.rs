@@ -47,7 +47,11 @@ impl Grid {
             let low = self.origin[1] + (row as f64 - 1.0) * self.step[1];
             let high = low + 3.0 * self.step[1];
             let at = |y: f64| ((y - a[1]) / (b[1] - a[1])).clamp(0.0, 1.0);
-            let (s, t) = if a[1] == b[1] { (0.0, 1.0) } else { (at(low), at(high)) };
+            let (s, t) = if a[1] == b[1] {
+                (0.0, 1.0)
+            } else {
+                (at(low), at(high))
+            };
             let (p, q) = (a[0] + s * (b[0] - a[0]), a[0] + t * (b[0] - a[0]));
             for column in self.range(0, p.min(q), p.max(q)) {
                 mark(row * self.size + column);
@@ -75,12 +79,15 @@ pub fn touched(
     for (i, free) in free.iter_mut().enumerate() {
         let corners = &points[starts[i] as usize..starts[i + 1] as usize];
         let cell = Extent::of(corners.iter().copied());
-        let mut fields = grid
-            .range(1, cell.min[1], cell.max[1])
-            .flat_map(|row| grid.range(0, cell.min[0], cell.max[0]).map(move |c| row * grid.size + c));
+        let mut fields = grid.range(1, cell.min[1], cell.max[1]).flat_map(|row| {
+            grid.range(0, cell.min[0], cell.max[0])
+                .map(move |c| row * grid.size + c)
+        });
         let near = |field: usize| {
             let range = first[field] as usize..first[field + 1] as usize;
-            members[range].iter().any(|&s| meets(cell, segments[s as usize], close))
+            members[range]
+                .iter()
+                .any(|&s| meets(cell, segments[s as usize], close))
         };
         *free = !corners.is_empty() && !fields.any(near);
     }

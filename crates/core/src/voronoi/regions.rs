@@ -41,8 +41,12 @@ struct Part<'a> {
 
 impl Part<'_> {
     fn push(&mut self, vertex: i32, ridge: i32) -> Result<()> {
-        let slot = self.vertices.get_mut(self.used).zip(self.ridges.get_mut(self.used));
-        let (v, r) = slot.ok_or_else(|| Error::Shape("a site has two turns of triangles".into()))?;
+        let slot = self
+            .vertices
+            .get_mut(self.used)
+            .zip(self.ridges.get_mut(self.used));
+        let (v, r) =
+            slot.ok_or_else(|| Error::Shape("a site has two turns of triangles".into()))?;
         (*v, *r) = (vertex, ridge);
         self.used += 1;
         Ok(())
@@ -97,12 +101,21 @@ impl Walk<'_> {
             let (v, w) = rest_v.split_at_mut(room as usize);
             let (r, s) = rest_r.split_at_mut(room as usize);
             let used = 0;
-            tasks.push((codes, Part { vertices: v, ridges: r, used }));
+            tasks.push((
+                codes,
+                Part {
+                    vertices: v,
+                    ridges: r,
+                    used,
+                },
+            ));
             (rest_v, rest_r) = (w, s);
         }
         let done = parallel::map(workers, tasks, |(codes, mut part)| {
             watch.check()?;
-            codes.iter().try_for_each(|&code| self.cell(code, &mut part))
+            codes
+                .iter()
+                .try_for_each(|&code| self.cell(code, &mut part))
         });
         done.into_iter().collect::<Result<()>>()?;
         Ok(Regions {
@@ -148,7 +161,9 @@ impl Walk<'_> {
                 return Ok(true);
             }
         }
-        Err(Error::Shape(format!("the triangles around one corner of {t} do not end")))
+        Err(Error::Shape(format!(
+            "the triangles around one corner of {t} do not end"
+        )))
     }
 
     /// The cell of a corner at the boundary: from the ray that comes in to the one that goes out.
@@ -165,7 +180,9 @@ impl Walk<'_> {
             let back = self.given.back(now, before as usize)?;
             (now, corner) = (before as usize, (back + 2) % 3);
         }
-        Err(Error::Shape(format!("the triangles around one corner of {t} do not end")))
+        Err(Error::Shape(format!(
+            "the triangles around one corner of {t} do not end"
+        )))
     }
 
     /// The number of the ridge of edge k of triangle t; `other` across it sees it as its edge `back`.

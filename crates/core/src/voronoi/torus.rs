@@ -1,0 +1,67 @@
+//! Vertices of periodic diagrams: centres of triangles of copies, whose coordinates are no doubles in
+//! general. All is exact before the one rounding at the end.
+
+use delone_predicates::{Point2, Sign};
+use num_bigint::BigInt;
+
+use super::center::{Center, meeting};
+use crate::error::{Error, Result};
+use crate::memory::{filled, zeroed};
+use crate::parallel;
+use crate::regular::{Images, Sites};
+use crate::watch::Watch;
+
+/// Triangles that one task does.
+const SHARE: usize = 1 << 10;
+
+/// For each three corners (row, and by how many periods it is moved in x and y) of a triangle the
+/// centre, correctly rounded, and for each edge whether the apex across it lies on the circle.
+pub fn centers(
+    points: &[Point2],
+    periods: Point2,
+    corners: &[[i32; 3]],
+    apexes: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Vec<Point2>, Vec<[bool; 3]>)> {
+    let count = corners.len() / 3;
+    let mut centers = zeroed(count)?;
+    let mut shared = filled(count, [false; 3])?;
+    let parts = centers.chunks_mut(SHARE).zip(shared.chunks_mut(SHARE));
+    let tasks = parts.enumerate().collect();
+    let done = parallel::map(workers, tasks, |(i, (centers, shared))| {
+        watch.check()?;
+        for (j, (center, shared)) in centers.iter_mut().zip(shared).enumerate() {
+            let rows = 3 * (i * SHARE + j)..3 * (i * SHARE + j) + 3;
+            (*center, *shared) = one(points, periods, &corners[rows.clone()], &apexes[rows])?;
+        }
+        Ok(())
+    });
+    done.into_iter().collect::<Result<()>>()?;
+    Ok((centers, shared))
+}
+
+fn one(
+    points: &[Point2],
+    periods: Point2,
+    corners: &[[i32; 3]],
+    apexes: &[[i32; 3]],
+) -> Result<(Point2, [bool; 3])> {
+    let images = Images {
+        points,
+        periods,
+        of: corners
+            .iter()
+            .chain(apexes)
+            .map(|&[row, x, y]| (row as u32, [x as i8, y as i8]))
+            .collect(),
+    };
+    let (at, low) = images.coordinates([0, 1, 2]);
+    let Center::At(center) = meeting(&at, &[const { BigInt::ZERO }; 3], low) else {
+        return Err(Error::Shape(
+            "a vertex lies beyond the range of doubles".into(),
+        ));
+    };
+    let shared = [3, 4, 5].map(|apex| images.height([0, 1, 2, apex]) == Sign::Zero);
+    Ok((center, shared))
+}

@@ -1,0 +1,374 @@
+"""Delaunay triangulations of points that are repeated at a period in x, in y, or both.
+
+The core triangulates the points and copies of them around, with predicates that are exact on the
+sums of coordinates and periods; here one triangle of each class of translates is kept, and
+neighbours are found among them by their common edges.
+"""
+
+from __future__ import annotations
+
+import threading
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import require_finite
+from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.triangulation import counted, first_rows, kept, own_copy, sealed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["PeriodicDelaunay"]
+
+# Copies nearer than this many mean distances to the box of the points are tried first.
+_HALO = 8.0
+# Sets with fewer points than this take all copies at once.
+_FEW = 64
+
+
+class PeriodicDelaunay:
+    """The Delaunay triangulation of a periodic set of points in the plane.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        The points of one period. In each periodic direction they must lie less than one period
+        apart; where the period begins does not matter.
+    periods : tuple of two floats or None
+        ``(Lx, Ly)``: after which distance the points come again in x and in y. None for a direction
+        without a period.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        The coordinates.
+    periods : tuple of two floats or None
+        As given.
+    simplices : ndarray of int32, shape (m, 3)
+        One triangle of each class of translates, as rows of `points`, counter-clockwise. A row may
+        come twice or three times in one triangle, where points are few.
+    offsets : ndarray of int32, shape (m, 3, 2)
+        By how many periods each corner is moved in x and y; the first corner is not.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each corner (a translate of it); -1 outside, in a direction without
+        period.
+
+    Raises
+    ------
+    InputError
+        There is no period, one is not positive and finite, or points lie a period or more apart.
+    DegenerateInputError
+        There is no triangle: no point at all, or one period and all points on one line along it.
+    NonFiniteError
+        A coordinate is NaN or infinite.
+
+    Notes
+    -----
+    Exact, as `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general is
+    no double, and nothing is rounded before a decision. Ties are broken in the same way, so that
+    the set of triangles is one, and the same in all periods. With two periods there are 2 n
+    triangles and 3 n edges for n distinct points.
+
+    Copies one period away on all sides are enough, however the points lie. Of many points only
+    those copies are taken at first that lie near; circles tell if that was too few. Time is that of
+    an insertion of all these, O(n log n) on usual inputs, on one thread.
+
+    References
+    ----------
+    N. P. Dolbilin and D. H. Huson, "Periodic Delone tilings", Periodica Mathematica Hungarica 34
+    (1997).
+
+    Examples
+    --------
+    >>> from delone import PeriodicDelaunay
+    >>> mesh = PeriodicDelaunay([(0.25, 0.5)], (1, 1))
+    >>> mesh
+    <PeriodicDelaunay of 1 point: 2 triangles>
+    >>> mesh.edges.tolist(), mesh.edge_offsets.tolist()
+    ([[0, 0], [0, 0], [0, 0]], [[0, 1], [1, 0], [1, 1]])
+    """
+
+    __slots__ = ("__weakref__", "_arrays", "_cache", "_lock", "_periods")
+
+    _arrays: dict[str, NDArray[Any]]
+    _cache: dict[str, Any]
+    _lock: threading.RLock
+    _periods: tuple[float | None, float | None]
+
+    def __init__(self, points: ArrayLike, periods: Sequence[float | None]) -> None:
+        if hasattr(self, "_arrays"):
+            raise AttributeError("a PeriodicDelaunay never changes: make another one")
+        own = own_copy(points)
+        require_finite(own)
+        lengths = _as_periods(periods)
+        _require_one_period(own, lengths)
+        self._fill(_triangulated(own, lengths), lengths)
+
+    def _fill(
+        self, arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
+    ) -> None:
+        """Set everything there is; afterwards nothing can be set."""
+        values: dict[str, Any] = {
+            "_arrays": {name: sealed(array) for name, array in arrays.items()},
+            "_cache": {},
+            "_lock": threading.RLock(),
+            "_periods": periods,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, 2)."""
+        return self._arrays["points"]
+
+    @property
+    def periods(self) -> tuple[float | None, float | None]:
+        """The periods in x and y; None for none."""
+        return self._periods
+
+    @property
+    def simplices(self) -> Indices:
+        """One triangle of each class as rows of `points`, (m, 3), counter-clockwise."""
+        return self._arrays["simplices"]
+
+    @property
+    def offsets(self) -> Indices:
+        """By how many periods each corner is moved, (m, 3, 2)."""
+        return self._arrays["offsets"]
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each corner, (m, 3); -1 outside."""
+        return self._arrays["neighbors"]
+
+    @property
+    def partners(self) -> Indices:
+        """The same edge across it, (m, 3): 3 t + k for that opposite corner k of triangle t."""
+        return self._arrays["partners"]
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, duplicates included."""
+        return len(self.points)
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of triangles in one period."""
+        return len(self.simplices)
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The vertex of each row, (n,): the first row with the same coordinates."""
+        return sealed(first_rows(self.points).astype(np.int32))
+
+    @property
+    @kept
+    def corners(self) -> Floats:
+        """Rounded coordinates of the corners of triangles, (m, 3, 2)."""
+        return sealed(self.points[self.simplices] + self.offsets * _lengths(self._periods))
+
+    @property
+    def edges(self) -> Indices:
+        """One edge of each class, (k, 2): the smaller vertex first, rows ascending."""
+        return self._edges[0]
+
+    @property
+    def edge_offsets(self) -> Indices:
+        """By how many periods the second vertex of each edge is moved, (k, 2)."""
+        return self._edges[1]
+
+    @property
+    @kept
+    def _edges(self) -> tuple[Indices, Indices]:
+        a, b, moved = _directed(self.simplices, self.offsets)
+        turned = (a > b) | (
+            (a == b) & ((moved[:, 0] < 0) | ((moved[:, 0] == 0) & (moved[:, 1] < 0)))
+        )
+        first, second = np.where(turned, b, a), np.where(turned, a, b)
+        moved = np.where(turned[:, None], -moved, moved)
+        rows = np.unique(np.column_stack((first, second, moved)), axis=0).astype(np.int32)
+        return sealed(rows[:, :2].copy()), sealed(rows[:, 2:].copy())
+
+    def __copy__(self) -> PeriodicDelaunay:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> PeriodicDelaunay:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (self._arrays, self._periods)
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a PeriodicDelaunay cannot be changed: {name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a PeriodicDelaunay cannot be changed: {name}")
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_arrays"):  # the constructor failed, or has not run
+            return "<PeriodicDelaunay of nothing yet>"
+        numbers = counted(self.npoints, "point"), counted(self.nsimplex, "triangle")
+        return f"<PeriodicDelaunay of {numbers[0]}: {numbers[1]}>"
+
+
+def _rebuilt(
+    arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
+) -> PeriodicDelaunay:
+    mesh = PeriodicDelaunay.__new__(PeriodicDelaunay)
+    mesh._fill({name: array.copy() for name, array in arrays.items()}, periods)
+    return mesh
+
+
+def _as_periods(periods: Any) -> tuple[float | None, float | None]:
+    try:
+        x, y = (None if length is None else float(length) for length in periods)
+    except (TypeError, ValueError):
+        raise InputError(f"periods must be two numbers or None, got {periods!r}") from None
+    given = [length for length in (x, y) if length is not None]
+    if not given:
+        raise InputError("periods must hold a number in x or in y; without, use Delaunay")
+    if not all(0 < length < np.inf for length in given):
+        raise InputError(f"periods must be positive and finite, got {periods!r}")
+    return x, y
+
+
+def _lengths(periods: tuple[float | None, float | None]) -> Floats:
+    return np.array([length or 0.0 for length in periods])
+
+
+def _require_one_period(points: Floats, periods: tuple[float | None, float | None]) -> None:
+    """Refuse points that lie a period apart, decided exactly."""
+    for k, length in enumerate(periods):
+        if length is None or not len(points):
+            continue
+        low, high = int(points[:, k].argmin()), int(points[:, k].argmax())
+        spread = Fraction(float(points[high, k])) - Fraction(float(points[low, k]))
+        if spread >= Fraction(length):
+            raise InputError(
+                f"rows {low} and {high} lie {float(spread)!r} apart in {'xy'[k]}, which is not "
+                f"less than the period {length!r}: move the points into one period first"
+            )
+
+
+def _triangulated(
+    points: Floats, periods: tuple[float | None, float | None]
+) -> dict[str, NDArray[Any]]:
+    """One triangle of each class."""
+    rows = np.unique(first_rows(points)).astype(np.int32)
+    lengths = _lengths(periods)
+    if not len(rows):
+        raise DegenerateInputError("there is no point", reason="too few points")
+    found = None
+    if None not in periods and len(rows) > _FEW:
+        found = _with_halo(points, rows, lengths)
+    if found is None:
+        found = _copied(points, lengths, _copies(rows, periods))
+    simplices, offsets = found
+    if not len(simplices):
+        raise DegenerateInputError(
+            "all points lie on one line along the period: there is no triangle",
+            reason="collinear",
+            chain=rows,
+        )
+    partners = _partners(simplices, offsets, len(points), whole=None not in periods)
+    return {
+        "points": points,
+        "simplices": simplices,
+        "offsets": offsets,
+        "partners": partners,
+        "neighbors": np.where(partners < 0, -1, partners // 3).astype(np.int32),
+    }
+
+
+def _copies(rows: Indices, periods: tuple[float | None, float | None]) -> Indices:
+    """The points and all their copies one period away."""
+    steps = [[0] if length is None else [-1, 0, 1] for length in periods]
+    moves = np.array([(x, y) for x in steps[0] for y in steps[1]], dtype=np.int32)
+    return np.column_stack((np.repeat(rows, len(moves)), np.tile(moves, (len(rows), 1))))
+
+
+def _with_halo(points: Floats, rows: Indices, lengths: Floats) -> tuple[Indices, Indices] | None:
+    """The triangles by way of those copies that lie near, or None where these are too few."""
+    low = points[rows].min(axis=0)
+    width = _HALO * float(np.sqrt(lengths[0] / len(rows)) * np.sqrt(lengths[1]))
+    if not 0 < width < lengths.min() / 2:
+        return None
+    copies = _copies(rows, (1.0, 1.0))
+    at = points[copies[:, 0]] + copies[:, 1:] * lengths
+    near = ((at >= low - width) & (at <= low + lengths + width)).all(axis=1)
+    simplices, offsets = _copied(points, lengths, np.ascontiguousarray(copies[near]))
+    if len(simplices) != 2 * len(rows):
+        return None
+    # A circle within the box of the copies that were taken has been tested against all others.
+    from delone import geometry
+
+    corners = points[simplices] + offsets * lengths
+    center = geometry.circumcenters(corners.reshape(-1, 2), _numbered(len(simplices)))
+    radius = np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
+    # The triangle may stand for a translate whose circle is the one that was tested.
+    reach = radius[:, None] + np.abs(offsets).max(axis=1) * lengths * 2.0**-40
+    inside = (center - reach > low - width) & (center + reach < low + lengths + width)
+    return (simplices, offsets) if inside.all() else None
+
+
+def _numbered(count: int) -> Indices:
+    return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+
+
+def _copied(points: Floats, lengths: Floats, copies: Indices) -> tuple[Indices, Indices]:
+    """The triangles of copies, one of each class that has a corner among the points."""
+    x, y = lengths.tolist()
+    try:
+        triangles, _, _, row, moved = _core.periodic2(points, (x, y), copies)
+    except InternalError as error:
+        error.points = points
+        raise
+    simplices, offsets = row[triangles], moved[triangles]
+    # Of each triangle the corner with the smallest row stands first; where a row comes more than
+    # once, the one moved least in lexicographic order.
+    keys = (simplices.astype(np.int64) * 3 + (offsets[..., 0] + 1)) * 3 + (offsets[..., 1] + 1)
+    first = keys.argmin(axis=1)
+    order = (first[:, None] + np.arange(3)) % 3
+    simplices = np.take_along_axis(simplices, order, axis=1)
+    offsets = np.take_along_axis(offsets, order[..., None], axis=1)
+    # That corner is not moved in exactly one of the translates.
+    kept = (offsets[:, 0] == 0).all(axis=1)
+    return np.ascontiguousarray(simplices[kept]), np.ascontiguousarray(offsets[kept])
+
+
+def _directed(
+    simplices: Indices, offsets: Indices
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """The edge opposite each corner, counter-clockwise: from, to, and by how much that is moved."""
+    a, b = simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]]
+    moved = offsets[:, [2, 0, 1]].astype(np.int64) - offsets[:, [1, 2, 0]]
+    return a.reshape(-1).astype(np.int64), b.reshape(-1).astype(np.int64), moved.reshape(-1, 2)
+
+
+def _partners(simplices: Indices, offsets: Indices, npoints: int, *, whole: bool) -> Indices:
+    """For the edge opposite corner k of each triangle t the one that is its reverse, as 3 t + k."""
+    a, b, moved = _directed(simplices, offsets)
+
+    def keys(a: Any, b: Any, moved: Any) -> NDArray[np.int64]:
+        # Corners are moved by -2 to 2 against each other.
+        found: NDArray[np.int64] = ((a * npoints + b) * 5 + moved[:, 0] + 2) * 5 + moved[:, 1] + 2
+        return found
+
+    here, there = keys(a, b, moved), keys(b, a, -moved)
+    order = np.argsort(here)
+    place = np.minimum(np.searchsorted(here, there, sorter=order), len(here) - 1)
+    partner = order[place]
+    met = here[partner] == there
+    if (np.diff(here[order]) == 0).any() or (whole and not met.all()):
+        raise InternalError("edges of a periodic triangulation do not pair up")
+    return np.where(met, partner, -1).astype(np.int32).reshape(-1, 3)

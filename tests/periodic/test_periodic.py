@@ -1,0 +1,196 @@
+"""Periodic triangulations against plain ones of copies; against fractions where copies round."""
+
+from __future__ import annotations
+
+import itertools
+import pickle
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from delone import Delaunay, periodic
+from delone.errors import DegenerateInputError, InputError, NonFiniteError
+from delone.periodic import PeriodicDelaunay
+
+Corner = tuple[int, int, int]
+
+
+def normal(triangle: list[Corner]) -> frozenset[Corner]:
+    """A triangle of copies as a class of translates: its least corner is not moved."""
+    row, x, y = min(triangle)
+    del row
+    return frozenset((r, i - x, j - y) for r, i, j in triangle)
+
+
+def classes(mesh: PeriodicDelaunay) -> set[frozenset[Corner]]:
+    return {
+        normal([(row, *offset) for row, offset in zip(rows, offsets, strict=True)])
+        for rows, offsets in zip(mesh.simplices.tolist(), mesh.offsets.tolist(), strict=True)
+    }
+
+
+def of_copies(points: Any, periods: tuple[float | None, float | None]) -> set[frozenset[Corner]]:
+    """The same from a plain triangulation of copies that are exact, two periods to each side."""
+    steps = [[0] if length is None else [-2, -1, 0, 1, 2] for length in periods]
+    copies = [(r, i, j) for i in steps[0] for j in steps[1] for r in range(len(points))]
+    lengths = np.array([length or 0 for length in periods], dtype=float)
+    at = np.array([points[r] + np.array([i, j]) * lengths for r, i, j in copies])
+    mesh = Delaunay(at)
+    corners = [[copies[v] for v in row] for row in mesh.simplices.tolist()]
+    return {normal(c) for c in corners if any((i, j) == (0, 0) for _, i, j in c)}
+
+
+SITES = st.lists(
+    st.tuples(st.integers(0, 7), st.integers(0, 5)), min_size=1, max_size=14, unique=True
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(SITES, st.sampled_from([(8, 6), (8, 8), (40, 6), (8.5, 6.25)]))
+def test_triangles_are_those_of_exact_copies(
+    sites: list[tuple[int, int]], periods: tuple[float, float]
+) -> None:
+    points = np.array(sites, dtype=float)
+    mesh = PeriodicDelaunay(points, periods)
+    assert classes(mesh) == of_copies(points, periods)
+    assert mesh.nsimplex == 2 * len(sites) and len(mesh.edges) == 3 * len(sites)
+
+
+@settings(max_examples=100, deadline=None)
+@given(SITES, st.sampled_from([(8, None), (None, 6), (8.5, None), (None, 30)]))
+def test_one_period_is_enough(
+    sites: list[tuple[int, int]], periods: tuple[float | None, float | None]
+) -> None:
+    points = np.array(sites, dtype=float)
+    along = 1 if periods[1] is None else 0
+    if len(np.unique(points[:, along])) == 1:
+        with pytest.raises(DegenerateInputError):
+            PeriodicDelaunay(points, periods)
+        return
+    mesh = PeriodicDelaunay(points, periods)
+    assert classes(mesh) == of_copies(points, periods)
+    assert (mesh.neighbors < 0).any()
+
+
+def test_no_copy_is_in_a_circle_where_copies_are_no_doubles() -> None:
+    rng = np.random.default_rng(1)
+    points = rng.random((30, 2)) * [0.3, 1.1]
+    periods = (0.3, 1.1)
+    mesh = PeriodicDelaunay(points, periods)
+    assert mesh.nsimplex == 60
+    lengths = [Fraction(length) for length in periods]
+
+    def at(row: int, offset: list[int]) -> tuple[Fraction, ...]:
+        pair = zip(points[row].tolist(), offset, lengths, strict=True)
+        return tuple(Fraction(x) + k * length for x, k, length in pair)
+
+    def inside(a: Any, b: Any, c: Any, d: Any) -> Fraction:
+        (ax, ay), (bx, by), (cx, cy) = ((p[0] - d[0], p[1] - d[1]) for p in (a, b, c))
+        return (
+            (ax * ax + ay * ay) * (bx * cy - by * cx)
+            + (bx * bx + by * by) * (cx * ay - cy * ax)
+            + (cx * cx + cy * cy) * (ax * by - ay * bx)
+        )
+
+    everyone = [
+        at(row, [i, j]) for row in range(30) for i, j in itertools.product(range(-2, 3), repeat=2)
+    ]
+    area = Fraction(0)
+    for rows, offsets in zip(mesh.simplices.tolist(), mesh.offsets.tolist(), strict=True):
+        a, b, c = (at(row, offset) for row, offset in zip(rows, offsets, strict=True))
+        twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        assert twice > 0
+        area += twice / 2
+        assert all(inside(a, b, c, d) <= 0 for d in everyone)
+    assert area == lengths[0] * lengths[1]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_near_copies_are_enough_where_points_are_many(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(seed)
+    points = rng.random((700, 2)) if seed else rng.integers(0, 64, (700, 2)) / 64
+    near = PeriodicDelaunay(points, (1, 1))
+    monkeypatch.setattr(periodic, "_FEW", 10**9)
+    assert classes(PeriodicDelaunay(points, (1, 1))) == classes(near)
+
+
+def test_a_hole_larger_than_the_halo_falls_back_to_all_copies() -> None:
+    points = np.random.default_rng(4).random((800, 2)) * 0.05
+    mesh = PeriodicDelaunay(points, (1, 1))
+    assert mesh.nsimplex == 1600
+    assert mesh.corners.shape == (1600, 3, 2)
+    a, b, c = mesh.corners.swapaxes(0, 1)
+    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    assert twice.sum() / 2 == pytest.approx(1)
+
+
+@pytest.mark.parametrize("shift", [(0.25, 0.0), (-3.0, 5.5)])
+def test_where_a_period_begins_does_not_matter(shift: tuple[float, float]) -> None:
+    points = np.random.default_rng(5).integers(0, 32, (60, 2)) / 32
+    points = np.unique(points, axis=0)
+    moved = points + shift
+    moved[:, 0] -= np.floor(moved[:, 0] + 0.5)
+
+    def sizes(mesh: PeriodicDelaunay) -> list[float]:
+        d = mesh.points[mesh.edges[:, 1]] + mesh.edge_offsets - mesh.points[mesh.edges[:, 0]]
+        return sorted((d * d).sum(axis=1).tolist())
+
+    assert sizes(PeriodicDelaunay(points, (1, 1))) == sizes(PeriodicDelaunay(moved, (1, 1)))
+
+
+def test_neighbours_are_mutual() -> None:
+    mesh = PeriodicDelaunay(np.random.default_rng(6).random((100, 2)), (1, 1))
+    for t, row in enumerate(mesh.neighbors.tolist()):
+        for k, other in enumerate(row):
+            assert t in mesh.neighbors[other]
+            edge = sorted(int(v) for v in np.delete(mesh.simplices[t], k))
+            others = [sorted(np.delete(mesh.simplices[other], j).tolist()) for j in range(3)]
+            assert edge in others
+
+
+def test_duplicates_have_no_triangles() -> None:
+    mesh = PeriodicDelaunay([(0, 0), (0.5, 0.25), (0, 0), (-0.0, 0)], (1, 1))
+    assert mesh.nsimplex == 4
+    assert set(mesh.simplices.reshape(-1).tolist()) == {0, 1}
+    assert mesh.duplicate_of.tolist() == [0, 1, 0, 0]
+
+
+def test_nothing_can_be_changed_and_it_pickles() -> None:
+    mesh = PeriodicDelaunay([(0, 0), (0.5, 0.25)], (1, None))
+    with pytest.raises(AttributeError):
+        mesh.simplices = None  # type: ignore[misc]
+    with pytest.raises(ValueError, match="read-only"):
+        mesh.offsets[0] = 1
+    again = pickle.loads(pickle.dumps(mesh))
+    assert classes(again) == classes(mesh) and again.periods == (1, None)
+
+
+@pytest.mark.parametrize(
+    ("points", "periods", "message"),
+    [
+        ([(0, 0), (1, 0)], (1, 1), "rows 0 and 1 lie 1.0 apart in x"),
+        ([(0, 0), (0.5, 3)], (1, 2), "apart in y"),
+        ([(0, 0)], (None, None), "without, use Delaunay"),
+        ([(0, 0)], (0, 1), "positive"),
+        ([(0, 0)], (1, np.inf), "finite"),
+        ([(0, 0)], 3, "two numbers"),
+    ],
+)
+def test_bad_periods_are_refused(points: Any, periods: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        PeriodicDelaunay(points, periods)
+
+
+def test_bad_points_are_refused() -> None:
+    with pytest.raises(NonFiniteError):
+        PeriodicDelaunay([(0, np.nan)], (1, 1))
+    with pytest.raises(DegenerateInputError):
+        PeriodicDelaunay(np.empty((0, 2)), (1, 1))
+    with pytest.raises(DegenerateInputError):
+        PeriodicDelaunay([(0, 0), (0.5, 0)], (1, None))
