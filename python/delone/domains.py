@@ -164,8 +164,7 @@ def _passed_on(of_points: Indices, ends: Indices, markers: Indices) -> Indices:
     """Give points without a marker that of the first line with one that ends there."""
     found = of_points.copy()
     marked = np.flatnonzero(markers)[::-1]
-    for column in (1, 0):
-        found[ends[marked, column]] = markers[marked]
+    found[ends[marked].ravel()] = np.repeat(markers[marked], 2)
     found[of_points != 0] = of_points[of_points != 0]
     return found
 

@@ -219,7 +219,8 @@ def _responsible(
     shared = _shared_end(on[u], on[v], lines.ends)
     c = points[shared]
     d, e = (np.hypot(*(points[w] - c).T) for w in (u, v))
-    spans = (shared >= 0) & (np.abs(d - e) <= _SAME_SHELL * np.maximum(d, e))
+    sharp = np.hypot(*(points[u] - points[v]).T) < np.minimum(d, e)
+    spans = (shared >= 0) & sharp & (np.abs(d - e) <= _SAME_SHELL * np.maximum(d, e))
     found[~between & spans] = shared[~between & spans]
     return found
 

@@ -138,12 +138,13 @@ def test_in_a_box_exact_areas_sum_to_that_of_the_box(
         uniform(100, seed=4) * 1e-8 + 1,
         np.column_stack((np.cos(range(300)), np.sin(range(300)))),
         np.ldexp(uniform(50, seed=5), 1000),
+        np.array([*((i, 0.0) for i in range(16)), (7.5, 5e-324)]),
     ],
-    ids=["uniform", "tilted", "flat", "cluster", "circle", "huge"],
+    ids=["uniform", "tilted", "flat", "cluster", "circle", "huge", "far vertices"],
 )
 def test_areas_sum_exactly_on_hard_sites_too(points: Any) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
-    for box in ([*low, *high], [*(low - (high - low)), *(low + (high - low) / 3)]):
+    for box in ([*low, *high], [-1, -1, 1, 1], [*(low - (high - low)), *(low + (high - low) / 3)]):
         diagram = Voronoi(points, clip=box)
         left, bottom, right, top = map(Fraction, map(float, box))
         assert exact_sum(diagram) == (right - left) * (top - bottom)

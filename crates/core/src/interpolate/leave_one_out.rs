@@ -73,7 +73,7 @@ pub fn leave_one_out(given: Given, method: Method, workers: usize, watch: &Watch
         Ok(part)
     });
     let parts = parts.into_iter().collect::<Result<Vec<Part>>>()?;
-    Rows::of_parts(n, parts, false)
+    Rows::of_parts(n, &parts, false, workers)
 }
 
 /// The star of a vertex without it.

@@ -44,7 +44,7 @@ impl<T: Number> Room<T> {
 pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec<i32>)> {
     let given = &batch.locator.given;
     let triangles = Output::filled(batch.queries.len(), -1)?;
-    let state = || (Room::<f64>::default(), Part::default());
+    let state = || (Room::<f64>::default(), Part::with_slopes(kind.is_smooth()));
     let parts = batch.each(state, |state, row, q, at| {
         let (room, part) = state;
         let Located::Inside(place) = at else {
@@ -64,8 +64,9 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
         part.close(row);
         Ok(())
     })?;
-    let parts = parts.into_iter().map(|(_, part)| part).collect();
-    let rows = Rows::of_parts(batch.queries.len(), parts, kind.is_smooth())?;
+    let parts: Vec<Part> = parts.into_iter().map(|(_, part)| part).collect();
+    let count = batch.queries.len();
+    let rows = Rows::of_parts(count, &parts, kind.is_smooth(), batch.workers)?;
     Ok((rows, triangles.into_vec()))
 }
 
@@ -78,18 +79,29 @@ pub struct Part {
     pub indices: Vec<i32>,
     /// The weights of their values.
     pub weights: Vec<f64>,
-    /// The weights of their gradients.
+    /// The weights of their gradients, where there are some.
     pub slopes: Vec<[f64; 2]>,
+    sloped: bool,
 }
 
 impl Part {
+    /// No row yet; with weights of gradients or without.
+    pub fn with_slopes(sloped: bool) -> Self {
+        Self {
+            sloped,
+            ..Self::default()
+        }
+    }
+
     /// Adds an entry, unless it is nothing.
     #[inline]
     pub fn entry(&mut self, vertex: i32, weight: f64, slope: [f64; 2]) {
         if weight != 0.0 || slope != [0.0; 2] {
             self.indices.push(vertex);
             self.weights.push(weight);
-            self.slopes.push(slope);
+            if self.sloped {
+                self.slopes.push(slope);
+            }
         }
     }
 

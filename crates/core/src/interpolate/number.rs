@@ -187,7 +187,7 @@ mod tests {
         let f = x * x * y / (x - y);
         assert_eq!(f.value, 18.0);
         assert_eq!(f.gradient, [-6.0, 27.0]);
-        assert_eq!(f.hessian, [16.0, -33.0, 54.0]);
+        assert_eq!(f.hessian, [16.0, -27.0, 54.0]);
         let same = (f * f).sqrt();
         assert!(
             same.hessian

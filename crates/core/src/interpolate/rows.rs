@@ -4,7 +4,7 @@ use super::field::Field;
 use super::natural::Part;
 use crate::error::{Error, Result};
 use crate::locate::Output;
-use crate::memory::filled;
+use crate::memory::{filled, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -26,12 +26,15 @@ pub struct Rows {
 
 impl Rows {
     /// Puts `count` rows in order; those that are in no part are empty.
-    pub fn of_parts(count: usize, parts: Vec<Part>, sloped: bool) -> Result<Self> {
+    pub fn of_parts(count: usize, parts: &[Part], sloped: bool, workers: usize) -> Result<Self> {
         let mut indptr = filled(count + 1, 0i64)?;
-        for part in &parts {
+        // In which part each row is, and where it begins there.
+        let mut places = filled(count, (0u32, 0usize))?;
+        for (i, part) in (0u32..).zip(parts) {
             let mut start = 0;
             for &(row, end) in &part.ends {
                 indptr[row + 1] = (end - start) as i64;
+                places[row] = (i, start);
                 start = end;
             }
         }
@@ -39,28 +42,50 @@ impl Rows {
             indptr[row + 1] += indptr[row];
         }
         let total = indptr[count] as usize;
-        let mut indices = filled(total, 0i32)?;
-        let mut weights = filled(total, 0.0)?;
-        let mut slopes = filled(if sloped { 2 * total } else { 0 }, 0.0)?;
-        for part in parts {
-            let mut start = 0;
-            for &(row, end) in &part.ends {
-                let to = indptr[row] as usize..indptr[row + 1] as usize;
-                indices[to.clone()].copy_from_slice(&part.indices[start..end]);
-                weights[to.clone()].copy_from_slice(&part.weights[start..end]);
-                if sloped {
-                    let from = part.slopes[start..end].as_flattened();
-                    slopes[2 * to.start..2 * to.end].copy_from_slice(from);
-                }
-                start = end;
-            }
-        }
-        Ok(Self {
+        let mut rows = Self {
             indptr,
-            indices,
-            weights,
-            slopes,
-        })
+            indices: zeroed(total)?,
+            weights: zeroed(total)?,
+            slopes: zeroed(if sloped { 2 * total } else { 0 })?,
+        };
+        rows.fill(parts, &places, workers);
+        Ok(rows)
+    }
+
+    /// Copies the entries of all rows from their places, each share of rows by one thread.
+    fn fill(&mut self, parts: &[Part], places: &[(u32, usize)], workers: usize) {
+        let (mut indices, mut weights) = (&mut self.indices[..], &mut self.weights[..]);
+        let mut slopes = &mut self.slopes[..];
+        let width = if slopes.is_empty() { 0 } else { 2 };
+        let mut tasks = Vec::new();
+        for (i, places) in places.chunks(SHARE).enumerate() {
+            let ends = &self.indptr[i * SHARE..=i * SHARE + places.len()];
+            let count = (ends[places.len()] - ends[0]) as usize;
+            let (these_indices, rest) = indices.split_at_mut(count);
+            indices = rest;
+            let (these_weights, rest) = weights.split_at_mut(count);
+            weights = rest;
+            let (these_slopes, rest) = slopes.split_at_mut(width * count);
+            slopes = rest;
+            tasks.push((ends, places, these_indices, these_weights, these_slopes));
+        }
+        parallel::map(
+            workers,
+            tasks,
+            |(ends, places, indices, weights, slopes)| {
+                for (pair, &(part, start)) in ends.windows(2).zip(places) {
+                    let [from, to] = [pair[0], pair[1]].map(|end| (end - ends[0]) as usize);
+                    let part = &parts[part as usize];
+                    let source = start..start + (to - from);
+                    indices[from..to].copy_from_slice(&part.indices[source.clone()]);
+                    weights[from..to].copy_from_slice(&part.weights[source.clone()]);
+                    if width > 0 {
+                        let source = part.slopes[source].as_flattened();
+                        slopes[2 * from..2 * to].copy_from_slice(source);
+                    }
+                }
+            },
+        );
     }
 }
 

@@ -7,7 +7,7 @@
 //! of the input the rule of G. L. Miller, S. E. Pav and N. J. Walkington, "When and why Delaunay
 //! refinement algorithms work", International Journal of Computational Geometry & Applications 15
 //! (2005): a thin triangle whose shortest edge spans two subsegments that meet in a corner, on one
-//! circle about it, stays.
+//! circle about it, stays. That is done where the corner has less than 60 degrees.
 //!
 //! The order of work hangs on the mesh alone, so the result is the same every time.
 
@@ -108,6 +108,43 @@ pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
 
 /// Refines a triangulation, and tells how far it is.
 pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
+    let scale = scale(task.points);
+    if scale == 1.0 {
+        return refine_as_is(task, watch, tell);
+    }
+    let scaled = |p: &Point2| p.map(|x| x * scale);
+    let points: Vec<Point2> = task.points.iter().map(scaled).collect();
+    // Twice, as the square of the scale may be beyond the range.
+    let areas: Vec<f64> = task.areas.iter().map(|a| a * scale * scale).collect();
+    let task = Task {
+        points: &points,
+        areas: &areas,
+        ..task
+    };
+    let mut made = refine_as_is(task, watch, tell)?;
+    for p in &mut made.added {
+        *p = p.map(|x| x / scale);
+    }
+    Ok(made)
+}
+
+/// The power of two that brings coordinates to where products of four of their differences neither
+/// over- nor underflow; 1 where they are there, or where it would round some of them.
+fn scale(points: &[Point2]) -> f64 {
+    let largest = points
+        .as_flattened()
+        .iter()
+        .fold(0.0, |m: f64, x| m.max(x.abs()));
+    if (1e-60..1e60).contains(&largest) || largest < 1e-270 {
+        return 1.0;
+    }
+    let scale = 2_f64.powi(-(largest.log2() as i32));
+    let exact = |x: &f64| x * scale / scale == *x;
+    let all = points.as_flattened().iter().all(exact);
+    if all { scale } else { 1.0 }
+}
+
+fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     let (rows, own) = compact(task.points, task.simplices)?;
     let mut points = with_room(rows.len() + 1)?;
     points.extend(rows.iter().map(|&row| task.points[row as usize]));

@@ -28,6 +28,10 @@ const WATCH_EVERY: usize = 1 << 12;
 /// Radii about a corner are one if they differ by less.
 const SAME_SHELL: f64 = 1e-3;
 
+fn distance(a: Point2, b: Point2) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// A subsegment as it was when it was put aside.
 #[derive(Debug, Clone, Copy)]
 struct Waiting {
@@ -211,6 +215,7 @@ impl<'a> Work<'a> {
             return Ok(false);
         }
         let x = self.cut_of(u, v);
+        eprintln!("  split {e} {u} {v} at {x:?} between {:?} {:?} apexes {p} {q}", self.at(u), self.at(v));
         let [a, b] = [u, v].map(|v| self.at(v));
         // The rounded point may lie beside the edge, but not beyond its triangles.
         let holds = |apex: u32, [a, b]: [Point2; 2]| {
@@ -302,11 +307,13 @@ impl<'a> Work<'a> {
         if !(p[0].is_finite() && p[1].is_finite()) {
             return Ok(());
         }
+        eprintln!("try t={t} p={p:?} {reason:?} walk {:?}", walk(&mut self.marked, t, p));
         let home = match walk(&mut self.marked, t, p) {
             Walk::Home(home) => home,
             Walk::Blocked(e) => return self.yield_to(t, &[e]),
             Walk::Lost => return Ok(()),
         };
+        eprintln!("  home {home}");
         if let Some(e) = self.cavity.dig(&mut self.marked, home, p) {
             return self.yield_to(t, &[e]);
         }
@@ -318,6 +325,7 @@ impl<'a> Work<'a> {
         };
         let rim = self.cavity.rim.iter().copied();
         let near: Vec<Code> = rim.filter(encroached).collect();
+        eprintln!("  near {near:?}");
         if !near.is_empty() {
             return self.yield_to(t, &near);
         }
@@ -363,7 +371,8 @@ impl<'a> Work<'a> {
     }
 
     /// Whether the smallest angle of a triangle is forced by the input: it lies between two
-    /// subsegments, or its shortest edge joins two that meet in a corner, on one circle about it.
+    /// subsegments, or its shortest edge joins two that meet in a corner of less than 60 degrees, on
+    /// one circle about it.
     fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
         let mesh = self.marked.patch();
         let apex = 8 * t + seen.apex as u32;
@@ -380,10 +389,10 @@ impl<'a> Work<'a> {
             return false;
         };
         let c = self.at(corner);
-        let [d, e] = [u, v].map(|v| {
-            let p = self.at(v);
-            (p[0] - c[0]).hypot(p[1] - c[1])
-        });
-        (d - e).abs() <= SAME_SHELL * d.max(e)
+        let [d, e] = [u, v].map(|v| distance(self.at(v), c));
+        // From 60 degrees on, the edge between the two is as long as their pieces, and cutting these
+        // for its sake comes to an end.
+        let sharp = distance(self.at(u), self.at(v)) < d.min(e);
+        sharp && (d - e).abs() <= SAME_SHELL * d.max(e)
     }
 }

@@ -119,12 +119,9 @@ fn close(
         if *end >= 0 {
             continue;
         }
-        let direction = match far.get(!*end as usize) {
-            // Seen from the sites a far vertex lies along the bisector, on one side or the other.
-            Some(far) if far[0] * normal[0] + far[1] * normal[1] < 0.0 => back,
-            Some(_) => normal,
-            None => outward,
-        };
+        // A far vertex is one point at infinity, the same for all its ridges: with directions of
+        // their own they would cross beyond it.
+        let direction = far.get(!*end as usize).copied().unwrap_or(outward);
         *end = !(rays.len() as i32);
         rays.push(direction);
     }
