@@ -108,6 +108,8 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/wheels.py $(BENCH)
 	$(BIN)/python benchmarks/crates.py $(BENCH)
 	$(BIN)/python benchmarks/constrained.py $(BENCH)
+	$(BIN)/python benchmarks/interpolate.py $(BENCH)
+	$(BIN)/python benchmarks/voronoi.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
 
 fuzz: need

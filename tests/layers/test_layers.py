@@ -134,7 +134,7 @@ CORE: dict[str, set[str]] = {
     "mesh2": {"parallel"} | GROUND,
     "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
-    "refine": {"constrained", "delaunay2", "mesh2", "delone_predicates"} | GROUND,
+    "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,

@@ -93,15 +93,12 @@ pub fn voronoi_clip2<'py>(
     bounds: [f64; 4],
     workers: usize,
 ) -> PyResult<Cut> {
-    let pairs = |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> {
-        item(diagram, name)?.extract()
-    };
-    let codes = |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> {
-        item(diagram, name)?.extract()
-    };
-    let list = |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> {
-        item(diagram, name)?.extract()
-    };
+    let pairs =
+        |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> { item(diagram, name)?.extract() };
+    let codes =
+        |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> { item(diagram, name)?.extract() };
+    let list =
+        |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> { item(diagram, name)?.extract() };
     let (vertices, rays) = (pairs("vertices")?, pairs("rays")?);
     let (sites, ends) = (codes("sites")?, codes("ends")?);
     let (site, starts) = (list("site")?, list("starts")?);

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import InputError
+from delone.io.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -38,7 +39,7 @@ def chosen(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any]:
     ndarray of object, shape (n,)
         Geometries.
     """
-    import shapely
+    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
 
     found: NDArray[Any] = np.append(polygons, shapely.Polygon())[regions]
     return found

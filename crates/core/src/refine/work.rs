@@ -8,6 +8,7 @@
 //! a limit on vertices ends it in any case.
 
 use std::collections::HashMap;
+use std::iter::once;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -37,6 +38,22 @@ fn distance(a: Point2, b: Point2) -> f64 {
 struct Waiting {
     edge: Code,
     ends: [u32; 2],
+}
+
+/// How a vertex splits a subsegment.
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    /// On the edge, as far as its two triangles can tell.
+    On,
+    /// In the triangle of this side: it is rounded, and the one beyond is too thin to reach it.
+    Beside(Code),
+}
+
+/// The points next to `x` in the grid of doubles.
+fn neighbours(x: Point2) -> impl Iterator<Item = Point2> {
+    let [xs, ys] = x.map(|c| [c, c.next_down(), c.next_up()]);
+    let all = xs.into_iter().flat_map(move |x| ys.map(|y| [x, y]));
+    all.skip(1)
 }
 
 /// The state.
@@ -207,41 +224,99 @@ impl<'a> Work<'a> {
     /// Splits the subsegment `e`; false where it may not or cannot be.
     fn split(&mut self, e: Code) -> Result<bool> {
         let mesh = self.marked.patch();
-        let o = mesh.opposite(e);
-        let inf = mesh.infinite();
-        let [u, v, p, q] = [next(e), prev(e), e, o].map(|c| mesh.vertex(c));
+        let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
         let segment = self.segment_of([u, v]);
         if segment >= 0 && self.task.frozen[segment as usize] {
             return Ok(false);
         }
         let x = self.cut_of(u, v);
-        eprintln!("  split {e} {u} {v} at {x:?} between {:?} {:?} apexes {p} {q}", self.at(u), self.at(v));
-        let [a, b] = [u, v].map(|v| self.at(v));
-        // The rounded point may lie beside the edge, but not beyond its triangles.
-        let holds = |apex: u32, [a, b]: [Point2; 2]| {
-            let at = self.at(apex);
-            apex == inf
-                || orient2d(a, x, at) == Sign::Positive && orient2d(x, b, at) == Sign::Positive
-        };
-        if x == a || x == b || !holds(p, [a, b]) || !holds(q, [b, a]) {
+        let around = once(x).chain(neighbours(x));
+        let Some((x, place)) = around
+            .into_iter()
+            .find_map(|x| Some((x, self.place(e, x)?)))
+        else {
             return Ok(false);
-        }
+        };
         self.marked.grow()?;
         let w = self.marked.count as u32;
         self.marked.points[w as usize] = x;
+        match place {
+            Place::On => self.part(e, w),
+            Place::Beside(e) => self.part_beside(e, w),
+        }
+        self.marked.near[w as usize] = self.marked.stack[0];
+        self.on.push(segment);
+        self.settle()?;
+        self.counts.segment += 1;
+        self.greet(w);
+        Ok(true)
+    }
+
+    /// Where `x`, which may be rounded, can split the subsegment `e`.
+    fn place(&mut self, e: Code, x: Point2) -> Option<Place> {
+        let mesh = self.marked.patch();
+        let o = mesh.opposite(e);
+        let inf = mesh.infinite();
+        let [u, v, p, q] = [next(e), prev(e), e, o].map(|c| mesh.vertex(c));
+        let [a, b] = [u, v].map(|v| self.at(v));
+        if x == a || x == b {
+            return None;
+        }
+        let left = |a, b, c| orient2d(a, b, c) == Sign::Positive;
+        let holds = |apex: u32, [a, b]: [Point2; 2]| {
+            let at = self.at(apex);
+            apex == inf || left(a, x, at) && left(x, b, at)
+        };
+        if holds(p, [a, b]) && holds(q, [b, a]) {
+            return Some(Place::On);
+        }
+        let inside = |apex: u32, [a, b]: [Point2; 2]| {
+            let at = self.at(apex);
+            apex != inf && left(a, b, x) && left(b, at, x) && left(at, a, x)
+        };
+        let beside = [(e, p, [a, b], q), (o, q, [b, a], p)].into_iter();
+        let mut beside = beside.filter(|&(.., beyond)| beyond != inf);
+        let found = beside.find(|&(_, apex, ends, _)| inside(apex, ends));
+        found.map(|(e, ..)| Place::Beside(e))
+    }
+
+    /// Puts the vertex `w` on the subsegment `e`. What to flip is on the stack.
+    fn part(&mut self, e: Code, w: u32) {
         let mut mesh = self.marked.patch();
+        let o = mesh.opposite(e);
         let star = mesh.split_marked_edge(e, w);
         self.marked.count += 1;
         self.marked.near.push(0);
-        self.on.push(segment);
         let [_, r, _, s] = star.map(triangle);
         self.caps.resize(self.marked.triangles() as usize, 0.0);
         self.caps[r as usize] = self.caps[triangle(e) as usize];
         self.caps[s as usize] = self.caps[triangle(o) as usize];
-        self.settle(w, star)?;
-        self.counts.segment += 1;
-        self.greet(w);
-        Ok(true)
+        self.marked.stack.clear();
+        self.marked.stack.extend(star);
+    }
+
+    /// Leads the subsegment `e` over the vertex `w` in its triangle. The thin triangle that is cut
+    /// off belongs to the other side.
+    fn part_beside(&mut self, e: Code, w: u32) {
+        let mut mesh = self.marked.patch();
+        let beyond = triangle(mesh.opposite(e));
+        let label = mesh.label(beyond);
+        mesh.mark(e, false);
+        let star = mesh.split_marked_triangle(triangle(e), w);
+        let thin = star[(e & 3) as usize];
+        mesh.mark(next(thin), true);
+        mesh.mark(prev(thin), true);
+        mesh.set_label(triangle(thin), label);
+        self.marked.count += 1;
+        self.marked.near.push(0);
+        let cap = self.caps[triangle(e) as usize];
+        self.caps.resize(self.marked.triangles() as usize, cap);
+        for side in star {
+            self.caps[triangle(side) as usize] = cap;
+        }
+        self.caps[triangle(thin) as usize] = self.caps[beyond as usize];
+        self.marked.stack.clear();
+        self.marked.stack.extend(star);
     }
 
     fn cut_of(&self, u: u32, v: u32) -> Point2 {
@@ -250,11 +325,8 @@ impl<'a> Work<'a> {
         cut(self.at(u), self.at(v), corner(u) && !corner(v))
     }
 
-    /// Flips edges until all are Delaunay again, from those of the star of a new vertex on.
-    fn settle(&mut self, w: u32, star: [Code; 4]) -> Result<()> {
-        self.marked.near[w as usize] = star[0];
-        self.marked.stack.clear();
-        self.marked.stack.extend(star);
+    /// Flips edges until all are Delaunay again, from those on the stack on.
+    fn settle(&mut self) -> Result<()> {
         let caps = &mut self.caps;
         self.marked.legalise_with(|s, t| {
             let cap = caps[s as usize].min(caps[t as usize]);
@@ -307,13 +379,11 @@ impl<'a> Work<'a> {
         if !(p[0].is_finite() && p[1].is_finite()) {
             return Ok(());
         }
-        eprintln!("try t={t} p={p:?} {reason:?} walk {:?}", walk(&mut self.marked, t, p));
         let home = match walk(&mut self.marked, t, p) {
             Walk::Home(home) => home,
             Walk::Blocked(e) => return self.yield_to(t, &[e]),
             Walk::Lost => return Ok(()),
         };
-        eprintln!("  home {home}");
         if let Some(e) = self.cavity.dig(&mut self.marked, home, p) {
             return self.yield_to(t, &[e]);
         }
@@ -325,7 +395,6 @@ impl<'a> Work<'a> {
         };
         let rim = self.cavity.rim.iter().copied();
         let near: Vec<Code> = rim.filter(encroached).collect();
-        eprintln!("  near {near:?}");
         if !near.is_empty() {
             return self.yield_to(t, &near);
         }
