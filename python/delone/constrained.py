@@ -72,7 +72,8 @@ class ConstrainedDelaunay(Segmented):
         Add vertices on segments until the circle over each subsegment holds no vertex in its
         inside, so that each is an edge of the plain Delaunay triangulation of all vertices.
     max_vertices : int, optional
-        How many vertices may be added; by default 4,000,000.
+        How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing segments
+        that are looked at, too, at 8 for each vertex and a million more.
     method, workers : optional
         As for `Delaunay`. The answer is the same.
 
@@ -96,7 +97,8 @@ class ConstrainedDelaunay(Segmented):
         Segments cross, and `crossing` is ``"error"``; ``error.pairs`` names all pairs of rows,
         ``error.points`` where they cross.
     BudgetExceededError
-        More than `max_vertices` would have to be added; ``error.found`` of them were found.
+        More than `max_vertices` would have to be added, or more segments cross than it allows for;
+        ``error.found`` of them were found.
     InputError
         A segment has an end that is no row of `points`, a label is no integer of at least 0, or an
         option is none of its choices. The message names the rows.
@@ -287,8 +289,17 @@ class ConstrainedDelaunay(Segmented):
         >>> len(way), mesh.neighbors[way[0]].tolist().count(way[1])
         (2, 1)
         """
-        along = self._along(_end(a, "a"), _end(b, "b"))
-        found = along if self._number is None else self._number[along]
+        start, end = _end(a, "a"), _end(b, "b")
+        along = self._along(start, end)
+        if self._number is None:
+            return along
+        if (start == end).all():
+            holder = np.atleast_1d(self.find_simplex(start))
+            return holder[holder >= 0]
+        found = self._number[along]
+        gone = found < 0
+        beside = regions.across_line(self._tiles(), along[gone], start, end)
+        found[gone] = np.where(beside >= 0, self._number[beside], -1)
         kept_ones: Indices = found[found >= 0]
         return kept_ones
 
@@ -431,7 +442,7 @@ class ConstrainedDelaunay(Segmented):
         >>> print(ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).validate())
         a canonical constrained Delaunay triangulation
         """
-        return validate(self._found, self.duplicate_of)
+        return validate(self._found, self.duplicate_of, conforming=self._options.conforming)
 
     def to_geopandas(self, *, crs: Any = None) -> Any:
         """Return the triangles as a table of polygons (extra ``geo``).

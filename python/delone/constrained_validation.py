@@ -57,7 +57,8 @@ class ConstrainedReport(ValidationReport):
         Rows of segments whose subsegments are no way from the one end to the other.
     bent : ndarray of int, shape (k, 2)
         Rows of segments and vertices on their way that are not exactly on the row. Rows that run
-        through crossings or added vertices may bend, because those are rounded.
+        through crossings or added vertices may bend, because those are rounded, and so may all rows
+        of a conforming triangulation.
 
     Attributes
     ----------
@@ -87,7 +88,9 @@ class ConstrainedReport(ValidationReport):
     }
 
 
-def validate(found: Mapping[str, NDArray[Any]], duplicate_of: Indices) -> ConstrainedReport:
+def validate(
+    found: Mapping[str, NDArray[Any]], duplicate_of: Indices, *, conforming: bool = False
+) -> ConstrainedReport:
     """Check the arrays of a constrained triangulation.
 
     Parameters
@@ -96,6 +99,8 @@ def validate(found: Mapping[str, NDArray[Any]], duplicate_of: Indices) -> Constr
         What `ConstrainedDelaunay` holds: input, triangles of the whole hull, subsegments.
     duplicate_of : ndarray of int32, shape (n,)
         The vertex of each point.
+    conforming : bool, optional
+        Whether rows were cut to be conforming: a cut may be rounded to a vertex beside the row.
 
     Returns
     -------
@@ -114,7 +119,8 @@ def validate(found: Mapping[str, NDArray[Any]], duplicate_of: Indices) -> Constr
             culprits[name] = _not_across(culprits[name], neighbors, wanted)
     ends = duplicate_of[found["input"]]
     culprits["uncovered"] = _uncovered(found, ends, len(points))
-    culprits["bent"] = _bent(found, ends)
+    if not conforming:
+        culprits["bent"] = _bent(found, ends)
     return ConstrainedReport.from_culprits(culprits)
 
 

@@ -207,7 +207,8 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
     kind = mapping.get("type")
     if kind == "GeometryCollection":
         for geometry in mapping["geometries"]:
-            yield from _of_mapping(geometry, name)
+            if geometry is not None:
+                yield from _of_mapping(geometry, name)
         return
     coordinates: Any = mapping.get("coordinates")
     if coordinates is None or not isinstance(kind, str):

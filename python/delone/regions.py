@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Tiling",
+    "across_line",
     "beside",
     "corners",
     "crossed",
@@ -227,6 +228,30 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
     label[first >= 0] = given[first[first >= 0]]
     later = seeds[first[of_seed[seeds]] != seeds]
     return label[component], np.column_stack((later, first[of_seed[later]]))
+
+
+def across_line(tiling: Tiling, triangle: Indices, a: Floats, b: Floats) -> Indices:
+    """Return the neighbours of triangles across their edges on the line through two points.
+
+    Parameters
+    ----------
+    tiling : Tiling
+        The triangles.
+    triangle : ndarray of int32, shape (k,)
+        Some of them.
+    a, b : ndarray of float64, shape (2,)
+        The points, which differ.
+
+    Returns
+    -------
+    ndarray of int32, shape (k,)
+        Triangles, -1 where there is no such edge or nothing beyond it.
+    """
+    corners = tiling.points[tiling.simplices[triangle]].reshape(-1, 2)
+    start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()
+    off = (_core.orient2d(start, end, corners) != 0).reshape(-1, 3)
+    found = tiling.neighbors[triangle, off.argmax(axis=1)]
+    return np.where(off.sum(axis=1) == 1, found, np.int32(-1))
 
 
 def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:

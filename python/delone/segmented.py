@@ -215,12 +215,13 @@ class Segmented(Triangulation):
         culprits["overlaps"] = segments.overlapping_rows(
             found["source_start"], found["source"], repeated
         )
+        crossings = found["crossings"]
         culprits["steiner"] = segments.steiner_rows(
             found["segments"],
             found["source_start"],
             found["source"],
-            found["crossings"],
-            first=self.npoints - self.nadded,
+            np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]], found["through"])),
+            self.duplicate_of[found["input"]],
         )
         return segments.SegmentReport(**culprits, **self._idle_seeds())
 

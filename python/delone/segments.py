@@ -60,8 +60,9 @@ class SegmentReport:
     crossings : ndarray of int32, shape (k, 3)
         Two rows of segments that cross, and the vertex where they meet now.
     steiner : ndarray of int32, shape (k, 2)
-        Rows of segments and added vertices on them that are not their own crossings: those that
-        make the triangulation conforming, and rounded crossings of others that lie in their way.
+        Rows of segments and vertices on their way that are neither their own crossings nor points
+        exactly on them: vertices that make the triangulation conforming, and those to which a row
+        that was rounded is led because it comes nearer to them than it can be told from them.
     holes_outside, regions_outside : ndarray of int32, shape (k,)
         Rows of seeds that lie in no triangle; those of regions also where the triangle has been
         removed. They have no effect.
@@ -140,8 +141,8 @@ _SENTENCES = {
         "crossings were split (row-row-vertex)",
     ),
     "steiner": (
-        "vertex was added on a segment (row-vertex)",
-        "vertices were added on segments (row-vertex)",
+        "vertex was put on the way of a segment (row-vertex)",
+        "vertices were put on the way of segments (row-vertex)",
     ),
     "holes_outside": ("seed of holes lies outside", "seeds of holes lie outside"),
     "holes_on_segment": ("seed of holes lies on a segment", "seeds of holes lie on segments"),
@@ -222,6 +223,8 @@ def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indice
     >>> overlapping_rows(start, source, np.empty((0, 2), dtype=np.int32)).tolist()
     [[1, 0]]
     """
+    if len(source) == 0:
+        return np.empty((0, 2), dtype=np.int32)
     first = np.repeat(source[start[:-1]], np.diff(start))
     same = np.arange(int(source.max(initial=-1)) + 1, dtype=np.int32)
     same[repeated[:, 0]] = repeated[:, 1]
@@ -231,9 +234,13 @@ def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indice
 
 
 def steiner_rows(
-    segments: Indices, start: NDArray[np.int64], source: Indices, crossings: Indices, *, first: int
+    segments: Indices,
+    start: NDArray[np.int64],
+    source: Indices,
+    known: Indices,
+    ends: Indices,
 ) -> Indices:
-    """Return the added vertices on rows that are not crossings of these rows.
+    """Return the vertices on the way of rows that nothing else explains.
 
     Parameters
     ----------
@@ -243,10 +250,10 @@ def steiner_rows(
         Where the sources of each subsegment begin.
     source : ndarray of int32
         Rows that cover the subsegments.
-    crossings : ndarray of int32, shape (c, 3)
-        Two rows and the vertex where they meet.
-    first : int
-        The first added vertex.
+    known : ndarray of int32, shape (c, 2)
+        Row and vertex: crossings of the row, and points that lie on it.
+    ends : ndarray of int32, shape (s, 2)
+        The vertices where each row ends.
 
     Returns
     -------
@@ -258,15 +265,14 @@ def steiner_rows(
     >>> import numpy as np
     >>> from delone.segments import steiner_rows
     >>> segments, start = np.array([(0, 5), (5, 6), (6, 1)]), np.array([0, 1, 2, 3])
-    >>> crossings = np.array([(0, 1, 6)])
-    >>> steiner_rows(segments, start, np.array([0, 0, 0]), crossings, first=5).tolist()
+    >>> rows, known = np.array([0, 0, 0]), np.array([(0, 6)])
+    >>> steiner_rows(segments, start, rows, known, np.array([(0, 1)])).tolist()
     [[0, 5]]
     """
     row = np.repeat(source, 2)
     vertex = np.repeat(segments, np.diff(start), axis=0).ravel()
-    added = vertex >= first
-    pairs = np.unique(np.column_stack((row[added], vertex[added])), axis=0)
-    known = np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]]))
+    inside = (vertex != ends[row, 0]) & (vertex != ends[row, 1])
+    pairs = np.unique(np.column_stack((row[inside], vertex[inside])), axis=0)
     end = int(vertex.max(initial=0)) + 1
     keys, others = (a[:, 0].astype(np.int64) * end + a[:, 1] for a in (pairs, known))
     return pairs[~among(keys, others)].astype(np.int32)

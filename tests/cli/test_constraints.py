@@ -145,7 +145,7 @@ def test_conforming(tmp_path, figures, command):
     assert command("check", out)[0] == 0
     code, _, err = command("triangulate", file, "--conforming", "--max-vertices", 0)
     assert code == 4
-    assert "limit is 0" in err
+    assert "limit of 0 vertices" in err
 
 
 @pytest.mark.parametrize(

@@ -254,7 +254,7 @@ class TestConforming:
         assert {frozenset(edge) for edge in mesh.segments.tolist()} <= edges
         assert mesh.report.steiner[:, 0].tolist() == [0] * mesh.nadded
         assert sorted(mesh.report.steiner[:, 1].tolist()) == list(range(7, mesh.npoints))
-        assert "were added on segments" in str(mesh.report)
+        assert "were put on the way of segments" in str(mesh.report)
 
     def test_where_nothing_is_to_do_nothing_is_added(self) -> None:
         mesh = ConstrainedDelaunay(OUTER, [*RINGS[:4], (0, 2)], conforming=True)

@@ -8,6 +8,8 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::table;
+
 /// Runs `work` without the GIL.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
     let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
@@ -55,11 +57,12 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         }
         Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
         Error::Crossing { pairs, points } => {
-            details.set_item("pairs", pairs)?;
-            details.set_item("points", points)?;
+            // As arrays: there may be millions.
+            details.set_item("pairs", table(py, pairs.clone())?)?;
+            details.set_item("points", table(py, points.clone())?)?;
             ("CrossingSegmentsError", crossing(pairs, points))
         }
-        Error::Budget { limit, found } => {
+        Error::Budget { limit, found, .. } => {
             details.set_item("limit", limit)?;
             details.set_item("found", found)?;
             let message = format!("{error}: allow more, or make the input simpler");

@@ -45,11 +45,13 @@ pub enum Error {
         points: Vec<Point2>,
     },
     /// More vertices than the caller allows.
-    #[error("{found} vertices would be added, and the limit is {limit}")]
+    #[error("found {found} {what}, more than the limit of {limit} vertices allows")]
     Budget {
+        /// What there is too much of.
+        what: &'static str,
         /// The limit.
         limit: usize,
-        /// Vertices added when it was passed.
+        /// How many when it was passed.
         found: usize,
     },
     /// An array that does not fit its role, in words that name the row.

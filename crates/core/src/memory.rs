@@ -20,6 +20,17 @@ pub fn with_room<T>(n: usize) -> Result<Vec<T>> {
     Ok(v)
 }
 
+/// Puts `x` at the end of `v`.
+#[inline]
+pub fn push<T>(v: &mut Vec<T>, x: T) -> Result<()> {
+    if v.len() == v.capacity() {
+        let bytes = 2 * v.len().saturating_mul(size_of::<T>());
+        v.try_reserve(1).map_err(|_| Error::Memory { bytes })?;
+    }
+    v.push(x);
+    Ok(())
+}
+
 /// Empties `v` and gives it room for `n` items.
 pub fn clear_with_room<T>(v: &mut Vec<T>, n: usize) -> Result<()> {
     v.clear();

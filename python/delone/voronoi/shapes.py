@@ -67,8 +67,6 @@ def table(polygons: NDArray[Any], data: Any, crs: Any) -> Any:
     InputError
         `data` has another number of rows.
     """
-    from delone.io.extras import require
-
     geopandas = require("geopandas", extra="geo", what="a table of cells")
     if data is None:
         return geopandas.GeoDataFrame(geometry=polygons, crs=crs)
@@ -135,8 +133,6 @@ def draw(
     >>> len(ax.collections)
     1
     """
-    from delone.io.extras import require
-
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     paths = require("matplotlib.path", extra="plot", what="drawing")
     if ax is None:

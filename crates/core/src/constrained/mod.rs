@@ -27,12 +27,16 @@ use self::segment::{Cavity, Step};
 use self::split::Splitter;
 use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
 use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::memory::{filled, push, with_room};
 use crate::mesh2::export;
 use crate::watch::Watch;
 
 /// Segments between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 10;
+
+/// Pairs of segments that may cross for each vertex that may be added, and more of them in any case.
+const PAIRS: usize = 8;
+const MORE_PAIRS: usize = 1 << 20;
 
 /// What a caller may choose.
 #[derive(Debug, Clone, Copy)]
@@ -157,7 +161,7 @@ impl<'a> Work<'a> {
             }
             None if !self.options.split => return Err(self.crossing_error(input, watch)?),
             None => {
-                let found = self.crossings(input, limit, watch)?;
+                let found = self.crossings(input, watch)?;
                 let meets = self.start_anew(input, &found, watch)?;
                 let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
                 splitter.run(&found.pairs, &meets, watch)?;
@@ -185,7 +189,7 @@ impl<'a> Work<'a> {
         let mut steps = 0;
         for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
             if present.holds([a, b]) {
-                laid.pieces.push(([a, b], row));
+                push(&mut laid.pieces, ([a, b], row))?;
                 continue;
             }
             steps += 1;
@@ -199,33 +203,41 @@ impl<'a> Work<'a> {
                 };
                 laid.repeated |= again;
                 if to != a ^ b ^ from {
-                    laid.through.push([row, to]);
+                    push(&mut laid.through, [row, to])?;
                 }
                 if from == a {
-                    laid.pieces.push(([a, to], row));
+                    push(&mut laid.pieces, ([a, to], row))?;
                     a = to;
                 } else {
-                    back.push(([to, b], row));
+                    push(&mut back, ([to, b], row))?;
                     b = to;
                 }
             }
-            laid.pieces.extend(back.into_iter().rev());
+            for piece in back.into_iter().rev() {
+                push(&mut laid.pieces, piece)?;
+            }
         }
         Ok(Some(laid))
     }
 
     /// The error that names all pairs that cross.
     fn crossing_error(&self, input: &[Point2], watch: &Watch) -> Result<Error> {
-        let Crossings { pairs, points } = self.crossings(input, usize::MAX, watch)?;
+        let Crossings { pairs, points } = self.crossings(input, watch)?;
         Ok(Error::Crossing { pairs, points })
     }
 
     /// All pairs of segments that cross, but for those that do in a point of the input.
-    fn crossings(&self, input: &[Point2], limit: usize, watch: &Watch) -> Result<Crossings> {
-        let pairs = pairs::crossing_pairs_above(input, self.segments, limit, watch)?;
-        if pairs.len() > limit {
-            let found = pairs.len();
-            return Err(Error::Budget { limit, found });
+    fn crossings(&self, input: &[Point2], watch: &Watch) -> Result<Crossings> {
+        // Many pairs may cross in one point.
+        let limit = self.options.max_vertices;
+        let most = limit.saturating_mul(PAIRS).saturating_add(MORE_PAIRS);
+        let pairs = pairs::crossing_pairs_above(input, self.segments, most, watch)?;
+        if pairs.len() > most {
+            return Err(Error::Budget {
+                what: "pairs of crossing segments",
+                limit,
+                found: pairs.len(),
+            });
         }
         let mut given: Vec<Point2> = with_room(input.len())?;
         given.extend_from_slice(input);
@@ -235,7 +247,10 @@ impl<'a> Work<'a> {
             pairs: with_room(pairs.len())?,
             points: with_room(pairs.len())?,
         };
-        for [s, t] in pairs {
+        for (i, [s, t]) in pairs.into_iter().enumerate() {
+            if i.is_multiple_of(1 << 16) {
+                watch.check()?;
+            }
             let ([a, b], [c, d]) = (at(s), at(t));
             let x = intersection::intersection(a, b, c, d);
             let exact = orient2d(a, b, x).is_zero() && orient2d(c, d, x).is_zero();
@@ -272,6 +287,13 @@ impl<'a> Work<'a> {
             .filter(|r| *r as usize >= n)
             .collect();
         behind.sort_unstable();
+        if behind.len() > self.options.max_vertices {
+            return Err(Error::Budget {
+                what: "added vertices",
+                limit: self.options.max_vertices,
+                found: behind.len(),
+            });
+        }
         self.met = behind.iter().map(|&row| all[row as usize]).collect();
         self.rows = built.rows;
         for row in self.rows.iter_mut().filter(|row| **row as usize >= n) {
@@ -287,14 +309,14 @@ impl<'a> Work<'a> {
         let at = |v: u32| self.marked.at(v);
         pieces.sort_unstable_by(|(s, i), (t, j)| {
             i.cmp(j).then_with(|| {
+                // Along its row a coordinate never turns back; where it stays, the other tells.
                 let [a, b] = self.ends[*i as usize].map(at);
-                let along = (lexicographic(at(s[0]), at(t[0])))
-                    .then_with(|| lexicographic(at(s[1]), at(t[1])));
-                if lexicographic(a, b).is_lt() {
-                    along
-                } else {
-                    along.reverse()
-                }
+                let by = |p: u32, q: u32, k: usize| {
+                    let along = at(p)[k].total_cmp(&at(q)[k]);
+                    if a[k] <= b[k] { along } else { along.reverse() }
+                };
+                let order = |end: usize| by(s[end], t[end], 0).then(by(s[end], t[end], 1));
+                order(0).then_with(|| order(1))
             })
         });
     }

@@ -239,8 +239,11 @@ impl<'a> Splitter<'a> {
         let (w, parted) = self.marked.vertex_at(x, e)?;
         let found = self.marked.count - self.own;
         if found > self.limit {
-            let limit = self.limit;
-            return Err(Error::Budget { limit, found });
+            return Err(Error::Budget {
+                what: "added vertices",
+                limit: self.limit,
+                found,
+            });
         }
         if let Some([p, q]) = parted {
             let covers = self.take([p, q])?;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::memory::with_room;
 
 /// Subsegments in the order of the first segment that covers them and along it, directed as it is.
@@ -45,12 +45,17 @@ impl Subsegments {
 
     fn grouped(pieces: &[([u32; 2], u32)]) -> Result<Self> {
         let mut out = Self::with_room(pieces.len())?;
-        let mut place: HashMap<[u32; 2], u32> = HashMap::with_capacity(pieces.len());
-        // Entries by subsegment; the sort is stable, so rows stay ascending.
+        let mut place: HashMap<[u32; 2], u32> = HashMap::new();
+        // Entries by subsegment and row.
         let mut entries: Vec<(u32, i32, bool)> = with_room(pieces.len())?;
         for &(ends, row) in pieces {
             let [u, v] = ends;
             let next = out.ends.len() as u32;
+            if place.len() == place.capacity() {
+                let bytes = 2 * size_of::<([u32; 2], u32)>() * place.len();
+                let refused = |_| Error::Memory { bytes };
+                place.try_reserve(1 + place.len()).map_err(refused)?;
+            }
             let at = *place.entry([u.min(v), u.max(v)]).or_insert(next);
             if at == next {
                 out.ends.push(ends.map(|v| v as i32));
@@ -58,7 +63,7 @@ impl Subsegments {
             let forward = out.ends[at as usize][0] == u as i32;
             entries.push((at, row as i32, forward));
         }
-        entries.sort_by_key(|e| (e.0, e.1));
+        entries.sort_unstable_by_key(|e| (e.0, e.1));
         entries.dedup_by_key(|e| (e.0, e.1));
         out.start.push(0);
         for (i, &(at, row, forward)) in entries.iter().enumerate() {
