@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, domains, quality, refinement, topology
-from delone._arrays import as_workers
+from delone import domains, quality, refinement, topology
 from delone.domains import Counts, Domain, Lines
 from delone.triangulation import Triangulation, counted, kept, sealed
 
 if TYPE_CHECKING:
-    import os
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -289,6 +287,155 @@ class Mesh(Triangulation):
             min_angle=float(self._bound[0]),
             counts=self._counts,
         )
+
+    @property
+    @kept
+    def _below(self) -> NDArray[np.int64]:
+        """Triangles below the bound."""
+        return sealed(quality.below(self._points, self._simplices, float(self._bound[0])))
+
+    def refine(
+        self,
+        marked: ArrayLike | None = None,
+        *,
+        ratio: float = 0.5,
+        min_angle: float | None = None,
+        max_area: Any = None,
+        size: Any = None,
+        max_points: int | None = None,
+        progress: Callable[[int, float], object] | None = None,
+    ) -> Mesh:
+        """Make a mesh that is finer, where triangles are marked or everywhere.
+
+        Parameters
+        ----------
+        marked : array_like of bool, shape (m,), or of int, optional
+            Triangles that are too large: a mask, or their numbers.
+        ratio : float, optional
+            What is made of a marked triangle has at most this share of its area.
+        min_angle : float, optional
+            By default what the mesh was made with.
+        max_area, size, max_points, progress : optional
+            As for `delone.mesh`.
+
+        Returns
+        -------
+        Mesh
+            The finer mesh; its first points are those of this one. Without `marked` and sizes only
+            angles are improved, where there is room to.
+
+        Raises
+        ------
+        InputError, ShapeError, DtypeError
+            `marked` names no triangles of the mesh, or `ratio` is not in (0, 1]; otherwise as for
+            `delone.mesh`.
+        BudgetExceededError
+            As for `delone.mesh`.
+
+        Notes
+        -----
+        Points, segments, markers and regions are inherited; the report counts all points added.
+        Neighbours of marked triangles change as far as the bound of angles asks for it.
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> mesh = delone.mesh(square, max_area=0.1)
+        >>> finer = mesh.refine(mesh.find_simplex([(0.1, 0.1)]))
+        >>> finer.nsimplex > mesh.nsimplex, bool(finer.report)
+        (True, True)
+        """
+        from delone.adaptivity import finer
+
+        return finer(
+            self,
+            marked,
+            ratio=ratio,
+            min_angle=min_angle,
+            max_area=max_area,
+            size=size,
+            max_points=max_points,
+            progress=progress,
+        )
+
+    def coarsen(self, marked: ArrayLike | None = None) -> Mesh:
+        """Make a mesh that is coarser, where that is safe.
+
+        Parameters
+        ----------
+        marked : array_like of bool, shape (m,), or of int, optional
+            Triangles that may become larger; by default all.
+
+        Returns
+        -------
+        Mesh
+            A mesh without some of the points of these triangles. Points of the input and points on
+            segments stay, and so does what is needed for the bound of angles. The mesh itself where
+            no point can go.
+
+        Raises
+        ------
+        InputError, ShapeError, DtypeError
+            `marked` names no triangles of the mesh.
+
+        Notes
+        -----
+        In one call no two neighbouring points go; call it again for more.
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> mesh = delone.mesh(square, max_area=0.001)
+        >>> coarser = mesh.coarsen()
+        >>> coarser.npoints < mesh.npoints, bool(coarser.report)
+        (True, True)
+        """
+        from delone.adaptivity import coarsened
+
+        return coarsened(self, marked)
+
+    def smooth(self, iterations: int = 1, method: str = "lloyd") -> Mesh:
+        """Make a mesh whose free points are at better places.
+
+        Parameters
+        ----------
+        iterations : int, optional
+            How many rounds.
+        method : {"lloyd", "odt", "laplace"}, optional
+            Towards what a point moves: the centre of its Voronoi cell, as far as its triangles
+            make it up; the mean of the circumcentres of its triangles, weighted by area, which is
+            that of an optimal Delaunay triangulation; or the mean of its neighbours.
+
+        Returns
+        -------
+        Mesh
+            The mesh with moved points. Those of the input and on segments stay, and so do all of
+            triangles that the input spoils.
+
+        Raises
+        ------
+        InputError
+            `iterations` is negative, or `method` none of the three.
+
+        Notes
+        -----
+        The points are triangulated anew in each round, so the mesh is Delaunay. Where an angle
+        would fall below the bound, points go back. Caps of areas are not looked at.
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> mesh = delone.mesh(square, max_area=0.001)
+        >>> better = mesh.smooth(5, "odt")
+        >>> bool(better.quality().radius_ratio.mean() > mesh.quality().radius_ratio.mean())
+        True
+        """
+        from delone.smoothing import smoothed
+
+        return smoothed(self, iterations, method)
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """Tell which triangles hold points.

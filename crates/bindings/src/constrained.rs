@@ -15,6 +15,7 @@ use crate::triangulation::{methods2, watched};
 
 /// The constrained triangulation of points and segments, by name.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the options, one by one")]
 pub fn constrained2<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'py, f64>,
