@@ -66,6 +66,7 @@ def components2(
 def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
+
 @final
 class Locator2:
     def __new__(

@@ -12,20 +12,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import domains, geometry, topology
+from delone import domains, topology
 from delone._arrays import as_count
 from delone.domains import Counts
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
 from delone.refine import Limits, as_min_angle, rounds
-from delone.sizing import Sizing
+from delone.sizing import EQUILATERAL, Sizing
 from delone.smoothing import rebuilt, worse
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from delone.meshed import Mesh
 
     Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["coarsened", "finer"]
@@ -52,13 +55,8 @@ def finer(
     limits = Limits(bound, most, False, progress, mesh._workers)
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:
-        chosen = _chosen(marked, mesh.nsimplex)
-        caps = np.full(len(domain.simplices), math.inf)
-        at = _same_triangles(mesh, chosen, domain.simplices)
-        caps[at] = ratio * geometry.areas(mesh.points, mesh.simplices[chosen])
-        domain, more = domains.refined(
-            domain, caps, bound, limits.max_points, progress=limits.progress
-        )
+        wanted = _by_place(mesh, _chosen(marked, mesh.nsimplex), ratio)
+        domain, more = rounds(domain, Sizing(None, wanted, domain.regions), limits)
         counts = counts.plus(more)
         limits = limits._replace(max_points=most - more.total)
     if (marked is None or max_area is not None or size is not None) and not counts.exhausted:
@@ -85,26 +83,17 @@ def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
     return np.unique(array).astype(np.intp)
 
 
-def _same_triangles(
-    mesh: Mesh, chosen: NDArray[np.intp], simplices: Indices
-) -> NDArray[np.intp]:
-    """Find triangles of a mesh among those of its points triangulated anew."""
-    ours, all_of_them = (np.sort(s, axis=1).T for s in (mesh.simplices[chosen], simplices))
-    order = np.lexsort(all_of_them[::-1])
-    n = np.int64(mesh.npoints)
-    # The pair of the two smaller corners is a key of 64 bits; it is shared by few triangles.
-    pair = all_of_them[0] * n + all_of_them[1]
-    third = all_of_them[2]
-    start = np.searchsorted(pair[order], ours[0] * n + ours[1])
-    found = np.full(len(chosen), -1, dtype=np.intp)
-    for step in range(2):
-        at = np.minimum(start + step, len(order) - 1)
-        row = order[at]
-        same = (pair[row] == ours[0] * n + ours[1]) & (third[row] == ours[2])
-        found[same] = row[same]
-    if (found < 0).any():
-        raise InternalError("a mesh is not the triangulation of its points and segments")
-    return found
+def _by_place(mesh: Mesh, chosen: NDArray[np.intp], ratio: float) -> Callable[[Floats], Floats]:
+    """Return the sizes that make chosen triangles smaller, by the triangle that has a place."""
+    sizes = np.full(mesh.nsimplex, math.inf)
+    sizes[chosen] = np.sqrt(ratio * mesh.areas[chosen] / EQUILATERAL)
+
+    def size(places: Floats) -> Floats:
+        found = mesh.locate(places)
+        home = np.where(found.simplex >= 0, found.simplex, found.beside)
+        return np.asarray(sizes[home])
+
+    return size
 
 
 def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
@@ -116,28 +105,40 @@ def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
     free[mesh.simplices[mesh._below]] = False
     gone = _independent(mesh, free)
     while gone.any():
-        kept = np.flatnonzero(~gone)
-        row = np.full(mesh.npoints, -1, dtype=np.int32)
-        row[kept] = np.arange(len(kept), dtype=np.int32)
-        domain, lost = rebuilt(mesh, mesh.points[kept], row)
-        if domain is None:
-            raise InternalError("points of a mesh have met each other")
+        domain, kept = _without(mesh, gone)
+        bound = float(mesh._bound[0])
+        counts = Counts._make(mesh._counts.tolist())
+        caps = np.full(len(domain.simplices), math.inf)
+        # Where an angle has become too small, points come back, at other places or fewer.
+        most = int(np.count_nonzero(gone))
+        again, more = domains.refined(domain, caps, bound, most)
         lost = worse(mesh, domain, kept)
+        if not more.exhausted and more.total < most:
+            return type(mesh)._of(again, counts, bound, mesh.stages, mesh._workers)
         if not len(lost):
-            counts = Counts(*mesh._counts[:3].tolist(), exhausted=bool(mesh._counts[3]))
-            return type(mesh)._of(
-                domain, counts, float(mesh._bound[0]), mesh.stages, mesh._workers
-            )
-        # What was beside a triangle that is too thin now comes back.
-        near = np.zeros(mesh.npoints, dtype=bool)
-        near[kept[lost]] = True
-        ends = mesh.edges
-        back = np.zeros(mesh.npoints, dtype=bool)
-        back[ends[near[ends].any(axis=1)]] = True
-        if not (back & gone).any():
-            back[:] = True
-        gone &= ~back
+            return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
+        gone &= ~_beside(mesh, kept[lost], gone)
     return mesh
+
+
+def _without(mesh: Mesh, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
+    """Triangulate without some points; what is left, and which points these are."""
+    kept = np.flatnonzero(~gone)
+    row = np.full(mesh.npoints, -1, dtype=np.int32)
+    row[kept] = np.arange(len(kept), dtype=np.int32)
+    domain, _ = rebuilt(mesh, mesh.points[kept], row)
+    if domain is None:
+        raise InternalError("points of a mesh have met each other")
+    return domain, kept
+
+
+def _beside(mesh: Mesh, points: NDArray[np.intp], gone: Bools) -> Bools:
+    """Return the points beside others, or all where none of those that are gone is there."""
+    near = np.zeros(mesh.npoints, dtype=bool)
+    near[points] = True
+    back = np.zeros(mesh.npoints, dtype=bool)
+    back[mesh.edges[near[mesh.edges].any(axis=1)]] = True
+    return back if (back & gone).any() else np.ones(mesh.npoints, dtype=bool)
 
 
 def _independent(mesh: Mesh, free: Bools) -> Bools:
@@ -145,7 +146,9 @@ def _independent(mesh: Mesh, free: Bools) -> Bools:
     indptr, indices = topology.vertex_neighbor_vertices(mesh.edges, mesh.npoints)
     chosen, barred = np.zeros_like(free), ~free
     # A fixed scattering of the rows, so that few rounds do.
-    rank = (np.arange(mesh.npoints, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(11)
+    rank = (np.arange(mesh.npoints, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(
+        11
+    )
     owner = np.repeat(np.arange(mesh.npoints), np.diff(indptr))
     while not barred.all():
         open_rank = np.where(barred, np.uint64(2**63), rank)

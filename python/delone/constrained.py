@@ -72,8 +72,8 @@ class ConstrainedDelaunay(Segmented):
         Add vertices on segments until the circle over each subsegment holds no vertex in its
         inside, so that each is an edge of the plain Delaunay triangulation of all vertices.
     max_vertices : int, optional
-        How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing segments
-        that are looked at, too, at 8 for each vertex and a million more.
+        How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing
+        segments that are looked at, too, at 8 for each vertex and a million more.
     method, workers : optional
         As for `Delaunay`. The answer is the same.
 

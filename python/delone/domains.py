@@ -86,8 +86,12 @@ class Counts(NamedTuple):
 
     def plus(self, other: Counts) -> Counts:
         """Return the sums, exhausted as the later one says."""
-        sums = (a + b for a, b in zip(self[:3], other[:3], strict=True))
-        return Counts(*sums, other.exhausted)
+        return Counts(
+            self.segment + other.segment,
+            self.angle + other.angle,
+            self.size + other.size,
+            other.exhausted,
+        )
 
     @property
     def total(self) -> int:
@@ -174,6 +178,7 @@ def refined(
     caps: Floats,
     min_angle: float,
     max_points: int,
+    *,
     circles: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Domain, Counts]:
@@ -228,7 +233,8 @@ def refined(
         labels=made["labels"],
         sides=made["sides"],
     )
-    return new, Counts(*made["counts"], exhausted=made["exhausted"])
+    segment, angle, size = made["counts"]
+    return new, Counts(segment, angle, size, exhausted=made["exhausted"])
 
 
 def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[Indices, Indices]:

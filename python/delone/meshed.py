@@ -116,7 +116,7 @@ class Mesh(Triangulation):
         used[domain.simplices[inside]] = True
         row = (np.cumsum(used) - 1).astype(np.int32)
         lines, line = _only_used(domain.lines, domain.sides[inside], row)
-        arrays = {
+        arrays: dict[str, NDArray[Any]] = {
             "points": domain.points[used],
             "simplices": row[domain.simplices[inside]],
             "neighbors": number[domain.neighbors[inside]],
@@ -507,6 +507,124 @@ class Mesh(Triangulation):
         >>> ax = delone.mesh(square, max_area=0.01).plot_quality()
         """
         return self.quality().plot(ax, bound=float(self._bound[0]))
+
+    def to_meshio(self) -> Any:
+        """Return the mesh as a mesh of meshio.
+
+        Returns
+        -------
+        meshio.Mesh
+            Triangles, and segments as lines, with ``region`` and ``marker`` as their values, and
+            again as tags of gmsh: regions from 1 on, markers as they are.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``mesh``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).to_meshio().cells_dict["triangle"].shape
+        (2, 3)
+        """
+        from delone import exchange
+
+        return exchange.to_meshio(self)
+
+    def to_skfem(self) -> Any:
+        """Return the mesh as a mesh of scikit-fem.
+
+        Returns
+        -------
+        skfem.MeshTri
+            With subdomains ``"region 0"`` and so on, and boundaries ``"marker 0"`` and so on, which
+            are the segments by their markers.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``fem``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).to_skfem().nelements  # doctest: +SKIP
+        2
+        """
+        from delone import exchange
+
+        return exchange.to_skfem(self)
+
+    def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the mesh as the arrays of which DOLFINx makes one.
+
+        Returns
+        -------
+        dict of ndarray
+            ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, ``cell_tags`` (regions),
+            ``facets`` (segments as pairs of points) and ``facet_tags`` (markers).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> sorted(delone.mesh(square).to_dolfinx_arrays())
+        ['cell_tags', 'cells', 'facet_tags', 'facets', 'x']
+        """
+        from delone import exchange
+
+        return exchange.to_dolfinx_arrays(self)
+
+    def to_pyvista(self) -> Any:
+        """Return the mesh as a surface of PyVista.
+
+        Returns
+        -------
+        pyvista.PolyData
+            In the plane z = 0, with ``region`` of triangles and ``marker`` of points.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``fem``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).to_pyvista().n_cells  # doctest: +SKIP
+        2
+        """
+        from delone import exchange
+
+        return exchange.to_pyvista(self)
+
+    def to_matplotlib(self) -> Any:
+        """Return the mesh as a triangulation of matplotlib.
+
+        Returns
+        -------
+        matplotlib.tri.Triangulation
+            For ``tripcolor``, ``tricontour`` and their like.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``plot``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).to_matplotlib().triangles.shape
+        (2, 3)
+        """
+        from delone import exchange
+
+        return exchange.to_matplotlib(self)
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):

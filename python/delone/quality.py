@@ -109,7 +109,7 @@ class Quality:
     def __str__(self) -> str:
         names = ("min", "p1", "p10", "p50", "p90", "p99", "max")
         head = ("least", "1 %", "10 %", "median", "90 %", "99 %", "most")
-        lines = [(counted(len(self.area), "triangle"), *head)]
+        lines: list[tuple[str, ...]] = [(counted(len(self.area), "triangle"), *head)]
         for measure, values in self.summary().items():
             lines.append((measure.replace("_", " "), *(f"{values[name]:.3g}" for name in names)))
         rows = (f"{line[0]:<18}" + "".join(f"{cell:>9}" for cell in line[1:]) for line in lines)
@@ -181,9 +181,7 @@ def measured(points: Floats, simplices: Indices) -> Quality:
     )
 
 
-def _blocks(
-    points: Floats, simplices: Indices
-) -> Iterator[tuple[slice, Floats, Floats, Floats]]:
+def _blocks(points: Floats, simplices: Indices) -> Iterator[tuple[slice, Floats, Floats, Floats]]:
     """Lengths of edges, twice the area, and the dot products at corners, block by block."""
     for start in range(0, len(simplices), _BLOCK):
         block = slice(start, start + _BLOCK)

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.domains import Progress
+
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -142,10 +144,10 @@ def mesh(
 
     Notes
     -----
-    Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993), off-centres
-    (A. Ungor 2004), cuts at powers of two around sharp corners, and the rule of Miller, Pav and
-    Walkington (2005) for triangles there, so that it ends on every input for angles up to 26
-    degrees, in practice up to 33. Time is about 0.4 microseconds a triangle, memory linear.
+    Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
+    off-centres (A. Ungor 2004), cuts at powers of two around sharp corners, and the rule of Miller,
+    Pav and Walkington (2005) for triangles there, so that it ends on every input for angles up to
+    26 degrees, in practice up to 33. Time is about 0.4 microseconds a triangle, memory linear.
 
     Points on segments are rounded to doubles, so that pieces of a segment may bend by that much.
 
@@ -159,7 +161,8 @@ def mesh(
     (True, 32.0)
     >>> square = {"type": "Polygon", "coordinates": [outer]}
     >>> near = delone.mesh(square, size=lambda xy: 0.1 + 0.3 * xy[:, 0])
-    >>> bool(near.areas[near.find_simplex((0.1, 3))] < near.areas[near.find_simplex((5.5, 3))])
+    >>> left, right = near.areas[near.find_simplex([(0.1, 3), (5.5, 3)])]
+    >>> bool(10 * left < right)
     True
     """
     if not conforming:
@@ -226,7 +229,7 @@ def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Coun
             limits.min_angle,
             limits.max_points - before,
             circles=limits.circles,
-            progress=tell and (lambda added, angle, b=before, f=tell: f(b + added, angle)),
+            progress=None if tell is None else _after(before, tell),
         )
         counts = counts.plus(more)
         if counts.exhausted or not sizing.varies:
@@ -390,3 +393,12 @@ def _open_ends(base: ConstrainedDelaunay) -> str:
     rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
     places = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
     return f"the outline is open; only one segment ends at points {rows}, the first at {places}"
+
+
+def _after(before: int, tell: Progress) -> Progress:
+    """Return a progress that counts from what was added before."""
+
+    def told(added: int, angle: float) -> None:
+        tell(before + added, angle)
+
+    return told

@@ -198,9 +198,9 @@ def _touches_frozen(
         return np.zeros(len(simplices), dtype=bool)
     touched = np.zeros(len(points), dtype=bool)
     touched[lines.ends[lines.frozen]] = True
-    touched |= lines.frozen[on] & (on >= 0)
-    found: Bools = touched[simplices].any(axis=1)
-    return found
+    rows = np.flatnonzero(on >= 0)
+    touched[rows[lines.frozen[on[rows]]]] = True
+    return np.asarray(touched[simplices].any(axis=1), dtype=bool)
 
 
 def _responsible(

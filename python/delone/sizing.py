@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Sizing"]
+__all__ = ["EQUILATERAL", "Sizing"]
 
-_EQUILATERAL = math.sqrt(3) / 4
+EQUILATERAL = math.sqrt(3) / 4
 # Samples along the longer side of the box of the domain.
 _LATTICE = 128
 # In one round a triangle is made smaller by this factor at most.
@@ -62,14 +62,12 @@ class Sizing:
         self._by_region = np.full(len(regions), math.inf)
         self._evaluate: Callable[[Floats], Floats] | None = None
         self._set(max_area, regions, "max_area", lambda area: area)
-        if isinstance(size, Mapping) or size is None or np.ndim(size) == 0 and _is_number(size):
-            self._set(size, regions, "size", lambda length: _EQUILATERAL * length * length)
+        if isinstance(size, Mapping) or size is None or _is_number(size):
+            self._set(size, regions, "size", lambda length: EQUILATERAL * length * length)
         else:
             self._evaluate = _evaluator(size)
 
-    def _set(
-        self, given: Any, regions: Indices, name: str, area: Callable[[float], float]
-    ) -> None:
+    def _set(self, given: Any, regions: Indices, name: str, area: Callable[[float], float]) -> None:
         if given is None:
             return
         if not isinstance(given, Mapping):
@@ -95,7 +93,7 @@ class Sizing:
         if self._evaluate is None or not len(places):
             return caps
         sizes = _checked(self._evaluate(places), places)
-        found: Floats = np.minimum(caps, _EQUILATERAL * sizes * sizes)
+        found: Floats = np.minimum(caps, EQUILATERAL * sizes * sizes)
         return found
 
     def caps(self, domain: Domain, samples: Samples | None = None) -> tuple[Floats, bool]:
@@ -155,9 +153,7 @@ class Sizing:
             inverse = samples.mean_inverse(domain, inside, inverse)
         return float((areas * inverse).sum()) / _SHARE
 
-    def require_within(
-        self, domain: Domain, samples: Samples | None, max_points: int
-    ) -> None:
+    def require_within(self, domain: Domain, samples: Samples | None, max_points: int) -> None:
         """Refuse sizes that no mesh with so few points can have.
 
         Parameters
@@ -244,7 +240,7 @@ def _centres(domain: Domain, inside: NDArray[np.intp]) -> Floats:
 
 
 def _is_number(value: Any) -> bool:
-    return np.asarray(value).dtype.kind in "iuf"
+    return isinstance(value, int | float | np.integer | np.floating)
 
 
 def _positive(value: Any, name: str) -> float:

@@ -109,10 +109,9 @@ def _tried(mesh: Mesh, target: Floats) -> Mesh | None:
             lost = worse(mesh, domain, np.arange(mesh.npoints))
         if not len(lost):
             assert domain is not None
-            counts = Counts(*mesh._counts[:3].tolist(), exhausted=bool(mesh._counts[3]))
-            return type(mesh)._of(
-                domain, counts, float(mesh._bound[0]), mesh.stages, mesh._workers
-            )
+            segment, angle, size, exhausted = mesh._counts.tolist()
+            counts = Counts(segment, angle, size, exhausted=bool(exhausted))
+            return type(mesh)._of(domain, counts, float(mesh._bound[0]), mesh.stages, mesh._workers)
         back = np.zeros(mesh.npoints, dtype=bool)
         back[lost] = True
         if not (back & moves).any():

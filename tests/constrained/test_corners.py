@@ -1,4 +1,4 @@
-"""Corners of the interface where an answer was once wrong: each with the sentence that explains it."""
+"""Corners of the interface where an answer was once wrong, each with its reason."""
 
 from __future__ import annotations
 

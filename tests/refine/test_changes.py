@@ -29,7 +29,7 @@ def check(mesh: delone.Mesh) -> None:
     assert mesh.areas[mesh.region == mesh.region[mesh.find_simplex((1.5, 1.5))]].sum() == (
         pytest.approx(1)
     )
-    start, source = mesh.segment_source
+    _start, source = mesh.segment_source
     assert np.array_equal(mesh.segment_markers, source + 1)
 
 

@@ -171,7 +171,8 @@ def test_delaunay_across_segments() -> None:
     assert mesh.npoints > plain.npoints
     free = delone.Delaunay(mesh.points)
     ours, theirs = (
-        {tuple(sorted(t)) for t in simplices.tolist()} for simplices in (mesh.simplices, free.simplices)
+        {tuple(sorted(t)) for t in simplices.tolist()}
+        for simplices in (mesh.simplices, free.simplices)
     )
     assert ours <= theirs
 
@@ -189,7 +190,7 @@ def test_frozen_segments_are_not_split() -> None:
     some = np.zeros(90, dtype=bool)
     some[::2] = True
     part = delone.mesh((points, segments), frozen=some, max_area=0.001)
-    start, source = part.segment_source
+    _start, source = part.segment_source
     counts = np.bincount(source, minlength=90)
     assert (counts[some] == 1).all()
     assert (counts[~some] > 1).any()
@@ -228,7 +229,7 @@ def test_a_warning_above_33_degrees() -> None:
 
 
 def test_what_encloses_nothing() -> None:
-    with pytest.raises(InputError, match="open.*points 0, 3"):
+    with pytest.raises(InputError, match=r"open.*points 0, 3"):
         delone.mesh((SQUARE, RING[:3]))
     with pytest.raises(CrossingSegmentsError):
         delone.mesh((SQUARE, [(0, 2), (1, 3), (0, 1), (2, 3)]))

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import domains, topology
-from delone._arrays import as_points, as_segments, as_simplices
+from delone import topology
+from delone._arrays import as_points, as_segments
 from delone.compat.triangle_input import again, interpolated, rows_of
 from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
-from delone.domains import Counts
 from delone.errors import InputError
 from delone.meshed import Mesh
 from delone.refine import as_rows, mesh
@@ -220,11 +219,11 @@ def _output(
     on_boundary[boundary] = True
     markers[on_boundary & (markers == 0)] = 1
     if tri.get("vertex_attributes") is not None:
-        given = rows_of(tri["vertex_attributes"], None, "vertex_attributes", len(points))
-        values = np.empty((n, given.shape[1]))
+        columns = rows_of(tri["vertex_attributes"], None, "vertex_attributes", len(points))
+        values = np.empty((n, columns.shape[1]))
         if "j" not in switches.on:
-            values[: len(points)] = given
-        values[number] = interpolated(found, given, base)
+            values[: len(points)] = columns
+        values[number] = interpolated(found, columns, base)
         out["vertex_attributes"] = values
     out["vertex_markers"] = markers[:, None]
     out["triangles"] = number[found.simplices]
@@ -260,16 +259,18 @@ def _segment_markers(found: Mesh) -> Indices:
     """Markers of subsegments, 1 on the boundary where there is none."""
     marks = found.segment_markers.copy()
     n = found.npoints
-    keys = topology.edge_keys(*found.segments.T, n)
-    rim = topology.among(keys, topology.edge_keys(*found.boundary_edges.T, n))
+    keys = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
+    rim = topology.among(
+        keys, topology.edge_keys(found.boundary_edges[:, 0], found.boundary_edges[:, 1], n)
+    )
     marks[rim & (marks == 0)] = 1
     return marks
 
 
 def _of_edges(found: Mesh, marks: Indices) -> Indices:
     n = found.npoints
-    keys = topology.edge_keys(*found.edges.T, n)
-    wanted = topology.edge_keys(*found.segments.T, n)
+    keys = topology.edge_keys(found.edges[:, 0], found.edges[:, 1], n)
+    wanted = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
     order = np.argsort(keys)
     of_edges = np.zeros(len(keys), dtype=np.int32)
     of_edges[order[np.searchsorted(keys, wanted, sorter=order)]] = marks

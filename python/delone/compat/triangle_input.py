@@ -1,4 +1,4 @@
-"""What the drop-in for the package ``triangle`` is given: tables, meshes to be refined, attributes."""
+"""What the drop-in for the package ``triangle`` is given: tables, meshes to refine, attributes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import domains, location, topology
-from delone._arrays import as_points, as_segments, as_simplices
+from delone._arrays import as_segments, as_simplices
 from delone.domains import Domain, Lines
 from delone.errors import InputError, ShapeError
 from delone.meshed import Mesh
@@ -129,16 +129,20 @@ def _domain(
     markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
     n = len(points)
-    bare = ~topology.among(topology.edge_keys(*rim.T, n), topology.edge_keys(*given.T, n))
+    bare = ~topology.among(
+        topology.edge_keys(rim[:, 0], rim[:, 1], n), topology.edge_keys(given[:, 0], given[:, 1], n)
+    )
     ends = np.concatenate((given, rim[bare])).astype(np.int32)
-    keys, first = np.unique(topology.edge_keys(*ends.T, n), return_index=True)
+    _, first = np.unique(topology.edge_keys(ends[:, 0], ends[:, 1], n), return_index=True)
     first.sort()
     ends = ends[first]
     found, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
-    on_rim = topology.among(topology.edge_keys(*ends.T, n), topology.edge_keys(*rim.T, n))
+    on_rim = topology.among(
+        topology.edge_keys(ends[:, 0], ends[:, 1], n), topology.edge_keys(rim[:, 0], rim[:, 1], n)
+    )
     frozen = np.full(len(ends), switches.frozen is True) | (bool(switches.frozen) & on_rim)
     lines = Lines(
         ends,

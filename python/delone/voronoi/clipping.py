@@ -17,7 +17,7 @@ import numpy as np
 
 from delone import _core
 from delone.errors import InputError
-from delone.io.extras import require
+from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,7 +116,7 @@ def _box(numbers: Any) -> Clip:
 
 
 def _outline(geometry: Any, fix: bool) -> Clip:
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     if shapely.get_type_id(geometry) not in (_POLYGON, _MULTIPOLYGON):
         raise InputError(f"clip must be a polygon or a multipolygon, got a {geometry.geom_type}")
@@ -255,7 +255,7 @@ class _InOutline(Clipped):
         self._measure()
 
     def _measure(self) -> None:
-        shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+        shapely = shapely_or_say()
 
         outside = self._side == _OUTSIDE
         self.areas[outside] = self.perimeters[outside] = 0
@@ -267,7 +267,7 @@ class _InOutline(Clipped):
         )
 
     def ridge_lengths(self) -> Floats:
-        shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+        shapely = shapely_or_say()
 
         owner = np.repeat(np.arange(len(self._side)), np.diff(self.starts))
         lengths = np.zeros(self.ridge_count)
@@ -285,7 +285,7 @@ class _InOutline(Clipped):
         return lengths
 
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
-        shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+        shapely = shapely_or_say()
 
         owner, begin, end = super().edges()
         inside = self._side[owner] == _INSIDE
@@ -300,7 +300,7 @@ class _InOutline(Clipped):
         )
 
     def parts(self, cell: int) -> tuple[tuple[Floats, ...], ...]:
-        shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+        shapely = shapely_or_say()
 
         if self._side[cell] != _CUT:
             return super().parts(cell) if self._side[cell] == _INSIDE else ()
@@ -354,7 +354,7 @@ def cells(
 
 def _as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:
     """Polygons of shapely, empty where there are no corners."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     sizes = np.diff(starts)
     filled = sizes > 0
@@ -379,7 +379,7 @@ def _taken(starts: Indices, corners: Floats, rows: NDArray[np.int64]) -> tuple[I
 
 def _sides(whole: Clipped, outline: Any) -> NDArray[np.int8]:
     """Whether cells lie outside, inside, or where the outline passes."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     rings = shapely.get_rings(shapely.get_parts(outline))
     coordinates, ring = shapely.get_coordinates(rings, return_index=True)
@@ -400,7 +400,7 @@ def _sides(whole: Clipped, outline: Any) -> NDArray[np.int8]:
 
 def _intersections(geometries: NDArray[Any], outline: Any, *, areal: bool = True) -> NDArray[Any]:
     """Intersect many small geometries with one that may have very many corners."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     found = np.empty(len(geometries), dtype=object)
     boxes = shapely.bounds(geometries)
@@ -416,7 +416,7 @@ def _halve(
     found: NDArray[Any],
 ) -> None:
     """Intersect some of the geometries; each call has half as many as the one before it."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     if len(rows) <= _FEW_CELLS or shapely.get_num_coordinates(outline) <= _FEW_CORNERS:
         found[rows] = shapely.intersection(geometries[rows], outline)
@@ -434,7 +434,7 @@ def _halve(
 
 def _areal(geometries: NDArray[Any]) -> NDArray[Any]:
     """Leave out the points and lines in which areas touch."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     mixed = np.flatnonzero(~np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON)))
     for row in mixed:
@@ -447,7 +447,7 @@ def _areal(geometries: NDArray[Any]) -> NDArray[Any]:
 
 def _points_or_nan(points: NDArray[Any]) -> NDArray[Any]:
     """Points, those that are empty with NaN for coordinates."""
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     points[shapely.is_empty(points)] = shapely.Point(np.nan, np.nan)
     return points

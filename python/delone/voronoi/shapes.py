@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import InputError
-from delone.io.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -16,12 +15,19 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["chosen", "draw", "table"]
+__all__ = ["chosen", "draw", "shapely_or_say", "table"]
 
 _EDGE, _DOT = "#35506b", "#17324d"
 # Beyond the box of the sites, by this share of its longer side, whole diagrams are not drawn.
 _MARGIN = 0.1
 _MOST_DOTS = 2000
+
+
+def shapely_or_say() -> Any:
+    """Import shapely, or say how to install it."""
+    from delone.io.extras import require
+
+    return require("shapely", extra="geo", what="polygons of Voronoi cells")
 
 
 def chosen(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any]:
@@ -39,7 +45,7 @@ def chosen(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any]:
     ndarray of object, shape (n,)
         Geometries.
     """
-    shapely = require("shapely", extra="geo", what="polygons of Voronoi cells")
+    shapely = shapely_or_say()
 
     found: NDArray[Any] = np.append(polygons, shapely.Polygon())[regions]
     return found
@@ -67,6 +73,8 @@ def table(polygons: NDArray[Any], data: Any, crs: Any) -> Any:
     InputError
         `data` has another number of rows.
     """
+    from delone.io.extras import require
+
     geopandas = require("geopandas", extra="geo", what="a table of cells")
     if data is None:
         return geopandas.GeoDataFrame(geometry=polygons, crs=crs)
@@ -133,6 +141,8 @@ def draw(
     >>> len(ax.collections)
     1
     """
+    from delone.io.extras import require
+
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     paths = require("matplotlib.path", extra="plot", what="drawing")
     if ax is None:
