@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
-    from delone.meshed import Mesh as QualityMesh
-
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
 
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 
