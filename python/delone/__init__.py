@@ -31,8 +31,12 @@ from delone.errors import (
     ShapeError,
 )
 from delone.lawson import LawsonResult, lawson
+from delone.meshed import Mesh
 from delone.periodic import PeriodicDelaunay
 from delone.polygons import PolygonTriangles, from_geometry, triangulate_polygon
+from delone.quality import Quality
+from delone.refine import mesh
+from delone.refinement import MeshReport
 from delone.regular import RegularTriangulation
 from delone.segments import SegmentReport
 from delone.validation import ValidationReport
@@ -57,10 +61,13 @@ __all__ = [
     "LawsonResult",
     "LimitError",
     "LloydResult",
+    "Mesh",
+    "MeshReport",
     "MissingExtraError",
     "NonFiniteError",
     "PeriodicDelaunay",
     "PolygonTriangles",
+    "Quality",
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
@@ -74,6 +81,7 @@ __all__ = [
     "io",
     "lawson",
     "lloyd",
+    "mesh",
     "plot",
     "predicates",
     "reference",

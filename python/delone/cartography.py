@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.constrained import ConstrainedDelaunay
+    from delone.meshed import Mesh
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -35,12 +36,12 @@ _SEGMENT, _EDGE = "#16324f", "#5f6f7e"
 _PART = 20_000
 
 
-def colour_of_regions(mesh: ConstrainedDelaunay) -> Indices:
+def colour_of_regions(mesh: ConstrainedDelaunay | Mesh) -> Indices:
     """Choose a colour for each triangle, by its region.
 
     Parameters
     ----------
-    mesh : ConstrainedDelaunay
+    mesh : ConstrainedDelaunay or Mesh
         The triangulation.
 
     Returns
@@ -78,7 +79,7 @@ def colour_of_regions(mesh: ConstrainedDelaunay) -> Indices:
 
 
 def _adjacency(
-    mesh: ConstrainedDelaunay, compact: NDArray[np.intp], count: int
+    mesh: ConstrainedDelaunay | Mesh, compact: NDArray[np.intp], count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the regions beside each region as compressed rows."""
     rows, corner = np.nonzero(mesh.neighbors >= 0)
@@ -88,14 +89,14 @@ def _adjacency(
     return start, keys % count
 
 
-def draw_regions(ax: Any, mesh: ConstrainedDelaunay, pixels: int | None) -> None:
+def draw_regions(ax: Any, mesh: ConstrainedDelaunay | Mesh, pixels: int | None) -> None:
     """Draw the triangles in the colours of their regions.
 
     Parameters
     ----------
     ax : matplotlib Axes
         Where to draw.
-    mesh : ConstrainedDelaunay
+    mesh : ConstrainedDelaunay or Mesh
         What to draw.
     pixels : int or None
         Draw an image with so many pixels along its longer side, or triangles for None.
@@ -116,7 +117,7 @@ def draw_regions(ax: Any, mesh: ConstrainedDelaunay, pixels: int | None) -> None
     ax.imshow(image, extent=raster.extent, origin="lower", interpolation="auto", zorder=0)
 
 
-def _draw_facets(ax: Any, mesh: ConstrainedDelaunay, rgb: Floats) -> None:
+def _draw_facets(ax: Any, mesh: ConstrainedDelaunay | Mesh, rgb: Floats) -> None:
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     facets = collections.PolyCollection(
         mesh.points[mesh.simplices],
@@ -132,14 +133,14 @@ def _thin(count: int) -> float:
     return float(np.clip(30 / np.sqrt(max(count, 1)), 0.15, 0.8))
 
 
-def draw_segments(ax: Any, mesh: ConstrainedDelaunay) -> None:
+def draw_segments(ax: Any, mesh: ConstrainedDelaunay | Mesh) -> None:
     """Draw the subsegments at kept triangles as bold lines.
 
     Parameters
     ----------
     ax : matplotlib Axes
         Where to draw.
-    mesh : ConstrainedDelaunay
+    mesh : ConstrainedDelaunay or Mesh
         What to draw.
     """
     pairs = _kept_segments(mesh)
@@ -159,7 +160,7 @@ def draw_segments(ax: Any, mesh: ConstrainedDelaunay) -> None:
         )
 
 
-def _kept_segments(mesh: ConstrainedDelaunay) -> Indices:
+def _kept_segments(mesh: ConstrainedDelaunay | Mesh) -> Indices:
     """Return the subsegments that a kept triangle has for an edge, in their order."""
     rows, corner = np.nonzero(mesh.constrained)
     ends = mesh.simplices[rows, (corner + 1) % 3], mesh.simplices[rows, (corner + 2) % 3]
@@ -183,14 +184,14 @@ def _line(points: Floats, pairs: Indices) -> Floats:
     return line
 
 
-def draw_boundary(ax: Any, mesh: ConstrainedDelaunay, color: str) -> None:
+def draw_boundary(ax: Any, mesh: ConstrainedDelaunay | Mesh, color: str) -> None:
     """Draw those edges on the boundary that are no segments.
 
     Parameters
     ----------
     ax : matplotlib Axes
         Where to draw.
-    mesh : ConstrainedDelaunay
+    mesh : ConstrainedDelaunay or Mesh
         What to draw.
     color : str
         The colour of the lines.

@@ -18,6 +18,7 @@ from delone.constrained import ConstrainedDelaunay
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
+from delone.meshed import Mesh as QualityMesh
 from delone.shading import Raster, facet_light, point_density, rasterize, relief
 
 if TYPE_CHECKING:
@@ -28,9 +29,9 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
-__all__ = ["plot", "save_picture"]
+__all__ = ["draw_angles", "plot", "save_picture"]
 
 # A triangle of fewer pixels than this is no triangle to the eye.
 _VISIBLE = 14.0
@@ -41,6 +42,8 @@ _MOST_DOTS = 2000
 _INK, _RIM, _DOT, _CIRCLE = "#35506b", "#b3372f", "#17324d", "#d98b2b"
 _LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
 _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
+
+_SEGMENTED = (ConstrainedDelaunay, QualityMesh)
 
 
 def plot(
@@ -128,7 +131,7 @@ def plot(
     look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
     pixels = _pixels(ax, triangulation)
     dense = _is_dense(triangulation, pixels)
-    constrained = triangulation if isinstance(triangulation, ConstrainedDelaunay) else None
+    constrained = triangulation if isinstance(triangulation, _SEGMENTED) else None
     if constrained is not None and (heights is None or not constrained.nsimplex):
         cartography.draw_regions(ax, constrained, max(pixels) if dense else None)
     elif dense:
@@ -221,12 +224,64 @@ def draw_picture(
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     _require_drawable(triangulation, as_values(z, triangulation.npoints))
     width, height = _figure_size(triangulation, size, with_bar=z is not None)
-    figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
-    ax = figure.add_subplot()
+    if isinstance(triangulation, QualityMesh):
+        figure = figure_module.Figure(figsize=(width, height + 2.5), dpi=dpi, layout="constrained")
+        ax, below = figure.subplots(2, 1, height_ratios=(height, 2.5))
+        triangulation.plot_quality(below)
+    else:
+        figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
+        ax = figure.add_subplot()
     plot(triangulation, ax, z=z, title=title or _numbers(triangulation), **options)
     xlabel, ylabel = _axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def draw_angles(
+    smallest: Floats, largest: Floats, *, ax: Any = None, bound: float | None = None
+) -> Any:
+    """Draw the histogram of the smallest and the largest angles of triangles.
+
+    Parameters
+    ----------
+    smallest, largest : ndarray of float64, shape (m,)
+        Angles in degrees.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on new axes.
+    bound : float, optional
+        An angle to be marked.
+
+    Returns
+    -------
+    matplotlib Axes
+        What was drawn on.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.plot import draw_angles
+    >>> draw_angles(np.array([45.0]), np.array([90.0])).get_xlabel()
+    'angle in degrees'
+    """
+    if ax is None:
+        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    bins = np.arange(0, 181, 2)
+    for angles, color, label in (
+        (smallest, "#2f6f9f", "smallest angle"),
+        (largest, "#d98f3d", "largest angle"),
+    ):
+        ax.hist(angles, bins=bins, color=color, alpha=0.85, label=label)
+    if bound is not None:
+        ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"bound {bound:g}°")
+    ax.set(xlabel="angle in degrees", ylabel="triangles", xlim=(0, 180), xticks=range(0, 181, 30))
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.legend(frameon=False)
+    return ax
 
 
 def _require_drawable(triangulation: Mesh, heights: Floats | None) -> None:
@@ -393,7 +448,7 @@ def _add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
 
 
 def _draw_hull(ax: Any, triangulation: Mesh) -> None:
-    if isinstance(triangulation, ConstrainedDelaunay):
+    if isinstance(triangulation, _SEGMENTED):
         cartography.draw_boundary(ax, triangulation, _RIM)
         return
     ring = triangulation.points[np.append(triangulation.hull, triangulation.hull[0])]

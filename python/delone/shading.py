@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
+    from delone.meshed import Mesh as QualityMesh
+
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 

@@ -95,6 +95,8 @@ def test_failure_in_the_middle_leaves_what_was_there(tmp_path, monkeypatch, suff
 
     module = {".gpkg": "vector", ".geojson": "vector", ".npz": "arrays"}.get(suffix, "mesh")
     module = "picture" if suffix in (".png", ".svg") else module
+    module = "fem" if suffix in (".xdmf", ".inp", ".su2") else module
+    module = "triangle" if suffix in (".node", ".ele", ".poly") else module
     monkeypatch.setattr(f"delone.io.{module}.write_mesh", write_half)
     with pytest.raises(error):
         write_mesh(target, MESH)
@@ -108,7 +110,7 @@ def test_success_replaces_and_leaves_nothing_else(tmp_path, suffix):
     target.write_bytes(b"old")
     write_mesh(target, MESH)
     assert [path.name for path in tmp_path.iterdir()] == [target.name]
-    assert target.stat().st_size > 100
+    assert target.stat().st_size > 30
 
 
 def test_targets_that_cannot_be(tmp_path):

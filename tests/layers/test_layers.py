@@ -29,6 +29,7 @@ PUBLIC = {
     "delaunay",
     "datasets",
     "lawson",
+    "meshed",
     "predicates",
     "validation",
 }
@@ -68,6 +69,25 @@ PYTHON: dict[str, set[str]] = {
     | FOUNDATION,
     "editing": {"constrained", "topology", "triangulation"} | FOUNDATION,
     "polygons": {"_core", "constrained", "geodata", "triangulation"} | FOUNDATION,
+    "domains": {"_core", "constrained", "topology"} | FOUNDATION,
+    "quality": {"geometry", "plot", "triangulation"},
+    "refinement": {"domains", "quality", "triangulation"},
+    "meshed": {
+        "adaptivity",
+        "domains",
+        "exchange",
+        "quality",
+        "refinement",
+        "smoothing",
+        "topology",
+        "triangulation",
+    },
+    "sizing": {"_core", "domains", "geometry", "triangulation"} | FOUNDATION,
+    "refine": {"constrained", "domains", "meshed", "polygons", "sizing"} | FOUNDATION,
+    "smoothing": {"domains", "geometry", "meshed", "quality"} | FOUNDATION,
+    "adaptivity": {"domains", "geometry", "meshed", "refine", "sizing", "smoothing", "topology"}
+    | FOUNDATION,
+    "exchange": {"io", "meshed"},
     "regular": {"_core", "triangulation"} | FOUNDATION,
     "periodic": {"_core", "geometry", "triangulation"} | FOUNDATION,
     "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
@@ -80,6 +100,11 @@ PYTHON: dict[str, set[str]] = {
         "predicates",
         "topology",
         "triangulation",
+        "constrained",
+        "domains",
+        "location",
+        "meshed",
+        "refine",
     }
     | FOUNDATION,
     "reference": FOUNDATION,
@@ -108,11 +133,15 @@ PYTHON: dict[str, set[str]] = {
         "interpolate",
         "io",
         "lawson",
+        "meshed",
         "periodic",
         "plot",
         "polygons",
         "predicates",
+        "quality",
         "reference",
+        "refine",
+        "refinement",
         "regular",
         "segments",
         "testing",
@@ -276,7 +305,17 @@ def test_crates_need_what_they_may() -> None:
 # Arrows up, which only the inside of a function may have: triangulation asks plot to draw, and io
 # plot and relief to write pictures; plot knows Delaunay and how io replaces files. A constrained
 # triangulation begins edits, which make another one.
-LAZY = {("triangulation", "plot"), ("io", "plot"), ("io", "relief"), ("constrained", "editing")}
+# A mesh makes others of itself, measures draw themselves, and a mesh becomes what io's libraries take.
+LAZY = {
+    ("triangulation", "plot"),
+    ("io", "plot"),
+    ("io", "relief"),
+    ("constrained", "editing"),
+    ("meshed", "adaptivity"),
+    ("meshed", "exchange"),
+    ("meshed", "smoothing"),
+    ("quality", "plot"),
+}
 
 
 def test_the_tables_have_no_cycle_but_the_lazy_ones() -> None:

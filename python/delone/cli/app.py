@@ -20,6 +20,7 @@ from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
 from delone.cli.info import describe
+from delone.cli.meshing import make_mesh
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import (
     memory_text,
@@ -225,6 +226,8 @@ def info(
 app.callback()(_options)
 for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
     app.command(epilog="The table of exit codes is in: delone --help")(_command)
+
+app.command(name="mesh", epilog="The table of exit codes is in: delone --help")(make_mesh)
 
 
 def _ready(path: Path) -> Callable[..., None]:

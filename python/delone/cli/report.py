@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import ConstrainedDelaunay
+from delone import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -172,7 +173,7 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
 
 def _is_whole(triangulation: Mesh) -> bool:
     """Tell whether no triangle of the convex hull has been removed."""
-    if isinstance(triangulation, ConstrainedDelaunay):
+    if isinstance(triangulation, ConstrainedDelaunay | QualityMesh):
         return np.array_equal(triangulation.boundary_edges, triangulation.convex_hull)
     return True
 

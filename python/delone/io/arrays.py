@@ -17,6 +17,7 @@ import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone.constrained import ConstrainedDelaunay
+from delone.meshed import Mesh as QualityMesh
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
@@ -110,6 +111,8 @@ def write_mesh(
     """Write a triangulation, and heights beside it, to an npz file."""
     if edges:
         raise FileFormatError(f"{path.suffix} files hold the whole triangulation, not edges alone")
+    if isinstance(triangulation, QualityMesh):
+        raise FileFormatError(f"{path.suffix} files hold triangulations; write meshes as .vtu")
     heights = as_values(z, triangulation.npoints)
     triangulation.save(path)
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.constrained import ConstrainedDelaunay
+from delone.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,10 +43,12 @@ def cell_values(triangulation: Mesh, *, edges: bool) -> dict[str, NDArray[Any]]:
     >>> square.edges[cell_values(square, edges=True)["segment"] == 1].tolist()
     [[1, 3]]
     """
-    if not isinstance(triangulation, ConstrainedDelaunay):
+    if not isinstance(triangulation, ConstrainedDelaunay | QualityMesh):
         return {}
     if not edges:
         values: dict[str, NDArray[Any]] = {"region": triangulation.region}
+        if isinstance(triangulation, QualityMesh):
+            return values
         if triangulation.polygon.max(initial=-1) >= 0:
             values["polygon"] = triangulation.polygon
         return values

@@ -23,6 +23,7 @@ from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
+from delone.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -217,6 +218,9 @@ def write_mesh(
     suffix = path.suffix.lower()
     if edges and suffix in (".stl", ".ply", ".obj"):
         raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
+    if isinstance(triangulation, QualityMesh) and suffix in (".vtu", ".msh") and not edges:
+        _write_with_segments(path, triangulation, z, attributes)
+        return
     cells = triangulation.edges if edges else triangulation.simplices
     given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
@@ -234,6 +238,39 @@ def write_mesh(
         cell_data={name: [values] for name, values in of_cells.items()},
     )
     _write(path, suffix, mesh)
+
+
+def _write_with_segments(
+    path: Path,
+    mesh: QualityMesh,
+    z: ArrayLike | None,
+    attributes: Mapping[str, ArrayLike] | None,
+) -> None:
+    """Write triangles and segments, with regions and markers."""
+    suffix = path.suffix.lower()
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    of_points, of_cells = split_attributes(given, mesh.npoints, mesh.nsimplex)
+    made = mesh.to_meshio()
+    heights = as_values(z, mesh.npoints)
+    made.points = with_heights(mesh.points, heights)
+    if heights is not None and suffix == ".vtu":
+        made.point_data["z"] = heights
+    made.point_data |= of_points
+    for name, values in of_cells.items():
+        made.cell_data[name] = [values, np.full(len(mesh.segments), np.nan)]
+    if suffix == ".vtu":
+        for name in ("gmsh:physical", "gmsh:geometrical"):
+            del made.cell_data[name]
+        _write(path, suffix, made)
+        return
+    # Version 4 wants to know the entities of CAD that points lie on, and in neither does meshio
+    # read values of several kinds of cells back: regions and markers are tags.
+    if of_cells:
+        raise FileFormatError(".msh files of meshes hold no attributes of triangles; use .vtu")
+    made.cell_data = {name: made.cell_data[name] for name in ("gmsh:physical", "gmsh:geometrical")}
+    del made.point_data["marker"]
+    module = importlib.import_module("meshio.gmsh")
+    module.write(path, made, "2.2", binary=True)
 
 
 def _write(path: Path, suffix: str, mesh: Any) -> None:

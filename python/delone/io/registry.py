@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
+    from delone.meshed import Mesh as QualityMesh
 
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
 __all__ = [
     "MeshFile",
@@ -41,6 +42,7 @@ __all__ = [
 
 _JSON = (".geojson", ".json")
 _MESHES = (".vtu", ".ply", ".obj", ".stl", ".msh")
+_TRIANGLE = (".node", ".ele", ".poly")
 _READERS = {
     **dict.fromkeys((".csv", ".tsv", ".txt", ".xyz", ".pts", ".dat"), "text"),
     **dict.fromkeys((".npy", ".npz"), "arrays"),
@@ -48,15 +50,18 @@ _READERS = {
     **dict.fromkeys((*_JSON, ".gpkg", ".shp", ".fgb"), "vector"),
     **dict.fromkeys((".parquet", ".arrow", ".feather"), "parquet"),
     **dict.fromkeys(_MESHES, "mesh"),
+    **dict.fromkeys(_TRIANGLE, "triangle"),
 }
 _WRITERS = {
     **dict.fromkeys(_MESHES, "mesh"),
+    **dict.fromkeys((".xdmf", ".inp", ".su2"), "fem"),
+    **dict.fromkeys(_TRIANGLE, "triangle"),
     **dict.fromkeys((".gpkg", ".geojson"), "vector"),
     ".npz": "arrays",
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
 _GEOMETRIES = ("vector", "parquet")
-_MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh")}
+_MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -334,9 +339,9 @@ def write_mesh(
     Parameters
     ----------
     path : str or path-like
-        VTU, PLY, OBJ, STL, MSH, GeoPackage, GeoJSON, npz, PNG or SVG. A file that is there is
-        replaced when the new one is whole.
-    triangulation : Delaunay or ConstrainedDelaunay
+        VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
+        GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
+    triangulation : Delaunay, ConstrainedDelaunay or Mesh
         What to write.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.

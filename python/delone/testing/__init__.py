@@ -8,6 +8,7 @@ doubles denote. Two-dimensional.
 
 from delone.testing.constrained import ConstrainedArrays, assert_constrained_delaunay
 from delone.testing.delaunay import assert_delaunay
+from delone.testing.meshes import assert_mesh
 from delone.testing.regions import assert_regions
 from delone.testing.sets import same_triangles, triangle_set
 
@@ -15,6 +16,7 @@ __all__ = [
     "ConstrainedArrays",
     "assert_constrained_delaunay",
     "assert_delaunay",
+    "assert_mesh",
     "assert_regions",
     "same_triangles",
     "triangle_set",

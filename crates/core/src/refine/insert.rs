@@ -37,6 +37,7 @@ struct Side {
     ends: [u32; 2],
     across: Code,
     marked: bool,
+    cap: f64,
 }
 
 /// Walks from triangle `from` towards `p`, across edges that are not marked.
@@ -96,7 +97,8 @@ impl Cavity {
     }
 
     /// Fills the cavity with the star of a new vertex at `p`; there is room for it. `caps` has the
-    /// largest double area of each triangle.
+    /// largest double area of each triangle; a new one takes that of the old one at its edge of the
+    /// rim: the least of all would spread from cavity to cavity.
     pub fn fill(&mut self, marked: &mut Marked, p: Point2, caps: &mut Vec<f64>) -> u32 {
         let v = marked.count as u32;
         marked.points[v as usize] = p;
@@ -104,22 +106,21 @@ impl Cavity {
         let triangles = marked.triangles();
         let mut mesh = marked.mesh.resume(triangles);
         let label = mesh.label(self.triangles[0]);
-        let cap = |caps: &[f64], t: &u32| caps[*t as usize];
-        let cap = (self.triangles.iter().map(|t| cap(caps, t))).fold(f64::INFINITY, f64::min);
         self.sides.clear();
         self.sides.extend(self.rim.iter().map(|&e| Side {
             ends: [mesh.vertex(next(e)), mesh.vertex(prev(e))],
             across: mesh.opposite(e),
             marked: mesh.is_marked(e),
+            cap: caps[triangle(e) as usize],
         }));
         self.triangles.extend([triangles - 2, triangles - 1]);
-        caps.resize(triangles as usize, cap);
+        caps.resize(triangles as usize, f64::INFINITY);
         for (&t, side) in self.triangles.iter().zip(&self.sides) {
             mesh.set(t, [v, side.ends[0], side.ends[1]]);
             mesh.set_marks(t, u32::from(side.marked));
             mesh.set_label(t, label);
             mesh.link(8 * t, side.across);
-            caps[t as usize] = cap;
+            caps[t as usize] = side.cap;
         }
         let last = self.triangles[self.triangles.len() - 1];
         let before = std::iter::once(&last).chain(&self.triangles);

@@ -327,11 +327,7 @@ impl<'a> Work<'a> {
 
     /// Flips edges until all are Delaunay again, from those on the stack on.
     fn settle(&mut self) -> Result<()> {
-        let caps = &mut self.caps;
-        self.marked.legalise_with(|s, t| {
-            let cap = caps[s as usize].min(caps[t as usize]);
-            (caps[s as usize], caps[t as usize]) = (cap, cap);
-        })
+        self.marked.legalise()
     }
 
     /// Looks at all triangles of a new vertex.

@@ -1,0 +1,161 @@
+"""Meshes that become finer or coarser where a caller says so.
+
+Finer is what the core does, with a cap for the triangles that are marked. Coarser is the removal of
+points that were added inside: those of marked triangles go, no two of them neighbours, and what
+would leave an angle below the bound comes back.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import domains, topology
+from delone._arrays import as_count
+from delone.domains import Counts
+from delone.errors import DtypeError, InputError, InternalError, ShapeError
+from delone.refine import Limits, as_min_angle, rounds
+from delone.sizing import EQUILATERAL, Sizing
+from delone.smoothing import rebuilt, worse
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.meshed import Mesh
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["coarsened", "finer"]
+
+_MOST_ADDED = 5_000_000
+
+
+def finer(
+    mesh: Mesh,
+    marked: ArrayLike | None,
+    *,
+    ratio: float,
+    min_angle: float | None,
+    max_area: Any,
+    size: Any,
+    max_points: int | None,
+    progress: Any,
+) -> Mesh:
+    """Return a finer mesh; see ``Mesh.refine``."""
+    if not 0 < ratio <= 1:
+        raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
+    bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
+    most = _MOST_ADDED if max_points is None else as_count(max_points, name="max_points")
+    limits = Limits(bound, most, False, progress, mesh._workers)
+    domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
+    if marked is not None:
+        wanted = _by_place(mesh, _chosen(marked, mesh.nsimplex), ratio)
+        domain, more = rounds(domain, Sizing(None, wanted, domain.regions), limits)
+        counts = counts.plus(more)
+        limits = limits._replace(max_points=most - more.total)
+    if (marked is None or max_area is not None or size is not None) and not counts.exhausted:
+        domain, more = rounds(domain, Sizing(max_area, size, domain.regions), limits)
+        counts = counts.plus(more)
+    return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
+
+
+def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
+    """Return triangles from a mask or from their numbers."""
+    array = np.asarray(marked)
+    if array.dtype.kind == "b":
+        if array.shape != (count,):
+            raise ShapeError(f"marked must have shape ({count},), got {array.shape}")
+        return np.flatnonzero(array)
+    if array.size == 0:
+        return np.empty(0, dtype=np.intp)
+    if array.ndim != 1:
+        raise ShapeError(f"marked must have one axis, got shape {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"marked must be booleans or triangles, got dtype {array.dtype}")
+    if int(array.min()) < 0 or int(array.max()) >= count:
+        raise InputError(f"marked leaves the range 0 to {count - 1} of triangles")
+    return np.unique(array).astype(np.intp)
+
+
+def _by_place(mesh: Mesh, chosen: NDArray[np.intp], ratio: float) -> Callable[[Floats], Floats]:
+    """Return the sizes that make chosen triangles smaller, by the triangle that has a place."""
+    sizes = np.full(mesh.nsimplex, math.inf)
+    sizes[chosen] = np.sqrt(ratio * mesh.areas[chosen] / EQUILATERAL)
+
+    def size(places: Floats) -> Floats:
+        found = mesh.locate(places)
+        home = np.where(found.simplex >= 0, found.simplex, found.beside)
+        return np.asarray(sizes[home])
+
+    return size
+
+
+def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
+    """Return a coarser mesh; see ``Mesh.coarsen``."""
+    chosen = slice(None) if marked is None else _chosen(marked, mesh.nsimplex)
+    free = np.zeros(mesh.npoints, dtype=bool)
+    free[mesh.simplices[chosen]] = True
+    free &= (mesh.point_source < 0) & (mesh._on < 0)
+    free[mesh.simplices[mesh._below]] = False
+    gone = _independent(mesh, free)
+    while gone.any():
+        domain, kept = _without(mesh, gone)
+        bound = float(mesh._bound[0])
+        counts = Counts._make(mesh._counts.tolist())
+        caps = np.full(len(domain.simplices), math.inf)
+        # Where an angle has become too small, points come back, at other places or fewer.
+        most = int(np.count_nonzero(gone))
+        again, more = domains.refined(domain, caps, bound, most)
+        lost = worse(mesh, domain, kept)
+        if not more.exhausted and more.total < most:
+            return type(mesh)._of(again, counts, bound, mesh.stages, mesh._workers)
+        if not len(lost):
+            return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
+        gone &= ~_beside(mesh, kept[lost], gone)
+    return mesh
+
+
+def _without(mesh: Mesh, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
+    """Triangulate without some points; what is left, and which points these are."""
+    kept = np.flatnonzero(~gone)
+    row = np.full(mesh.npoints, -1, dtype=np.int32)
+    row[kept] = np.arange(len(kept), dtype=np.int32)
+    domain, _ = rebuilt(mesh, mesh.points[kept], row)
+    if domain is None:
+        raise InternalError("points of a mesh have met each other")
+    return domain, kept
+
+
+def _beside(mesh: Mesh, points: NDArray[np.intp], gone: Bools) -> Bools:
+    """Return the points beside others, or all where none of those that are gone is there."""
+    near = np.zeros(mesh.npoints, dtype=bool)
+    near[points] = True
+    back = np.zeros(mesh.npoints, dtype=bool)
+    back[mesh.edges[near[mesh.edges].any(axis=1)]] = True
+    return back if (back & gone).any() else np.ones(mesh.npoints, dtype=bool)
+
+
+def _independent(mesh: Mesh, free: Bools) -> Bools:
+    """Choose free points, no two of them neighbours, as many as fit: the lower row goes first."""
+    indptr, indices = topology.vertex_neighbor_vertices(mesh.edges, mesh.npoints)
+    chosen, barred = np.zeros_like(free), ~free
+    # A fixed scattering of the rows, so that few rounds do.
+    rank = (np.arange(mesh.npoints, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(
+        11
+    )
+    owner = np.repeat(np.arange(mesh.npoints), np.diff(indptr))
+    while not barred.all():
+        open_rank = np.where(barred, np.uint64(2**63), rank)
+        least = np.full(mesh.npoints, 2**63, dtype=np.uint64)
+        np.minimum.at(least, owner, open_rank[indices])
+        take = ~barred & (rank < least)
+        chosen |= take
+        barred |= take
+        barred[indices[take[owner]]] = True
+    return chosen

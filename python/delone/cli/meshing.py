@@ -1,0 +1,172 @@
+"""The command `mesh`: a file of polygons or closed lines to triangles of bounded angles."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from delone import Mesh, __version__, mesh
+from delone.atomic import check_target, replacing
+from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.report import Stopwatch, peak_memory, summary
+from delone.cli.show import memory_text, print_json, print_rows, print_stages
+from delone.errors import CrossingSegmentsError, NonFiniteError
+from delone.io import output_suffixes, read_geometries
+from delone.io.registry import writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from delone.io import GeometrySet
+
+__all__ = ["make_mesh"]
+
+_FIRST = 3
+
+
+def make_mesh(
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="INPUT", help="File of polygons, with lines and points in them."),
+    ],
+    *,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File to write, once or more: " + " ".join(output_suffixes()),
+        ),
+    ] = None,
+    min_angle: Annotated[
+        float, typer.Option(help="No smaller angle, in degrees: at least 0, below 60.")
+    ] = 30.0,
+    max_area: Annotated[float | None, typer.Option(help="No larger triangle.")] = None,
+    size: Annotated[float | None, typer.Option(help="Length of edges that is wanted.")] = None,
+    max_points: Annotated[
+        int | None, typer.Option(help="How many points may be added; by default 5,000,000.")
+    ] = None,
+    smooth: Annotated[int, typer.Option(help="Rounds of smoothing afterwards.")] = 0,
+    delaunay: Annotated[
+        bool, typer.Option("--delaunay", help="Make triangles Delaunay across segments, too.")
+    ] = False,
+    freeze: Annotated[
+        bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
+    ] = False,
+    layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Fill polygons with triangles that have no small angle.
+
+    Pictures show the mesh and the histogram of its angles.
+    """
+    with writing():
+        writers = {path: _ready(path) for path in output or ()}
+    watch = Stopwatch()
+    with reading(), watch.stage("read"):
+        survey = read_geometries(source, layer=layer)
+    options: dict[str, Any] = {
+        "min_angle": min_angle,
+        "max_area": max_area,
+        "size": size,
+        "max_points": max_points,
+        "smooth": smooth,
+        "delaunay": delaunay,
+        "frozen": "boundary" if freeze else False,
+    }
+    with _bar(quiet or as_json) as tell:
+        found = _meshed(survey, options, tell)
+    watch.seconds |= found.stages
+    with writing(), ExitStack() as stack:
+        for path, write in writers.items():
+            with watch.stage(f"write {path.name}"):
+                write(stack.enter_context(replacing(path)), found, crs=survey.crs)
+    report = found.report
+    figures: dict[str, Any] = {
+        "delone": __version__,
+        "input": str(source),
+        "crs": survey.crs,
+        **summary(found),
+        "mesh": _figures(found),
+        "stages": watch.rows(found.npoints),
+        "outputs": [str(path) for path in writers],
+        "peak_memory_bytes": peak_memory(),
+    }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        rows = [("points", f"{found.npoints:,}"), ("triangles", f"{found.nsimplex:,}")]
+        for line in str(report).splitlines():
+            name, _, what = line.partition(": ")
+            rows.append((name, what))
+        rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
+        rows += [("written", str(path)) for path in writers]
+        print_rows(str(source), rows)
+        print_stages(figures["stages"])
+
+
+def _ready(path: Path) -> Callable[..., None]:
+    write = writer(path)
+    check_target(path)
+    return write
+
+
+def _meshed(survey: GeometrySet, options: dict[str, Any], tell: Any) -> Mesh:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            return mesh(survey.geometries, progress=tell, **options)
+    except CrossingSegmentsError as error:
+        raise Failure(f"{survey.source}: {error}", Exit.DEGENERATE) from error
+    except NonFiniteError as error:
+        first = ", ".join(map(str, error.rows.tolist()))
+        raise Failure(
+            f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE
+        ) from error
+
+
+def _figures(found: Mesh) -> dict[str, Any]:
+    report = found.report
+    corners = sorted(set(report.corner[report.corner >= 0].tolist()))
+    return {
+        "min_angle": report.min_angle,
+        "smallest_angle": report.smallest_angle,
+        "largest_angle": report.largest_angle,
+        "below": len(report.below),
+        "corners": {"count": len(corners), "first": found.points[corners[:_FIRST]].tolist()},
+        "on_segments": report.on_segments,
+        "for_angles": report.for_angles,
+        "for_sizes": report.for_sizes,
+        "exhausted": report.exhausted,
+    }
+
+
+@contextmanager
+def _bar(silent: bool) -> Iterator[Callable[[int, float], object] | None]:
+    """Show on standard error how far the mesh is, where somebody looks on."""
+    console = Console(stderr=True)
+    if silent or not console.is_terminal:
+        yield None
+        return
+    columns = (
+        TextColumn("meshing"),
+        BarColumn(),
+        TextColumn("{task.fields[added]:,} points added, worst angle {task.fields[angle]:.2f}°"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as progress:
+        # How many there will be is not known before the end.
+        task = progress.add_task("mesh", total=None, added=0, angle=0.0)
+
+        def tell(added: int, angle: float) -> None:
+            progress.update(task, added=added, angle=angle)
+
+        yield tell

@@ -1,0 +1,357 @@
+"""`triangulate` and its kin with the dictionaries and switches of the package ``triangle``.
+
+That package wraps J. R. Shewchuk's program Triangle (1996); here the same keys go in and come out,
+and delone does the work. Nothing of either is used. Vertices of the input keep their rows, added
+ones follow; the order of triangles and the places of added vertices are delone's own.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import topology
+from delone._arrays import as_points, as_segments
+from delone.compat.triangle_input import again, interpolated, rows_of
+from delone.constrained import ConstrainedDelaunay
+from delone.delaunay import Delaunay
+from delone.errors import InputError
+from delone.meshed import Mesh
+from delone.refine import as_rows, mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
+
+_KEYS = (
+    "vertices", "vertex_attributes", "vertex_markers", "triangles", "triangle_attributes",
+    "triangle_max_area", "segments", "segment_markers", "holes", "regions", "neighbors", "edges",
+    "edge_markers",
+)  # fmt: skip
+_SWITCH = re.compile(r"([qaS])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)?|([A-Za-z])")
+_KNOWN = "pqaAcDejnrvXYS"
+# How Triangle computes, how much it says and checks: nothing of it changes what comes out.
+_WITHOUT_EFFECT = "XviFlsCQVz"
+_REFUSED = {
+    "u": "a test of triangles in C that is compiled into Triangle; give delone.mesh a size",
+    "o": "triangles of second order with six nodes",
+    "B": "output without markers; leave out the keys",
+    "P": "output without segments; leave out the key",
+    "N": "output without vertices; leave out the key",
+    "E": "output without triangles; leave out the key",
+    "I": "numbers of iterations in the names of files",
+    "g": "files of Geomview",
+    "O": "holes that are passed over; leave out the key holes",
+}
+_DEFAULT_ANGLE = 20.0
+
+
+class Switches(NamedTuple):
+    """What the letters say."""
+
+    on: frozenset[str]
+    angle: float
+    area: float | None
+    steiner: int | None
+    frozen: bool | str
+
+
+def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
+    """Triangulate or mesh what a dictionary holds.
+
+    Parameters
+    ----------
+    tri : mapping
+        Arrays by name: ``vertices`` (n, 2), ``vertex_attributes`` (n, k), ``vertex_markers``,
+        ``segments`` (s, 2), ``segment_markers``, ``holes`` (h, 2), ``regions`` (r, 4) of x, y,
+        attribute and largest area; and for ``r`` ``triangles`` (m, 3), ``triangle_attributes``
+        (m, k) and ``triangle_max_area``.
+    opts : str, optional
+        Switches:
+
+        - ``p``: the segments are edges, what lies outside of them and in holes is removed;
+        - ``c``: with ``p`` or without, the convex hull is kept and bounded by segments;
+        - ``q``: no angle below 20 degrees, or below the number behind it;
+        - ``a``: no triangle larger than the number behind it; without a number the areas of
+          ``regions``, or with ``r`` of ``triangle_max_area``, count where they are above 0;
+        - ``A``: triangles get the attribute of their region, 0 without one;
+        - ``D``: every triangle is Delaunay, also across segments;
+        - ``r``: the triangles that are given are refined, together with ``q`` or ``a``;
+        - ``S``: add at most so many vertices;
+        - ``Y``: add none on the boundary; ``YY`` none on any segment;
+        - ``e``: return ``edges`` and ``edge_markers``; ``n``: return ``neighbors``;
+        - ``j``: leave vertices out that no triangle has.
+
+        ``X i F l s C Q V v z`` are accepted and change nothing: arithmetic is always exact, and
+        as in the package ``v`` returns nothing here, see `voronoi`. All others are refused by name.
+
+    Returns
+    -------
+    dict
+        ``vertices``, ``vertex_markers`` (n, 1), ``triangles``, and as asked for or given
+        ``vertex_attributes`` (linear in between), ``triangle_attributes``, ``segments``,
+        ``segment_markers``, ``neighbors``, ``edges``, ``edge_markers``, ``holes``, ``regions``.
+        Edges of the boundary without a marker have 1, and so have vertices there.
+
+    Raises
+    ------
+    InputError
+        An unknown key, a switch that is not supported, or an outline that encloses nothing.
+    ShapeError, DtypeError, NonFiniteError, DegenerateInputError, BudgetExceededError
+        As for `delone.mesh`.
+
+    Notes
+    -----
+    Segments that cross get a vertex there, as in Triangle. Where Triangle would end the process on
+    bad input, an exception is raised.
+
+    Examples
+    --------
+    >>> from delone.compat.triangle import triangulate
+    >>> square = {"vertices": [(0, 0), (0, 1), (1, 1), (1, 0)]}
+    >>> out = triangulate(square, "qa0.2")
+    >>> sorted(out), len(out["triangles"])
+    (['triangles', 'vertex_markers', 'vertices'], 8)
+    >>> triangulate(square, "u")
+    Traceback (most recent call last):
+    ...
+    delone.errors.InputError: switch u is not supported: a test of triangles in C that is compiled \
+into Triangle; give delone.mesh a size
+    """
+    switches = _parsed(opts)
+    unknown = sorted(set(tri) - set(_KEYS))
+    if unknown:
+        raise InputError(f"unknown key {unknown[0]!r}; known are {', '.join(_KEYS)}")
+    if "vertices" not in tri:
+        raise InputError("there is no key 'vertices'")
+    points = as_points(tri["vertices"], ndim=2, name="vertices")
+    if "r" in switches.on:
+        made, attributes, base = again(tri, points, switches)
+    else:
+        made, attributes, base = _meshed(tri, points, switches)
+    return _output(tri, points, switches, (made, attributes, base))
+
+
+def _parsed(opts: str) -> Switches:
+    on: list[str] = []
+    angle, area, steiner = 0.0, None, None
+    for match in _SWITCH.finditer(opts):
+        letter, number = match[1] or match[3], match[2]
+        if letter in _REFUSED or letter not in _KNOWN + _WITHOUT_EFFECT:
+            reason = _REFUSED.get(letter, "no switch of Triangle that delone knows")
+            raise InputError(f"switch {letter} is not supported: {reason}")
+        on.append(letter)
+        if letter == "q":
+            angle = float(number) if number else _DEFAULT_ANGLE
+        elif letter == "a" and number:
+            area = float(number)
+        elif letter == "S":
+            steiner = int(float(number or 0))
+    rest = _SWITCH.sub("", opts).strip()
+    if rest:
+        raise InputError(f"switches {opts!r} hold {rest!r}, which belongs to none")
+    frozen: bool | str = on.count("Y") > 1 or ("boundary" if "Y" in on else False)
+    return Switches(frozenset(on), angle, area, steiner, frozen)
+
+
+def _meshed(
+    tri: Mapping[str, Any], points: Floats, switches: Switches
+) -> tuple[Mesh, Floats | None, ConstrainedDelaunay]:
+    """Mesh points and segments; the attributes of triangles, and what came first."""
+    planar = "p" in switches.on
+    segments = as_segments(tri.get("segments", ()) if planar else (), len(points))
+    seeds = rows_of(tri.get("regions"), 4, "regions") if planar else np.empty((0, 4))
+    labelled = np.column_stack((seeds[:, :2], np.arange(len(seeds))))
+    base = ConstrainedDelaunay(
+        points,
+        segments,
+        holes=tri.get("holes") if planar else None,
+        regions=labelled if len(seeds) else None,
+        boundary="outline" if planar and "c" not in switches.on else "hull",
+        crossing="split",
+    )
+    area: Any = switches.area
+    if "a" in switches.on and area is None:
+        present = set(np.unique(base.region).tolist())
+        area = {i: a for i, a in enumerate(seeds[:, 3].tolist()) if a > 0 and i in present}
+    found = mesh(
+        base,
+        min_angle=switches.angle,
+        max_area=area,
+        max_points=switches.steiner,
+        delaunay="D" in switches.on,
+        frozen=switches.frozen,
+        segment_markers=as_rows(tri.get("segment_markers") if planar else None, len(segments),
+                                "segment_markers"),
+        point_markers=as_rows(tri.get("vertex_markers"), len(points), "vertex_markers"),
+    )  # fmt: skip
+    attributes = None
+    if "A" in switches.on and len(seeds):
+        attributes = np.append(seeds[:, 2], 0.0)[found.region][:, None]
+    return found, attributes, base
+
+
+def _output(
+    tri: Mapping[str, Any],
+    points: Floats,
+    switches: Switches,
+    made: tuple[Mesh, Floats | None, Any],
+) -> dict[str, Any]:
+    found, attributes, base = made
+    number, vertices = _rows(found, points, jettison="j" in switches.on)
+    out: dict[str, Any] = {"vertices": vertices}
+    n = len(vertices)
+    boundary = number[found.boundary_edges]
+    markers = np.zeros(n, dtype=np.int32)
+    if tri.get("vertex_markers") is not None:
+        given = as_rows(tri["vertex_markers"], len(points), "vertex_markers")
+        markers[: min(n, len(points))] = given if "j" not in switches.on else 0
+    markers[number] = found.point_markers
+    on_boundary = np.zeros(n, dtype=bool)
+    on_boundary[boundary] = True
+    markers[on_boundary & (markers == 0)] = 1
+    if tri.get("vertex_attributes") is not None:
+        columns = rows_of(tri["vertex_attributes"], None, "vertex_attributes", len(points))
+        values = np.empty((n, columns.shape[1]))
+        if "j" not in switches.on:
+            values[: len(points)] = columns
+        values[number] = interpolated(found, columns, base)
+        out["vertex_attributes"] = values
+    out["vertex_markers"] = markers[:, None]
+    out["triangles"] = number[found.simplices]
+    if attributes is not None:
+        out["triangle_attributes"] = attributes
+    if "n" in switches.on:
+        out["neighbors"] = found.neighbors.copy()
+    marks = _segment_markers(found)
+    has_segments = "p" in switches.on or "c" in switches.on or "r" in switches.on
+    if has_segments and ("r" not in switches.on or "segments" in tri):
+        out["segments"] = number[found.segments]
+        out["segment_markers"] = marks[:, None]
+    if "e" in switches.on:
+        out["edges"] = number[found.edges]
+        out["edge_markers"] = _of_edges(found, marks)[:, None]
+    for name in ("holes", "regions"):
+        if tri.get(name) is not None and "p" in switches.on:
+            out[name] = rows_of(tri[name], None, name)
+    return out
+
+
+def _rows(found: Mesh, points: Floats, *, jettison: bool) -> tuple[Indices, Floats]:
+    """Return the row of each point of a mesh in the output, and the points there."""
+    if jettison:
+        return np.arange(found.npoints, dtype=np.int32), found.points.copy()
+    added = found.point_source < 0
+    number = found.point_source.copy()
+    number[added] = len(points) + np.arange(np.count_nonzero(added), dtype=np.int32)
+    return number, np.concatenate((points, found.points[added]))
+
+
+def _segment_markers(found: Mesh) -> Indices:
+    """Markers of subsegments, 1 on the boundary where there is none."""
+    marks = found.segment_markers.copy()
+    n = found.npoints
+    keys = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
+    rim = topology.among(
+        keys, topology.edge_keys(found.boundary_edges[:, 0], found.boundary_edges[:, 1], n)
+    )
+    marks[rim & (marks == 0)] = 1
+    return marks
+
+
+def _of_edges(found: Mesh, marks: Indices) -> Indices:
+    n = found.npoints
+    keys = topology.edge_keys(found.edges[:, 0], found.edges[:, 1], n)
+    wanted = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
+    order = np.argsort(keys)
+    of_edges = np.zeros(len(keys), dtype=np.int32)
+    of_edges[order[np.searchsorted(keys, wanted, sorter=order)]] = marks
+    return of_edges
+
+
+def delaunay(pts: ArrayLike) -> Indices:
+    """Return the Delaunay triangles of points.
+
+    Parameters
+    ----------
+    pts : array_like, shape (n, 2)
+        Points.
+
+    Returns
+    -------
+    ndarray of int32, shape (m, 3)
+        Triangles, counter-clockwise.
+
+    Examples
+    --------
+    >>> from delone.compat.triangle import delaunay
+    >>> len(delaunay([(0, 0), (0, 1), (0.5, 0.5), (1, 1), (1, 0)]))
+    4
+    """
+    return Delaunay(pts).simplices.copy()
+
+
+def convex_hull(pts: ArrayLike) -> Indices:
+    """Return the edges of the convex hull of points.
+
+    Parameters
+    ----------
+    pts : array_like, shape (n, 2)
+        Points.
+
+    Returns
+    -------
+    ndarray of int32, shape (h, 2)
+        Edges.
+
+    Examples
+    --------
+    >>> from delone.compat.triangle import convex_hull
+    >>> len(convex_hull([(0, 0), (0, 1), (1, 1), (1, 0)]))
+    4
+    """
+    return Delaunay(pts).convex_hull.copy()
+
+
+def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
+    """Return the Voronoi diagram of points.
+
+    Parameters
+    ----------
+    pts : array_like, shape (n, 2)
+        Points.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (m, 2)
+        The centre of the circle of each Delaunay triangle.
+    edges : ndarray of int32, shape (k, 2)
+        Bounded edges as rows of these.
+    ray_origin : ndarray of int32, shape (h,)
+        Where each unbounded edge begins.
+    ray_direct : ndarray of float64, shape (h, 2)
+        Which way it goes; as long as the edge of the hull that it crosses.
+
+    Examples
+    --------
+    >>> from delone.compat.triangle import voronoi
+    >>> points, edges, origin, direction = voronoi([(0, 0), (0, 1), (0.5, 0.5), (1, 1), (1, 0)])
+    >>> points.shape, edges.shape, direction.shape
+    ((4, 2), (4, 2), (4, 2))
+    """
+    found = Delaunay(pts)
+    t, k = np.nonzero(found.neighbors > np.arange(found.nsimplex, dtype=np.int32)[:, None])
+    edges = np.column_stack((t, found.neighbors[t, k])).astype(np.int32)
+    origin, k = np.nonzero(found.neighbors < 0)
+    tail, head = (found.simplices[origin, (k + i) % 3] for i in (1, 2))
+    along = found.points[head] - found.points[tail]
+    direction = np.column_stack((along[:, 1], -along[:, 0]))
+    return found.circumcenters.copy(), edges, origin.astype(np.int32), direction

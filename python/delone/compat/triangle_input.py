@@ -1,0 +1,239 @@
+"""What the drop-in for the package ``triangle`` is given: tables, meshes to refine, attributes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import domains, location, topology
+from delone._arrays import as_segments, as_simplices
+from delone.domains import Domain, Lines
+from delone.errors import InputError, ShapeError
+from delone.meshed import Mesh
+from delone.refine import as_min_angle, as_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from delone.compat.triangle import Switches
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["again", "interpolated", "rows_of"]
+
+_MOST_ADDED = 5_000_000
+
+
+def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
+    """Return a table of numbers.
+
+    Parameters
+    ----------
+    values : array_like or None
+        The table; a vector is a column; None is no rows.
+    columns : int or None
+        How many columns there must be.
+    name : str
+        What it is called in error messages.
+    count : int, optional
+        How many rows there must be.
+
+    Returns
+    -------
+    ndarray of float64
+        The table.
+
+    Raises
+    ------
+    ShapeError
+        It has another shape.
+
+    Examples
+    --------
+    >>> from delone.compat.triangle_input import rows_of
+    >>> rows_of([1, 2], None, "attributes").tolist()
+    [[1.0], [2.0]]
+    """
+    if values is None:
+        return np.empty((0, columns or 1))
+    array = np.array(values, dtype=np.float64)
+    if array.ndim == 1:
+        array = array[:, None] if columns is None else array.reshape(-1, columns)
+    if array.ndim != 2 or (columns is not None and len(array) and array.shape[1] != columns):
+        raise ShapeError(f"{name} must have shape (k, {columns or 'c'}), got {array.shape}")
+    if count is not None and len(array) != count:
+        raise ShapeError(f"{name} must have {count} rows, got {len(array)}")
+    return array
+
+
+def again(
+    tri: Mapping[str, Any], points: Floats, switches: Switches
+) -> tuple[Mesh, Floats | None, Any]:
+    """Refine triangles that are given.
+
+    Parameters
+    ----------
+    tri : mapping
+        What was given.
+    points : ndarray of float64, shape (n, 2)
+        Its vertices.
+    switches : Switches
+        What is wanted.
+
+    Returns
+    -------
+    mesh : Mesh
+        The refined mesh.
+    attributes : ndarray of float64, shape (m, k), or None
+        Those of the triangles in which its triangles lie.
+    base : tuple
+        The triangles given: vertices, neighbours, and what finds places in them.
+    """
+    if "triangles" not in tri:
+        raise InputError("switch r needs the key 'triangles'")
+    simplices = as_simplices(tri["triangles"], len(points), 2)
+    corners = points[simplices]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    turned = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] < 0
+    simplices = np.where(turned[:, None], simplices[:, [0, 2, 1]], simplices).astype(np.int32)
+    neighbors = topology.neighbors(simplices, len(points))
+    index = location.locator(points, simplices, neighbors)
+    domain = _domain(tri, points, simplices, neighbors, switches)
+    caps = _caps(tri, domain, index, switches)
+    most = _MOST_ADDED if switches.steiner is None else switches.steiner
+    bound = as_min_angle(switches.angle)
+    made, counts = domains.refined(domain, caps, bound, most, circles="D" in switches.on)
+    found = Mesh._of(made, counts, bound, {}, None)
+    attributes = None
+    if tri.get("triangle_attributes") is not None:
+        given = rows_of(tri["triangle_attributes"], None, "triangle_attributes", len(simplices))
+        home = _homes(found.points[found.simplices].mean(axis=1), index)
+        attributes = given[home]
+    return found, attributes, (simplices, neighbors, index)
+
+
+def _domain(
+    tri: Mapping[str, Any],
+    points: Floats,
+    simplices: Indices,
+    neighbors: Indices,
+    switches: Switches,
+) -> Domain:
+    """The triangles given, made Delaunay between segments and boundary."""
+    given = as_segments(tri.get("segments", ()), len(points))
+    markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
+    rim = topology.boundary_edges(simplices, neighbors)
+    n = len(points)
+    bare = ~topology.among(
+        topology.edge_keys(rim[:, 0], rim[:, 1], n), topology.edge_keys(given[:, 0], given[:, 1], n)
+    )
+    ends = np.concatenate((given, rim[bare])).astype(np.int32)
+    _, first = np.unique(topology.edge_keys(ends[:, 0], ends[:, 1], n), return_index=True)
+    first.sort()
+    ends = ends[first]
+    found, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
+    marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
+    own = np.flatnonzero(first < len(given))
+    counts = (first < len(given)).astype(np.int64)
+    on_rim = topology.among(
+        topology.edge_keys(ends[:, 0], ends[:, 1], n), topology.edge_keys(rim[:, 0], rim[:, 1], n)
+    )
+    frozen = np.full(len(ends), switches.frozen is True) | (bool(switches.frozen) & on_rim)
+    lines = Lines(
+        ends,
+        np.concatenate(([0], np.cumsum(counts))),
+        first[own].astype(np.int32),
+        np.ones(len(own), dtype=bool),
+        frozen,
+        marks,
+    )
+    of_points = as_rows(tri.get("vertex_markers"), n, "vertex_markers")
+    return Domain(
+        points=points,
+        point_source=np.arange(n, dtype=np.int32),
+        point_markers=of_points,
+        on=np.full(n, -1, dtype=np.int32),
+        simplices=found["simplices"],
+        neighbors=found["neighbors"],
+        labels=label,
+        regions=np.zeros(1, dtype=np.int32),
+        sides=domains.sides_at(
+            found["simplices"], found["constrained"], (ends, np.arange(len(ends)))
+        ),
+        lines=lines,
+    )
+
+
+def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches) -> Floats:
+    caps = np.full(len(domain.simplices), math.inf)
+    inside = domain.labels >= 0
+    if switches.area is not None:
+        caps[inside] = switches.area
+    elif "a" in switches.on and tri.get("triangle_max_area") is not None:
+        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area")[:, 0]
+        centres = domain.points[domain.simplices[inside]].mean(axis=1)
+        wanted = given[_homes(centres, index)]
+        caps[inside] = np.where(wanted > 0, wanted, math.inf)
+    return caps
+
+
+def _homes(places: Floats, index: Any) -> Indices:
+    """The given triangle of each place, or the nearest one."""
+    simplex, _, beside, _, _ = index.locate(np.ascontiguousarray(places), 1)
+    homes: Indices = np.where(simplex >= 0, simplex, beside)
+    return homes
+
+
+def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
+    """Return values at the points of a mesh, linear between the vertices of what came first.
+
+    Parameters
+    ----------
+    found : Mesh
+        The mesh.
+    values : ndarray of float64, shape (n, k)
+        Values at the vertices that were given.
+    base : ConstrainedDelaunay or tuple
+        The triangles before points were added.
+
+    Returns
+    -------
+    ndarray of float64, shape (points of the mesh, k)
+        Values; those of the vertices given are as they were.
+    """
+    out = np.empty((found.npoints, values.shape[1]))
+    old = found.point_source >= 0
+    out[old] = values[found.point_source[old]]
+    places = np.ascontiguousarray(found.points[~old])
+    if not len(places):
+        return out
+    simplices, index = (base[0], base[2]) if isinstance(base, tuple) else (
+        base.simplices, base._locator
+    )  # fmt: skip
+    simplex, weights, _, edge, share = index.locate(places, 1)
+    inside = simplex >= 0
+    full = _with_crossings(values, base, simplices)
+    new = np.empty((len(places), values.shape[1]))
+    corners = full[simplices[simplex[inside]]]
+    new[inside] = (corners * weights[inside][..., None]).sum(axis=1)
+    a, b = full[edge[~inside]].transpose(1, 0, 2)
+    t = share[~inside][:, None]
+    new[~inside] = a * (1 - t) + b * t
+    out[~old] = new
+    return out
+
+
+def _with_crossings(values: Floats, base: Any, simplices: Indices) -> Floats:
+    """Values of vertices that crossings have added: the mean of their neighbours'."""
+    if isinstance(base, tuple) or not base.nadded:
+        return values
+    full = np.concatenate((values, np.full((base.nadded, values.shape[1]), np.nan)))
+    indptr, indices = base.vertex_neighbor_vertices
+    for v in range(len(values), len(full)):
+        full[v] = np.nanmean(full[indices[indptr[v] : indptr[v + 1]]], axis=0)
+    return full

@@ -1,0 +1,335 @@
+"""What is meshed: a triangulated hull, of which labelled parts are the domain, between lines.
+
+A `Domain` is what the core refines and what it makes of it, so one can go round many times. A line
+is a piece of a segment of the input between two of its vertices; the subsegments into which it is
+cut are known by its row. A mesh becomes a domain again when it is triangulated anew: the triangles
+to the left of a subsegment keep their region.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core, topology
+from delone._arrays import as_workers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from delone.constrained import ConstrainedDelaunay
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Progress = Callable[[int, float], object]
+
+__all__ = [
+    "Counts",
+    "Domain",
+    "Lines",
+    "of_constrained",
+    "refined",
+    "sides_at",
+    "sides_of",
+    "triangulated",
+]
+
+# Tail and head of the half-edge opposite vertex k, counter-clockwise.
+_TAIL = [1, 2, 0]
+_HEAD = [2, 0, 1]
+
+
+class Lines(NamedTuple):
+    """The straight lines between vertices of the input, and what is known of each."""
+
+    # (l, 2): vertices.
+    ends: Indices
+    # (l + 1,) and (.,): the rows of segments that cover each line, and whether they run along it.
+    start: NDArray[np.int64]
+    source: Indices
+    forward: Bools
+    # (l,)
+    frozen: Bools
+    markers: Indices
+
+
+class Domain(NamedTuple):
+    """Triangles of a convex hull, and which of them are to be meshed."""
+
+    points: Floats
+    # (n,): the row of the input that each point is; -1 where it was added.
+    point_source: Indices
+    point_markers: Indices
+    # (n,): the line that each point was put on, or -1.
+    on: Indices
+    simplices: Indices
+    neighbors: Indices
+    # (m,): rows of `regions`; -1 outside.
+    labels: Indices
+    regions: Indices
+    # (m, 3): the line under the edge opposite each vertex, or -1.
+    sides: Indices
+    lines: Lines
+
+
+class Counts(NamedTuple):
+    """How many points were added for what, and whether the limit ended it."""
+
+    segment: int = 0
+    angle: int = 0
+    size: int = 0
+    exhausted: bool = False
+
+    def plus(self, other: Counts) -> Counts:
+        """Return the sums, exhausted as the later one says."""
+        return Counts(
+            self.segment + other.segment,
+            self.angle + other.angle,
+            self.size + other.size,
+            other.exhausted,
+        )
+
+    @property
+    def total(self) -> int:
+        """All points added."""
+        return self.segment + self.angle + self.size
+
+
+def of_constrained(
+    base: ConstrainedDelaunay,
+    *,
+    region: Indices,
+    segment_markers: Indices,
+    point_markers: Indices,
+    frozen: Bools,
+) -> Domain:
+    """Return the domain that a constrained triangulation keeps.
+
+    Parameters
+    ----------
+    base : ConstrainedDelaunay
+        The triangulation.
+    region : ndarray of int32, shape (m,)
+        The region of each of its triangles.
+    segment_markers : ndarray of int32, shape (s,)
+        A number for each of its input segments.
+    point_markers : ndarray of int32, shape (n,)
+        A number for each of its points that were given.
+    frozen : ndarray of bool, shape (s,)
+        Which of its input segments may not be split.
+
+    Returns
+    -------
+    Domain
+        Edges of the hull that bound the domain are lines without a source.
+    """
+    found = base._found
+    points, simplices = found["points"], found["simplices"]
+    labels = np.full(len(simplices), -1, dtype=np.int32)
+    inside = slice(None) if base._number is None else base._number[:-1] >= 0
+    regions, labels[inside] = np.unique(region, return_inverse=True)
+    given = len(points) - base.nadded
+    source = np.arange(len(points), dtype=np.int32)
+    source[given:] = -1
+    bare = (found["neighbors"] < 0) & ~found["constrained"] & (labels[:, None] >= 0)
+    hull = np.column_stack((simplices[:, _TAIL][bare], simplices[:, _HEAD][bare]))
+    start, rows = found["source_start"], found["source"]
+    ends = np.concatenate((found["segments"], hull))
+    last = np.full(len(hull), start[-1], dtype=np.int64)
+    owner = np.repeat(np.arange(len(start) - 1), np.diff(start))
+    fixed = np.zeros(len(ends), dtype=bool)
+    fixed[owner[frozen[rows]]] = True
+    markers = np.zeros(len(ends), dtype=np.int32)
+    # The first row that has a marker gives it: the last value assigned stays.
+    marked = np.flatnonzero(segment_markers[rows])[::-1]
+    markers[owner[marked]] = segment_markers[rows[marked]]
+    lines = Lines(ends, np.concatenate((start, last)), rows, found["forward"], fixed, markers)
+    of_points = np.zeros(len(points), dtype=np.int32)
+    of_points[:given] = point_markers
+    return Domain(
+        points=points,
+        point_source=source,
+        point_markers=_passed_on(of_points, ends, markers),
+        on=np.full(len(points), -1, dtype=np.int32),
+        simplices=simplices,
+        neighbors=found["neighbors"],
+        labels=labels,
+        regions=regions.astype(np.int32),
+        sides=sides_at(simplices, found["constrained"] | bare, (ends, np.arange(len(ends)))),
+        lines=lines,
+    )
+
+
+def _passed_on(of_points: Indices, ends: Indices, markers: Indices) -> Indices:
+    """Give points without a marker that of the first line with one that ends there."""
+    found = of_points.copy()
+    marked = np.flatnonzero(markers)[::-1]
+    found[ends[marked].ravel()] = np.repeat(markers[marked], 2)
+    found[of_points != 0] = of_points[of_points != 0]
+    return found
+
+
+def refined(
+    domain: Domain,
+    caps: Floats,
+    min_angle: float,
+    max_points: int,
+    *,
+    circles: bool = False,
+    progress: Progress | None = None,
+) -> tuple[Domain, Counts]:
+    """Let the core refine a domain.
+
+    Parameters
+    ----------
+    domain : Domain
+        What is refined.
+    caps : ndarray of float64, shape (m,)
+        The largest area that each triangle may keep; those made of it inherit it.
+    min_angle : float
+        In degrees, below 60.
+    max_points : int
+        How many points may be added.
+    circles : bool, optional
+        Whether the circles over subsegments are emptied, so that all triangles are Delaunay.
+    progress : callable, optional
+        Called now and then with the number of points added and the smallest angle.
+
+    Returns
+    -------
+    domain : Domain
+        The refined one; its first points are those of the given one.
+    counts : Counts
+        The points added.
+    """
+    lines = domain.lines
+    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
+    made = _core.refine2(
+        domain.points,
+        domain.simplices,
+        domain.labels,
+        np.ascontiguousarray(caps, dtype=np.float64),
+        segments,
+        lines.frozen,
+        min_angle,
+        max_points,
+        (line, lines.ends, domain.on),
+        circles,
+        progress,
+    )
+    added, on = made["added"], made["on"]
+    markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
+    new = domain._replace(
+        points=np.concatenate((domain.points, added)),
+        point_source=np.concatenate((domain.point_source, np.full(len(added), -1, np.int32))),
+        point_markers=np.concatenate((domain.point_markers, markers.astype(np.int32))),
+        on=np.concatenate((domain.on, on)),
+        simplices=made["simplices"],
+        neighbors=made["neighbors"],
+        labels=made["labels"],
+        sides=made["sides"],
+    )
+    segment, angle, size = made["counts"]
+    return new, Counts(segment, angle, size, exhausted=made["exhausted"])
+
+
+def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[Indices, Indices]:
+    """Return the subsegments among the edges of triangles, each once, and their lines.
+
+    Parameters
+    ----------
+    simplices, neighbors : ndarray of int32, shape (m, 3)
+        Triangles.
+    sides : ndarray of int32, shape (m, 3)
+        The line under the edge opposite each vertex, or -1.
+
+    Returns
+    -------
+    segments : ndarray of int32, shape (q, 2)
+        Vertices.
+    line : ndarray of int32, shape (q,)
+        Lines.
+    """
+    once = (sides >= 0) & (neighbors < np.arange(len(simplices), dtype=np.int32)[:, None])
+    t, k = np.nonzero(once)
+    tail, head = simplices[t, np.take(_TAIL, k)], simplices[t, np.take(_HEAD, k)]
+    return np.column_stack((tail, head)), sides[t, k]
+
+
+def triangulated(
+    points: Floats, segments: Indices, edges: Indices, labels: Indices, workers: int | None
+) -> tuple[dict[str, NDArray[Any]], Indices]:
+    """Triangulate points and subsegments, and find the labels of the triangles again.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    segments : ndarray of int32, shape (q, 2)
+        Subsegments.
+    edges : ndarray of int32, shape (e, 2)
+        Directed subsegments with labelled triangles to their left.
+    labels : ndarray of int32, shape (e,)
+        Those labels.
+    workers : int or None
+        Threads.
+
+    Returns
+    -------
+    found : dict of ndarray
+        What the core found.
+    label : ndarray of int32, shape (m,)
+        The label of each triangle of the hull; -1 where there is no such edge.
+    """
+    count = as_workers(workers)
+    found = _core.constrained2(points, segments, False, False, 0, "auto", count)
+    simplices, constrained = found["simplices"], found["constrained"]
+    component = _core.components2(found["neighbors"], constrained)
+    t, k = np.nonzero(constrained)
+    n = np.int64(len(points))
+    keys = simplices[t, np.take(_TAIL, k)] * n + simplices[t, np.take(_HEAD, k)]
+    known = edges[:, 0] * n + edges[:, 1]
+    order = np.argsort(known)
+    place = np.minimum(np.searchsorted(known, keys, sorter=order), len(known) - 1)
+    partner = order[place]
+    same = known[partner] == keys
+    of_component = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
+    of_component[component[t[same]]] = labels[partner[same]]
+    return found, of_component[component]
+
+
+def sides_at(
+    simplices: Indices, constrained: Bools, segments: tuple[Indices, NDArray[np.integer]]
+) -> Indices:
+    """Return the line under each edge of triangles.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    constrained : ndarray of bool, shape (m, 3)
+        Which edges are subsegments.
+    segments : tuple
+        The subsegments, (q, 2), and their lines, (q,).
+
+    Returns
+    -------
+    ndarray of int32, shape (m, 3)
+        The line under the edge opposite each vertex, or -1.
+    """
+    ends, line = segments
+    sides = np.full(simplices.shape, -1, dtype=np.int32)
+    if not len(ends):
+        return sides
+    n = int(simplices.max()) + 1
+    t, k = np.nonzero(constrained)
+    tail, head = simplices[t, np.take(_TAIL, k)], simplices[t, np.take(_HEAD, k)]
+    keys = topology.edge_keys(ends[:, 0], ends[:, 1], n)
+    order = np.argsort(keys)
+    at = np.searchsorted(keys, topology.edge_keys(tail, head, n), sorter=order)
+    sides[t, k] = line[order[at]]
+    return sides

@@ -1,0 +1,404 @@
+"""Meshes of domains: what is given becomes a constrained triangulation, and that is refined.
+
+The core inserts the vertices (its head names the papers); here are the domains that it is given,
+the markers that go along, and the rounds in which sizes that vary are asked for.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import domains
+from delone._arrays import as_choice, as_count, as_workers
+from delone.constrained import ConstrainedDelaunay
+from delone.domains import Counts, Domain
+from delone.errors import DtypeError, InputError, ShapeError
+from delone.meshed import Mesh
+from delone.polygons import from_geometry
+from delone.sizing import Sizing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.domains import Progress
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Limits", "as_min_angle", "as_rows", "mesh", "rounds"]
+
+# Ten million triangles, in about 4 GB.
+_MOST_ADDED = 5_000_000
+# Above this nobody has seen refinement end on most inputs.
+_DARING = 33.0
+# Each round that asks for sizes makes triangles smaller by up to four; 80 span what doubles hold.
+_MOST_ROUNDS = 80
+_FIRST = 10
+
+
+class Limits(NamedTuple):
+    """How far a refinement goes."""
+
+    min_angle: float
+    max_points: int
+    circles: bool
+    progress: Callable[[int, float], object] | None
+    workers: int | None
+
+
+def mesh(
+    domain: Any,
+    *,
+    min_angle: float = 30.0,
+    max_area: Any = None,
+    size: Any = None,
+    max_points: int | None = None,
+    conforming: bool = True,
+    delaunay: bool = False,
+    smooth: int = 0,
+    holes: ArrayLike | None = None,
+    regions: ArrayLike | None = None,
+    frozen: bool | str | ArrayLike = False,
+    segment_markers: ArrayLike | None = None,
+    point_markers: ArrayLike | None = None,
+    crossing: str | None = None,
+    progress: Callable[[int, float], object] | None = None,
+    workers: int | None = None,
+) -> Mesh:
+    """Fill a domain with triangles that have no small angle.
+
+    Parameters
+    ----------
+    domain : ConstrainedDelaunay, tuple of two arrays, or geometry
+        What is meshed: the triangles that a constrained triangulation keeps; the area that segments
+        enclose, as ``(points, segments)``; or the inside of polygons, whatever `from_geometry`
+        takes, with lines and points in them as further edges and vertices.
+    min_angle : float, optional
+        No angle is smaller, in degrees, except where the angles of the input force it: at least 0
+        and below 60. Above 33 the end is not proven, and often it does not come before the limit on
+        points.
+    max_area : float or mapping, optional
+        No triangle is larger, in the square of the unit of the points; a mapping has areas by
+        region.
+    size : float, mapping, callable, tuple or DataArray, optional
+        The length of edges that is wanted: no triangle is larger than the equilateral one with that
+        edge. A number; a mapping of regions to numbers; a function that takes places (k, 2) and
+        returns k lengths; ``(triangulation, values)`` with a length for each of its points, linear
+        in between; or a DataArray of xarray with dimensions y and x, linear between cells.
+    max_points : int, optional
+        How many points may be added; by default 5,000,000. Sizes that cannot do with so few are
+        refused before the work starts. Where angles need more, the work ends there, and the report
+        of the mesh says so.
+    conforming : bool, optional
+        Segments are edges of the mesh or chains of edges: always so, the only choice is True.
+    delaunay : bool, optional
+        Make every triangle Delaunay, also across segments, at the price of more points: the circles
+        over the pieces of segments are emptied, not only lenses in them.
+    smooth : int, optional
+        How many rounds of ``Mesh.smooth`` follow.
+    holes, regions : array_like, optional
+        Seeds, as for `ConstrainedDelaunay`; for ``(points, segments)`` alone.
+    frozen : bool, "boundary" or array_like of bool, shape (s,), optional
+        Segments that may not be split: all, those on the boundary, or those named. Angles next to
+        them may stay small.
+    segment_markers : array_like of int, shape (s,), optional
+        A number for each segment, which its pieces and the points on them inherit; 0 is none.
+    point_markers : array_like of int, shape (n,), optional
+        A number for each point. Where it is 0 the marker of a segment that ends there counts.
+    crossing : {"split", "error"}, optional
+        Whether segments that cross get a vertex there: by default geometries do and arrays do not.
+    progress : callable, optional
+        Called now and then with the number of points added and the smallest angle in degrees.
+    workers : int, optional
+        Number of threads; by default one for each core. The result is the same.
+
+    Returns
+    -------
+    Mesh
+        The mesh, immutable. Where a limit ended the work, or angles of the input do not allow the
+        bound, its ``report`` says so and names the triangles.
+
+    Raises
+    ------
+    InputError
+        `min_angle` is not in [0, 60); a size is NaN, zero or negative, then the message names the
+        place; the segments enclose nothing; an argument does not fit the domain.
+    BudgetExceededError
+        The sizes ask for more than `max_points`.
+    CrossingSegmentsError, DegenerateInputError, NonFiniteError, ShapeError, DtypeError
+        As for `ConstrainedDelaunay`.
+    KeyboardInterrupt
+        Ctrl-C was pressed.
+
+    Warns
+    -----
+    UserWarning
+        `min_angle` is above 33.
+
+    Notes
+    -----
+    Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
+    off-centres (A. Ungor 2004), cuts at powers of two around sharp corners, and the rule of Miller,
+    Pav and Walkington (2005) for triangles there, so that it ends on every input for angles up to
+    26 degrees, in practice up to 33. Time is about 0.4 microseconds a triangle, memory linear.
+
+    Points on segments are rounded to doubles, so that pieces of a segment may bend by that much.
+
+    Examples
+    --------
+    >>> import delone
+    >>> outer, inner = [(0, 0), (6, 0), (6, 6), (0, 6)], [(2, 2), (4, 2), (4, 4), (2, 4)]
+    >>> rings = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+    >>> mesh = delone.mesh((outer + inner, rings), holes=[(3, 3)], size=1)
+    >>> bool(mesh.report), float(mesh.areas.sum())
+    (True, 32.0)
+    >>> square = {"type": "Polygon", "coordinates": [outer]}
+    >>> near = delone.mesh(square, size=lambda xy: 0.1 + 0.3 * xy[:, 0])
+    >>> left, right = near.areas[near.find_simplex([(0.1, 3), (5.5, 3)])]
+    >>> bool(10 * left < right)
+    True
+    """
+    if not conforming:
+        raise InputError("a mesh always conforms to its segments: conforming must be True")
+    limits = Limits(
+        as_min_angle(min_angle),
+        _MOST_ADDED if max_points is None else as_count(max_points, name="max_points"),
+        bool(delaunay),
+        progress,
+        workers,
+    )
+    as_workers(workers)
+    clock = time.perf_counter()
+    base, region = _base(domain, holes, regions, crossing, workers)
+    count = len(base.input_segments)
+    start = domains.of_constrained(
+        base,
+        region=region,
+        segment_markers=as_rows(segment_markers, count, "segment_markers"),
+        point_markers=as_rows(point_markers, base.npoints - base.nadded, "point_markers"),
+        frozen=_frozen(frozen, count),
+    )
+    if isinstance(frozen, str):
+        start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
+    stages = {"triangulate": time.perf_counter() - clock}
+    clock = time.perf_counter()
+    made, counts = rounds(start, Sizing(max_area, size, start.regions), limits)
+    stages["refine"] = time.perf_counter() - clock
+    found = Mesh._of(made, counts, limits.min_angle, stages, workers)
+    return found.smooth(smooth) if smooth else found
+
+
+def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Counts]:
+    """Refine a domain until no triangle is too large for where it is.
+
+    Parameters
+    ----------
+    domain : Domain
+        What is refined.
+    sizing : Sizing
+        How large triangles may be.
+    limits : Limits
+        The bound of angles and the limit on points.
+
+    Returns
+    -------
+    domain : Domain
+        The refined one.
+    counts : Counts
+        The points added.
+    """
+    samples = sizing.samples(domain, limits.workers)
+    sizing.require_within(domain, samples, limits.max_points)
+    counts = Counts()
+    for turn in range(_MOST_ROUNDS):
+        caps, done = sizing.caps(domain, samples)
+        if turn and done:
+            break
+        before = counts.total
+        tell = limits.progress
+        domain, more = domains.refined(
+            domain,
+            caps,
+            limits.min_angle,
+            limits.max_points - before,
+            circles=limits.circles,
+            progress=None if tell is None else _after(before, tell),
+        )
+        counts = counts.plus(more)
+        if counts.exhausted or not sizing.varies:
+            break
+    return domain, counts
+
+
+def as_min_angle(min_angle: float) -> float:
+    """Return an angle that meshes can be asked for.
+
+    Parameters
+    ----------
+    min_angle : float
+        In degrees.
+
+    Returns
+    -------
+    float
+        The angle.
+
+    Raises
+    ------
+    InputError
+        It is not in [0, 60).
+
+    Warns
+    -----
+    UserWarning
+        It is above 33.
+
+    Examples
+    --------
+    >>> from delone.refine import as_min_angle
+    >>> as_min_angle(20)
+    20.0
+    """
+    try:
+        angle = float(min_angle)
+    except (TypeError, ValueError):
+        raise DtypeError(f"min_angle must be a number, got {min_angle!r:.60}") from None
+    if not 0 <= angle < 60:
+        raise InputError(f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r}")
+    if angle > _DARING:
+        warnings.warn(
+            f"refinement to {angle:g} degrees is not proven to end: above {_DARING:g} degrees "
+            "max_points may end it",
+            UserWarning,
+            stacklevel=3,
+        )
+    return angle
+
+
+def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
+    """Return a number for each row; 0 where nothing is given.
+
+    Parameters
+    ----------
+    values : array_like of int, shape (count,) or (count, 1), or None
+        The numbers.
+    count : int
+        How many there must be.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of int32, shape (count,)
+        The numbers.
+
+    Raises
+    ------
+    ShapeError, DtypeError, InputError
+        There are more or fewer, or they are no integers of 32 bits.
+
+    Examples
+    --------
+    >>> from delone.refine import as_rows
+    >>> as_rows(None, 2, "markers"), as_rows([[3], [4]], 2, "markers")
+    (array([0, 0], dtype=int32), array([3, 4], dtype=int32))
+    """
+    if values is None:
+        return np.zeros(count, dtype=np.int32)
+    array = np.asarray(values)
+    if array.shape not in ((count,), (count, 1)):
+        raise ShapeError(f"{name} must have shape ({count},), got {array.shape}")
+    if array.dtype.kind not in "iu" and array.size:
+        raise DtypeError(f"{name} must be integers, got dtype {array.dtype}")
+    limit = np.iinfo(np.int32)
+    if array.size and (int(array.min()) < limit.min or int(array.max()) > limit.max):
+        raise InputError(f"{name} must be integers of 32 bits")
+    return array.reshape(count).astype(np.int32)
+
+
+def _frozen(frozen: bool | str | ArrayLike, count: int) -> Bools:
+    if isinstance(frozen, str):
+        as_choice(frozen, ("boundary",), name="frozen")
+        return np.zeros(count, dtype=bool)
+    array = np.asarray(frozen)
+    if array.dtype.kind != "b":
+        raise DtypeError(f"frozen must be booleans or 'boundary', got dtype {array.dtype}")
+    if array.shape not in ((), (count,)):
+        raise ShapeError(f"frozen must have shape ({count},), got {array.shape}")
+    return np.broadcast_to(array, (count,)).copy()
+
+
+def _on_boundary(domain: Domain) -> Bools:
+    """Tell which lines have the domain on one side only."""
+    t, k = np.nonzero((domain.sides >= 0) & (domain.labels[:, None] >= 0))
+    sides = np.bincount(domain.sides[t, k], minlength=len(domain.lines.ends))
+    found: Bools = sides == 1
+    return found
+
+
+def _base(
+    domain: Any,
+    holes: ArrayLike | None,
+    regions: ArrayLike | None,
+    crossing: str | None,
+    workers: int | None,
+) -> tuple[ConstrainedDelaunay, Indices]:
+    """Return a constrained triangulation of the domain, and the region of each triangle."""
+    pair = isinstance(domain, tuple) and len(domain) == 2 and not _is_geometry(domain[0])
+    if not pair and (holes is not None or regions is not None):
+        raise InputError("holes and regions go with (points, segments) only")
+    if isinstance(domain, ConstrainedDelaunay):
+        if crossing is not None:
+            raise InputError("crossing is settled where a ConstrainedDelaunay is given")
+        base, region = domain, domain.region
+    elif pair:
+        base = ConstrainedDelaunay(
+            *domain,
+            holes=holes,
+            regions=regions,
+            boundary="outline",
+            crossing=crossing or "error",
+            workers=workers,
+        )
+        region = base.region
+    else:
+        base = from_geometry(
+            domain, boundary="polygons", crossing=crossing or "split", workers=workers
+        )
+        region = base.polygon
+    if not base.nsimplex:
+        raise InputError(f"the domain has no inside: {_open_ends(base)}")
+    return base, region
+
+
+def _is_geometry(thing: Any) -> bool:
+    return isinstance(thing, dict) or any(
+        hasattr(thing, name) for name in ("geom_type", "__geo_interface__")
+    )
+
+
+def _open_ends(base: ConstrainedDelaunay) -> str:
+    """Say where an outline is open: at vertices with one segment."""
+    degree = np.bincount(base.segments.ravel(), minlength=base.npoints)
+    loose = np.flatnonzero(degree == 1)
+    if not loose.size:
+        return "no ring of segments encloses anything that is no hole"
+    rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
+    places = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
+    return f"the outline is open; only one segment ends at points {rows}, the first at {places}"
+
+
+def _after(before: int, tell: Progress) -> Progress:
+    """Return a progress that counts from what was added before."""
+
+    def told(added: int, angle: float) -> None:
+        tell(before + added, angle)
+
+    return told

@@ -1,0 +1,238 @@
+"""What a refinement did: points by cause, angles reached, and triangles that the input spoils.
+
+A triangle keeps a small angle where two lines of the input meet at one: between them, and next to
+the circles about the corner on which both are cut, which is what the rule of Miller, Pav and
+Walkington leaves alone. Lines that may not be split, and a limit on points, leave others.
+
+G. L. Miller, S. E. Pav and N. J. Walkington (2005), "When and why Delaunay refinement algorithms
+work", International Journal of Computational Geometry & Applications 15.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import quality
+from delone.triangulation import counted
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.domains import Lines
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["CAUSES", "MeshReport", "report"]
+
+CAUSES = ("corner", "frozen", "budget", "other")
+_CORNER, _FROZEN, _BUDGET, _OTHER = range(4)
+# Lengths from a corner are one if they differ by a smaller part, as in the core.
+_SAME_SHELL = 1e-3
+_SHOWN = 5
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshReport:
+    """What a mesh has become; truthy when it is as good as it was to be.
+
+    Parameters
+    ----------
+    min_angle : float
+        The bound that was asked for, in degrees.
+    smallest_angle, largest_angle : float
+        What was reached, in degrees.
+    below : ndarray of int64, shape (k,)
+        The triangles with an angle below the bound, judged exactly, ascending.
+    corner : ndarray of int64, shape (k,)
+        For each of these the corner of the input that is responsible, a row of points; -1 where it
+        is none.
+    cause : ndarray of str, shape (k,)
+        For each of these ``"corner"``, ``"frozen"`` (a line that may not be split), ``"budget"``
+        (the limit on points) or ``"other"`` (lines that come too near to each other for doubles,
+        or points that were removed or moved later on).
+    on_segments, for_angles, for_sizes : int
+        How many points were added on segments, and inside for the sake of angles and sizes.
+    exhausted : bool
+        Whether the limit on points ended the work.
+
+    Attributes
+    ----------
+    ok : bool
+        True when no triangle has an angle below the bound and the work came to its end.
+    added : int
+        How many points were added in all.
+
+    Examples
+    --------
+    >>> import delone
+    >>> needle = [(0, 0), (10, 0), (10, 1)], [(0, 1), (1, 2), (2, 0)]
+    >>> report = delone.mesh(needle).report
+    >>> set(report.corner.tolist()), set(report.cause.tolist())
+    ({0}, {'corner'})
+    """
+
+    min_angle: float
+    smallest_angle: float
+    largest_angle: float
+    below: NDArray[np.int64]
+    corner: NDArray[np.int64]
+    cause: NDArray[np.str_]
+    on_segments: int
+    for_angles: int
+    for_sizes: int
+    exhausted: bool
+
+    def __post_init__(self) -> None:
+        for array in (self.below, self.corner, self.cause):
+            array.flags.writeable = False
+
+    @property
+    def ok(self) -> bool:
+        """True when there is no triangle below the bound and the work came to its end."""
+        return not len(self.below) and not self.exhausted
+
+    @property
+    def added(self) -> int:
+        """How many points were added in all."""
+        return self.on_segments + self.for_angles + self.for_sizes
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        reached = f"{self.smallest_angle:.4g} to {self.largest_angle:.4g}"
+        lines = [
+            f"angles from {reached} degrees, {self.min_angle:.4g} asked for",
+            f"{counted(self.added, 'point')} added: {self.on_segments} on segments, "
+            f"{self.for_angles} for angles, {self.for_sizes} for sizes",
+        ]
+        for cause, what in _SENTENCES.items():
+            rows = self.below[self.cause == cause]
+            if len(rows):
+                shown = ", ".join(map(str, rows[:_SHOWN].tolist()))
+                more = ", ..." if len(rows) > _SHOWN else ""
+                noun = counted(len(rows), "triangle")
+                lines.append(f"{noun} below the bound {what}: {shown}{more}")
+        corners = np.unique(self.corner[self.corner >= 0])
+        if len(corners):
+            shown = ", ".join(map(str, corners[:_SHOWN].tolist()))
+            more = ", ..." if len(corners) > _SHOWN else ""
+            lines.append(f"{counted(len(corners), 'corner')} responsible: {shown}{more}")
+        if self.exhausted:
+            lines.append("the limit on points ended the work")
+        return "\n".join(lines)
+
+
+_SENTENCES = {
+    "corner": "at sharp corners",
+    "frozen": "at frozen segments",
+    "budget": "for want of points",
+    "other": "for other reasons",
+}
+
+
+def report(
+    points: Floats,
+    simplices: Indices,
+    sides: Indices,
+    on: Indices,
+    lines: Lines,
+    *,
+    min_angle: float,
+    counts: NDArray[np.int64],
+) -> MeshReport:
+    """Judge a mesh.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    sides : ndarray of int32, shape (m, 3)
+        The line under the edge opposite each vertex, or -1.
+    on : ndarray of int32, shape (n,)
+        The line that each point was put on, or -1.
+    lines : Lines
+        The lines.
+    min_angle : float
+        The bound in degrees.
+    counts : ndarray of int64, shape (4,)
+        Points added on segments, for angles, for sizes; whether the limit ended it.
+
+    Returns
+    -------
+    MeshReport
+        The judgement.
+    """
+    measures = quality.measured(points, simplices)
+    rows = quality.below(points, simplices, min_angle)
+    corner = _responsible(points, simplices[rows], sides[rows], on, lines)
+    touched = _touches_frozen(points, simplices[rows], sides[rows], on, lines)
+    rest = np.where(touched, _FROZEN, _BUDGET if counts[3] else _OTHER)
+    cause = np.where(corner >= 0, _CORNER, rest)
+    return MeshReport(
+        min_angle=min_angle,
+        smallest_angle=float(measures.smallest_angle.min(initial=180.0)),
+        largest_angle=float(measures.largest_angle.max(initial=0.0)),
+        below=rows,
+        corner=corner,
+        cause=np.array(CAUSES)[cause],
+        on_segments=int(counts[0]),
+        for_angles=int(counts[1]),
+        for_sizes=int(counts[2]),
+        exhausted=bool(counts[3]),
+    )
+
+
+def _touches_frozen(
+    points: Floats, simplices: Indices, sides: Indices, on: Indices, lines: Lines
+) -> Bools:
+    """Tell which triangles have a vertex on a line that may not be split."""
+    if not lines.frozen.any():
+        return np.zeros(len(simplices), dtype=bool)
+    touched = np.zeros(len(points), dtype=bool)
+    touched[lines.ends[lines.frozen]] = True
+    rows = np.flatnonzero(on >= 0)
+    touched[rows[lines.frozen[on[rows]]]] = True
+    return np.asarray(touched[simplices].any(axis=1), dtype=bool)
+
+
+def _responsible(
+    points: Floats, simplices: Indices, sides: Indices, on: Indices, lines: Lines
+) -> NDArray[np.int64]:
+    """Return the corner of the input that spoils each triangle, or -1."""
+    found = np.full(len(simplices), -1, dtype=np.int64)
+    if not len(simplices):
+        return found
+    row = np.arange(len(simplices))
+    apex = quality.smallest_corners(points, simplices)
+    left, right = (apex + 1) % 3, (apex + 2) % 3
+    between = (sides[row, left] >= 0) & (sides[row, right] >= 0)
+    found[between] = simplices[row, apex][between]
+    u, v = simplices[row, left], simplices[row, right]
+    shared = _shared_end(on[u], on[v], lines.ends)
+    c = points[shared]
+    d, e = (np.hypot(*(points[w] - c).T) for w in (u, v))
+    sharp = np.hypot(*(points[u] - points[v]).T) < np.minimum(d, e)
+    spans = (shared >= 0) & sharp & (np.abs(d - e) <= _SAME_SHELL * np.maximum(d, e))
+    found[~between & spans] = shared[~between & spans]
+    return found
+
+
+def _shared_end(s: Indices, r: Indices, ends: Indices) -> NDArray[np.int64]:
+    """Return the vertex in which two lines meet, or -1."""
+    shared = np.full(len(s), -1, dtype=np.int64)
+    if not len(ends):
+        return shared
+    two = (s >= 0) & (r >= 0) & (s != r)
+    for i in (1, 0):
+        for j in (1, 0):
+            same = two & (ends[s, i] == ends[r, j])
+            shared[same] = ends[s, i][same]
+    return shared

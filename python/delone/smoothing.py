@@ -1,0 +1,213 @@
+"""Free points of a mesh move to better places: Lloyd's rule, its Delaunay dual, or the mean.
+
+After each round the moved points are triangulated anew with the same subsegments, so that the mesh
+stays Delaunay. What has become worse takes its points back: half way first, then wholly, until no
+angle is below the bound that was not before, each point is in its region, and none has met another
+or a segment. In the end all have gone back, so this ends.
+
+S. P. Lloyd (1982), "Least squares quantization in PCM"; L. Chen and M. Holst (2011), "Efficient
+mesh optimization schemes based on optimal Delaunay triangulations".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import domains, geometry, quality
+from delone._arrays import as_choice, as_count
+from delone.domains import Counts
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.domains import Domain
+    from delone.meshed import Mesh
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["METHODS", "rebuilt", "smoothed", "worse"]
+
+METHODS = ("lloyd", "odt", "laplace")
+# How often a step is halved before it is given up.
+_HALVINGS = 3
+
+
+def smoothed(mesh: Mesh, iterations: int, method: str) -> Mesh:
+    """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
+    as_choice(method, METHODS, name="method")
+    for _ in range(as_count(iterations, name="iterations")):
+        free = _free(mesh)
+        if not free.any():
+            break
+        target = _targets(mesh, method)
+        moved = _tried(mesh, np.where(free[:, None], target, mesh.points))
+        if moved is None:
+            break
+        mesh = moved
+    return mesh
+
+
+def _free(mesh: Mesh) -> Bools:
+    """Points that were added and lie on no segment, except those of triangles that are spoilt."""
+    free = (mesh.point_source < 0) & (mesh._on < 0)
+    free[mesh.simplices[mesh._below]] = False
+    return free
+
+
+def _targets(mesh: Mesh, method: str) -> Floats:
+    """Return where each point would be best, for its triangles as they are."""
+    simplices, points = mesh.simplices, mesh.points
+    n = mesh.npoints
+    if method == "laplace":
+        pairs = mesh.edges
+        ends = np.concatenate((pairs, pairs[:, ::-1]))
+        return _means(ends[:, 0], points[ends[:, 1]], np.ones(len(ends)), n)
+    corners = points[simplices]
+    weight = geometry.areas(points, simplices)
+    if method == "odt":
+        at = geometry.circumcenters(points, simplices)
+        return _means(simplices.ravel(), np.repeat(at, 3, axis=0), np.repeat(weight, 3), n)
+    # The share of each corner is the quadrilateral of it, two middles of edges and the circle's
+    # centre, with a sign: two triangles, of which each knows its area and its centre.
+    centre = geometry.circumcenters(points, simplices)
+    owners, places, weights = [], [], []
+    for k in range(3):
+        a = corners[:, k]
+        for other, sign in ((corners[:, k - 2], 1.0), (corners[:, k - 1], -1.0)):
+            middle = (a + other) / 2
+            u, v = middle - a, centre - a
+            weights.append(sign * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+            places.append((a + middle + centre) / 3)
+            owners.append(simplices[:, k])
+    return _means(np.concatenate(owners), np.concatenate(places), np.concatenate(weights), n)
+
+
+def _means(owner: Indices, places: Floats, weight: Floats, count: int) -> Floats:
+    total = np.bincount(owner, weights=weight, minlength=count)
+    with np.errstate(all="ignore"):
+        sums = [np.bincount(owner, weights=weight * p, minlength=count) for p in places.T]
+        mean: Floats = np.column_stack(sums) / total[:, None]
+    return mean
+
+
+def _tried(mesh: Mesh, target: Floats) -> Mesh | None:
+    """Move points as far as nothing becomes worse; None where nothing moves."""
+    points = mesh.points
+    target = np.where(np.isfinite(target), target, points)
+    step = np.ones(mesh.npoints)
+    while True:
+        places = points + step[:, None] * (target - points)
+        moves = (places != points).any(axis=1)
+        if not moves.any():
+            return None
+        domain, lost = rebuilt(mesh, places, np.arange(mesh.npoints, dtype=np.int32))
+        if domain is not None:
+            lost = worse(mesh, domain, np.arange(mesh.npoints))
+        if not len(lost):
+            assert domain is not None
+            segment, angle, size, exhausted = mesh._counts.tolist()
+            counts = Counts(segment, angle, size, exhausted=bool(exhausted))
+            return type(mesh)._of(domain, counts, float(mesh._bound[0]), mesh.stages, mesh._workers)
+        back = np.zeros(mesh.npoints, dtype=bool)
+        back[lost] = True
+        if not (back & moves).any():
+            # What moved is beside what is worse.
+            ends = mesh.edges
+            back[ends[back[ends].any(axis=1)]] = True
+        if not (back & moves).any():
+            return None
+        halved = step / 2
+        step[back] = np.where(halved < 0.5**_HALVINGS, 0.0, halved)[back]
+
+
+def rebuilt(mesh: Mesh, points: Floats, row: Indices) -> tuple[Domain | None, NDArray[np.intp]]:
+    """Triangulate points of a mesh anew, with its subsegments and regions.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    points : ndarray of float64, shape (k, 2)
+        Where points are now.
+    row : ndarray of int32, shape (n,)
+        Which of these each point of the mesh is; -1 where it is gone. Ends of subsegments stay.
+
+    Returns
+    -------
+    domain : Domain or None
+        The triangulation; None where points have met each other or a subsegment.
+    lost : ndarray of int
+        Rows of `points` that are where they may not be.
+    """
+    edges, label = mesh._directed
+    segments = row[mesh.segments]
+    found, labels = domains.triangulated(points, segments, row[edges], label, mesh._workers)
+    if len(found["duplicates"]) or len(found["through"]):
+        pairs = found["duplicates"].ravel(), found["through"][:, 1]
+        return None, np.unique(np.concatenate(pairs)).astype(np.intp)
+    kept = np.flatnonzero(row >= 0)
+    lost = _astray(mesh, found["simplices"], labels, row, kept)
+    if len(lost):
+        return None, lost
+    sides = domains.sides_at(
+        found["simplices"], found["constrained"], (segments, mesh._segment_line)
+    )
+    lines = mesh._lines._replace(ends=row[mesh._ends])
+    return domains.Domain(
+        points=points,
+        point_source=mesh.point_source[kept],
+        point_markers=mesh.point_markers[kept],
+        on=mesh._on[kept],
+        simplices=found["simplices"],
+        neighbors=found["neighbors"],
+        labels=labels,
+        regions=mesh._regions,
+        sides=sides,
+        lines=lines,
+    ), lost
+
+
+def _astray(
+    mesh: Mesh, simplices: Indices, labels: Indices, row: Indices, kept: NDArray[np.intp]
+) -> NDArray[np.intp]:
+    """Return the free points that a triangle outside of their region has for a corner."""
+    own = np.full(len(kept), -2, dtype=np.int32)
+    inner = np.zeros(mesh.npoints, dtype=bool)
+    inner[mesh.point_source < 0] = True
+    inner[mesh._on >= 0] = False
+    first = mesh.vertex_to_simplex
+    region = np.searchsorted(mesh._regions, mesh.region[first]).astype(np.int32)
+    own[row[kept]] = np.where(inner[kept], region[kept], -2)
+    wrong = (own[simplices] != -2) & (own[simplices] != labels[:, None])
+    return np.unique(simplices[wrong]).astype(np.intp)
+
+
+def worse(mesh: Mesh, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the points of triangles below the bound that a mesh did not have.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What there was.
+    domain : Domain
+        What has become of it.
+    number : ndarray of int, shape (k,)
+        The point of the mesh that each point of the domain was.
+
+    Returns
+    -------
+    ndarray of int
+        Rows of the points of the domain.
+    """
+    inside = domain.simplices[domain.labels >= 0]
+    rows = quality.below(domain.points, inside, float(mesh._bound[0]))
+    new = np.sort(number[inside[rows]], axis=1)
+    old = np.sort(mesh.simplices[mesh._below], axis=1).astype(np.int64)
+    n = mesh.npoints
+    same = np.isin((new[:, 0] * n + new[:, 1]) * n + new[:, 2],
+                   (old[:, 0] * n + old[:, 1]) * n + old[:, 2])  # fmt: skip
+    return np.unique(inside[rows[~same]]).astype(np.intp)

@@ -1,0 +1,136 @@
+"""Meshes made of meshes: finer, coarser, smoother."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import delone
+from delone import InputError
+from delone.testing import assert_mesh
+
+THIRTY = Fraction(3, 4)
+POINTS = np.array([(0.0, 0), (4, 0), (4, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)])
+SEGMENTS = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)])
+CORNER = np.array([(0.0, 0), (10, 0), (10, 10), (0, 10), (1, 1), (9, 1.2), (9, 1.0)])
+RAYS = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (4, 6)])
+
+
+@pytest.fixture(scope="module")
+def mesh() -> delone.Mesh:
+    return delone.mesh((POINTS, SEGMENTS), max_area=0.02, segment_markers=np.arange(8) + 1)
+
+
+def check(mesh: delone.Mesh) -> None:
+    assert_mesh(mesh, POINTS, SEGMENTS, squared_cosine=THIRTY)
+    assert mesh.areas.sum() == pytest.approx(12)
+    assert mesh.areas[mesh.region == mesh.region[mesh.find_simplex((1.5, 1.5))]].sum() == (
+        pytest.approx(1)
+    )
+    _start, source = mesh.segment_source
+    assert np.array_equal(mesh.segment_markers, source + 1)
+
+
+def test_the_triangulation_of_a_mesh_is_the_mesh(mesh: delone.Mesh) -> None:
+    simplices, _, labels, _ = mesh._whole
+    found = {tuple(sorted(t)) for t in simplices[labels >= 0].tolist()}
+    assert found == {tuple(sorted(t)) for t in mesh.simplices.tolist()}
+
+
+def test_marked_triangles_become_smaller(mesh: delone.Mesh) -> None:
+    marked = np.flatnonzero(np.hypot(*(mesh.points[mesh.simplices].mean(axis=1) - 3).T) < 0.5)
+    finer = mesh.refine(marked, ratio=0.25)
+    check(finer)
+    assert np.array_equal(finer.points[: mesh.npoints], mesh.points)
+    where = finer.points[finer.simplices].mean(axis=1)
+    home = mesh.find_simplex(where)
+    inside = np.isin(home, marked)
+    assert (finer.areas[inside] <= 0.25 * mesh.areas[home[inside]] * 1.0001).mean() > 0.8
+    assert finer.areas[inside].max() <= 0.25 * mesh.areas[marked].max()
+    assert finer.report.added == finer.nadded
+    mask = np.zeros(mesh.nsimplex, dtype=bool)
+    mask[marked] = True
+    assert np.array_equal(mesh.refine(mask, ratio=0.25).points, finer.points)
+
+
+def test_nothing_to_refine_changes_nothing(mesh: delone.Mesh) -> None:
+    same = mesh.refine()
+    assert same.nsimplex == mesh.nsimplex
+    assert mesh.refine([]).nsimplex == mesh.nsimplex
+    for wrong in ([-1], [mesh.nsimplex], np.zeros(3, dtype=bool), [[0]]):
+        with pytest.raises(InputError):
+            mesh.refine(wrong)
+
+
+def test_sharp_corners_are_remembered() -> None:
+    """Refining again leaves what the input spoils, and does not start to work at it."""
+    mesh = delone.mesh((CORNER, RAYS))
+    again = mesh.refine()
+    assert again.npoints == mesh.npoints
+    near = np.flatnonzero(np.hypot(*(mesh.points[mesh.simplices].mean(axis=1) - 1).T) < 2)
+    finer = mesh.refine(near).refine()
+    assert finer.npoints < 4 * mesh.npoints
+    assert_mesh(finer, CORNER, RAYS, squared_cosine=THIRTY, spoilt=finer.report.below)
+    assert set(finer.report.cause.tolist()) == {"corner"}
+
+
+def test_coarsening_keeps_what_is_promised(mesh: delone.Mesh) -> None:
+    coarser = mesh.coarsen()
+    check(coarser)
+    assert coarser.npoints < 0.95 * mesh.npoints
+    twice = coarser.coarsen()
+    check(twice)
+    assert twice.npoints < coarser.npoints
+    marked = mesh.find_simplex([(3, 2)])
+    check(mesh.coarsen(marked))
+    assert mesh.coarsen([]) is mesh
+
+
+@pytest.mark.parametrize("method", ["lloyd", "odt", "laplace"])
+def test_smoothing_keeps_what_is_promised(mesh: delone.Mesh, method: str) -> None:
+    better = mesh.smooth(4, method)
+    check(better)
+    fixed = (mesh.point_source >= 0) | (mesh._on >= 0)
+    assert np.array_equal(better.points[fixed], mesh.points[fixed])
+    assert not np.array_equal(better.points, mesh.points)
+    before, after = mesh.quality(), better.quality()
+    assert after.radius_ratio.mean() > before.radius_ratio.mean()
+    assert after.smallest_angle.min() >= 30 - 1e-9
+
+
+def test_smoothing_beside_sharp_corners() -> None:
+    mesh = delone.mesh((CORNER, RAYS), max_area=0.3)
+    better = mesh.smooth(5, "odt")
+    assert_mesh(better, CORNER, RAYS, squared_cosine=THIRTY, spoilt=better.report.below)
+    assert len(better.report.below) <= len(mesh.report.below)
+
+
+def test_smoothing_while_meshing() -> None:
+    plain = delone.mesh((POINTS, SEGMENTS), max_area=0.02)
+    smooth = delone.mesh((POINTS, SEGMENTS), max_area=0.02, smooth=3)
+    assert np.array_equal(smooth.points, plain.smooth(3).points)
+    with pytest.raises(InputError, match="method"):
+        plain.smooth(1, "other")
+
+
+def test_measures() -> None:
+    mesh = delone.mesh((POINTS, SEGMENTS), max_area=0.1)
+    q = mesh.quality()
+    a, b, c = (mesh.points[mesh.simplices[:, k]] for k in range(3))
+    sides = np.array([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)])
+    s = sides.sum(axis=0) / 2
+    inner = mesh.areas / s
+    outer = sides.prod(axis=0) / (4 * mesh.areas)
+    assert q.radius_ratio == pytest.approx(2 * inner / outer)
+    assert q.edge_ratio == pytest.approx(sides.max(axis=0) / sides.min(axis=0))
+    cosines = np.array(
+        [(sides[k - 1] ** 2 + sides[k - 2] ** 2 - sides[k] ** 2) / (2 * sides[k - 1] * sides[k - 2])
+         for k in range(3)]
+    )  # fmt: skip
+    angles = np.degrees(np.arccos(cosines))
+    assert q.smallest_angle == pytest.approx(angles.min(axis=0))
+    assert q.largest_angle == pytest.approx(angles.max(axis=0))
+    assert q.area == pytest.approx(mesh.areas)
+    assert q.summary()["smallest_angle"]["min"] == q.smallest_angle.min()

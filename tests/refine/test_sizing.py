@@ -1,0 +1,110 @@
+"""Sizes: by number, region, function, background, raster; what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import delone
+from delone import Delaunay, InputError
+
+SQUARE = [(0.0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+EQUILATERAL = np.sqrt(3) / 4
+
+
+def kept(mesh: delone.Mesh, size: Any) -> bool:
+    """Whether each triangle has at most the area that the size at its centre allows."""
+    centres = mesh.points[mesh.simplices].mean(axis=1)
+    return bool((mesh.areas <= EQUILATERAL * size(centres) ** 2 * (1 + 1e-12)).all())
+
+
+def test_a_number_is_the_length_of_edges() -> None:
+    mesh = delone.mesh(SQUARE, size=0.1)
+    assert kept(mesh, lambda xy: np.full(len(xy), 0.1))
+    lengths = np.hypot(*(mesh.points[mesh.edges[:, 0]] - mesh.points[mesh.edges[:, 1]]).T)
+    assert 0.06 < lengths.mean() < 0.11
+
+
+def test_a_function_of_places() -> None:
+    def size(xy: np.ndarray) -> np.ndarray:
+        return 0.01 + 0.2 * np.hypot(*(xy - 0.7).T)
+
+    mesh = delone.mesh(SQUARE, size=size)
+    assert kept(mesh, size)
+    assert mesh.report.ok
+    # Not many more triangles than the areas ask for.
+    centres = mesh.points[mesh.simplices].mean(axis=1)
+    wanted = (mesh.areas / (EQUILATERAL * size(centres) ** 2)).sum()
+    assert mesh.nsimplex < 2.2 * wanted
+
+
+def test_a_small_size_at_a_place_between_centres_is_found() -> None:
+    def size(xy: np.ndarray) -> np.ndarray:
+        return np.where(np.hypot(*(xy - (0.2, 0.9)).T) < 0.05, 0.004, 0.5)
+
+    mesh = delone.mesh(SQUARE, size=size)
+    assert kept(mesh, size)
+    assert mesh.areas[mesh.find_simplex((0.2, 0.9))] < 1e-5
+    assert mesh.areas.max() > 1e-3
+
+
+def test_a_background_mesh() -> None:
+    background = Delaunay([(-1, -1), (2, -1), (2, 2), (-1, 2), (0.5, 0.5)])
+    mesh = delone.mesh(SQUARE, size=(background, [0.4, 0.4, 0.4, 0.4, 0.02]))
+    assert mesh.areas[mesh.find_simplex((0.5, 0.5))] < 4e-4
+    assert mesh.areas[mesh.find_simplex((0.01, 0.01))] > 1e-3
+    small = Delaunay([(0.4, 0.4), (0.6, 0.4), (0.5, 0.6)])
+    beyond = delone.mesh(SQUARE, size=(small, [0.05, 0.05, 0.05]))
+    assert kept(beyond, lambda xy: np.full(len(xy), 0.05 + 1e-12))
+    with pytest.raises(InputError, match="shape"):
+        delone.mesh(SQUARE, size=(background, [1, 2]))
+
+
+def test_a_raster() -> None:
+    xarray = pytest.importorskip("xarray")
+    x = np.linspace(0, 1, 11)
+    values = 0.02 + 0.2 * np.broadcast_to(x, (11, 11))
+    for order in (1, -1):
+        raster = xarray.DataArray(values, coords={"y": x[::order], "x": x}, dims=("y", "x"))
+        mesh = delone.mesh(SQUARE, size=raster)
+        assert kept(mesh, lambda xy: 0.02 + 0.2 * xy[:, 0] + 1e-9)
+    holed = values.copy()
+    holed[3:8, 3:8] = np.nan
+    raster = xarray.DataArray(holed, coords={"y": x, "x": x}, dims=("y", "x"))
+    with pytest.raises(ValueError, match=r"size is nan at \(0\.\d+, 0\.\d+\)"):
+        delone.mesh(SQUARE, size=raster)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, float("nan")])
+def test_bad_sizes_name_their_place(bad: float) -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        delone.mesh(SQUARE, size=bad)
+    with pytest.raises(ValueError, match="above 0"):
+        delone.mesh(SQUARE, max_area=bad)
+    with pytest.raises(ValueError, match=r"at \(0\.[5-9]\d*, 0\.\d+\)"):
+        delone.mesh(SQUARE, size=lambda xy: np.where(xy[:, 0] > 0.5, bad, 0.1))
+    with pytest.raises(ValueError, match="region 0"):
+        delone.mesh(SQUARE, size={0: bad})
+
+
+def test_what_is_no_size() -> None:
+    for wrong in ("fine", object(), (1, 2, 3)):
+        with pytest.raises(ValueError, match="size"):
+            delone.mesh(SQUARE, size=wrong)
+    with pytest.raises(ValueError, match="one length for each"):
+        delone.mesh(SQUARE, size=lambda xy: np.ones((len(xy), 2)))
+
+
+def test_a_size_that_never_ends_is_stopped() -> None:
+    calls = 0
+
+    def size(xy: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        return np.full(len(xy), 0.3 / 2**calls)
+
+    mesh = delone.mesh(SQUARE, size=size, max_points=3000)
+    assert mesh.report.exhausted
+    assert mesh.nadded == 3000
