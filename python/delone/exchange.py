@@ -78,7 +78,7 @@ def to_dolfinx_arrays(mesh: Mesh) -> dict[str, NDArray[Any]]:
 
 def to_pyvista(mesh: Mesh) -> Any:
     """Return a ``pyvista.PolyData``; see ``Mesh.to_pyvista``."""
-    pyvista = require("pyvista", extra="fem", what="to_pyvista")
+    pyvista = require("pyvista", extra="pyvista", what="to_pyvista")
     faces = np.column_stack((np.full(mesh.nsimplex, 3), mesh.simplices)).ravel()
     found = pyvista.PolyData(np.column_stack((mesh.points, np.zeros(mesh.npoints))), faces)
     found.cell_data["region"] = mesh.region

@@ -305,7 +305,8 @@ def test_crates_need_what_they_may() -> None:
 # Arrows up, which only the inside of a function may have: triangulation asks plot to draw, and io
 # plot and relief to write pictures; plot knows Delaunay and how io replaces files. A constrained
 # triangulation begins edits, which make another one.
-# A mesh makes others of itself, measures draw themselves, and a mesh becomes what io's libraries take.
+# A mesh makes others of itself, measures draw themselves, and a mesh becomes what the libraries of
+# io take.
 LAZY = {
     ("triangulation", "plot"),
     ("io", "plot"),

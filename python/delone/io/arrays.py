@@ -17,11 +17,11 @@ import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone.constrained import ConstrainedDelaunay
-from delone.meshed import Mesh as QualityMesh
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.registry import MeshFile
+from delone.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
