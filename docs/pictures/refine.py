@@ -31,8 +31,3 @@ def island() -> None:
         ax.set(xlabel=ax.get_xlabel() if ax is grid[1, 1] else "")
     for ax in grid.flat[:3]:
         ax.set_axis_off()
-
-
-if __name__ == "__main__":
-    island()
-    plt.savefig("refine.png", dpi=80)
