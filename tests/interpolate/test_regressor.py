@@ -10,7 +10,6 @@ from delone.errors import InputError
 from delone.interpolate.methods import METHODS
 
 checks = pytest.importorskip("sklearn.utils.estimator_checks")
-pytest.importorskip("delone.interpolate.regressor")
 
 from delone.interpolate import DelaunayRegressor  # noqa: E402
 

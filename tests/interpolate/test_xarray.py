@@ -12,7 +12,7 @@ from delone.errors import InputError
 from delone.interpolate import interpolator
 
 xarray = pytest.importorskip("xarray")
-pytest.importorskip("delone.interpolate.accessor")
+import delone.interpolate.accessor  # noqa: E402, F401  (it registers the accessors)
 
 POINTS = datasets.uniform(150, seed=2)
 TIME = np.arange(6.0)
