@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "Locator2",
+    "Locator3",
     "__version__",
     "combine2",
     "components2",
@@ -128,6 +129,20 @@ class Locator2:
     def leave_one_out(
         self, kind: str, workers: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]: ...
+
+@final
+class Locator3:
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+    ) -> Locator3: ...
+    def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+    def locate(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+    def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
 def refine2(
     points: NDArray[np.float64],

@@ -165,6 +165,7 @@ CORE: dict[str, set[str]] = {
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "locate3": {"locate", "order", "parallel", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,

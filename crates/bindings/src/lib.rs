@@ -7,6 +7,7 @@ mod errors;
 mod interpolate;
 mod lawson;
 mod locate;
+mod locate3;
 mod predicates;
 mod refine;
 mod signals;
@@ -31,6 +32,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
     m.add_class::<locate::Locator2>()?;
+    m.add_class::<locate3::Locator3>()?;
     m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;

@@ -8,6 +8,7 @@ pub mod delaunay2;
 pub mod error;
 pub mod interpolate;
 pub mod locate;
+pub mod locate3;
 pub mod memory;
 pub mod mesh2;
 pub mod order;

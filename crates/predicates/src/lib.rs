@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`orient2d()`] | on which side of the line `ab` does `c` lie? | 2 |
 //! | [`angle()`] | is the angle at `p` between `a` and `b` acute? | 2 |
-//! | [`nearer()`] | which of `a`, `b` is nearer to `o`? | 2 |
+//! | [`nearer()`], [`nearer3()`] | which of `a`, `b` is nearer to `o`? | 2 |
 //! | [`incircle()`] | does `d` lie inside the circle `abc`? | 4 |
 //! | [`orient3d()`] | on which side of the plane `abc` does `d` lie? | 3 |
 //! | [`insphere()`] | does `e` lie inside the sphere `abcd`? | 5 |
@@ -59,7 +59,7 @@ pub mod sweep;
 mod ties;
 
 pub use angle::angle;
-pub use distance::nearer;
+pub use distance::{nearer, nearer3};
 pub use incircle::{incircle, incircle_exact};
 pub use insphere::{insphere, insphere_exact};
 pub use orient2d::{orient2d, orient2d_exact};

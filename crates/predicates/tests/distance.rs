@@ -2,9 +2,9 @@
 
 mod oracle;
 
-use delone_predicates::{Point2, Sign, nearer};
+use delone_predicates::{Point2, Point3, Sign, nearer, nearer3};
 use oracle::{integers, sign_of};
-use proptest::array::uniform2;
+use proptest::array::{uniform2, uniform3};
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
 
@@ -27,7 +27,40 @@ fn expected(o: Point2, a: Point2, b: Point2) -> Sign {
     sign_of(&(squared(&rows[2]) - squared(&rows[1])))
 }
 
+fn expected3(o: Point3, a: Point3, b: Point3) -> Sign {
+    let rows = integers(&[o, a, b]);
+    let squared = |p: &[num_bigint::BigInt]| -> num_bigint::BigInt {
+        let differences = p.iter().zip(&rows[0]).map(|(x, o)| x - o);
+        differences.map(|d| &d * &d).sum()
+    };
+    sign_of(&(squared(&rows[2]) - squared(&rows[1])))
+}
+
 proptest! {
+    #[test]
+    fn the_sign_is_exact_in_space(
+        o in uniform3(coordinate()),
+        a in uniform3(coordinate()),
+        b in uniform3(coordinate()),
+    ) {
+        prop_assert_eq!(nearer3(o, a, b), expected3(o, a, b));
+        prop_assert_eq!(nearer3(o, b, a), -nearer3(o, a, b));
+        prop_assert_eq!(nearer3(o, a, a), Sign::Zero);
+    }
+
+    #[test]
+    fn points_of_one_sphere_differ_by_less_than_a_double(
+        centre in uniform3(-1e6..1e6_f64),
+        turn in 0..4usize,
+        shift in uniform3(-2..=2_i64),
+    ) {
+        let at = |p: Point3| [0, 1, 2].map(|k| centre[k] + p[k]);
+        let a = at([2.0, 3.0, 6.0]);
+        let b = at([[3.0, -6.0, 2.0], [-2.0, -3.0, -6.0], [6.0, 2.0, 3.0], [0.0, 7.0, 0.0]][turn]);
+        let b = [0, 1, 2].map(|k| oracle::points::ulps(b[k], shift[k]));
+        prop_assert_eq!(nearer3(centre, a, b), expected3(centre, a, b));
+    }
+
     #[test]
     fn the_sign_is_exact(
         o in uniform2(coordinate()),

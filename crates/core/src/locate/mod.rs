@@ -31,18 +31,18 @@ pub use nearest::nearest;
 pub use range::{in_unit, seen_from};
 pub use segment::along;
 pub use star::{Place, Star};
+pub use start::Start;
 pub use tiling::{Side, next, prev};
 
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
 use boxes::Boxes;
-use start::Start;
 use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.
 #[derive(Debug)]
 pub struct Kept {
-    start: Start,
+    start: Start<2>,
     boundary: OnceLock<Boundary>,
     boxes: OnceLock<Boxes>,
 }
@@ -50,8 +50,9 @@ pub struct Kept {
 impl Kept {
     /// A tree of starts for many calls; the rest is made when it is needed.
     pub fn of(given: &Given) -> Result<Self> {
+        let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
-            start: Start::of(given)?,
+            start: Start::of(given.simplices.len(), first)?,
             boundary: OnceLock::new(),
             boxes: OnceLock::new(),
         })

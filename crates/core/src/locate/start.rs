@@ -1,4 +1,4 @@
-//! Where walks start: a k-d tree over a sample of the triangles, kept between calls.
+//! Where walks start: a k-d tree over a sample of the triangles, or tetrahedra, kept between calls.
 //!
 //! One triangle in eight to sixteen is a node, by the place of its first corner (J. L. Bentley,
 //! "Multidimensional binary search trees used for associative searching", 1975). A query goes down
@@ -6,45 +6,40 @@
 //! points are dense. The tree is perfect and in the order of its levels, so it needs no links and
 //! its top stays in the cache.
 
-use delone_predicates::Point2;
-
-use crate::delaunay2::validate::Given;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
-use crate::points::Extent;
 
-/// Triangles a node, at least.
+/// Simplices a node, at least.
 const SHARE: usize = 8;
 
 /// A node. Its left subtree has nothing beyond it along its axis, its right one nothing before it.
 #[derive(Debug, Clone, Copy)]
-struct Node {
-    at: Point2,
-    triangle: u32,
+struct Node<const D: usize> {
+    at: [f64; D],
+    simplex: u32,
     axis: u32,
 }
 
 /// The tree.
 #[derive(Debug)]
-pub struct Start {
-    nodes: Vec<Node>,
+pub struct Start<const D: usize> {
+    nodes: Vec<Node<D>>,
 }
 
-impl Start {
-    /// A tree over evenly spread triangles of `given`.
-    pub fn of(given: &Given) -> Result<Self> {
-        let m = given.simplices.len();
+impl<const D: usize> Start<D> {
+    /// A tree over some of `m` simplices, evenly spread, whose first corners `corner` knows.
+    pub fn of(m: usize, corner: impl Fn(usize) -> [f64; D]) -> Result<Self> {
         // The largest perfect tree of at most m / SHARE nodes, and of one at least.
         let levels = (m / SHARE + 1).ilog2();
         let count = ((1 << levels) - 1).max(1).min(m);
         let mut sample = with_room(count)?;
         sample.extend((0..count).map(|i| {
             let t = (i as u64 * m as u64 / count as u64) as usize;
-            (given.point(given.simplices[t][0]), t as u32)
+            (corner(t), t as u32)
         }));
         let node = Node {
-            at: [0.0; 2],
-            triangle: 0,
+            at: [0.0; D],
+            simplex: 0,
             axis: 0,
         };
         let mut nodes = filled(count, node)?;
@@ -52,18 +47,18 @@ impl Start {
         Ok(Self { nodes })
     }
 
-    /// A triangle near `q`.
+    /// A simplex near `q`.
     #[inline]
-    pub fn near(&self, q: Point2) -> usize {
+    pub fn near(&self, q: [f64; D]) -> usize {
         let (mut best, mut least) = (0, f64::INFINITY);
         let mut i = 0;
         while let Some(node) = self.nodes.get(i) {
-            let (x, y) = (node.at[0] - q[0], node.at[1] - q[1]);
-            let distance = x * x + y * y;
+            let seen: [f64; D] = std::array::from_fn(|k| node.at[k] - q[k]);
+            let distance = seen.iter().map(|x| x * x).sum();
             if distance < least {
-                (best, least) = (node.triangle as usize, distance);
+                (best, least) = (node.simplex as usize, distance);
             }
-            let right = if node.axis == 0 { x <= 0.0 } else { y <= 0.0 };
+            let right = seen[node.axis as usize] <= 0.0;
             i = 2 * i + 1 + usize::from(right);
         }
         best
@@ -71,21 +66,33 @@ impl Start {
 }
 
 /// Fills the subtree at `i` with the sample, which has as many items as the subtree has nodes.
-fn fill(nodes: &mut [Node], i: usize, sample: &mut [(Point2, u32)]) {
+fn fill<const D: usize>(nodes: &mut [Node<D>], i: usize, sample: &mut [([f64; D], u32)]) {
     if sample.is_empty() {
         return;
     }
-    let extent = Extent::of(sample.iter().map(|s| s.0));
-    let half = |k: usize| extent.max[k] / 2.0 - extent.min[k] / 2.0;
-    let axis = usize::from(half(1) > half(0));
+    let axis = longest(sample);
     let middle = sample.len() / 2;
-    let by_axis = |s: &(Point2, u32), t: &(Point2, u32)| s.0[axis].total_cmp(&t.0[axis]);
-    let (left, &mut (at, triangle), right) = sample.select_nth_unstable_by(middle, by_axis);
+    let by_axis = |s: &([f64; D], u32), t: &([f64; D], u32)| s.0[axis].total_cmp(&t.0[axis]);
+    let (left, &mut (at, simplex), right) = sample.select_nth_unstable_by(middle, by_axis);
     nodes[i] = Node {
         at,
-        triangle,
+        simplex,
         axis: axis as u32,
     };
     fill(nodes, 2 * i + 1, left);
     fill(nodes, 2 * i + 2, right);
+}
+
+/// The axis along which a sample is longest, the first of several.
+fn longest<const D: usize>(sample: &[([f64; D], u32)]) -> usize {
+    let half = |k: usize| {
+        let ends = sample
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(least, most), s| {
+                (least.min(s.0[k]), most.max(s.0[k]))
+            });
+        // Halves, so that no difference overflows.
+        ends.1 / 2.0 - ends.0 / 2.0
+    };
+    (1..D).fold(0, |best, k| if half(k) > half(best) { k } else { best })
 }

@@ -5,6 +5,6 @@ mod arrange;
 pub mod blocks;
 pub mod curve;
 mod hilbert;
-mod radix;
+pub mod radix;
 
 pub use arrange::{Arranged, arrange};

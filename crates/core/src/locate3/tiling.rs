@@ -1,0 +1,88 @@
+//! Exported arrays as a tiling of space: from tetrahedron to tetrahedron across faces.
+
+use delone_predicates::{Point3, Sign, orient3d};
+
+/// The arrays of a triangulation in space, whose indices have been checked.
+#[derive(Debug, Clone, Copy)]
+pub struct Tetrahedra<'a> {
+    /// Coordinates.
+    pub points: &'a [Point3],
+    /// Positively oriented tetrahedra.
+    pub simplices: &'a [[i32; 4]],
+    /// The tetrahedron across the face opposite each corner, -1 outside.
+    pub neighbors: &'a [[i32; 4]],
+}
+
+/// A corner of a tetrahedron, and the face opposite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    /// The tetrahedron.
+    pub simplex: usize,
+    /// The corner, 0 to 3.
+    pub corner: usize,
+}
+
+/// The corners of the face opposite each corner, counter-clockwise seen from outside.
+pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+impl Tetrahedra<'_> {
+    /// The coordinates of a vertex.
+    #[inline]
+    pub fn point(&self, v: i32) -> Point3 {
+        self.points[v as usize]
+    }
+
+    /// The coordinates of the corners of a tetrahedron.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [Point3; 4] {
+        self.simplices[t].map(|v| self.point(v))
+    }
+
+    /// The vertex at a corner.
+    #[inline]
+    pub fn vertex(&self, side: Side) -> i32 {
+        self.simplices[side.simplex][side.corner]
+    }
+
+    /// The same face seen from the tetrahedron beyond; nothing at the boundary.
+    #[inline]
+    pub fn beyond(&self, side: Side) -> Option<Side> {
+        let t = self.neighbors[side.simplex][side.corner];
+        if t < 0 {
+            return None;
+        }
+        let back = &self.neighbors[t as usize];
+        let here = side.simplex as i32;
+        // Two tetrahedra share one face; arrays that say otherwise must not lead out of range.
+        let corner = back.iter().position(|&s| s == here).unwrap_or(3);
+        Some(Side {
+            simplex: t as usize,
+            corner,
+        })
+    }
+
+    /// On which side of the face opposite each corner `q` lies: positive is inside.
+    #[inline]
+    pub fn sides(&self, t: usize, q: Point3) -> [Sign; 4] {
+        let [a, b, c, d] = self.corners(t);
+        [
+            orient3d(q, b, c, d),
+            orient3d(a, q, c, d),
+            orient3d(a, b, q, d),
+            orient3d(a, b, c, q),
+        ]
+    }
+
+    /// Some boundary face that `q` is strictly beyond; any face where there is none.
+    pub fn beyond_which(&self, q: Point3) -> Side {
+        let boundary = (0..self.simplices.len()).flat_map(|simplex| {
+            let outer = (0..4).filter(move |&corner| self.neighbors[simplex][corner] < 0);
+            outer.map(move |corner| Side { simplex, corner })
+        });
+        let beyond = |side: &Side| self.sides(side.simplex, q)[side.corner] == Sign::Negative;
+        boundary.into_iter().find(beyond).unwrap_or(Side {
+            simplex: 0,
+            corner: 0,
+        })
+    }
+}

@@ -1,0 +1,71 @@
+//! The walk through exported arrays to the tetrahedron that holds a point.
+//!
+//! The remembering visibility walk (O. Devillers, S. Pion and M. Teillaud, "Walking in a
+//! triangulation", 2002) goes across a face that has the point on its other side. On Delaunay
+//! triangulations the power of the point to the spheres falls at each step, so it ends; on others it
+//! may turn in circles, so it has a budget, and then every tetrahedron is asked.
+
+use delone_predicates::{Point3, Sign, orient3d};
+
+use super::star::Place;
+use super::tiling::{Side, Tetrahedra};
+
+/// Where a walk ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// In a tetrahedron, boundary included.
+    Inside(Place),
+    /// At a boundary face that has the point strictly beyond.
+    Beyond(Side),
+}
+
+/// Steps before every tetrahedron is asked: several times what a walk across a whole mesh of
+/// uniform points takes, which is a multiple of the third root.
+fn budget(simplices: usize) -> usize {
+    256 + 16 * (simplices as f64).cbrt() as usize
+}
+
+/// Walks from tetrahedron `from` to `q`; nothing where the budget is spent.
+#[inline]
+pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
+    let signs = given.sides(from, q);
+    let Some(corner) = signs.iter().position(|&s| s == Sign::Negative) else {
+        return Some(Found::Inside(Place::of(from, signs)));
+    };
+    let mut at = Side {
+        simplex: from,
+        corner,
+    };
+    'walk: for _ in 0..budget(given.simplices.len()) {
+        let Some(side) = given.beyond(at) else {
+            return Some(Found::Beyond(at));
+        };
+        let corners = given.corners(side.simplex);
+        // The point is inside the face through which the walk has come.
+        let mut signs = [Sign::Positive; 4];
+        for k in 1..4 {
+            let corner = (side.corner + k) % 4;
+            let mut with = corners;
+            with[corner] = q;
+            let [a, b, c, d] = with;
+            signs[corner] = orient3d(a, b, c, d);
+            if signs[corner] == Sign::Negative {
+                at = Side { corner, ..side };
+                continue 'walk;
+            }
+        }
+        return Some(Found::Inside(Place::of(side.simplex, signs)));
+    }
+    None
+}
+
+/// The first tetrahedron that holds `q`, of all.
+#[cold]
+#[inline(never)]
+pub fn scan(given: &Tetrahedra, q: Point3) -> Option<Place> {
+    (0..given.simplices.len()).find_map(|t| {
+        let signs = given.sides(t, q);
+        let inside = signs.iter().all(|&s| s != Sign::Negative);
+        inside.then(|| Place::of(t, signs))
+    })
+}
