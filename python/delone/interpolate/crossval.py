@@ -209,8 +209,6 @@ class _Task:
         """Each vertex predicted by the others, as columns."""
         if self.method in _FROM_STARS and not self.options:
             threads = as_workers(self.workers)
-            if self.method == "nearest":
-                return self.field.columns[self._nearest_other()]
             table = self.mesh._locator.leave_one_out(self.method, threads)
             found: Floats = _core.combine2(*table, self.field.columns, None, None, threads)
             return found
@@ -229,18 +227,6 @@ class _Task:
     def _vertices(self) -> Rows:
         first = self.mesh.duplicate_of
         return np.flatnonzero(first == np.arange(len(first)))
-
-    def _nearest_other(self) -> Rows:
-        """The nearest other vertex of each vertex, which is one of its neighbours."""
-        indptr, indices = self.mesh.vertex_neighbor_vertices
-        owner = np.repeat(np.arange(self.mesh.npoints), np.diff(indptr))
-        points = self.mesh.points
-        distance = np.hypot(*(points[indices] - points[owner]).T)
-        order = np.lexsort((indices, distance, owner))
-        nearest = np.arange(self.mesh.npoints)
-        vertices = self._vertices()
-        nearest[vertices] = indices[order[indptr[vertices]]]
-        return nearest
 
     def _reach(self) -> int:
         kind, fixed = METHODS[self.method]

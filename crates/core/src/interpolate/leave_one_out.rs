@@ -3,9 +3,11 @@
 //!
 //! Without an inner vertex its star becomes a hole, and the Delaunay triangles of that hole are
 //! those that the vertex, taken as a query, would remove: the hole is the cavity. It is cut off ear by
-//! ear: an ear whose circle has no vertex of the hole inside is a Delaunay triangle.
+//! ear: an ear whose circle has no vertex of the hole inside is a Delaunay triangle. Ties go as
+//! everywhere, by the coordinates of what is left, so the triangles are those of a triangulation
+//! that never had the vertex.
 
-use delone_predicates::{Point2, Sign, incircle, nearer, orient2d};
+use delone_predicates::{Point2, Sign, incircle_canonical, nearer, orient2d};
 
 use super::Rows;
 use super::cavity::Cavity;
@@ -193,7 +195,7 @@ impl Hole {
                 orient2d(a, b, c) == Sign::Positive
                     && self.rest.iter().all(|&s| {
                         slots.contains(&(s as usize))
-                            || incircle(a, b, c, points[s as usize]) != Sign::Positive
+                            || incircle_canonical(a, b, c, points[s as usize]) != Sign::Positive
                     })
             });
             // There always is one, in a hole of a Delaunay triangulation.
