@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
-from delone.interpolate import CloughTocher, GradientWarning
+from delone.interpolate import CloughTocher, GradientWarning, interpolator
 from delone.reference import clough_tocher
 
 
@@ -127,3 +127,16 @@ def test_agrees_with_scipy() -> None:
     queries = np.random.default_rng(13).random((1000, 2))
     theirs = interpolate.CloughTocher2DInterpolator(points, bumps(points))(queries)
     np.testing.assert_allclose(CloughTocher(points, bumps(points))(queries), theirs, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["clough-tocher", "farin", "sibson1"])
+def test_local_gradients_do_not_swing_between_tracks(kind: str) -> None:
+    # Along almost straight tracks nothing tells how a quadric bends across them.
+    rng = np.random.default_rng(14)
+    tracks = [
+        np.column_stack((rng.random(100), row + 1e-6 * rng.normal(size=100))) for row in range(2)
+    ]
+    points = np.concatenate(tracks)
+    values = np.sin(4 * points[:, 0]) + 0.01 * rng.random(200)
+    found = interpolator(kind, points, values, gradients="local")(0.1 + 0.8 * rng.random((500, 2)))
+    assert np.abs(found).max() < 2
