@@ -19,12 +19,10 @@ from delone._arrays import (
     as_count,
     as_seeds,
     as_segments,
-    as_vectors,
     as_workers,
-    require_finite,
 )
 from delone.constrained_validation import ConstrainedReport, validate
-from delone.errors import InputError, InternalError, ShapeError
+from delone.errors import InputError, InternalError
 from delone.segmented import Options, Segmented
 from delone.triangulation import counted, kept, own_copy
 
@@ -205,57 +203,6 @@ class ConstrainedDelaunay(Segmented):
         mesh._set(found, options, _compute(points, found, options))
         return mesh
 
-    def find_simplex(
-        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
-    ) -> Indices:
-        """Tell which triangles hold points.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Points to locate. NaN and infinity are outside.
-        bruteforce : bool, optional
-            Accepted as in SciPy. No search is exhaustive.
-        tol : float, optional
-            Accepted as in SciPy. It has no effect: the answer is exact.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            The triangle that has the point inside or on its boundary, the first one where there are
-            several, or -1 where there is none: outside, or in a hole.
-
-        Raises
-        ------
-        ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
-
-        Notes
-        -----
-        Walks go through all triangles of the convex hull, the removed ones included.
-
-        Examples
-        --------
-        >>> from delone import ConstrainedDelaunay
-        >>> points = [(0, 0), (6, 0), (0, 6), (1, 1), (2, 1), (1, 2)]
-        >>> mesh = ConstrainedDelaunay(points, [(3, 4), (4, 5), (5, 3)], holes=[(1.2, 1.2)])
-        >>> (mesh.find_simplex([(1.2, 1.2), (1, 1), (0.5, 0.5)]) >= 0).tolist()
-        [False, True, True]
-        """
-        queries = as_vectors(xi, 2, name="xi")
-        rows = queries.reshape(-1, 2)
-        tiling, workers = self._tiles(), as_workers(self._options.workers)
-        whole = _core.find_simplex2(*tiling[:3], rows, workers)
-        found = whole
-        if self._number is not None:
-            found = self._number[whole]
-            doubtful = np.flatnonzero((found < 0) & (whole >= 0))
-            first = self.vertex_to_simplex
-            found[doubtful] = regions.beside(
-                tiling, whole[doubtful], rows[doubtful], self._number, first
-            )
-        return found.reshape(queries.shape[:-1])
-
     def triangles_along(self, a: ArrayLike, b: ArrayLike) -> Indices:
         """Return the triangles that a straight way meets, in order.
 
@@ -289,55 +236,7 @@ class ConstrainedDelaunay(Segmented):
         >>> len(way), mesh.neighbors[way[0]].tolist().count(way[1])
         (2, 1)
         """
-        start, end = _end(a, "a"), _end(b, "b")
-        along = self._along(start, end)
-        if self._number is None:
-            return along
-        if (start == end).all():
-            holder = np.atleast_1d(self.find_simplex(start))
-            return holder[holder >= 0]
-        found = self._number[along]
-        gone = found < 0
-        beside = regions.across_line(self._tiles(), along[gone], start, end)
-        found[gone] = np.where(beside >= 0, self._number[beside], -1)
-        kept_ones: Indices = found[found >= 0]
-        return kept_ones
-
-    def _along(self, a: Floats, b: Floats) -> Indices:
-        """Triangles of the whole hull."""
-        return self._whole_locator.along(a, b)
-
-    @property
-    @kept
-    def _whole_locator(self) -> _core.Locator2:
-        return self._locator if self._number is None else location.locator(*self._tiles()[:3])
-
-    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """Return the triangles along a segment: `triangles_along` by the name of `Delaunay`.
-
-        Parameters
-        ----------
-        a, b : array_like, shape (2,)
-            Ends of the segment.
-
-        Returns
-        -------
-        ndarray of int32, shape (k,)
-            Triangles, in their order from a to b.
-
-        Raises
-        ------
-        ShapeError, DtypeError, NonFiniteError
-            An end is no finite point.
-
-        Examples
-        --------
-        >>> from delone import ConstrainedDelaunay
-        >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
-        >>> len(mesh.walk((0.5, 1.5), (1.5, 0.5)))
-        2
-        """
-        return self.triangles_along(a, b)
+        return self.walk(a, b)
 
     def segments_crossing(self, a: ArrayLike, b: ArrayLike) -> Indices:
         """Return the subsegments that a straight way crosses, in order.
@@ -370,8 +269,8 @@ class ConstrainedDelaunay(Segmented):
         >>> mesh.segments[mesh.segments_crossing((0.5, 1.5), (1.5, 0.5))].tolist()
         [[0, 2]]
         """
-        start, end = _end(a, "a"), _end(b, "b")
-        tiling, along = self._tiles(), self._along(start, end)
+        start, end = location.segment_ends(a, b)
+        tiling, along = self._tiles(), self._whole_locator.along(start, end)
         found = regions.crossed(tiling, along, start, end)
         keys, order = self._keys_of_segments
         wanted = topology.edge_keys(found[:, 0], found[:, 1], self.npoints)
@@ -639,11 +538,3 @@ def _labels(seeds: Floats) -> Indices:
             f"rows {rows}"
         )
     return given.astype(np.int32)
-
-
-def _end(point: ArrayLike, name: str) -> Floats:
-    end = as_vectors(point, 2, name=name)
-    if end.ndim != 1:
-        raise ShapeError(f"{name} must be one point, got shape {end.shape}")
-    require_finite(end.reshape(1, 2), name=name)
-    return end

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from delone import _core
-from delone._arrays import as_vectors, as_workers
+from delone._arrays import as_workers
 from delone.errors import InputError, InternalError
 from delone.triangulation import Triangulation, counted, own_copy
 from delone.validation import ValidationReport
@@ -143,82 +143,9 @@ class Delaunay(Triangulation):
         }
         self._fill(arrays, dict(stages), workers)
 
-    def find_simplex(
-        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
-    ) -> Indices:
-        """Tell which triangles hold points.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Points to locate. NaN and infinity are outside.
-        bruteforce : bool, optional
-            Accepted as in SciPy. No search is exhaustive: the walk cannot fail.
-        tol : float, optional
-            Accepted as in SciPy. It has no effect: the answer is exact.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            The triangle that has the point inside or on its boundary, the first one where there are
-            several, or -1 where there is none. The shape is () for a single point.
-
-        Raises
-        ------
-        ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
-
-        Notes
-        -----
-        Points are taken along a space-filling curve, and each is reached by a visibility walk from
-        the one before; for k points that takes O(k log k + walks) time, whatever their order. A
-        visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On sorting
-        triangles in a Delaunay tessellation", 1991).
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
-        >>> mesh.find_simplex([(0.25, 0.25), (0.5, 0.5), (0.75, 0.75)])
-        array([ 0,  0, -1], dtype=int32)
-        """
-        queries = as_vectors(xi, 2, name="xi")
-        found = self._locator.find(queries.reshape(-1, 2), as_workers(self._workers))
-        return found.reshape(queries.shape[:-1])
-
-    def nearest(self, xi: ArrayLike) -> Indices:
-        """Return the vertices that are nearest to points.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Points, inside of the convex hull or not.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            The nearest vertex, the one of the smallest row where there are several; -1 where a
-            coordinate is NaN or infinite.
-
-        Raises
-        ------
-        ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
-
-        Notes
-        -----
-        Exact: distances are compared by predicates. From vertex to vertex: as long as the nearest
-        one is not reached, one of the neighbours is nearer.
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (5, 6), (0.5, 0.5)])
-        array([1, 2, 0], dtype=int32)
-        """
-        queries = as_vectors(xi, 2, name="xi")
-        found = self._locator.nearest(queries.reshape(-1, 2), as_workers(self._workers))
-        return found.reshape(queries.shape[:-1])
+    @property
+    def _sites(self) -> tuple[_core.Locator2, None]:
+        return self._locator, None
 
     def validate(self) -> ValidationReport:
         """Prove that this is the canonical Delaunay triangulation, or name the culprits.

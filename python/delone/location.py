@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_vectors, as_workers
+from delone._arrays import as_vectors, as_workers, require_finite
 from delone.errors import ShapeError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Location", "along", "locate", "locator"]
+__all__ = ["Location", "across_line", "along", "locate", "locator", "nearest", "segment_ends"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,31 +157,131 @@ def on_edges(points: Floats, edge: Indices, share: Floats) -> Floats:
     return (1.0 - weight) * start + weight * end
 
 
-def along(index: _core.Locator2, a: ArrayLike, b: ArrayLike) -> Indices:
+def nearest(
+    sites: tuple[_core.Locator2 | None, Indices | None], xi: ArrayLike, workers: int | None
+) -> Indices:
+    """Return the sites that are nearest to queries.
+
+    Parameters
+    ----------
+    sites : tuple
+        The index over a Delaunay triangulation, None without triangles, and the row of each of its
+        points; None where that is the same.
+    xi : array_like, shape (..., 2)
+        Queries.
+    workers : int or None
+        Number of threads.
+
+    Returns
+    -------
+    ndarray of int32, shape (...)
+        Rows; -1 for what is not finite.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `xi` is no array of real points in the plane.
+    """
+    queries = as_vectors(xi, 2, name="xi")
+    index, rows = sites
+    if index is None:
+        return np.full(queries.shape[:-1], -1, dtype=np.int32)
+    found = index.nearest(queries.reshape(-1, 2), as_workers(workers))
+    if rows is not None:
+        found = np.where(found >= 0, rows[found], np.int32(-1))
+    return found.reshape(queries.shape[:-1])
+
+
+def along(
+    index: _core.Locator2,
+    tiling: tuple[Floats, Indices, Indices],
+    number: Indices | None,
+    a: Floats,
+    b: Floats,
+) -> Indices:
     """Return the triangles along a segment.
 
     Parameters
     ----------
     index : Locator2
-        The index over the triangles.
-    a, b : array_like, shape (2,)
-        Ends of the segment, finite.
+        The index over all triangles of the convex hull.
+    tiling : tuple
+        Their points, simplices and neighbours.
+    number : ndarray of int32, shape (m + 1,), or None
+        What each triangle is among those that count, -1 where it is none; the last entry is -1.
+        None where all count.
+    a, b : ndarray of float64, shape (2,)
+        Ends of the segment, finite; they differ where there are numbers.
 
     Returns
     -------
     ndarray of int32, shape (k,)
         Triangles from a to b.
+    """
+    met = index.along(a, b)
+    if number is None:
+        return met
+    found = number[met]
+    gone = found < 0
+    found[gone] = number[across_line(*tiling, met[gone], a, b)]
+    kept: Indices = found[found >= 0]
+    return kept
+
+
+def across_line(  # noqa: PLR0917 (a tiling is three arrays)
+    points: Floats, simplices: Indices, neighbors: Indices, triangle: Indices, a: Floats, b: Floats
+) -> Indices:
+    """Return the neighbours of triangles across their edges on the line through two points.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices, neighbors : ndarray of int32, shape (m, 3)
+        Triangles, and those across their edges.
+    triangle : ndarray of int32, shape (k,)
+        Some of them.
+    a, b : ndarray of float64, shape (2,)
+        The points, which differ.
+
+    Returns
+    -------
+    ndarray of int32, shape (k,)
+        Triangles, -1 where there is no such edge or nothing beyond it.
+    """
+    corners = points[simplices[triangle]].reshape(-1, 2)
+    start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()
+    off = (_core.orient2d(start, end, corners) != 0).reshape(-1, 3)
+    found = neighbors[triangle, off.argmax(axis=1)]
+    return np.where(off.sum(axis=1) == 1, found, np.int32(-1))
+
+
+def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
+    """Return the ends of a segment.
+
+    Parameters
+    ----------
+    a, b : array_like, shape (2,)
+        The ends.
+
+    Returns
+    -------
+    a, b : ndarray of float64, shape (2,)
+        The same.
 
     Raises
     ------
     ShapeError, DtypeError
-        An end is no finite point.
+        An end is no point in the plane.
+    NonFiniteError
+        An end is not finite.
     """
-    return index.along(_end(a, "a"), _end(b, "b"))
+    return _end(a, "a"), _end(b, "b")
 
 
 def _end(point: ArrayLike, name: str) -> Floats:
     end = as_vectors(point, 2, name=name)
-    if end.ndim != 1 or not np.isfinite(end).all():
-        raise ShapeError(f"{name} must be one finite point, got {end.tolist()}")
+    if end.ndim != 1:
+        raise ShapeError(f"{name} must be one point, got shape {end.shape}")
+    require_finite(end.reshape(1, 2), name=name)
     return end

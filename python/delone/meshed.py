@@ -152,6 +152,11 @@ class Mesh(Triangulation):
 
     @property
     @kept
+    def _number(self) -> Indices:
+        return topology.rows_among(self._whole[0], self._simplices)
+
+    @property
+    @kept
     def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
         """Triangles of the whole hull: vertices, neighbours, regions by rows, lines."""
         edges, label = self._directed
@@ -436,33 +441,6 @@ class Mesh(Triangulation):
         from delone.smoothing import smoothed
 
         return smoothed(self, iterations, method)
-
-    def find_simplex(self, xi: ArrayLike) -> Indices:
-        """Tell which triangles hold points.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Points to locate. NaN and infinity are outside.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            A triangle that has the point inside or on its boundary; -1 where there is none.
-
-        Raises
-        ------
-        ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).find_simplex([(2, 2), (1, 1)]) >= 0
-        array([False,  True])
-        """
-        return self.locate(xi).simplex
 
     @kept
     def quality(self) -> quality.Quality:

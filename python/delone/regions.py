@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Tiling",
-    "across_line",
-    "beside",
     "corners",
     "crossed",
     "labels",
@@ -115,39 +113,6 @@ def corners(on_edge: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return rows, np.argmin(on_edge[rows], axis=1)
 
 
-def beside(
-    tiling: Tiling, triangle: Indices, queries: Floats, number: Indices, first: Indices
-) -> Indices:
-    """Find kept triangles for points on the boundary of removed ones.
-
-    Parameters
-    ----------
-    tiling : Tiling
-        The triangles.
-    triangle : ndarray of int32, shape (k,)
-        The removed triangles that hold the points.
-    queries : ndarray of float64, shape (k, 2)
-        The points.
-    number : ndarray of int32, shape (m + 1,)
-        What each triangle is among those kept, -1 where it is removed; the last entry is -1.
-    first : ndarray of int32, shape (n,)
-        The first kept triangle of each vertex.
-
-    Returns
-    -------
-    ndarray of int32, shape (k,)
-        Kept triangles, -1 where there is none.
-    """
-    found = np.full(len(queries), -1, dtype=np.int32)
-    on_edge = on_edges(tiling, triangle, queries)
-    single = np.flatnonzero(on_edge.sum(axis=1) == 1)
-    edge = np.argmax(on_edge[single], axis=1)
-    found[single] = number[tiling.neighbors[triangle[single], edge]]
-    rows, corner = corners(on_edge)
-    found[rows] = first[tiling.simplices[triangle[rows], corner]]
-    return found
-
-
 def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
     """Number components in an order that hangs on coordinates alone.
 
@@ -228,30 +193,6 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
     label[first >= 0] = given[first[first >= 0]]
     later = seeds[first[of_seed[seeds]] != seeds]
     return label[component], np.column_stack((later, first[of_seed[later]]))
-
-
-def across_line(tiling: Tiling, triangle: Indices, a: Floats, b: Floats) -> Indices:
-    """Return the neighbours of triangles across their edges on the line through two points.
-
-    Parameters
-    ----------
-    tiling : Tiling
-        The triangles.
-    triangle : ndarray of int32, shape (k,)
-        Some of them.
-    a, b : ndarray of float64, shape (2,)
-        The points, which differ.
-
-    Returns
-    -------
-    ndarray of int32, shape (k,)
-        Triangles, -1 where there is no such edge or nothing beyond it.
-    """
-    corners = tiling.points[tiling.simplices[triangle]].reshape(-1, 2)
-    start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()
-    off = (_core.orient2d(start, end, corners) != 0).reshape(-1, 3)
-    found = tiling.neighbors[triangle, off.argmax(axis=1)]
-    return np.where(off.sum(axis=1) == 1, found, np.int32(-1))
 
 
 def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:

@@ -24,6 +24,7 @@ __all__ = [
     "edges",
     "is_mutual",
     "neighbors",
+    "rows_among",
     "vertex_neighbor_vertices",
     "vertex_to_simplex",
 ]
@@ -163,6 +164,37 @@ def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
     # Where an index is repeated, the last value is the one that stays.
     triangles = np.arange(len(simplices) - 1, -1, -1, dtype=np.int32)
     found[simplices[::-1]] = triangles[:, None]
+    return found
+
+
+def rows_among(triangles: Indices, some: Indices) -> Indices:
+    """Return which of some triangles each triangle is.
+
+    Parameters
+    ----------
+    triangles : ndarray of int32, shape (m, 3)
+        Triangles, each but once.
+    some : ndarray of int32, shape (k, 3)
+        Some of them, each but once; their corners may begin elsewhere.
+
+    Returns
+    -------
+    ndarray of int32, shape (m + 1,)
+        Rows of `some`, -1 for triangles that are not among them; the last entry is -1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.topology import rows_among
+    >>> rows_among(np.array([(0, 1, 2), (2, 1, 3)]), np.array([(1, 3, 2)]))
+    array([-1,  0, -1], dtype=int32)
+    """
+    corners = np.sort(np.concatenate((triangles, some)), axis=1)
+    # A stable sort puts a triangle of the first array before its twin of the second.
+    order = np.lexsort(corners.T)
+    twin = (corners[order[1:]] == corners[order[:-1]]).all(axis=1)
+    found = np.full(len(triangles) + 1, -1, dtype=np.int32)
+    found[order[:-1][twin]] = order[1:][twin] - len(triangles)
     return found
 
 

@@ -13,15 +13,13 @@ from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self, TypeVar
 
 import numpy as np
 
-from delone import geometry, location, topology
-from delone._arrays import as_points
+from delone import _core, geometry, location, topology
+from delone._arrays import as_points, as_vectors, as_workers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
-
-    from delone import _core
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -107,6 +105,11 @@ class Triangulation:
     def _tiling(self) -> tuple[Indices, Indices]:
         """Triangles and neighbours of the whole convex hull."""
         return self._simplices, self._neighbors
+
+    @property
+    def _number(self) -> Indices | None:
+        """What each triangle of `_tiling` is here, -1 and for the last entry; None for itself."""
+        return None
 
     @property
     def points(self) -> Floats:
@@ -251,6 +254,108 @@ class Triangulation:
     def _locator(self) -> _core.Locator2:
         return location.locator(self._points, self._simplices, self._neighbors)
 
+    @property
+    @kept
+    def _whole_locator(self) -> _core.Locator2:
+        """The index over the triangles of the whole convex hull."""
+        if self._number is None:
+            return self._locator
+        return location.locator(self._points, *self._tiling())
+
+    @property
+    @kept
+    def _sites(self) -> tuple[_core.Locator2 | None, Indices | None]:
+        """An index over a Delaunay triangulation of the vertices, and which rows these are."""
+        rows = np.unique(self._simplices)
+        if not len(rows):
+            return None, rows
+        sites = self._points[rows]
+        simplices, neighbors, _, _ = _core.triangulate2(sites, "auto", as_workers(self._workers))
+        return location.locator(sites, simplices, neighbors), rows
+
+    def find_simplex(
+        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
+    ) -> Indices:
+        """Tell which triangles hold points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate. NaN and infinity are outside.
+        bruteforce : bool, optional
+            Accepted as in SciPy. No search is exhaustive: the walk cannot fail.
+        tol : float, optional
+            Accepted as in SciPy. It has no effect: the answer is exact.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The triangle that has the point inside or on its boundary, the first one where there are
+            several, or -1 where there is none: outside, or in a hole. The shape is () for a single
+            point.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
+
+        Notes
+        -----
+        Points are taken along a space-filling curve, and each is reached by a visibility walk from
+        the one before; for k points that takes O(k log k + walks) time, whatever their order. A
+        visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On sorting
+        triangles in a Delaunay tessellation", 1991); a straight walk helps where triangles are
+        constrained, and a tree of boxes where there are holes.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay, Delaunay
+        >>> mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
+        >>> mesh.find_simplex([(0.25, 0.25), (0.5, 0.5), (0.75, 0.75)])
+        array([ 0,  0, -1], dtype=int32)
+        >>> points = [(0, 0), (6, 0), (0, 6), (1, 1), (2, 1), (1, 2)]
+        >>> mesh = ConstrainedDelaunay(points, [(3, 4), (4, 5), (5, 3)], holes=[(1.2, 1.2)])
+        >>> (mesh.find_simplex([(1.2, 1.2), (1, 1), (0.5, 0.5)]) >= 0).tolist()
+        [False, True, True]
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        found = self._locator.find(queries.reshape(-1, 2), as_workers(self._workers))
+        return found.reshape(queries.shape[:-1])
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """Return the vertices that are nearest to points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points, in triangles or not.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The nearest vertex of a triangle, the one of the smallest row where there are several;
+            -1 where a coordinate is NaN or infinite.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
+
+        Notes
+        -----
+        Exact: distances are compared by predicates. From vertex to vertex: as long as the nearest
+        one is not reached, one of the neighbours in a Delaunay triangulation is nearer. Where
+        constraints make another one of it, the first call triangulates the vertices without them,
+        for what is nearest need not be seen.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (5, 6), (0.5, 0.5)])
+        array([1, 2, 0], dtype=int32)
+        """
+        return location.nearest(self._sites, xi, self._workers)
+
     def locate(self, xi: ArrayLike) -> location.Location:
         """Tell where points lie: triangle, weights of its corners, nearest point of the boundary.
 
@@ -318,7 +423,12 @@ class Triangulation:
         >>> len(mesh.walk((-1, 0.5), (5, 1)))
         3
         """
-        return location.along(self._locator, a, b)
+        start, end = location.segment_ends(a, b)
+        if (start == end).all():
+            holder = np.atleast_1d(self.find_simplex(start))
+            return holder[holder >= 0]
+        tiling = (self._points, *self._tiling())
+        return location.along(self._whole_locator, tiling, self._number, start, end)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the triangulation with matplotlib (extra ``plot``).

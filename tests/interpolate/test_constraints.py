@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+import delone
 from delone import ConstrainedDelaunay, Delaunay, datasets
 from delone.errors import InputError
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor, interpolator
+from delone.interpolate.methods import METHODS
 from delone.interpolate.smooth import cut
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -106,3 +108,27 @@ def test_cut_by_every_edge_and_by_none() -> None:
     assert np.array_equal(source[simplices], mesh.simplices)
     simplices, source = cut(mesh.simplices, mesh.neighbors, ~every, 50)
     assert np.array_equal(simplices, mesh.simplices) and len(source) == 50
+
+
+@pytest.mark.parametrize("method", sorted(METHODS))
+def test_on_meshes_with_holes(method: str) -> None:
+    ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    hole = [(4 + a, 4 + b) for a, b in ring]
+    fault = [(8, 9)]
+    corners = [*SQUARE, (0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6), (0.2, 0.2), (0.2, 0.8)]
+    mesh = delone.mesh((corners, ring + hole + fault), holes=[(0.5, 0.5)], max_area=0.004)
+    values = 1 + 2 * mesh.points[:, 0] - 3 * mesh.points[:, 1]
+    made = interpolator(method, mesh, values, respect_constraints=True)
+    assert made(mesh.points).tobytes() == values.tobytes()
+    queries = np.random.default_rng(9).random((500, 2))
+    found = made(queries)
+    within = (np.abs(queries - 0.5) < 0.1).all(axis=1)
+    if method == "nearest":
+        np.testing.assert_allclose(found, 1 + 2 * queries[:, 0] - 3 * queries[:, 1], atol=0.5)
+        return
+    assert np.array_equal(np.isnan(found), within)
+    expected = (1 + 2 * queries[:, 0] - 3 * queries[:, 1])[~within]
+    np.testing.assert_allclose(found[~within], expected, atol=1e-4)
+    np.testing.assert_allclose(made.weights(queries) @ values, found, rtol=1e-12)
+    slopes = made.gradient(queries[~within])
+    np.testing.assert_allclose(slopes, np.tile((2.0, -3.0), (len(slopes), 1)), atol=1e-2)

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import Delaunay, datasets
-from delone.errors import DtypeError, ShapeError
+import delone
+from delone import ConstrainedDelaunay, Delaunay, datasets
+from delone.errors import DtypeError, NonFiniteError, ShapeError
 from delone.predicates import orient2d
 
 
@@ -117,6 +118,107 @@ def test_walk_meets_all_triangles_on_the_way() -> None:
     assert mesh.walk((0.5, 0.5), (0.5, 0.5)).tolist() == [int(mesh.find_simplex((0.5, 0.5)))]
 
 
+def with_holes(kind: str) -> Any:
+    """A square with a square hole, and another that touches it in a corner; or a comb."""
+    lattice = np.stack(np.meshgrid(np.arange(9.0), np.arange(9.0)), axis=-1).reshape(-1, 2)
+    outline = [(0, 0), (8, 0), (8, 8), (0, 8)]
+    holes = [[(2, 2), (4, 2), (4, 4), (2, 4)], [(4, 4), (6, 4), (6, 6), (4, 6)]]
+    comb = [(0, 0), (8, 0), (8, 8), (6, 8), (6, 2), (5, 2), (5, 8), (3, 8), (3, 1), (1, 1), (0, 8)]
+    rings = [comb] if kind.endswith("comb") else [outline, *holes]
+    points = [(float(x), float(y)) for ring in rings for x, y in ring]
+    points = list(dict.fromkeys(points))
+    ends = [
+        (points.index(a), points.index(b))
+        for ring in rings
+        for a, b in zip(ring, ring[1:] + ring[:1], strict=True)
+    ]
+    seeds = [] if kind.endswith("comb") else [(3, 3.5), (5, 5.5)]
+    if kind.startswith("mesh"):
+        return delone.mesh((points, ends), holes=seeds, max_area=0.7)
+    known = set(points)
+    points += [point for point in map(tuple, lattice.tolist()) if point not in known]
+    return ConstrainedDelaunay(points, ends, holes=seeds, boundary="outline")
+
+
+KINDS = ["constrained", "constrained comb", "mesh", "mesh comb"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_location_with_holes(kind: str) -> None:
+    mesh = with_holes(kind)
+    rng = np.random.default_rng(8)
+    queries = np.concatenate(
+        (rng.random((300, 2)) * 10 - 1, rng.integers(-1, 20, (200, 2)) / 2, mesh.points)
+    )
+    corners = mesh.points[mesh.simplices]
+    found = mesh.find_simplex(queries)
+    place = mesh.locate(queries)
+    assert np.array_equal(place.simplex, found)
+    exact = [tuple(map(Fraction, point)) for point in mesh.points.tolist()]
+    used = np.unique(mesh.simplices).tolist()
+    for query, simplex, nearest in zip(queries, found, mesh.nearest(queries), strict=True):
+        sides = [orient2d(corners[:, k], corners[:, (k + 1) % 3], query) >= 0 for k in range(3)]
+        holders = np.flatnonzero(np.logical_and.reduce(sides))
+        assert simplex == (holders[0] if len(holders) else -1)
+        x, y = map(Fraction, query.tolist())
+        distance = {v: (x - exact[v][0]) ** 2 + (y - exact[v][1]) ** 2 for v in used}
+        assert distance[nearest] == min(distance.values())
+        assert nearest == min(v for v in used if distance[v] == distance[nearest])
+    # Beside: the nearest of all boundary edges.
+    outside = np.flatnonzero(found < 0)
+    tail, head = mesh.points[mesh.boundary_edges].swapaxes(0, 1)
+    way = head - tail
+    for row in outside:
+        share = ((queries[row] - tail) * way).sum(axis=1) / (way * way).sum(axis=1)
+        near = tail + np.clip(share, 0, 1)[:, None] * way
+        least = np.hypot(*(near - queries[row]).T).min()
+        assert np.hypot(*(place.nearest[row] - queries[row])) == pytest.approx(least, abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_walks_skip_holes(kind: str) -> None:
+    mesh = with_holes(kind)
+    rng = np.random.default_rng(9)
+    ends = [*(rng.random((40, 2, 2)) * 10 - 1), *rng.integers(0, 17, (60, 2, 2)) / 2]
+    corners = mesh.points[mesh.simplices]
+    for a, b in ends:
+        found = mesh.walk(a, b)
+        if (a == b).all():
+            assert found.tolist() == [t for t in [int(mesh.find_simplex(a))] if t >= 0]
+            continue
+        shares = {t: part for t in range(mesh.nsimplex) if (part := common(corners[t], a, b))}
+        assert set(found.tolist()) <= set(shares)
+        parts = [shares[t] for t in found.tolist()]
+        assert parts == sorted(parts)
+        # What is left out shares an edge, and its part, with one that is there.
+        assert set(shares.values()) == set(parts)
+
+
+def common(corners: Any, a: Any, b: Any) -> tuple[Fraction, Fraction] | None:
+    """From where to where a segment is in a triangle, where that is more than a point."""
+    low, high = Fraction(0), Fraction(1)
+    points = [tuple(map(Fraction, corner.tolist())) for corner in corners]
+    start, end = (tuple(map(Fraction, map(float, p))) for p in (a, b))
+    for (ux, uy), (vx, vy) in zip(points, points[1:] + points[:1], strict=True):
+        at = [(vx - ux) * (y - uy) - (vy - uy) * (x - ux) for x, y in (start, end)]
+        if at[0] < 0 and at[1] < 0:
+            return None
+        if at[0] < 0 or at[1] < 0:
+            cut = at[0] / (at[0] - at[1])
+            low, high = (max(low, cut), high) if at[0] < 0 else (low, min(high, cut))
+    return (low, high) if low < high else None
+
+
+def test_nothing_is_near_no_triangle() -> None:
+    square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    mesh = ConstrainedDelaunay(square, ring, holes=[(0.5, 0.25)])
+    assert mesh.nsimplex == 0
+    assert mesh.nearest([(0, 0), (2, 2)]).tolist() == [-1, -1]
+    assert mesh.find_simplex((0, 0)) == -1 and mesh.locate((0, 0)).simplex == -1
+    assert mesh.walk((0, 0), (1, 1)).size == 0
+
+
 def test_bad_input_is_refused() -> None:
     mesh = Delaunay(datasets.uniform(20))
     for method in (mesh.locate, mesh.nearest):
@@ -124,11 +226,12 @@ def test_bad_input_is_refused() -> None:
             method([(1, 2, 3)])
         with pytest.raises(DtypeError, match="xi"):
             method([(1j, 0)])
-    for bad in ((0.0, np.nan), [(0, 0), (1, 1)], (1, 2, 3)):
+    for bad in ([(0, 0), (1, 1)], (1, 2, 3)):
         with pytest.raises(ShapeError):
             mesh.walk(bad, (0, 0))
-    with pytest.raises(ShapeError, match="b must be"):
-        mesh.walk((0, 0), (np.inf, 0))
+    for bad in ((0.0, np.nan), (np.inf, 0)):
+        with pytest.raises(NonFiniteError, match="b: "):
+            mesh.walk((0, 0), bad)
 
 
 def test_many_threads_may_ask_at_once() -> None:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from delone import location
 from delone._arrays import as_vectors, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
@@ -298,7 +299,7 @@ class Interpolator:
         return rows, place.at(outside)
 
     def _located(self, queries: Floats) -> Location:
-        return self._mesh.locate(queries)
+        return location.locate(self._mesh._locator, self._mesh.points, queries, self._workers)
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
         """The interpolator, the field, its settled columns; those of the constructor for None."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from delone import location
 from delone._arrays import as_workers
-from delone.delaunay import Delaunay
 from delone.interpolate.base import Interpolator
 from delone.interpolate.weights import Weights, rectangular
 
@@ -109,23 +109,13 @@ class Nearest(Interpolator):
         """The site of each query, -1 where there is none."""
         if self._respect_constraints and self._constrained:
             return self._seen(queries)
-        rows = self._open._locator.nearest(queries, as_workers(self._workers))
+        rows = location.nearest(self._mesh._sites, queries, self._workers)
         if self._extrapolate == "nearest":
             return rows
-        place = self._mesh.locate(queries)
+        place = self._located(queries)
         if self._extrapolate == "error":
             self._outside(queries, None)
         return np.where(place.simplex >= 0, rows, np.int32(-1))
-
-    @property
-    def _open(self) -> Delaunay:
-        """A Delaunay triangulation of the sites."""
-        if isinstance(self._mesh, Delaunay):
-            return self._mesh
-        if "open" not in self._cache:
-            self._cache["open"] = Delaunay(self._mesh.points, workers=self._workers)
-        mesh: Delaunay = self._cache["open"]
-        return mesh
 
     def _seen(self, queries: Floats) -> Indices:
         """The nearest of the neighbours that queries would have in the constrained mesh."""
