@@ -65,9 +65,7 @@ pub use insphere::{insphere, insphere_exact};
 pub use orient2d::{orient2d, orient2d_exact};
 pub use orient3d::{orient3d, orient3d_exact};
 pub use sign::Sign;
-pub use ties::{
-    incircle_canonical, incircle_canonical_exact, insphere_canonical, lexicographic, tie_flips,
-};
+pub use ties::{incircle_canonical, insphere_canonical, lexicographic, tie_flips};
 
 /// A point of the plane.
 pub type Point2 = [f64; 2];

@@ -35,7 +35,7 @@
 use std::cmp::Ordering;
 
 use crate::sign::Sign;
-use crate::{Point2, Point3, incircle, incircle_exact, insphere, orient2d, orient3d};
+use crate::{Point2, Point3, incircle, insphere, orient2d, orient3d};
 
 /// Compares by x, then y (then z). `-0.0` equals `0.0`; NaN equals everything.
 ///
@@ -72,12 +72,18 @@ pub fn lexicographic<const D: usize>(a: [f64; D], b: [f64; D]) -> Ordering {
 #[inline]
 #[must_use]
 pub fn tie_flips(u: Point2, v: Point2, p: Point2, q: Point2) -> bool {
-    lexicographic(smaller(p, q), smaller(u, v)).is_lt()
+    before(smaller(p, q), smaller(u, v))
 }
 
 #[inline]
 fn smaller(a: Point2, b: Point2) -> Point2 {
-    if lexicographic(b, a).is_lt() { b } else { a }
+    if before(b, a) { b } else { a }
+}
+
+/// Lexicographic order without a branch: on a grid nobody can guess it.
+#[inline]
+fn before(a: Point2, b: Point2) -> bool {
+    (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1]))
 }
 
 /// As [`incircle()`], with ties broken by a symbolic perturbation in lexicographic order.
@@ -96,16 +102,6 @@ fn smaller(a: Point2, b: Point2) -> Point2 {
 #[must_use]
 pub fn incircle_canonical(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
     match incircle(a, b, c, d) {
-        Sign::Zero => incircle_tie([a, b, c, d]),
-        sign => sign,
-    }
-}
-
-/// As [`incircle_canonical`], without the floating-point filter: for callers that have tried one.
-#[inline]
-#[must_use]
-pub fn incircle_canonical_exact(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    match incircle_exact(a, b, c, d) {
         Sign::Zero => incircle_tie([a, b, c, d]),
         sign => sign,
     }

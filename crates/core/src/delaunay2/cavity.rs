@@ -18,7 +18,7 @@
 //! A record is free once its two outer edges are on the stack; a cavity of k triangles
 //! gives its k records and two fresh ones to the k + 2 triangles of the star.
 
-use delone_predicates::{Point2, Sign, incircle_canonical_exact, lexicographic, orient2d};
+use delone_predicates::{Point2, Sign, incircle_exact, lexicographic, orient2d, tie_flips};
 
 use super::walk::walk;
 
@@ -303,7 +303,12 @@ impl<'a> Kernel<'a> {
         let inf = self.mesh.infinite();
         let (a, b) = match (u == inf, v == inf, w == inf) {
             (false, false, false) => {
-                return incircle_canonical_exact(at(v), at(u), at(w), at(p)) == Sign::Positive;
+                // The triangle beyond is no sliver and p no corner of it: a tie means four distinct
+                // points on a circle.
+                return match incircle_exact(at(v), at(u), at(w), at(p)) {
+                    Sign::Zero => tie_flips(at(u), at(v), at(w), at(p)),
+                    sign => sign == Sign::Positive,
+                };
             }
             (true, ..) => (w, v),
             (_, true, _) => (u, w),
