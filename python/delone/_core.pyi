@@ -31,7 +31,9 @@ __all__ = [
     "regular2",
     "touched2",
     "triangulate2",
+    "triangulate3",
     "validate2",
+    "validate3",
     "voronoi2",
     "voronoi_clip2",
 ]
@@ -43,6 +45,12 @@ def triangulate2(
     points: NDArray[np.float64], method: str, workers: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], list[tuple[str, float]]]: ...
 def validate2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> dict[str, NDArray[np.int32]]: ...
+def triangulate3(
+    points: NDArray[np.float64], workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], list[tuple[str, float]]]: ...
+def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> dict[str, NDArray[np.int32]]: ...
 def find_simplex2(

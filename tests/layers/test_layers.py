@@ -162,6 +162,8 @@ CORE: dict[str, set[str]] = {
     # Topology alone: neither coordinates nor predicates.
     "mesh2": {"parallel"} | GROUND,
     "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "mesh3": {"parallel"} | GROUND,
+    "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,

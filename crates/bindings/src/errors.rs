@@ -55,6 +55,22 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             let message = format!("{error}: there is no triangle; `chain` has them in order");
             ("DegenerateInputError", message)
         }
+        Error::TooFewInSpace { chain } => {
+            details.set_item("reason", "too few points")?;
+            details.set_item("chain", chain)?;
+            let message =
+                format!("{error} for a tetrahedron: four that are not in one plane are needed");
+            ("DegenerateInputError", message)
+        }
+        Error::Coplanar { chain } => {
+            details.set_item("reason", "coplanar")?;
+            details.set_item("chain", chain)?;
+            let message = format!("{error}: there is no tetrahedron");
+            ("DegenerateInputError", message)
+        }
+        Error::TooManyTetrahedra { .. } => {
+            ("LimitError", format!("{error}: triangulate it in tiles"))
+        }
         Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
         Error::Crossing { pairs, points } => {
             // As arrays: there may be millions.

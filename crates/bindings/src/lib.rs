@@ -11,6 +11,7 @@ mod locate3;
 mod predicates;
 mod refine;
 mod signals;
+mod space;
 mod triangulation;
 mod voronoi;
 
@@ -27,6 +28,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;
+    m.add_function(wrap_pyfunction!(space::triangulate3, m)?)?;
+    m.add_function(wrap_pyfunction!(space::validate3, m)?)?;
     m.add_function(wrap_pyfunction!(locate::find_simplex2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;

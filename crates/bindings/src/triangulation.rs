@@ -33,7 +33,7 @@ pub fn methods2() -> Vec<&'static str> {
 }
 
 /// `(simplices, neighbors, duplicates, stages)`.
-type Made = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Vec<(&'static str, f64)>);
+pub type Made = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Vec<(&'static str, f64)>);
 
 /// The triangulation of the points as arrays.
 #[pyfunction]

@@ -22,6 +22,18 @@ pub enum Error {
         /// First rows of the distinct points, lexicographic.
         chain: Vec<u32>,
     },
+    /// Fewer than four distinct points of space: their rows in lexicographic order.
+    #[error("{} distinct points are too few", chain.len())]
+    TooFewInSpace {
+        /// First rows of the distinct points, lexicographic.
+        chain: Vec<u32>,
+    },
+    /// All points of space lie in one plane, but not on one line.
+    #[error("all {} distinct points lie in one plane", chain.len())]
+    Coplanar {
+        /// First rows of the distinct points, lexicographic.
+        chain: Vec<u32>,
+    },
     /// All points lie on one line: their rows in the order along it.
     #[error("all {} distinct points lie on one line", chain.len())]
     Collinear {
@@ -34,6 +46,12 @@ pub enum Error {
         /// Points given.
         found: usize,
         /// Points that can be held.
+        limit: usize,
+    },
+    /// More tetrahedra than the 32-bit codes of the mesh can address.
+    #[error("more tetrahedra than the {limit} that one triangulation can hold")]
+    TooManyTetrahedra {
+        /// Tetrahedra that can be held, ghosts included.
         limit: usize,
     },
     /// Segments that cross: the pairs of their rows, and where they do.

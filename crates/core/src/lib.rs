@@ -5,12 +5,14 @@
 
 pub mod constrained;
 pub mod delaunay2;
+pub mod delaunay3;
 pub mod error;
 pub mod interpolate;
 pub mod locate;
 pub mod locate3;
 pub mod memory;
 pub mod mesh2;
+pub mod mesh3;
 pub mod order;
 mod parallel;
 pub mod points;

@@ -66,6 +66,8 @@ mod zero {
     unsafe impl super::Zero for [i32; 2] {}
     // SAFETY: integers without padding.
     unsafe impl super::Zero for [i32; 3] {}
+    // SAFETY: integers without padding.
+    unsafe impl super::Zero for [i32; 4] {}
     // SAFETY: a double, whose zero bytes are 0.0.
     unsafe impl super::Zero for f64 {}
     // SAFETY: doubles, whose zero bytes are 0.0, without padding.

@@ -1,13 +1,17 @@
 //! What is known of a point set before anything is built: that its coordinates are finite, its
 //! box, and the lexicographic chain of a degenerate set.
 
-use delone_predicates::{Point2, lexicographic};
+use delone_predicates::{Point2, Point3, lexicographic, orient2d};
 
 use crate::error::{Error, Result};
 
 /// Points that one 2-D mesh can hold: half-edge codes are `8 t + k` in 32 bits, and n points have
 /// 2 n - 2 triangles with ghosts.
 pub const LIMIT2: usize = 1 << 28;
+
+/// Points that one 3-D mesh can hold: facet codes are `4 t + k` in 32 bits, and uniform points have
+/// seven tetrahedra each, ghosts included. Sets with more run into the limit of the mesh.
+pub const LIMIT3: usize = 1 << 27;
 
 /// How many bad rows an error names.
 const NAMED_ROWS: usize = 10;
@@ -45,15 +49,16 @@ impl Extent {
 }
 
 /// Checks that `points` can be triangulated as far as numbers go.
-pub fn scan(points: &[Point2]) -> Result<()> {
-    if points.len() > LIMIT2 {
+pub fn scan<const D: usize>(points: &[[f64; D]]) -> Result<()> {
+    let limit = if D == 2 { LIMIT2 } else { LIMIT3 };
+    if points.len() > limit {
         return Err(Error::TooMany {
             found: points.len(),
-            limit: LIMIT2,
+            limit,
         });
     }
     // A sum of 0 * x is 0 for finite numbers alone, and needs no branch a row.
-    let zero: f64 = points.iter().map(|p| 0.0 * p[0] + 0.0 * p[1]).sum();
+    let zero: f64 = points.as_flattened().iter().map(|x| 0.0 * x).sum();
     if zero == 0.0 {
         Ok(())
     } else {
@@ -61,8 +66,8 @@ pub fn scan(points: &[Point2]) -> Result<()> {
     }
 }
 
-fn non_finite(points: &[Point2]) -> Error {
-    let bad = |p: &Point2| !(p[0].is_finite() && p[1].is_finite());
+fn non_finite<const D: usize>(points: &[[f64; D]]) -> Error {
+    let bad = |p: &[f64; D]| !p.iter().all(|x| x.is_finite());
     let rows = (0u32..).zip(points).filter(|(_, p)| bad(p)).map(|(i, _)| i);
     Error::NonFinite {
         rows: rows.take(NAMED_ROWS).collect(),
@@ -80,4 +85,27 @@ pub fn degenerate(points: &[Point2], rows: &[u32]) -> Error {
     } else {
         Error::Collinear { chain }
     }
+}
+
+/// The error of distinct `points` of space that span no tetrahedron.
+pub fn degenerate_in_space(points: &[Point3], rows: &[u32]) -> Error {
+    let mut order: Vec<u32> = (0u32..).zip(points).map(|(i, _)| i).collect();
+    order.sort_unstable_by(|&i, &j| lexicographic(points[i as usize], points[j as usize]));
+    let chain = order.iter().map(|&i| rows[i as usize]).collect();
+    let in_line = |&c: &Point3| collinear(points[0], points[1], c);
+    if points.len() < 4 {
+        Error::TooFewInSpace { chain }
+    } else if points.iter().all(in_line) {
+        Error::Collinear { chain }
+    } else {
+        Error::Coplanar { chain }
+    }
+}
+
+/// Whether three points of space lie on one line: all projections do, and the cross product is zero.
+pub fn collinear(a: Point3, b: Point3, c: Point3) -> bool {
+    let turn = |j: usize, k: usize| orient2d([a[j], a[k]], [b[j], b[k]], [c[j], c[k]]);
+    [(0, 1), (1, 2), (2, 0)]
+        .iter()
+        .all(|&(j, k)| turn(j, k).is_zero())
 }

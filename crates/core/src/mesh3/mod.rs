@@ -1,0 +1,12 @@
+//! Tetrahedra with ghosts: topology only. Knows no coordinate and no predicate.
+//!
+//! A tetrahedron has four corners, positively oriented: seen from corner 3 the corners 0, 1, 2 run
+//! clockwise, which is `orient3d > 0`. The [`Code`] `4 t + k` is the facet of tetrahedron t opposite
+//! its corner k, and `opposite` has the same facet as seen from the other side. Each hull facet carries
+//! a ghost; all ghosts share one vertex at infinity, which lies on the positive side of their hull
+//! facet. So each facet joins two records, always.
+
+pub mod export;
+mod storage;
+
+pub use storage::{Code, FACETS, LIMIT, Mesh3, corner, tetrahedron};
