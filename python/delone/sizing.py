@@ -37,7 +37,7 @@ _LATTICE = 128
 # In one round a triangle is made smaller by this factor at most.
 _STEP = 4.0
 # Triangles have about this share of the cap on average.
-_SHARE = 0.6
+_SHARE = 0.77
 
 
 class Sizing:

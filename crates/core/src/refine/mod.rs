@@ -13,6 +13,7 @@
 
 mod corners;
 mod insert;
+mod place;
 mod queue;
 mod shape;
 mod work;

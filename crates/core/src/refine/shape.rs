@@ -1,5 +1,5 @@
-//! The shape of triangles in plain floating point: which are bad, where a vertex mends them, and which
-//! subsegments a vertex encroaches upon.
+//! The shape of triangles in plain floating point: which are bad, and which subsegments a vertex
+//! encroaches upon.
 
 use delone_predicates::Point2;
 use num_bigint::BigInt;
@@ -14,8 +14,6 @@ const UNSURE: f64 = 1e-14;
 pub struct Shape {
     /// The squared cosine of the smallest angle that is allowed.
     cos2: f64,
-    /// Distance of an off-centre from the shortest edge, in lengths of that edge.
-    off: f64,
     /// The squared cosine of the angle at which a lens is seen from its rim.
     lens: f64,
 }
@@ -38,18 +36,19 @@ pub struct Seen {
     pub shortest: f64,
     /// Twice the area.
     pub area2: f64,
-    skinny: bool,
+    /// Whether its smallest angle is below the bound.
+    pub skinny: bool,
 }
 
-fn minus(a: Point2, b: Point2) -> Point2 {
+pub fn minus(a: Point2, b: Point2) -> Point2 {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-fn dot(a: Point2, b: Point2) -> f64 {
+pub fn dot(a: Point2, b: Point2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn cross(a: Point2, b: Point2) -> f64 {
+pub fn cross(a: Point2, b: Point2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
@@ -71,9 +70,6 @@ impl Shape {
             45.0 => 0.5,
             _ => angle.cos() * angle.cos(),
         };
-        // The triangle of the shortest edge and the off-centre has this angle there; a little more,
-        // so that roundings do not make it bad again.
-        let off = 0.5 / (angle / 2.0).tan() * 0.95;
         Self {
             cos2,
             lens: if circles {
@@ -81,7 +77,6 @@ impl Shape {
             } else {
                 (2.0 * cos2 - 1.0).powi(2)
             },
-            off: if degrees > 0.0 { off } else { f64::INFINITY },
         }
     }
 
@@ -136,27 +131,6 @@ impl Shape {
         }
     }
 
-    /// Where a vertex mends a triangle: its circumcentre, or for an angle a point nearer to the
-    /// shortest edge on the way there.
-    pub fn cure(&self, corners: [Point2; 3], seen: &Seen, reason: Reason) -> Point2 {
-        let [p, q, r] = [1, 2, 0].map(|k| corners[(seen.apex + k) % 3]);
-        // The shortest edge is p q, and p is the origin.
-        let (u, v) = (minus(q, p), minus(r, p));
-        let (uu, vv) = (dot(u, u), dot(v, v));
-        let d = 0.5 / cross(u, v);
-        let centre = [(v[1] * uu - u[1] * vv) * d, (u[0] * vv - v[0] * uu) * d];
-        if reason == Reason::Size {
-            return [p[0] + centre[0], p[1] + centre[1]];
-        }
-        let middle = [0.5 * u[0], 0.5 * u[1]];
-        // The normal of the edge on the triangle's side, as long as the edge.
-        let off = [middle[0] - self.off * u[1], middle[1] + self.off * u[0]];
-        let (near, far) = (minus(off, middle), minus(centre, middle));
-        let nearer = dot(near, near) < dot(far, far);
-        let [x, y] = if nearer { off } else { centre };
-        [p[0] + x, p[1] + y]
-    }
-
     /// Whether `r` lies in the diametral lens of the subsegment `p q` (L. P. Chew, "Guaranteed-quality
     /// mesh generation for curved surfaces", 1993): it sees it at an angle of 180 degrees less twice
     /// the bound or more.
@@ -170,22 +144,6 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_off_centre_makes_a_triangle_that_is_just_good() {
-        for degrees in [20.0, 30.0, 34.0] {
-            let shape = Shape::new(degrees, false);
-            let thin = [[0.0, 0.0], [1.0, 0.0], [0.5, 9.0]];
-            let seen = shape.see(thin);
-            assert_eq!(seen.apex, 2);
-            assert_eq!(shape.fault(&seen, 100.0), Some(Reason::Angle));
-            let x = shape.cure(thin, &seen, Reason::Angle);
-            let made = [[0.0, 0.0], [1.0, 0.0], x];
-            assert_eq!(shape.fault(&shape.see(made), 100.0), None);
-            let higher = [[0.0, 0.0], [1.0, 0.0], [x[0], 1.06 * x[1]]];
-            assert_eq!(shape.fault(&shape.see(higher), 100.0), Some(Reason::Angle));
-        }
-    }
 
     #[test]
     fn a_lens_is_thinner_than_the_circle() {

@@ -13,8 +13,9 @@ use std::iter::once;
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::insert::{Cavity, Walk, walk};
+use super::place::{Bend, Places};
 use super::queue::{Bad, Queue};
-use super::shape::{Reason, Seen, Shape, angle};
+use super::shape::{Reason, Seen, Shape, angle, dot, minus};
 use super::{Counts, Task, Tell, corners};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
@@ -29,6 +30,10 @@ const WATCH_EVERY: usize = 1 << 12;
 /// Radii about a corner are one if they differ by less.
 const SAME_SHELL: f64 = 1e-3;
 
+/// A vertex that mends two triangles is farther from all others than the root of this times the
+/// shortest edge of the first: above 1, so that edges do not become shorter and shorter.
+const APART: f64 = 1.3;
+
 fn distance(a: Point2, b: Point2) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
@@ -38,6 +43,17 @@ fn distance(a: Point2, b: Point2) -> f64 {
 struct Waiting {
     edge: Code,
     ends: [u32; 2],
+}
+
+/// What stands where a vertex is to go.
+#[derive(Debug)]
+enum Dug {
+    /// Nothing: the cavity is ready.
+    Free,
+    /// Subsegments that hide it, or upon which it encroaches.
+    Walled(Vec<Code>),
+    /// A vertex; or there is no such place.
+    Lost,
 }
 
 /// How a vertex splits a subsegment.
@@ -71,6 +87,7 @@ pub struct Work<'a> {
     between: HashMap<[u32; 2], i32>,
     sharp: Vec<bool>,
     shape: Shape,
+    places: Places,
     queue: Queue,
     encroached: Vec<Waiting>,
     cavity: Cavity,
@@ -100,6 +117,7 @@ impl<'a> Work<'a> {
                 .collect(),
             sharp: corners::sharp(&marked.points, pieces, own)?,
             shape: Shape::new(task.min_angle, task.circles),
+            places: Places::new(task.min_angle),
             queue: Queue::default(),
             encroached: with_room(64)?,
             cavity: Cavity::default(),
@@ -351,51 +369,115 @@ impl<'a> Work<'a> {
     /// Mends a bad triangle, or splits what keeps it from being mended.
     fn improve(&mut self, t: u32) -> Result<()> {
         let points = self.points_of(t);
+        let cap = self.caps[t as usize];
         let seen = self.shape.see(points);
-        let Some(reason) = self.shape.fault(&seen, self.caps[t as usize]) else {
+        let Some(reason) = self.shape.fault(&seen, cap) else {
             return Ok(());
         };
-        if reason == Reason::Angle && self.is_forced(t, &seen) {
-            return self.improve_size(t, points, &seen);
+        let p = if reason == Reason::Size {
+            self.places.cure(points, &seen, cap)
+        } else if self.is_forced(t, &seen) {
+            // One whose angle cannot be mended may still be too large.
+            if seen.area2 <= cap {
+                return Ok(());
+            }
+            Places::centre(points, &seen)
+        } else {
+            if let Some(p) = self.above(t, points, &seen)
+                && self.fits(t, p, seen.shortest)
+            {
+                return self.insert(p, reason);
+            }
+            self.places.cure(points, &seen, cap)
+        };
+        match self.dig(t, p) {
+            Dug::Free => self.insert(p, reason),
+            Dug::Walled(walls) => self.yield_to(t, &walls),
+            Dug::Lost => Ok(()),
         }
-        let p = self.shape.cure(points, &seen, reason);
-        self.try_vertex(t, p, reason)
     }
 
-    /// A triangle whose angle cannot be mended may still be too large.
-    fn improve_size(&mut self, t: u32, points: [Point2; 3], seen: &Seen) -> Result<()> {
-        if seen.area2 <= self.caps[t as usize] {
-            return Ok(());
+    /// A place that mends thin triangle `t` and a thin neighbour with the same apex, whose shortest
+    /// edges follow each other, at once; of two the one farther away.
+    fn above(&mut self, t: u32, points: [Point2; 3], seen: &Seen) -> Option<Point2> {
+        let apex = seen.apex;
+        let mut best: Option<(Point2, f64)> = None;
+        for (ahead, e) in [(true, (apex + 1) % 3), (false, (apex + 2) % 3)] {
+            let (end, middle) = (points[e], points[3 - apex - e]);
+            let mesh = self.marked.patch();
+            let e = 8 * t + e as u32;
+            let (common, o) = (mesh.corners(t)[apex], mesh.opposite(e));
+            if mesh.is_marked(e) || mesh.corners(triangle(o)).contains(&mesh.infinite()) {
+                continue;
+            }
+            let (beside, caps) = (triangle(o), &self.caps);
+            let cap = caps[t as usize].min(caps[beside as usize]);
+            let corners = mesh.corners(beside);
+            let points = self.points_of(beside);
+            let other = self.shape.see(points);
+            if !other.skinny || corners[other.apex] != common {
+                continue;
+            }
+            let far = points[(o & 3) as usize];
+            let [first, last] = if ahead { [far, end] } else { [end, far] };
+            let bend = Bend {
+                middle,
+                first,
+                last,
+            };
+            let found = self.places.above(bend, cap);
+            best = found.filter(|f| best.is_none_or(|b| f.1 > b.1)).or(best);
         }
-        let p = self.shape.cure(points, seen, Reason::Size);
-        self.try_vertex(t, p, Reason::Size)
+        best.map(|(p, _)| p)
     }
 
-    fn try_vertex(&mut self, t: u32, p: Point2, reason: Reason) -> Result<()> {
+    /// Whether a vertex at `p` is free of walls and not near to any other; its cavity is dug.
+    fn fits(&mut self, t: u32, p: Point2, shortest: f64) -> bool {
+        if !matches!(self.dig(t, p), Dug::Free) {
+            return false;
+        }
+        let triangles = self.marked.triangles();
+        let (mesh, points) = (self.marked.mesh.resume(triangles), &self.marked.points);
+        self.cavity.rim.iter().all(|&e| {
+            let w = minus(p, points[mesh.vertex(next(e)) as usize]);
+            dot(w, w) > APART * shortest
+        })
+    }
+
+    /// Digs the cavity of a vertex at `p`, which triangle `t` is near.
+    fn dig(&mut self, t: u32, p: Point2) -> Dug {
         if !(p[0].is_finite() && p[1].is_finite()) {
-            return Ok(());
+            return Dug::Lost;
         }
         let home = match walk(&mut self.marked, t, p) {
             Walk::Home(home) => home,
-            Walk::Blocked(e) => return self.yield_to(t, &[e]),
-            Walk::Lost => return Ok(()),
+            Walk::Blocked(e) => return Dug::Walled(vec![e]),
+            Walk::Lost => return Dug::Lost,
         };
         if let Some(e) = self.cavity.dig(&mut self.marked, home, p) {
-            return self.yield_to(t, &[e]);
+            return Dug::Walled(vec![e]);
         }
         let triangles = self.marked.triangles();
         let (mesh, points) = (self.marked.mesh.resume(triangles), &self.marked.points);
         let encroached = |e: &Code| {
-            let [u, v] = [next(*e), prev(*e)].map(|c| points[mesh.vertex(c) as usize]);
-            mesh.is_marked(*e) && self.shape.in_lens(u, v, p)
+            mesh.is_marked(*e) && {
+                let [u, v] = [next(*e), prev(*e)].map(|c| points[mesh.vertex(c) as usize]);
+                self.shape.in_lens(u, v, p)
+            }
         };
         let rim = self.cavity.rim.iter().copied();
-        let near: Vec<Code> = rim.filter(encroached).collect();
-        if !near.is_empty() {
-            return self.yield_to(t, &near);
+        let walls: Vec<Code> = rim.filter(encroached).collect();
+        if walls.is_empty() {
+            Dug::Free
+        } else {
+            Dug::Walled(walls)
         }
+    }
+
+    /// Fills the cavity that was dug.
+    fn insert(&mut self, p: Point2, reason: Reason) -> Result<()> {
         self.marked.grow()?;
-        let v = self.cavity.fill(&mut self.marked, p, &mut self.caps);
+        self.cavity.fill(&mut self.marked, p, &mut self.caps);
         self.marked.near.push(8 * self.cavity.triangles[0]);
         self.on.push(-1);
         match reason {
@@ -405,7 +487,6 @@ impl<'a> Work<'a> {
         for i in 0..self.cavity.triangles.len() {
             self.judge(self.cavity.triangles[i]);
         }
-        debug_assert!(v as usize + 1 == self.marked.count);
         Ok(())
     }
 
