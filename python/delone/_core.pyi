@@ -16,10 +16,12 @@ __all__ = [
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
+    "halfspaces3",
     "incircle",
     "insphere",
     "lawson2",
     "measures2",
+    "measures3",
     "methods2",
     "neighbors2",
     "orient2d",
@@ -35,7 +37,9 @@ __all__ = [
     "validate2",
     "validate3",
     "voronoi2",
+    "voronoi3",
     "voronoi_clip2",
+    "voronoi_clip3",
 ]
 
 __version__: Final[str]
@@ -233,6 +237,32 @@ def voronoi_clip2(
     bounds: tuple[float, float, float, float],
     workers: int,
 ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+def voronoi3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> dict[str, NDArray[Any]]: ...
+def voronoi_clip3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    diagram: dict[str, NDArray[Any]],
+    clip_points: NDArray[np.float64],
+    clip_starts: NDArray[np.int32],
+    clip_corners: NDArray[np.int32],
+    clip_planes: NDArray[np.float64],
+    workers: int,
+) -> dict[str, NDArray[Any]]: ...
+def measures3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    diagram: dict[str, NDArray[Any]],
+    workers: int,
+) -> dict[str, NDArray[Any]]: ...
+def halfspaces3(
+    planes: NDArray[np.float64], size: float
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
 def measures2(
     starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...

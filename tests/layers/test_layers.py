@@ -171,6 +171,8 @@ CORE: dict[str, set[str]] = {
     "wide": {"delone_predicates"},
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "regular3": {"wide", "delone_predicates"} | GROUND,
+    "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.

@@ -14,6 +14,7 @@ mod signals;
 mod space;
 mod triangulation;
 mod voronoi;
+mod voronoi3;
 
 use pyo3::prelude::*;
 
@@ -45,6 +46,10 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(voronoi::voronoi2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::voronoi_clip2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::measures2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi3::voronoi3, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi3::halfspaces3, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi3::measures3, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::regular2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::periodic2, m)?)?;

@@ -12,19 +12,22 @@ use crate::errors::{detached, raise};
 use crate::triangulation::watched;
 
 /// The entries of a C-contiguous array.
-fn entries<'a, T: Element>(array: &'a PyReadonlyArray1<'_, T>, name: &str) -> Result<&'a [T]> {
+pub(crate) fn entries<'a, T: Element>(
+    array: &'a PyReadonlyArray1<'_, T>,
+    name: &str,
+) -> Result<&'a [T]> {
     array
         .as_slice()
         .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
 }
 
 /// Checks that every entry lies in `from..to`.
-fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()> {
+pub(crate) fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()> {
     in_range(values.as_chunks::<1>().0, from, to, name)
 }
 
 /// Checks that `starts` cuts `length` entries into pieces.
-fn are_starts(starts: &[i32], length: usize) -> Result<()> {
+pub(crate) fn are_starts(starts: &[i32], length: usize) -> Result<()> {
     let right =
         starts.first() == Some(&0) && starts.last() == Some(&(length as i32)) && starts.is_sorted();
     if right {
@@ -146,7 +149,7 @@ pub fn voronoi_clip2<'py>(
     ))
 }
 
-fn item<'py>(diagram: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn item<'py>(diagram: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     diagram.get_item(name)?.ok_or_else(|| {
         raise(
             diagram.py(),

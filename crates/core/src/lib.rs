@@ -18,7 +18,9 @@ mod parallel;
 pub mod points;
 pub mod refine;
 pub mod regular;
+pub mod regular3;
 pub mod voronoi;
+pub mod voronoi3;
 pub mod watch;
 mod wide;
 

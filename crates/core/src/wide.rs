@@ -1,15 +1,15 @@
 //! Doubles as integers of any width, and quotients of such integers as doubles: the last resort of
 //! predicates and constructions that no filter decides, and rare enough to allocate.
 
+use delone_predicates::Sign as Turn;
 use delone_predicates::arithmetic::decode_odd;
-use delone_predicates::{Point2, Point3, Sign as Turn};
 use num_bigint::{BigInt, Sign};
 
 /// Exponent of the least subnormal.
 const LEAST: i64 = -1074;
 
 /// An exponent of which all coordinates are multiples, and its double one of which the weights are.
-pub fn lowest(points: &[Point2], weights: &[f64]) -> i64 {
+pub fn lowest<const D: usize>(points: &[[f64; D]], weights: &[f64]) -> i64 {
     let exponent = |x: &f64| {
         let (magnitude, exponent) = decode_odd(*x);
         (magnitude != 0).then(|| i64::from(exponent))
@@ -18,16 +18,6 @@ pub fn lowest(points: &[Point2], weights: &[f64]) -> i64 {
     let of_weights = weights.iter().filter_map(exponent).min();
     let half = of_weights.map(|e| e.div_euclid(2));
     of_points.into_iter().chain(half).min().unwrap_or(0)
-}
-
-/// An exponent of which all coordinates in space are multiples.
-pub fn lowest3(points: &[Point3]) -> i64 {
-    let exponent = |x: &f64| {
-        let (magnitude, exponent) = decode_odd(*x);
-        (magnitude != 0).then(|| i64::from(exponent))
-    };
-    let exponents = points.as_flattened().iter().filter_map(exponent);
-    exponents.min().unwrap_or(0)
 }
 
 /// `x / 2^low`, an integer.

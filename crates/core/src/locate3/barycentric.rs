@@ -95,7 +95,7 @@ fn paired(corners: [Point3; 3], q: Point3) -> Option<f64> {
 #[cold]
 #[inline(never)]
 fn exactly(corners: [Point3; 4], on: [bool; 4], q: Point3) -> [f64; 4] {
-    let low = crate::wide::lowest3(&[corners.as_slice(), &[q]].concat());
+    let low = crate::wide::lowest(&[corners.as_slice(), &[q]].concat(), &[]);
     let integer = |p: Point3| p.map(|x| scaled(x, low));
     let q = integer(q);
     let seen = corners.map(|p| {

@@ -1,0 +1,215 @@
+//! Volumes, centroids and surfaces of cells, areas of ridges.
+//!
+//! A cell is the sum of the pyramids from its site to its faces, whose heights are known before any
+//! rounding of vertices: half the distance of the two sites (and a share that weights move).
+
+use delone_predicates::Point3;
+
+use super::dual::Given;
+use crate::error::Result;
+use crate::memory::{filled, with_room};
+use crate::parallel;
+
+/// Ridges or cells that one task does.
+const SHARE: usize = 1 << 12;
+
+/// The cells of a diagram as arrays, with the points and weights of its triangulation.
+#[derive(Clone, Copy)]
+pub struct Cells<'a> {
+    /// Coordinates.
+    pub points: &'a [Point3],
+    /// Weights; empty for none.
+    pub weights: &'a [f64],
+    /// Vertices of the diagram.
+    pub vertices: &'a [Point3],
+    /// The two sites of each ridge.
+    pub sites: &'a [[i32; 2]],
+    /// Where the entries of each ridge begin, and end.
+    pub starts: &'a [i32],
+    /// Vertices of ridges, negative for rays.
+    pub entries: &'a [i32],
+    /// The point of each cell.
+    pub site: &'a [i32],
+    /// Where the ridges of each cell begin, and end.
+    pub ridge_starts: &'a [i32],
+    /// The ridges of cells.
+    pub ridges: &'a [i32],
+}
+
+/// What is measured on cells and ridges: infinite where they are open, NaN for centroids there.
+#[derive(Debug)]
+pub struct Measures {
+    /// Area of each ridge.
+    pub ridge_areas: Vec<f64>,
+    /// Volume of each cell.
+    pub volumes: Vec<f64>,
+    /// Area of the surface of each cell.
+    pub areas: Vec<f64>,
+    /// Centre of gravity of each cell.
+    pub centroids: Vec<Point3>,
+}
+
+impl<'a> Cells<'a> {
+    pub(super) fn given(&self) -> Given<'a> {
+        Given {
+            points: self.points,
+            weights: self.weights,
+            simplices: &[],
+            neighbors: &[],
+        }
+    }
+
+    /// The entries of a ridge.
+    pub(super) fn entries_of(&self, ridge: usize) -> &'a [i32] {
+        &self.entries[self.starts[ridge] as usize..self.starts[ridge + 1] as usize]
+    }
+
+    /// The ridges of a cell.
+    pub(super) fn ridges_of(&self, cell: usize) -> &'a [i32] {
+        &self.ridges[self.ridge_starts[cell] as usize..self.ridge_starts[cell + 1] as usize]
+    }
+
+    /// The plane of a ridge as seen from one of its sites: the vector d to the other site, and h, so
+    /// that the cell of the first has (x - p) . d <= h.
+    pub(super) fn plane(&self, ridge: usize, site: i32) -> (Point3, f64) {
+        let [a, b] = self.sites[ridge];
+        let other = if a == site { b } else { a };
+        let given = self.given();
+        let (p, q) = (given.point(site), given.point(other));
+        let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+        (
+            d,
+            (dot(d, d) + (given.weight(site) - given.weight(other))) / 2.0,
+        )
+    }
+}
+
+/// The inner product.
+#[inline]
+pub(super) fn dot(p: Point3, q: Point3) -> f64 {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+/// The length of a vector, whatever its exponents.
+pub(super) fn length(v: Point3) -> f64 {
+    let most = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if most == 0.0 || !most.is_finite() {
+        return most;
+    }
+    let scaled = v.map(|x| x / most);
+    most * dot(scaled, scaled).sqrt()
+}
+
+/// Twice the vector area of a polygon, and the sum of twice its triangles times their centroids, these
+/// times three and as seen from its first corner; the weights are components along `n`.
+fn fan(corners: &[Point3], n: Point3) -> (f64, Point3) {
+    let o = corners[0];
+    let (mut twice, mut moment) = (0.0, [0.0; 3]);
+    let mut last = [0.0; 3];
+    for p in &corners[1..] {
+        let here = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+        let cross = [
+            last[1] * here[2] - last[2] * here[1],
+            last[2] * here[0] - last[0] * here[2],
+            last[0] * here[1] - last[1] * here[0],
+        ];
+        let part = dot(cross, n);
+        twice += part;
+        for k in 0..3 {
+            moment[k] += part * (last[k] + here[k]);
+        }
+        last = here;
+    }
+    (twice, moment)
+}
+
+/// The area and the centroid of a convex polygon, counter-clockwise about the unit vector `n`.
+pub(super) fn polygon(corners: &[Point3], n: Point3) -> (f64, Point3) {
+    let o = corners[0];
+    let (twice, moment) = fan(corners, n);
+    if twice > 0.0 {
+        return (
+            twice / 2.0,
+            [0, 1, 2].map(|k| o[k] + moment[k] / twice / 3.0),
+        );
+    }
+    // As thin as rounding allows: the middle of the corners stands for the centre.
+    let share = 1.0 / corners.len() as f64;
+    let mean = |k: usize| o[k] + corners.iter().map(|p| (p[k] - o[k]) * share).sum::<f64>();
+    (0.0, [0, 1, 2].map(mean))
+}
+
+/// Measures all cells and ridges.
+pub fn measures(cells: Cells, workers: usize) -> Result<Measures> {
+    let shares = |n: usize| (0..n).step_by(SHARE).map(move |i| i..n.min(i + SHARE));
+    let tasks = shares(cells.sites.len()).collect();
+    let faces = parallel::map(workers, tasks, |range: std::ops::Range<usize>| {
+        let mut corners = Vec::new();
+        range
+            .map(|r| face(cells, r, &mut corners))
+            .collect::<Vec<_>>()
+    });
+    let mut all: Vec<(f64, Point3)> = with_room(cells.sites.len())?;
+    faces.into_iter().for_each(|part| all.extend(part));
+    let n = cells.site.len();
+    let tasks = shares(n).collect();
+    let bodies = parallel::map(workers, tasks, |range: std::ops::Range<usize>| {
+        range.map(|c| body(cells, c, &all)).collect::<Vec<_>>()
+    });
+    let mut out = Measures {
+        ridge_areas: with_room(all.len())?,
+        volumes: with_room(n)?,
+        areas: with_room(n)?,
+        centroids: filled(n, [f64::NAN; 3])?,
+    };
+    out.ridge_areas.extend(all.iter().map(|f| f.0));
+    for (slot, (volume, area, centroid)) in
+        out.centroids.iter_mut().zip(bodies.into_iter().flatten())
+    {
+        out.volumes.push(volume);
+        out.areas.push(area);
+        *slot = centroid;
+    }
+    Ok(out)
+}
+
+/// The area and the centroid of a ridge.
+fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> (f64, Point3) {
+    let entries = cells.entries_of(ridge);
+    if entries.iter().any(|&v| v < 0) {
+        return (f64::INFINITY, [f64::NAN; 3]);
+    }
+    corners.clear();
+    corners.extend(entries.iter().map(|&v| cells.vertices[v as usize]));
+    let (d, _) = cells.plane(ridge, cells.sites[ridge][0]);
+    let size = length(d);
+    polygon(corners, d.map(|x| x / size))
+}
+
+/// Volume, surface and centroid of a cell.
+fn body(cells: Cells, cell: usize, faces: &[(f64, Point3)]) -> (f64, f64, Point3) {
+    let site = cells.site[cell];
+    let p = cells.points[site as usize];
+    let (mut volume, mut surface, mut moment) = (0.0, 0.0, [0.0; 3]);
+    for &ridge in cells.ridges_of(cell) {
+        let (area, center) = faces[ridge as usize];
+        let (d, h) = cells.plane(ridge as usize, site);
+        let part = area * (h / length(d)) / 3.0;
+        volume += part;
+        surface += area;
+        for k in 0..3 {
+            moment[k] += part * (center[k] - p[k]) * 0.75;
+        }
+    }
+    if surface.is_infinite() || cells.ridges_of(cell).is_empty() {
+        return (f64::INFINITY, f64::INFINITY, [f64::NAN; 3]);
+    }
+    if volume > 0.0 {
+        return (
+            volume,
+            surface,
+            [0, 1, 2].map(|k| p[k] + moment[k] / volume),
+        );
+    }
+    (0.0, surface, p)
+}

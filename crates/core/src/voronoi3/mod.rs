@@ -1,0 +1,22 @@
+//! Voronoi and power diagrams of space: the dual of a triangulation, measures, cells cut to a polyhedron.
+//!
+//! A triangulation is given as arrays; with weights it must be the regular one. Tetrahedra of one
+//! sphere share one vertex, which an exact test decides. Only the coordinates of vertices are rounded
+//! (see `center`), and nothing in the combinatorics hangs on them.
+//!
+//! A face of a cell, here *ridge*, is a polygon between two sites: the dual of an edge. Where it does not end
+//! within the range of doubles, it has two *rays*: directions in which its boundary goes on for ever,
+//! or to a vertex beyond the range.
+
+mod center;
+mod clip;
+mod dual;
+mod measure;
+mod polyhedron;
+mod regions;
+mod ridges;
+
+pub use center::{Center, Corners};
+pub use clip::{Clip, Clipped, Shape, clip, halfspaces};
+pub use dual::{Diagram, Given, diagram};
+pub use measure::{Cells, Measures, measures};

@@ -1,0 +1,300 @@
+//! A convex polyhedron that is cut by planes, in floating point.
+//!
+//! Corners are kept or not by the sign of a rounded number, and all else follows from that: each edge with one
+//! end kept gets one new corner, which one of its two faces enters and the other one leaves. So the
+//! new edges make closed turns, and the surface stays closed, whatever the signs are.
+
+use delone_predicates::Point3;
+
+use super::measure::{dot, length};
+
+/// Corners, and faces counter-clockwise from outside.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Polyhedron {
+    pub points: Vec<Point3>,
+    /// The corners of face f are `corners[starts[f]..starts[f + 1]]`.
+    pub starts: Vec<u32>,
+    pub corners: Vec<u32>,
+    pub labels: Vec<i32>,
+    spare: Spare,
+}
+
+/// Memory that cuts use again and again.
+#[derive(Clone, Debug, Default)]
+struct Spare {
+    values: Vec<f64>,
+    number: Vec<u32>,
+    points: Vec<Point3>,
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+    labels: Vec<i32>,
+    /// Kept end, other end, new corner.
+    cuts: Vec<(u32, u32, u32)>,
+    /// For a new corner the one after it in the new face.
+    links: Vec<(u32, u32)>,
+}
+
+const NONE: u32 = u32::MAX;
+/// The faces of a cube whose corners have x, y and z in the bits of their numbers.
+const CUBE: [u32; 24] = [
+    0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6,
+];
+
+impl Polyhedron {
+    /// The cube of all |x| <= size, with faces -1 to -6.
+    pub fn cube(size: f64) -> Self {
+        let bit = |i: u32, k: u32| if i >> k & 1 == 1 { size } else { -size };
+        Self {
+            points: (0..8).map(|i| [0, 1, 2].map(|k| bit(i, k))).collect(),
+            starts: (0..7).map(|f| 4 * f).collect(),
+            corners: CUBE.to_vec(),
+            labels: (0..6).map(|f| !f).collect(),
+            spare: Spare::default(),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    pub fn face(&self, f: usize) -> &[u32] {
+        &self.corners[self.starts[f] as usize..self.starts[f + 1] as usize]
+    }
+
+    /// Removes what lies where `value`, linear, is positive. New faces get the label.
+    pub fn cut(&mut self, label: i32, value: impl Fn(Point3) -> f64) {
+        let mut spare = std::mem::take(&mut self.spare);
+        spare.values.clear();
+        spare.values.extend(self.points.iter().map(|&p| value(p)));
+        if spare.values.iter().any(|&v| v > 0.0) {
+            if spare.values.iter().any(|&v| v < 0.0) {
+                self.part(label, &mut spare);
+            } else {
+                self.points.clear();
+                self.corners.clear();
+                self.labels.clear();
+                self.starts.truncate(1);
+            }
+        }
+        self.spare = spare;
+    }
+
+    fn part(&mut self, label: i32, spare: &mut Spare) {
+        spare.points.clear();
+        spare.number.clear();
+        for (&p, &v) in self.points.iter().zip(&spare.values) {
+            spare.number.push(if v > 0.0 {
+                NONE
+            } else {
+                spare.points.push(p);
+                spare.points.len() as u32 - 1
+            });
+        }
+        spare.cuts.clear();
+        spare.links.clear();
+        spare.corners.clear();
+        spare.labels.clear();
+        spare.starts.clear();
+        spare.starts.push(0);
+        for f in 0..self.labels.len() {
+            self.part_face(f, spare);
+        }
+        close(label, spare);
+        std::mem::swap(&mut self.points, &mut spare.points);
+        std::mem::swap(&mut self.starts, &mut spare.starts);
+        std::mem::swap(&mut self.corners, &mut spare.corners);
+        std::mem::swap(&mut self.labels, &mut spare.labels);
+    }
+
+    fn part_face(&self, f: usize, spare: &mut Spare) {
+        let face = self.face(f);
+        let begin = spare.corners.len();
+        let (mut leave, mut enter) = (NONE, NONE);
+        let mut p = face[face.len() - 1];
+        for &q in face {
+            let (keeps_p, keeps_q) = (
+                spare.number[p as usize] != NONE,
+                spare.number[q as usize] != NONE,
+            );
+            if keeps_p != keeps_q {
+                let new = if keeps_p {
+                    self.on_edge(p, q, spare)
+                } else {
+                    self.on_edge(q, p, spare)
+                };
+                spare.corners.push(new);
+                if keeps_p {
+                    leave = new;
+                } else if leave == NONE {
+                    enter = new;
+                } else {
+                    spare.links.push((new, leave));
+                    leave = NONE;
+                }
+            }
+            if keeps_q {
+                spare.corners.push(spare.number[q as usize]);
+            }
+            p = q;
+        }
+        if enter != NONE {
+            spare.links.push((enter, leave));
+        }
+        if spare.corners.len() > begin {
+            spare.labels.push(self.labels[f]);
+            spare.starts.push(spare.corners.len() as u32);
+        }
+    }
+
+    /// The new corner of an edge from a corner that is kept.
+    fn on_edge(&self, kept: u32, other: u32, spare: &mut Spare) -> u32 {
+        let known = spare.cuts.iter().find(|c| (c.0, c.1) == (kept, other));
+        if let Some(&(_, _, new)) = known {
+            return new;
+        }
+        let (v, w) = (spare.values[kept as usize], spare.values[other as usize]);
+        let (p, q) = (self.points[kept as usize], self.points[other as usize]);
+        let share = v / (v - w);
+        let at = [0, 1, 2].map(|k| p[k] + (q[k] - p[k]) * share);
+        spare.points.push(at);
+        let new = spare.points.len() as u32 - 1;
+        spare.cuts.push((kept, other, new));
+        new
+    }
+
+    /// Gives equal corners one number, and drops faces that have fewer than three.
+    pub fn weld(&mut self) {
+        let mut first: Vec<u32> = Vec::with_capacity(self.points.len());
+        for i in 0..self.points.len() {
+            let same = (0..i).find(|&j| self.points[j] == self.points[i]);
+            first.push(same.unwrap_or(i) as u32);
+        }
+        let mut number = vec![NONE; self.points.len()];
+        let (mut points, mut starts, mut corners, mut labels) = (vec![], vec![0], vec![], vec![]);
+        for f in 0..self.labels.len() {
+            let mut face: Vec<u32> = self.face(f).iter().map(|&v| first[v as usize]).collect();
+            face.dedup();
+            while face.len() > 1 && face.first() == face.last() {
+                face.pop();
+            }
+            if face.len() < 3 {
+                continue;
+            }
+            for v in face {
+                let slot = &mut number[v as usize];
+                if *slot == NONE {
+                    *slot = points.len() as u32;
+                    points.push(self.points[v as usize]);
+                }
+                corners.push(*slot);
+            }
+            starts.push(corners.len() as u32);
+            labels.push(self.labels[f]);
+        }
+        (self.points, self.starts, self.corners, self.labels) = (points, starts, corners, labels);
+    }
+
+    /// The vector area of a face, whose length is its area.
+    fn vector_area(&self, f: usize) -> Point3 {
+        let face = self.face(f);
+        let o = self.points[face[0] as usize];
+        let (mut sum, mut last) = ([0.0; 3], [0.0; 3]);
+        for &v in &face[1..] {
+            let p = self.points[v as usize];
+            let here = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+            for (k, s) in sum.iter_mut().enumerate() {
+                let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+                *s += (last[x] * here[y] - last[y] * here[x]) / 2.0;
+            }
+            last = here;
+        }
+        sum
+    }
+
+    /// The area of a face.
+    pub fn area(&self, f: usize) -> f64 {
+        length(self.vector_area(f))
+    }
+
+    /// The volume, and the centre of gravity.
+    pub fn body(&self) -> (f64, Point3) {
+        let Some(&o) = self.points.first() else {
+            return (0.0, [f64::NAN; 3]);
+        };
+        let (mut volume, mut moment) = (0.0, [0.0; 3]);
+        for f in 0..self.labels.len() {
+            let face = self.face(f);
+            let seen = |v: u32| {
+                let p = self.points[v as usize];
+                [p[0] - o[0], p[1] - o[1], p[2] - o[2]]
+            };
+            let a = seen(face[0]);
+            for w in face[1..].windows(2) {
+                let (b, c) = (seen(w[0]), seen(w[1]));
+                let cross = [0, 1, 2].map(|k| {
+                    let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+                    b[x] * c[y] - b[y] * c[x]
+                });
+                let part = dot(a, cross) / 6.0;
+                volume += part;
+                for k in 0..3 {
+                    moment[k] += part * (a[k] + b[k] + c[k]) / 4.0;
+                }
+            }
+        }
+        if volume > 0.0 {
+            return (volume, [0, 1, 2].map(|k| o[k] + moment[k] / volume));
+        }
+        (0.0, o)
+    }
+}
+
+/// Adds the new faces: the turns of the links.
+fn close(label: i32, spare: &mut Spare) {
+    while let Some((start, mut now)) = spare.links.pop() {
+        spare.corners.push(start);
+        // Each step takes a link away.
+        while now != start {
+            spare.corners.push(now);
+            let Some(i) = spare.links.iter().position(|l| l.0 == now) else {
+                break;
+            };
+            now = spare.links.swap_remove(i).1;
+        }
+        spare.labels.push(label);
+        spare.starts.push(spare.corners.len() as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corner_goes() {
+        let mut body = Polyhedron::cube(0.5);
+        let (volume, center) = body.body();
+        assert!((volume - 1.0).abs() < 1e-15 && center.iter().all(|x| x.abs() < 1e-15));
+        body.cut(7, |p| p[0] + p[1] + p[2] - 0.5);
+        body.weld();
+        assert!((body.body().0 - 5.0 / 6.0).abs() < 1e-15);
+        let f = body.labels.iter().position(|&l| l == 7).unwrap();
+        assert_eq!(body.face(f).len(), 3);
+        assert!((body.area(f) - 0.75_f64.sqrt()).abs() < 1e-15);
+        body.cut(8, |p| p[0] - 2.0);
+        assert_eq!(body.labels.len(), 7);
+        body.cut(9, |p| p[0] + 1.0);
+        assert!(body.is_empty());
+        assert_eq!(body.body().0, 0.0);
+    }
+
+    #[test]
+    fn a_plane_through_corners_leaves_half() {
+        let mut body = Polyhedron::cube(0.5);
+        body.cut(3, |p| p[0] - p[1]);
+        body.weld();
+        assert!((body.body().0 - 0.5).abs() < 1e-15);
+        assert_eq!((body.points.len(), body.labels.len()), (6, 5));
+        assert!((0..5).all(|f| body.area(f) > 0.0));
+    }
+}

@@ -1,0 +1,268 @@
+//! Faces of cells: each is the dual of an edge of the triangulation, and lies in the plane that bisects
+//! the two sites which the edge joins (their radical plane, with weights).
+//!
+//! The tetrahedra around an edge, in their order, have the vertices of the face as centres.
+//! Where tetrahedra share one, it counts once. An edge that is a diagonal, of a polytope of sites on one sphere
+//! or of a face of such, has no face: around it there is one polytope or two, where an edge of
+//! polytopes, each with less than half of the turn, has three at least. On the hull one is enough, unless
+//! the edge is a diagonal of one of its facets: then the two triangles of the hull lie in one plane.
+
+use std::collections::HashMap;
+
+use delone_predicates::{Point3, orient3d};
+
+use super::center::normal;
+use super::dual::Given;
+use crate::error::{Error, Result};
+use crate::memory::with_room;
+use crate::parallel;
+use crate::watch::Watch;
+
+/// Tetrahedra that one task does.
+const SHARE: usize = 1 << 14;
+
+/// The edges of a tetrahedron: two corners, and the other two so that all four are positively oriented.
+const EDGES: [[usize; 4]; 6] = [
+    [0, 1, 2, 3],
+    [0, 2, 3, 1],
+    [0, 3, 1, 2],
+    [1, 2, 0, 3],
+    [1, 3, 2, 0],
+    [2, 3, 0, 1],
+];
+/// The number of the edge between two corners.
+const NUMBER: [[u8; 4]; 4] = [[9, 0, 1, 2], [0, 9, 3, 4], [1, 3, 9, 5], [2, 4, 5, 9]];
+
+/// Faces of cells. Seen from the second site, with the first one behind, a face is counter-clockwise.
+#[derive(Debug, Default)]
+pub struct Ridges {
+    /// The two sites of each ridge.
+    pub sites: Vec<[i32; 2]>,
+    /// The entries of ridge r are `starts[r]..starts[r + 1]`.
+    pub starts: Vec<i32>,
+    /// Entry: a vertex, or !i for ray i. An open ridge begins with a ray and ends with one.
+    pub entries: Vec<i32>,
+    /// Direction of each ray, of length 1.
+    pub rays: Vec<Point3>,
+}
+
+/// What one task has found.
+#[derive(Default)]
+struct Part {
+    sites: Vec<[i32; 2]>,
+    ends: Vec<u32>,
+    entries: Vec<i32>,
+}
+
+/// What a walk around edges needs.
+struct Walk<'a> {
+    given: Given<'a>,
+    vertex: &'a [i32],
+    /// The ray of each face of the hull, by 4 t + k.
+    ray: HashMap<u32, i32>,
+}
+
+/// The walk around one edge.
+#[derive(Default)]
+struct Turn {
+    ring: Vec<u32>,
+    /// The corners, of the tetrahedra in `ring`, that the edge leads from and to.
+    at: Vec<(u8, u8)>,
+    /// The corners opposite the last face and the first, where the turn is open: faces of the hull.
+    last: usize,
+    first: usize,
+    open: bool,
+}
+
+/// Ridges in the order of the tetrahedra that come first around their edges. `far` are the directions of
+/// vertices beyond the range, and become the first rays.
+pub(super) fn ridges(
+    given: Given,
+    vertex: &[i32],
+    far: Vec<Point3>,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Ridges> {
+    let mut rays = far;
+    let mut ray = HashMap::new();
+    for (t, row) in given.neighbors.iter().enumerate() {
+        for k in (0..4).filter(|&k| row[k] < 0) {
+            ray.insert(4 * t as u32 + k as u32, rays.len() as i32);
+            rays.push(outward(given, t, k));
+        }
+    }
+    let walk = Walk { given, vertex, ray };
+    let shares = (0..given.simplices.len()).step_by(SHARE).collect();
+    let parts = parallel::map(workers, shares, |from| {
+        watch.check()?;
+        walk.share(from)
+    });
+    let parts = parts.into_iter().collect::<Result<Vec<_>>>()?;
+    let count = parts.iter().map(|p| p.sites.len()).sum::<usize>();
+    let entries = parts.iter().map(|p| p.entries.len()).sum::<usize>();
+    if i32::try_from(entries).is_err() {
+        return Err(Error::Memory { bytes: 4 * entries });
+    }
+    let mut out = Ridges {
+        sites: with_room(count)?,
+        starts: with_room(count + 1)?,
+        entries: with_room(entries)?,
+        rays,
+    };
+    out.starts.push(0);
+    for part in parts {
+        let base = out.entries.len() as i32;
+        out.sites.extend_from_slice(&part.sites);
+        out.starts
+            .extend(part.ends.iter().map(|&e| base + e as i32));
+        out.entries.extend_from_slice(&part.entries);
+    }
+    Ok(out)
+}
+
+/// The direction away from the face opposite corner k of tetrahedron t.
+fn outward(given: Given, t: usize, k: usize) -> Point3 {
+    let s = given.simplices[t];
+    // Counter-clockwise as seen from outside: for k = 3 that is (0, 2, 1), and so on by exchanges.
+    let [a, b, c] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]][k].map(|i| given.point(s[i]));
+    normal(a, b, c)
+}
+
+impl Walk<'_> {
+    fn share(&self, from: usize) -> Result<Part> {
+        let to = self.given.simplices.len().min(from + SHARE);
+        let mut seen = vec![0_u8; to - from];
+        let (mut part, mut turn) = (Part::default(), Turn::default());
+        for t in from..to {
+            for (number, &edge) in EDGES.iter().enumerate() {
+                if seen[t - from] >> number & 1 == 1 || !self.around(t, edge, &mut turn)? {
+                    continue;
+                }
+                for (&other, &(i, j)) in turn.ring.iter().zip(&turn.at) {
+                    if (other as usize) < to {
+                        let bit = NUMBER[usize::from(i)][usize::from(j)];
+                        seen[other as usize - from] |= 1 << bit;
+                    }
+                }
+                let [i, j, ..] = edge;
+                let s = self.given.simplices[t];
+                self.note([s[i], s[j]], &turn, &mut part);
+            }
+        }
+        Ok(part)
+    }
+
+    /// Collects the tetrahedra around an edge of `t`, counter-clockwise about its direction; false where
+    /// one comes before `t`.
+    fn around(&self, t: usize, [i, j, k, l]: [usize; 4], turn: &mut Turn) -> Result<bool> {
+        (turn.open, turn.first, turn.last) = (false, l, k);
+        turn.ring.clear();
+        turn.at.clear();
+        turn.ring.push(t as u32);
+        turn.at.push((i as u8, j as u8));
+        if !self.go(t, [i, j, k, l], turn)? {
+            return Ok(false);
+        }
+        if !turn.open {
+            return Ok(true);
+        }
+        // The hull was met: the other way round there is the rest.
+        let (last, forward) = (turn.last, turn.ring.len());
+        if !self.go(t, [i, j, l, k], turn)? {
+            return Ok(false);
+        }
+        (turn.first, turn.last) = (turn.last, last);
+        turn.ring[forward..].reverse();
+        turn.at[forward..].reverse();
+        turn.ring.rotate_left(forward);
+        turn.at.rotate_left(forward);
+        Ok(true)
+    }
+
+    /// Goes around an edge, out of each tetrahedron by the face opposite corner k.
+    fn go(&self, t: usize, [i, j, k, l]: [usize; 4], turn: &mut Turn) -> Result<bool> {
+        let s = self.given.simplices[t];
+        let (a, b) = (s[i], s[j]);
+        let (mut now, mut out, mut kept) = (t, k, s[l]);
+        // A turn meets each tetrahedron once, so that there are no more steps than tetrahedra.
+        for _ in 0..=self.vertex.len() {
+            let next = self.given.neighbors[now][out];
+            if next < 0 {
+                (turn.open, turn.last) = (true, out);
+                return Ok(true);
+            }
+            let next = next as usize;
+            if next == t {
+                return Ok(true);
+            }
+            if next < t {
+                return Ok(false);
+            }
+            let corner = self.given.back(now, next)?;
+            let row = self.given.simplices[next];
+            let place = |v: i32| row.iter().position(|&x| x == v);
+            let (Some(i), Some(j), Some(o)) = (place(a), place(b), place(kept)) else {
+                return Err(Error::Shape(format!(
+                    "tetrahedra {now} and {next} have no face in common"
+                )));
+            };
+            turn.ring.push(next as u32);
+            turn.at.push((i as u8, j as u8));
+            (now, out, kept) = (next, o, row[corner]);
+        }
+        Err(Error::Shape(format!(
+            "the tetrahedra around an edge of {t} do not end"
+        )))
+    }
+
+    /// Adds the ridge of a turn, where there is one.
+    fn note(&self, sites: [i32; 2], turn: &Turn, part: &mut Part) {
+        let begin = part.entries.len();
+        let ends = turn.open.then(|| {
+            let code = |t: u32, k: usize| 4 * t + k as u32;
+            let first = code(turn.ring[0], turn.first);
+            let last = code(turn.ring[turn.ring.len() - 1], turn.last);
+            [first, last]
+        });
+        if let Some([first, _]) = ends {
+            part.entries.push(!self.ray[&first]);
+        }
+        for &t in &turn.ring {
+            let vertex = self.vertex[t as usize];
+            if part.entries.len() == begin || part.entries.last() != Some(&vertex) {
+                part.entries.push(vertex);
+            }
+        }
+        let found = &part.entries[begin..];
+        let there = match ends {
+            Some([first, last]) => {
+                part.entries.push(!self.ray[&last]);
+                part.entries.len() - begin > 3 || !self.coplanar(sites, first, last)
+            }
+            None => {
+                if found.len() > 1 && found.first() == found.last() {
+                    part.entries.pop();
+                }
+                part.entries.len() - begin > 2
+            }
+        };
+        if there {
+            part.sites.push(sites);
+            part.ends.push(part.entries.len() as u32);
+        } else {
+            part.entries.truncate(begin);
+        }
+    }
+
+    /// Whether the two faces of the hull at an edge lie in one plane.
+    fn coplanar(&self, [a, b]: [i32; 2], first: u32, last: u32) -> bool {
+        let apex = |code: u32| {
+            let (t, k) = (code as usize / 4, code as usize % 4);
+            let s = self.given.simplices[t];
+            let third = (0..4).find(|&i| i != k && s[i] != a && s[i] != b);
+            self.given.point(s[third.unwrap_or(k)])
+        };
+        let [p, q] = [a, b].map(|v| self.given.point(v));
+        orient3d(p, q, apex(first), apex(last)).is_zero()
+    }
+}
