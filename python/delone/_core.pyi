@@ -13,6 +13,8 @@ __all__ = [
     "combine2",
     "components2",
     "constrained2",
+    "deepest2",
+    "disks2",
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
@@ -79,6 +81,10 @@ def components2(
 def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
+def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]: ...
+def deepest2(
+    points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
+) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
 
 @final
 class Locator2:

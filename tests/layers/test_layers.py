@@ -111,6 +111,7 @@ PYTHON: dict[str, set[str]] = {
     "testing": {"reference"} | FOUNDATION,
     "samples": FOUNDATION,
     "datasets": {"samples"} | FOUNDATION,
+    "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
     "io": PUBLIC | {"atomic", "plot", "relief", "_arrays"},
     "shading": PUBLIC,
@@ -118,7 +119,7 @@ PYTHON: dict[str, set[str]] = {
     "plot": PUBLIC | {"atomic", "cartography", "io", "shading"},
     "relief": PUBLIC | {"io", "plot", "shading"},
     "report": PUBLIC | {"io"},
-    "cli": PUBLIC | {"atomic", "interpolate", "io", "plot", "report", "voronoi"},
+    "cli": PUBLIC | {"atomic", "distributed", "interpolate", "io", "plot", "report", "voronoi"},
     "__main__": PUBLIC | {"cli"},
     # The package itself re-exports.
     "delone": {
@@ -128,6 +129,7 @@ PYTHON: dict[str, set[str]] = {
         "constrained_validation",
         "datasets",
         "delaunay",
+        "distributed",
         "editing",
         "errors",
         "interpolate",
@@ -169,6 +171,7 @@ CORE: dict[str, set[str]] = {
     "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "locate3": {"locate", "order", "parallel", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
+    "distributed": {"points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "regular3": {"wide", "delone_predicates"} | GROUND,

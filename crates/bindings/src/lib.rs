@@ -3,6 +3,7 @@
 
 mod arrays;
 mod constrained;
+mod distributed;
 mod errors;
 mod interpolate;
 mod lawson;
@@ -35,6 +36,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
+    m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;
+    m.add_function(wrap_pyfunction!(distributed::deepest2, m)?)?;
     m.add_class::<locate::Locator2>()?;
     m.add_class::<locate3::Locator3>()?;
     m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;

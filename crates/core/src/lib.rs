@@ -6,6 +6,7 @@
 pub mod constrained;
 pub mod delaunay2;
 pub mod delaunay3;
+pub mod distributed;
 pub mod error;
 pub mod interpolate;
 pub mod locate;

@@ -1,0 +1,69 @@
+//! Disks of triangles and the points deepest in circles, for triangulations in tiles.
+
+use delone_core::distributed::{deepest, disk};
+use delone_core::error::Error;
+use delone_core::memory::with_room;
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::{column, in_range, rows, table};
+use crate::errors::{detached, raise};
+use crate::triangulation::watched;
+
+/// Centre and radius of disks that hold the closed circumdisks; an infinite radius is the plane.
+#[pyfunction]
+pub fn disks2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+) -> PyResult<Py<PyAny>> {
+    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
+    in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
+    let disks = detached(py, || {
+        let mut disks = with_room(simplices.len())?;
+        disks.extend(
+            simplices
+                .iter()
+                .map(|s| disk(s.map(|v| points[v as usize]))),
+        );
+        Ok(disks)
+    })?;
+    table(py, disks)
+}
+
+/// `(starts, rows, all)`.
+type Found = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// For each triangle, six coordinates a row, up to `most` points in conflict, and whether that is all.
+#[pyfunction]
+pub fn deepest2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    corners: PyReadonlyArray2<'_, f64>,
+    most: usize,
+    workers: usize,
+) -> PyResult<Found> {
+    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    let corners: &[[f64; 6]] = rows(&corners, "corners").map_err(|e| raise(py, &e))?;
+    let finite = points.as_flattened().iter().all(|x| x.is_finite())
+        && corners.as_flattened().iter().all(|x| x.is_finite());
+    if !finite {
+        let error = Error::Shape("points and corners must be finite".into());
+        return Err(raise(py, &error));
+    }
+    let found = watched(py, |watch| {
+        let mut triangles = with_room(corners.len())?;
+        triangles.extend(
+            corners
+                .iter()
+                .map(|&[a, b, c, d, e, f]| [[a, b], [c, d], [e, f]]),
+        );
+        deepest(points, &triangles, most, workers, watch)
+    })?;
+    Ok((
+        column(py, found.starts),
+        column(py, found.rows),
+        column(py, found.all),
+    ))
+}

@@ -1,0 +1,278 @@
+//! Of given points those that lie deepest in circles, and whether that was all.
+//!
+//! A k-d tree with the box of the points in each node (J. L. Bentley, "Multidimensional binary search
+//! trees", 1975) finds candidates by disks rounded outward; whether a candidate is in conflict with a
+//! triangle is decided exactly, ties by coordinates. Which of several are the deepest is decided
+//! in doubles: any choice among them is right, a good one saves rounds.
+
+use delone_predicates::{Point2, Sign, incircle_canonical};
+
+use super::disk::disk;
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::parallel;
+use crate::points::Extent;
+use crate::watch::Watch;
+
+/// Points in a leaf.
+const LEAF: usize = 16;
+
+/// Queries that one thread answers before it takes the next ones.
+const TASK: usize = 256;
+
+/// Distances of boxes are lowered by this share before a box is left out: the rounding of their
+/// computation is below 8 units of 2^-53.
+const SLACK: f64 = 1.0 - 16.0 * f64::EPSILON;
+
+/// The points found in circles.
+#[derive(Debug, Default, PartialEq)]
+pub struct Answers {
+    /// The rows for circle i are `rows[starts[i]..starts[i + 1]]`, deepest first.
+    pub starts: Vec<i64>,
+    /// Rows of the points.
+    pub rows: Vec<i32>,
+    /// Whether there are no more in circle i.
+    pub all: Vec<bool>,
+}
+
+#[derive(Debug)]
+struct Node {
+    extent: Extent,
+    start: u32,
+    end: u32,
+    /// The left child; the right one is the next. Zero in leaves.
+    children: u32,
+}
+
+struct Tree<'a> {
+    points: &'a [Point2],
+    rows: Vec<u32>,
+    nodes: Vec<Node>,
+}
+
+impl<'a> Tree<'a> {
+    fn of(points: &'a [Point2]) -> Result<Self> {
+        let mut rows: Vec<u32> = with_room(points.len())?;
+        rows.extend(0..points.len() as u32);
+        let mut nodes = vec![Self::node(points, &rows, 0, points.len())];
+        let mut i = 0;
+        while i < nodes.len() {
+            let (start, end) = (nodes[i].start as usize, nodes[i].end as usize);
+            let sides = [0, 1].map(|k| nodes[i].extent.max[k] - nodes[i].extent.min[k]);
+            // Equal points stay together; a side may overflow, and infinity is the wider one.
+            if end - start > LEAF && sides.iter().any(|&side| side > 0.0) {
+                let axis = usize::from(sides[1] > sides[0]);
+                let middle = (end - start) / 2;
+                rows[start..end].select_nth_unstable_by(middle, |&p, &q| {
+                    points[p as usize][axis].total_cmp(&points[q as usize][axis])
+                });
+                nodes[i].children = nodes.len() as u32;
+                nodes.push(Self::node(points, &rows, start, start + middle));
+                nodes.push(Self::node(points, &rows, start + middle, end));
+            }
+            i += 1;
+        }
+        Ok(Self {
+            points,
+            rows,
+            nodes,
+        })
+    }
+
+    fn node(points: &[Point2], rows: &[u32], start: usize, end: usize) -> Node {
+        let own = rows[start..end].iter().map(|&row| points[row as usize]);
+        Node {
+            extent: Extent::of(own),
+            start: start as u32,
+            end: end as u32,
+            children: 0,
+        }
+    }
+
+    /// The rows of up to `most` points in conflict with a triangle, deepest first; and whether that
+    /// was all.
+    fn query(&self, corners: [Point2; 3], most: usize, found: &mut Vec<(f64, u32)>) -> bool {
+        let [x, y, radius] = disk(corners);
+        let reach = radius * radius;
+        let mut all = true;
+        found.clear();
+        let mut open = vec![(0.0, 0u32)];
+        while let Some((distance, i)) = open.pop() {
+            // Nothing in the box is in the disk, or deeper than what has been found.
+            if distance > reach {
+                continue;
+            }
+            if found.len() == most && most > 0 {
+                if radius.is_infinite() {
+                    // No box is out of reach, and none is known to be the deeper: enough.
+                    return false;
+                }
+                if -distance * SLACK <= found[most - 1].0 {
+                    all = false;
+                    continue;
+                }
+            }
+            let node = &self.nodes[i as usize];
+            if node.children == 0 {
+                for &row in &self.rows[node.start as usize..node.end as usize] {
+                    all &= self.meet(row, corners, [x, y], most, found);
+                }
+                continue;
+            }
+            let mut pair = [node.children, node.children + 1].map(|child| {
+                let extent = &self.nodes[child as usize].extent;
+                let off = |k: usize, at: f64| (extent.min[k] - at).max(at - extent.max[k]).max(0.0);
+                let [dx, dy] = [off(0, x), off(1, y)];
+                ((dx * dx + dy * dy) * SLACK, child)
+            });
+            if pair[0].0 < pair[1].0 {
+                pair.swap(0, 1);
+            }
+            open.extend(pair);
+        }
+        all
+    }
+
+    /// Takes a point up among the deepest if it is in conflict; says no where one was left out.
+    fn meet(
+        &self,
+        row: u32,
+        corners: [Point2; 3],
+        center: [f64; 2],
+        most: usize,
+        found: &mut Vec<(f64, u32)>,
+    ) -> bool {
+        let p = self.points[row as usize];
+        let [a, b, c] = corners;
+        if corners.contains(&p) || incircle_canonical(a, b, c, p) != Sign::Positive {
+            return true;
+        }
+        let (dx, dy) = (p[0] - center[0], p[1] - center[1]);
+        let depth = -(dx * dx + dy * dy);
+        let at = found.partition_point(|&(other, _)| other >= depth);
+        found.insert(at, (depth, row));
+        let more = found.len() > most;
+        found.truncate(most);
+        !more
+    }
+}
+
+/// For each triangle, counter-clockwise, up to `most` of the `points` that are in conflict with it:
+/// inside its circle, or on it where the tie goes that way. Corners among the points are none.
+pub fn deepest(
+    points: &[Point2],
+    triangles: &[[Point2; 3]],
+    most: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Answers> {
+    let tree = Tree::of(points)?;
+    let parts = parallel::map(workers, triangles.chunks(TASK).collect(), |some| {
+        watch.check()?;
+        let mut answers = Answers::default();
+        let mut found = Vec::new();
+        for &corners in some {
+            answers.all.push(tree.query(corners, most, &mut found));
+            answers.starts.push(found.len() as i64);
+            answers
+                .rows
+                .extend(found.iter().map(|&(_, row)| row as i32));
+        }
+        Ok(answers)
+    });
+    let mut whole = Answers {
+        starts: vec![0],
+        ..Answers::default()
+    };
+    let mut end = 0;
+    for part in parts {
+        let part = part?;
+        for count in part.starts {
+            end += count;
+            whole.starts.push(end);
+        }
+        whole.rows.extend(part.rows);
+        whole.all.extend(part.all);
+    }
+    Ok(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random_points(n: usize, scale: f64) -> Vec<Point2> {
+        let mut state = 3u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            // A lattice, so that many are on one circle.
+            ((state >> 40) % 64) as f64 * scale
+        };
+        (0..n).map(|_| [random(), random()]).collect()
+    }
+
+    fn triangles(points: &[Point2]) -> Vec<[Point2; 3]> {
+        points
+            .chunks_exact(3)
+            .filter_map(|c| {
+                let turn = delone_predicates::orient2d(c[0], c[1], c[2]);
+                match turn {
+                    Sign::Positive => Some([c[0], c[1], c[2]]),
+                    Sign::Negative => Some([c[0], c[2], c[1]]),
+                    Sign::Zero => None,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn all_points_in_conflict_are_found_at_every_scale() {
+        for scale in [1.0, 1e-320, 1e-160, 1e306] {
+            let points = random_points(700, scale);
+            let asked = triangles(&random_points(300, scale));
+            let found = deepest(&points, &asked, points.len(), 2, &Watch::idle()).unwrap();
+            assert!(found.all.iter().all(|&all| all));
+            for (i, &[a, b, c]) in asked.iter().enumerate() {
+                let (from, to) = (found.starts[i] as usize, found.starts[i + 1] as usize);
+                let mut rows = found.rows[from..to].to_vec();
+                rows.sort_unstable();
+                let right = |&row: &i32| {
+                    let p = points[row as usize];
+                    ![a, b, c].contains(&p) && incircle_canonical(a, b, c, p) == Sign::Positive
+                };
+                let all: Vec<i32> = (0..700).filter(right).collect();
+                assert_eq!(rows, all);
+            }
+        }
+    }
+
+    #[test]
+    fn the_deepest_come_first_and_the_rest_is_announced() {
+        let points: Vec<Point2> = (0..100).map(|i| [f64::from(i) / 100.0, 0.25]).collect();
+        let circle = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.5]];
+        let found = deepest(&points, &[circle], 3, 1, &Watch::idle()).unwrap();
+        assert_eq!(found.starts, [0, 3]);
+        assert_eq!(found.rows[0], 50);
+        assert!(found.rows.iter().all(|row| (49..=51).contains(row)));
+        assert_eq!(found.all, [false]);
+    }
+
+    #[test]
+    fn none_is_an_answer() {
+        let circle = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.5]];
+        let found = deepest(&[[5.0, 5.0], [1.0, 0.0]], &[circle], 3, 1, &Watch::idle()).unwrap();
+        assert_eq!((found.starts, found.all), (vec![0, 0], vec![true]));
+        let found = deepest(&[], &[circle], 3, 1, &Watch::idle()).unwrap();
+        assert_eq!((found.starts, found.all), (vec![0, 0], vec![true]));
+    }
+
+    #[test]
+    fn equal_points_in_any_number_end_the_tree() {
+        let points = vec![[1.0, 1.0]; 100];
+        let circle = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]];
+        let found = deepest(&points, &[circle], 2, 1, &Watch::idle()).unwrap();
+        assert_eq!((found.rows.len(), found.all[0]), (2, false));
+    }
+}

@@ -1,0 +1,104 @@
+//! Disks that hold the closed circumdisk of a triangle, in doubles, rounded outward.
+//!
+//! With b and c the corners as seen from a, D their cross product and N the vector
+//! |b|² (c.y, -c.x) - |c|² (b.y, -b.x), the centre is a + N / 2D. Write u = 2^-53 for the unit
+//! roundoff, P for the sum of the absolute products in D and Q for that in a coordinate of N. A
+//! product in D carries at most 4 roundings and one in N at most 7, so that D is wrong by less than
+//! 5 u P and N by less than 8 u Q, P and Q as computed. From N' = N + e, D' = D + f follows
+//!
+//! ```text
+//! |N/D - N'/D'| = |N' f - e D'| / |D D'| <= (|e| + |N'/D'| |f|) / (|D'| - |f|)
+//! ```
+//!
+//! `ROUND` = 16 u stands for both 5 u and 8 u and takes in what rounds in the bound itself, as long as
+//! |D'| > 2 ROUND P. The radius is at most the length of the computed vector and its error, and the
+//! last addition of a moves the centre by u times the result: `PAD` = 64 u of radius and centre covers
+//! these, and the caller's centre ± radius.
+//!
+//! Underflow changes a product by less than 2^-1074. Where |D| > `TINY` = 1e-200 one of b and c is
+//! longer than 1e-100, the radius is more than half of that, and PAD times the radius exceeds all
+//! that underflow can have done, which has been divided by D. Overflow makes infinities or NaN, and
+//! a comparison fail. Whatever fails is answered by the whole plane.
+
+use delone_predicates::Point2;
+
+const UNIT: f64 = f64::EPSILON / 2.0;
+const ROUND: f64 = 16.0 * UNIT;
+const PAD: f64 = 64.0 * UNIT;
+const TINY: f64 = 1e-200;
+
+/// Centre and radius of a disk that holds the closed circumdisk of the triangle; the radius is
+/// infinite where none is certain.
+pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
+    let whole = [0.0, 0.0, f64::INFINITY];
+    let [b, c] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+    let [s, t] = [b[0] * c[1], b[1] * c[0]];
+    let (det, magnitude) = (s - t, s.abs() + t.abs());
+    let off = ROUND * magnitude;
+    if !(det.abs() > 2.0 * off && det.abs() > TINY) {
+        return whole;
+    }
+    let [bb, cc] = [b, c].map(|p| p[0] * p[0] + p[1] * p[1]);
+    let part = |p: f64, q: f64| {
+        let at = (p - q) / det;
+        let error = (ROUND * (p.abs() + q.abs()) + at.abs() * off) / (det.abs() - off);
+        (0.5 * at, error)
+    };
+    let (x, wrong_x) = part(c[1] * bb, b[1] * cc);
+    let (y, wrong_y) = part(b[0] * cc, c[0] * bb);
+    let center = [a[0] + x, a[1] + y];
+    let length = (x * x + y * y).sqrt() + wrong_x + wrong_y;
+    let radius = length + PAD * (length + center[0].abs() + center[1].abs());
+    if radius.is_finite() {
+        [center[0], center[1], radius]
+    } else {
+        whole
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_right_triangle_has_its_hypotenuse_for_a_diameter() {
+        let [x, y, r] = disk([[0.0, 0.0], [6.0, 0.0], [0.0, 8.0]]);
+        assert_eq!([x, y], [3.0, 4.0]);
+        assert!((5.0..5.0 + 1e-12).contains(&r));
+    }
+
+    #[test]
+    fn what_is_not_certain_is_the_whole_plane() {
+        for corners in [
+            [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
+            [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0 + 1e-15]],
+            [[0.0, 0.0], [1e-150, 0.0], [0.0, 1e-150]],
+            [[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]],
+            [[0.0, 0.0], [1e200, 0.0], [0.0, 1e200]],
+        ] {
+            assert_eq!(disk(corners)[2], f64::INFINITY, "{corners:?}");
+        }
+    }
+
+    #[test]
+    fn corners_lie_in_the_disk() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for i in 0..10_000 {
+            let flat = 10f64.powi(-(i % 14));
+            let far = 10f64.powi(i % 7);
+            let corners = [0; 3].map(|_| [far + random(), -far + flat * random()]);
+            let [x, y, r] = disk(corners);
+            for p in corners {
+                // The distance is rounded by far less than the radius is wide.
+                let distance = (p[0] - x).hypot(p[1] - y);
+                assert!(distance <= r * (1.0 + 2.0 * f64::EPSILON), "{corners:?}");
+            }
+        }
+    }
+}
