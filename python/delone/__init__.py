@@ -43,7 +43,7 @@ from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd
 
 if TYPE_CHECKING:
-    from delone import compat, datasets, interpolate, io, plot, reference, testing
+    from delone import compat, datasets, distributed, interpolate, io, plot, reference, testing
 
 __all__ = [
     "BudgetExceededError",
@@ -76,6 +76,7 @@ __all__ = [
     "__version__",
     "compat",
     "datasets",
+    "distributed",
     "from_geometry",
     "interpolate",
     "io",
@@ -90,7 +91,9 @@ __all__ = [
 ]
 
 # Modules that not every program needs; they are imported when they are first asked for.
-_LATER = frozenset({"compat", "datasets", "interpolate", "io", "plot", "reference", "testing"})
+_LATER = frozenset(
+    {"compat", "datasets", "distributed", "interpolate", "io", "plot", "reference", "testing"}
+)
 
 
 def __getattr__(name: str) -> Any:

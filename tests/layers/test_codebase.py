@@ -125,6 +125,7 @@ PUBLIC_MODULES = (
     "delone.constrained_validation",
     "delone.datasets",
     "delone.delaunay",
+    "delone.distributed",
     "delone.editing",
     "delone.interpolate",
     "delone.io",
@@ -187,7 +188,7 @@ loaded = {name.split(".")[0] for name in set(sys.modules) - before}
 allowed = set(sys.stdlib_module_names) | {"delone", "numpy"}
 print(sorted(loaded - allowed))
 late = ["delone.testing", "delone.datasets", "delone.io", "delone.plot", "delone.compat",
-        "delone.reference", "delone.interpolate", "delone.archive", "zipfile"]
+        "delone.reference", "delone.interpolate", "delone.distributed", "delone.archive", "zipfile"]
 print([name for name in late if name in set(sys.modules) - before])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

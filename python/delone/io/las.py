@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["describe", "read_points"]
+__all__ = ["describe", "look", "read_points", "read_range"]
 
 _BLOCK = 1 << 19
 # Writers put 50,000 points into a chunk; the decoder sets memory aside for the whole of it.
@@ -49,12 +49,7 @@ def read_points(
     _check_records(path)
     with _torn_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
-        known = set(file.header.point_format.dimension_names)
-        unknown = [name for name in attributes if name not in known]
-        if unknown:
-            raise FileFormatError(
-                f"{path} has no {unknown[0]!r}; it has {', '.join(sorted(known))}"
-            )
+        _check_names(path, file.header, attributes)
         points, z, further = _read(file, classes, attributes)
         crs = _crs(file.header)
     if not len(points) and classes is not None:
@@ -77,11 +72,44 @@ def describe(path: Path) -> dict[str, Any]:
         }
 
 
+def look(path: Path, *, attributes: Sequence[str]) -> tuple[int, str | None]:
+    """Return how many points a file has, as far as it has room for them, and its reference system.
+
+    Attributes that it has not are refused.
+    """
+    laspy = _laspy(path)
+    _check_records(path)
+    with _torn_is_an_error(path), laspy.open(path) as file:
+        _check_claim(path, file)
+        _check_names(path, file.header, attributes)
+        return int(file.header.point_count), _crs(file.header)
+
+
+def read_range(path: Path, start: int, stop: int, *, attributes: Sequence[str]) -> PointSet:
+    """Read the records from `start` to before `stop` of a file that `look` has found whole."""
+    laspy = _laspy(path)
+    with _torn_is_an_error(path), laspy.open(path) as file:
+        file.seek(start)
+        block = file.read_points(stop - start)
+        if len(block) != stop - start:
+            raise FileFormatError(f"{path} has no records {start + len(block)} to {stop}")
+        points = np.column_stack([np.asarray(block.x), np.asarray(block.y)])
+        further = {name: np.array(block[name]) for name in attributes}
+        return PointSet(points=points, z=np.asarray(block.z), attributes=further, source=str(path))
+
+
 def _laspy(path: Path) -> Any:
     laspy = require("laspy", extra="las", what="reading LAS")
     if path.suffix.lower() == ".laz":
         require("lazrs", extra="las", what="reading LAZ")
     return laspy
+
+
+def _check_names(path: Path, header: Any, names: Sequence[str]) -> None:
+    known = set(header.point_format.dimension_names)
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise FileFormatError(f"{path} has no {unknown[0]!r}; it has {', '.join(sorted(known))}")
 
 
 @contextmanager

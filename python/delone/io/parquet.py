@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from delone.io.geometryset import GeometrySet
 
-__all__ = ["holds_geometries", "read_geometries", "read_points"]
+__all__ = ["holds_geometries", "look", "read_geometries", "read_points", "read_range"]
 
 
 def read_points(
@@ -59,6 +59,51 @@ def read_geometries(
     with _torn_is_an_error(path):
         geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
         return geometries_of(geopandas.read_parquet(path), columns=columns, source=str(path))
+
+
+def look(path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]) -> int:
+    """Return how many rows a Parquet file without geometries has.
+
+    Columns that it has not are refused.
+    """
+    with _torn_is_an_error(path):
+        parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
+        with parquet.ParquetFile(path) as file:
+            schema = file.schema_arrow
+            choose_columns(_numbers(schema), columns, str(path), named=True)
+            _known(schema, attributes, path)
+            return int(file.metadata.num_rows)
+
+
+def read_range(
+    path: Path,
+    start: int,
+    stop: int,
+    *,
+    columns: Sequence[str | int] | None,
+    attributes: Sequence[str],
+) -> PointSet:
+    """Read the rows from `start` to before `stop` of a Parquet file without geometries.
+
+    Beside these, no more than a row group is held.
+    """
+    with _torn_is_an_error(path):
+        arrow = require("pyarrow", extra="geo", what="reading Parquet")
+        parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
+        with parquet.ParquetFile(path) as file:
+            schema = file.schema_arrow
+            numbers = _numbers(schema)
+            kept = [numbers[i] for i in choose_columns(numbers, columns, str(path), named=True)]
+            names = _known(schema, attributes, path)
+            wanted = list(dict.fromkeys([*kept, *names]))
+            parts, end = [], 0
+            for group in range(file.num_row_groups):
+                begin, end = end, end + int(file.metadata.row_group(group).num_rows)
+                if begin < stop and start < end:
+                    part = file.read_row_group(group, columns=wanted)
+                    low = max(0, start - begin)
+                    parts.append(part.slice(low, min(stop, end) - begin - low))
+            return _from_table(arrow.concat_tables(parts), kept, names, str(path))
 
 
 @contextmanager

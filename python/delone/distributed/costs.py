@@ -1,0 +1,83 @@
+"""What a run costs: a model of few constants, each measured.
+
+The constants are those of ``benchmarks/distributed.py``; the page on planning in the guide shows
+how well they fit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from delone.distributed.sources import PIECE
+from delone.distributed.tiles import HALO
+
+__all__ = ["Plan", "estimate"]
+
+# Bytes of a worker that imports the package and pyarrow, and beyond that for each point of a tile.
+_BASE, _MEMORY = 150e6, 190.0
+# Bytes on disk for each point: of a row as it waits, three times while tiles are finished, and of
+# the output.
+_ROW, _OUTPUT = 32.0, 62.0
+# Seconds of one core for each point, without the reading of compressed files.
+_SECONDS = 1.2e-6
+# Questions are put in this many rounds.
+_ROUNDS = 4
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run will need.
+
+    Parameters
+    ----------
+    points : int
+        Points of the source.
+    tiles : int
+        Tiles.
+    pieces : int
+        Pieces in which the source is read.
+    tasks : int
+        Tasks in all.
+    foreign : int
+        Points that a tile gets of other tiles.
+    worker_memory : int
+        Bytes for each worker.
+    disk : int
+        Bytes on disk while the run lasts.
+    output : int
+        Bytes that stay.
+    seconds : float
+        With all workers, without the decompression of the source.
+    """
+
+    points: int
+    tiles: int
+    pieces: int
+    tasks: int
+    foreign: int
+    worker_memory: int
+    disk: int
+    output: int
+    seconds: float
+
+
+def estimate(points: int, tile_points: int, workers: int, attributes: int) -> Plan:
+    """Return what so many points will need; see `plan`."""
+    tiles = max(1, math.ceil(points / tile_points))
+    pieces = max(1, math.ceil(points / PIECE))
+    size = points / tiles
+    row = _ROW + 8 * attributes
+    foreign = round(HALO * math.sqrt(size)) if tiles > 1 else 0
+    rounds = _ROUNDS if tiles > 1 else 0
+    return Plan(
+        points=points,
+        tiles=tiles,
+        pieces=pieces,
+        tasks=2 * pieces + tiles * (2 + 2 * rounds),
+        foreign=foreign,
+        worker_memory=round(_BASE + (_MEMORY + 3 * 8 * attributes) * max(size, PIECE)),
+        disk=round((2 * row + _OUTPUT + 8 * attributes) * points),
+        output=round((_OUTPUT + 8 * attributes) * points),
+        seconds=_SECONDS * points / max(workers, 1),
+    )

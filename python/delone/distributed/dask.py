@@ -1,0 +1,108 @@
+"""Tasks on a Dask cluster (extra ``dask``): local processes, or machines that share a file system.
+
+Dask starts the workers, spreads the tasks and gives those of a worker that has died to others. What
+tasks exchange lies in the files of the run, so that a task can be done again by anybody, and the
+scheduler holds names and small summaries alone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from delone.distributed.executors import AHEAD
+from delone.distributed.stages import perform
+from delone.errors import DeloneError, InputError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+__all__ = ["DaskExecutor"]
+
+# How often a task may be started again where its worker has died.
+_RETRIES = 5
+
+
+class DaskExecutor:
+    """Tasks on the workers of a Dask client.
+
+    Parameters
+    ----------
+    client : dask.distributed.Client
+        Connected to a scheduler. Its workers must see the folder of the output, and files of the
+        source, under the same names.
+    """
+
+    threads = 1
+
+    def __init__(self, client: Any) -> None:
+        self._distributed = require("distributed", extra="dask", what="a Dask executor")
+        if not isinstance(client, self._distributed.Client) or client.asynchronous:
+            raise InputError(
+                "executor must be 'serial', 'processes' or a dask.distributed.Client that is not "
+                f"asynchronous, got {client!r}"
+            )
+        self.client = client
+
+    @property
+    def workers(self) -> int:
+        """How many tasks can be done at a time."""
+        return max(1, sum(map(int, self.client.nthreads().values())))
+
+    def run(
+        self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
+    ) -> Iterator[tuple[int, dict[str, Any]]]:
+        """Do all tasks of a stage; those of workers that die are done again by others."""
+        try:
+            yield from self._run(root, stage, tasks)
+        except self._distributed.KilledWorker as error:
+            raise DeloneError(
+                f"a task of the stage {stage!r} has ended {_RETRIES} workers: is there enough "
+                "memory for tiles of this size? What is done is kept; run the same again to go on"
+            ) from error
+        except self._lost() as error:
+            raise DeloneError(
+                f"the Dask scheduler is gone ({type(error).__name__}); what is done is kept: run "
+                "the same again, with another client or executor, to go on"
+            ) from error
+
+    def _run(
+        self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
+    ) -> Iterator[tuple[int, dict[str, Any]]]:
+        queue = iter(list(tasks.items()))
+        waiting = self._distributed.as_completed()
+        keys: dict[str, int] = {}
+        try:
+            while True:
+                while len(keys) < AHEAD * self.workers:
+                    task = next(queue, None)
+                    if task is None:
+                        break
+                    future = self._submit(root, stage, *task)
+                    keys[future.key] = task[0]
+                    waiting.add(future)
+                if not keys:
+                    return
+                future = next(waiting)
+                if future.status == "cancelled":
+                    raise self._distributed.CancelledError(future.key)
+                yield keys.pop(future.key), future.result()
+        finally:
+            waiting.clear()
+
+    def _submit(self, root: str, stage: str, key: int, arguments: Sequence[Any]) -> Any:
+        """Hand a task to the scheduler."""
+        if self.client.status != "running":
+            raise ConnectionError(f"the client is {self.client.status}")
+        return self.client.submit(
+            perform, root, stage, key, arguments, pure=False, retries=_RETRIES
+        )
+
+    def _lost(self) -> tuple[type[BaseException], ...]:
+        core = require("distributed.comm", extra="dask", what="a Dask executor")
+        return (
+            self._distributed.CancelledError,
+            core.CommClosedError,
+            ConnectionError,
+            TimeoutError,
+        )

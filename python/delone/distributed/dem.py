@@ -1,0 +1,111 @@
+"""A raster of a triangulation in tiles: linear interpolation into a file, tile by tile.
+
+Each node gets its value from the triangle of the whole set that holds it, whichever tile has it: no
+seam can show. Values wait in a file beside the target, so that memory is that of one tile.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.atomic import replacing
+from delone.distributed.opened import Tile
+from delone.errors import FileFormatError
+from delone.interpolate.raster import raster_nodes
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+    from delone.distributed.opened import TiledDelaunay
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["write_dem"]
+
+# Nodes at a time.
+_BLOCK = 1 << 18
+
+
+def write_dem(
+    tin: TiledDelaunay,
+    resolution: float | tuple[float, float],
+    out: str | os.PathLike[str],
+    value: str,
+) -> Path:
+    """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
+    rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
+    tin._require(value)
+    target = Path(out)
+    if target.suffix.lower() not in (".tif", ".tiff"):
+        raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
+    left, bottom, right, top = tin.bounds
+    x, y = raster_nodes(([left, bottom], [right, top]), resolution=resolution)
+    sides = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
+    with replacing(target) as beside:
+        waiting = beside.with_name(beside.name + ".values")
+        values = np.memmap(waiting, dtype=np.float64, mode="w+", shape=(len(y), len(x)))
+        values[:] = np.nan
+        for number, known in enumerate(tin.manifest["tiles"]):
+            if known["extent"] is not None:
+                _fill(tin.tile(number), known["extent"], x, y, values, value)
+        corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
+        transform = rasterio.Affine(sides[0], 0.0, corner[0], 0.0, -sides[1], corner[1])
+        _write(rasterio, beside, values, transform, tin.crs, value)
+        del values
+    return target
+
+
+def _fill(  # noqa: PLR0917
+    tile: Tile, extent: list[float], x: Floats, y: Floats, values: Any, value: str
+) -> None:
+    """Give the nodes that lie in triangles of the tile, and have no value yet, theirs."""
+    columns = slice(*np.searchsorted(x, [extent[0], np.nextafter(extent[2], np.inf)]).tolist())
+    first, last = np.searchsorted(y, [extent[1], np.nextafter(extent[3], np.inf)]).tolist()
+    width = columns.stop - columns.start
+    if width <= 0:
+        return
+    locator = tile.locator()
+    field = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)[:, None].copy()
+    step = max(1, _BLOCK // width)
+    for start in range(first, last, step):
+        rows = slice(start, min(start + step, last))
+        block = values[rows, columns]
+        r, c = np.nonzero(np.isnan(block))
+        if len(r):
+            queries = np.stack([x[columns][c], y[rows][r]], axis=1)
+            block[r, c] = locator.linear(field, queries, 0, 1).reshape(-1)
+            values[rows, columns] = block
+
+
+def _write(  # noqa: PLR0917
+    rasterio: Any, path: Path, values: Any, transform: Any, crs: str | None, name: str
+) -> None:
+    """Write the rows of the file from the top down."""
+    height, width = values.shape
+    profile = {
+        "driver": "GTiff",
+        "height": height,
+        "width": width,
+        "count": 1,
+        "dtype": "float64",
+        "nodata": np.nan,
+        "crs": crs,
+        "transform": transform,
+        "compress": "deflate",
+        "predictor": 3,
+        "tiled": True,
+        "BIGTIFF": "IF_SAFER",
+    }
+    # Blocks of a tiled GeoTIFF are 256 rows high.
+    with rasterio.open(path, "w", **profile) as file:
+        for row in range(0, height, 256):
+            stop = min(row + 256, height)
+            some = values[height - stop : height - row][::-1]
+            file.write(some, 1, window=((row, stop), (0, width)))
+        file.set_band_description(1, name)

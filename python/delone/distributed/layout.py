@@ -1,0 +1,119 @@
+"""What all tasks of a run know: cells, strips, the hull, the boxes of points, the type of rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from delone.distributed.certify import Known
+from delone.distributed.rows import first_of_each
+from delone.distributed.tiles import Tiles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from delone.distributed.files import Store
+    from delone.distributed.rows import Rows
+
+# Runs of rows: piece, start, stop; own ones and those of the halo.
+Slices: TypeAlias = tuple[list[list[int]], list[list[int]]]
+
+__all__ = ["Layout", "Slices", "collect", "gather"]
+
+_FILE = "work/layout.npz"
+_EXTENTS = "work/extents.npy"
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The division of the plane.
+
+    Parameters
+    ----------
+    tiles : Tiles
+        The cells.
+    strips : ndarray of float64, shape (tiles, 4)
+        The box that each tile knows from the beginning.
+    hull : ndarray of records
+        The corners of the convex hull of all points, in the order of the source.
+    """
+
+    tiles: Tiles
+    strips: NDArray[np.float64]
+    hull: Rows
+
+    @property
+    def type(self) -> np.dtype[np.void]:
+        """The type of rows."""
+        return self.hull.dtype
+
+    def save(self, store: Store) -> None:
+        """Write it down."""
+        tiles = self.tiles
+        arrays: dict[str, NDArray[Any]] = {
+            "axis": tiles.axis,
+            "cut": tiles.cut,
+            "children": tiles.children,
+            "cells": tiles.cells,
+            "strips": self.strips,
+            "hull": self.hull,
+        }
+        store.save_all(_FILE, arrays)
+
+    @classmethod
+    def load(cls, store: Store) -> Layout:
+        """Read it."""
+        found = store.load_all(_FILE)
+        tiles = Tiles(found["axis"], found["cut"], found["children"], found["cells"])
+        return cls(tiles, found["strips"], found["hull"])
+
+    def known(self, store: Store, tile: int) -> Known:
+        """Return what a tile knows."""
+        return Known(tile, self.strips[tile], self.tiles, store.load(_EXTENTS))
+
+
+def collect(
+    store: Store, tiles: int, dealt: Iterable[tuple[int, dict[str, Any]]]
+) -> tuple[list[Slices], NDArray[np.int64]]:
+    """Turn what pieces say of tiles round: the runs of each tile, and how many points it has.
+
+    The boxes of the points of all tiles are written down on the way.
+    """
+    slices: list[Slices] = [([], []) for _ in range(tiles)]
+    counts = np.zeros(tiles, dtype=np.int64)
+    extents = np.tile([np.inf, np.inf, -np.inf, -np.inf], (tiles, 1))
+    for piece, summary in dealt:
+        for (tile, start, stop), box in zip(summary["own"], summary["boxes"], strict=True):
+            slices[tile][0].append([piece, start, stop])
+            counts[tile] += stop - start
+            np.minimum(extents[tile, :2], box[:2], out=extents[tile, :2])
+            np.maximum(extents[tile, 2:], box[2:], out=extents[tile, 2:])
+        for tile, start, stop in summary["halo"]:
+            slices[tile][1].append([piece, start, stop])
+    if not store.exists(_EXTENTS):
+        store.save(_EXTENTS, extents)
+    return slices, counts
+
+
+def gather(store: Store, slices: Slices, hull: Rows) -> tuple[Rows, int]:
+    """Return what a tile knows at first, its own rows in front, and how many these are.
+
+    Own rows come in the order of the source, then halo and hull in theirs: whichever row of equal
+    coordinates comes first is the first of the source.
+    """
+    own, halo = ([_run(store, *run) for run in runs] for runs in slices)
+    count = sum(map(len, own))
+    beside = first_of_each(np.concatenate([*halo, hull]))
+    inside = np.concatenate([*own, hull[:0]])
+    # Corners of the hull that are the tile's own.
+    beside = beside[~np.isin(beside["id"], inside["id"][np.isin(inside["id"], hull["id"])])]
+    return np.concatenate([inside, beside]), count
+
+
+def _run(store: Store, piece: int, start: int, stop: int) -> Rows:
+    found: Rows = np.array(store.load(f"work/parts/{piece:06}.npy", mapped=True)[start:stop])
+    return found

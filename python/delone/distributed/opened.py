@@ -1,0 +1,438 @@
+"""Reading back: a finished output, of which nothing is in memory but the manifest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_count, as_vectors
+from delone.distributed.files import Store
+from delone.distributed.manifest import manifest_of
+from delone.distributed.output import tile_names
+from delone.distributed.tiles import Tiles
+from delone.errors import FileFormatError, InputError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.distributed.proof import TiledReport
+
+    Floats = NDArray[np.float64]
+    Numbers = NDArray[np.int64]
+
+__all__ = ["Tile", "TiledDelaunay", "open"]
+
+_WHAT = "reading tiles"
+
+
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """One tile in memory.
+
+    Parameters
+    ----------
+    number : int
+        The number of the tile.
+    points : ndarray of float64, shape (n, 2)
+        Its vertices: own points, then points of other tiles.
+    ids : ndarray of int64, shape (n,)
+        Their rows in the source.
+    owned : ndarray of bool, shape (n,)
+        Which are own points.
+    simplices : ndarray of int32, shape (m, 3)
+        Its triangles as rows of `points`, counter-clockwise.
+    attributes : dict of str to ndarray
+        Heights ``z`` and further columns, one value for each vertex.
+    """
+
+    number: int
+    points: Floats
+    ids: Numbers
+    owned: NDArray[np.bool_]
+    simplices: NDArray[np.int32]
+    attributes: dict[str, NDArray[Any]]
+
+    def locator(self) -> _core.Locator2:
+        """Return what finds the triangles that hold points."""
+        neighbors = _core.neighbors2(self.simplices, len(self.points))
+        return _core.Locator2(self.points, self.simplices, neighbors)
+
+
+def open(output: str | os.PathLike[str]) -> TiledDelaunay:
+    """Open a triangulation in tiles.
+
+    Parameters
+    ----------
+    output : str or path-like
+        The folder that `triangulate` has written.
+
+    Returns
+    -------
+    TiledDelaunay
+        It reads tiles when they are needed.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is none, or it is not finished.
+    FileFormatError
+        The manifest is torn or of another kind, or files of tiles are missing.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from delone import datasets, distributed
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+    ...     distributed.open(folder + "/tin")
+    <TiledDelaunay of 400 points: 722 triangles in 4 tiles>
+    """
+    store = Store(output)
+    if not Path(output).is_dir():
+        raise FileNotFoundError(f"{output}: no such folder")
+    manifest = manifest_of(store)
+    for tile in range(len(manifest["tiles"])):
+        for name in tile_names(tile):
+            if not store.exists(name):
+                raise FileFormatError(f"{output} has lost {name}")
+    return TiledDelaunay(store, manifest)
+
+
+class TiledDelaunay:
+    """A triangulation in tiles on disk, made by `open`.
+
+    Attributes
+    ----------
+    manifest : dict
+        What the manifest says.
+    npoints, nsimplex, ntiles : int
+        Numbers of points (duplicates included), of triangles and of tiles.
+    bounds : tuple of four floats
+        Left, bottom, right and top of the points.
+    crs : str or None
+        Coordinate reference system.
+
+    Notes
+    -----
+    A triangle is numbered by its place: those of tile 0 come first, then those of tile 1, and so
+    on. One tile at a time is in memory, except where a method says otherwise.
+    """
+
+    def __init__(self, store: Store, manifest: dict[str, Any]) -> None:
+        self._store = store
+        self.manifest = manifest
+        counts = [tile["triangles"] for tile in manifest["tiles"]]
+        self._starts = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+
+    def __repr__(self) -> str:
+        return (
+            f"<TiledDelaunay of {self.npoints} points: {self.nsimplex} triangles in "
+            f"{self.ntiles} tiles>"
+        )
+
+    @property
+    def npoints(self) -> int:
+        """The number of points, duplicates included."""
+        return int(self.manifest["points"])
+
+    @property
+    def nsimplex(self) -> int:
+        """The number of triangles."""
+        return int(self._starts[-1])
+
+    @property
+    def ntiles(self) -> int:
+        """The number of tiles."""
+        return len(self.manifest["tiles"])
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top of the points."""
+        left, bottom, right, top = self.manifest["bounds"]
+        return left, bottom, right, top
+
+    @property
+    def crs(self) -> str | None:
+        """Coordinate reference system, None where the source has none."""
+        crs: str | None = self.manifest["crs"]
+        return crs
+
+    @property
+    def path(self) -> Path:
+        """The folder."""
+        return self._store.root
+
+    def _tree(self) -> Tiles:
+        tree = self.manifest["tree"]
+        return Tiles(
+            np.array(tree["axis"], dtype=np.int8),
+            np.array(tree["cut"], dtype=np.float64),
+            np.array(tree["children"], dtype=np.int64).reshape(-1, 2),
+            np.empty((self.ntiles, 4)),
+        )
+
+    def tile(self, number: int) -> Tile:
+        """Read one tile.
+
+        Parameters
+        ----------
+        number : int
+            From 0 to ``ntiles - 1``.
+
+        Returns
+        -------
+        Tile
+            Vertices and triangles.
+
+        Raises
+        ------
+        InputError
+            There is no such tile.
+        FileFormatError
+            Its files are torn.
+        """
+        number = as_count(number, name="number")
+        if not 0 <= number < self.ntiles:
+            raise InputError(f"there are tiles 0 to {self.ntiles - 1}, not {number}")
+        vertices, triangles = (self._table(name) for name in tile_names(number))
+        fixed = ("id", "x", "y", "owned")
+        points = np.stack([vertices["x"], vertices["y"]], axis=1)
+        simplices = np.stack([triangles[name] for name in "abc"], axis=1)
+        if len(simplices) and not 0 <= simplices.min() <= simplices.max() < len(points):
+            raise FileFormatError(f"{self.path}: tile {number} has triangles without vertices")
+        return Tile(
+            number,
+            points,
+            vertices["id"].astype(np.int64),
+            vertices["owned"].astype(bool),
+            simplices.astype(np.int32, copy=False),
+            {name: values for name, values in vertices.items() if name not in fixed},
+        )
+
+    def _table(self, name: str) -> dict[str, NDArray[Any]]:
+        parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
+        try:
+            with parquet.ParquetFile(self._store.path(name)) as file:
+                table = file.read()
+        except OSError as error:
+            raise FileFormatError(f"{self._store.path(name)} is torn: {error}") from error
+        return {column: table[column].to_numpy() for column in table.column_names}
+
+    def tiles(self) -> Iterator[Tile]:
+        """Read all tiles, one after another."""
+        return (self.tile(number) for number in range(self.ntiles))
+
+    def simplices(self) -> Numbers:
+        """Return all triangles, (m, 3), as rows of the source, for what fits into memory.
+
+        Returns
+        -------
+        ndarray of int64, shape (m, 3)
+            Counter-clockwise, in the order of their numbers.
+        """
+        found = np.empty((self.nsimplex, 3), dtype=np.int64)
+        for tile in self.tiles():
+            start, stop = self._starts[tile.number : tile.number + 2]
+            found[start:stop] = tile.ids[tile.simplices]
+        return found
+
+    def _near(self, queries: Floats) -> Iterator[tuple[int, Numbers]]:
+        """Tiles whose triangles may hold queries, in the order of their numbers, and which."""
+        for number, tile in enumerate(self.manifest["tiles"]):
+            if tile["extent"] is not None:
+                box = np.array(tile["extent"])
+                with np.errstate(invalid="ignore"):
+                    within = ((queries >= box[:2]) & (queries <= box[2:])).all(axis=1)
+                rows = np.flatnonzero(within)
+                if len(rows):
+                    yield number, rows
+
+    def find_simplex(self, xi: ArrayLike) -> Numbers:
+        """Tell which triangles hold points, reading only tiles that may.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate. NaN and infinity are outside.
+
+        Returns
+        -------
+        ndarray of int64, shape (...)
+            The number of a triangle that has the point inside or on its boundary, of several one of
+            the lowest tile; -1 outside.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     _ = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     tin = distributed.open(folder + "/tin")
+        ...     (tin.find_simplex([(3.2, 4.5), (-1, 0)]) >= 0).tolist()
+        [True, False]
+        """
+        queries, shape = _queries(xi)
+        found = np.full(len(queries), -1, dtype=np.int64)
+        for number, rows in self._near(queries):
+            left = rows[found[rows] < 0]
+            if len(left):
+                here = self.tile(number).locator().find(queries[left].copy(), 1)
+                found[left[here >= 0]] = self._starts[number] + here[here >= 0]
+        return found.reshape(shape)
+
+    def interpolate(self, xi: ArrayLike, *, value: str = "z") -> Floats:
+        """Interpolate linearly, reading only tiles that may hold the points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Where.
+        value : str, optional
+            The attribute; by default heights.
+
+        Returns
+        -------
+        ndarray of float64, shape (...)
+            Values; NaN outside of the hull.
+
+        Raises
+        ------
+        InputError
+            There is no such attribute.
+
+        Notes
+        -----
+        Triangles are those of the whole set, so that there are no seams between tiles.
+        """
+        self._require(value)
+        queries, shape = _queries(xi)
+        found = np.full(len(queries), np.nan)
+        left = np.ones(len(queries), dtype=bool)
+        for number, rows in self._near(queries):
+            some = rows[left[rows]]
+            if len(some):
+                values, held = _linear(self.tile(number), queries[some], value)
+                found[some[held]] = values[held]
+                left[some[held]] = False
+        return found.reshape(shape)
+
+    def _require(self, value: str) -> None:
+        has = ["z"] if self.manifest["heights"] else []
+        has += self.manifest["attributes"]
+        if value not in has:
+            raise InputError(
+                f"{self.path} has no {value!r}; it has {', '.join(has) or 'no values'}"
+            )
+
+    def validate(self) -> TiledReport:
+        """Check exactly, tile by tile, that the union is the Delaunay triangulation of all points.
+
+        Returns
+        -------
+        TiledReport
+            True where all is right; else it names the tiles and what is wrong.
+        """
+        from delone.distributed.proof import prove
+
+        return prove(self)
+
+    def to_dask_dataframe(self, table: str = "triangles") -> Any:
+        """Return a Dask data frame with one partition for each tile.
+
+        Parameters
+        ----------
+        table : str, optional
+            ``"triangles"``: columns ``a``, ``b``, ``c`` with rows of the source; ``"vertices"``:
+            the points, each once, by ``id``.
+
+        Returns
+        -------
+        dask.dataframe.DataFrame
+            Lazy.
+
+        Raises
+        ------
+        MissingExtraError
+            dask is not installed.
+        """
+        from delone.distributed.tables import dask_frame
+
+        return dask_frame(self, table)
+
+    def to_geoparquet(self, folder: str | os.PathLike[str]) -> None:
+        """Write the triangles as polygons, one GeoParquet file for each tile.
+
+        Parameters
+        ----------
+        folder : str or path-like
+            A new folder.
+
+        Raises
+        ------
+        InputError
+            The folder is there already.
+        MissingExtraError
+            geopandas is not installed.
+        """
+        from delone.distributed.tables import write_geoparquet
+
+        write_geoparquet(self, folder)
+
+    def to_raster(
+        self,
+        resolution: float | tuple[float, float],
+        out: str | os.PathLike[str] = "dem.tif",
+        *,
+        value: str = "z",
+    ) -> Path:
+        """Interpolate linearly to a GeoTIFF, tile by tile, without seams.
+
+        Parameters
+        ----------
+        resolution : float or pair of float
+            Width and height of a cell, in the units of the points.
+        out : str or path-like, optional
+            The file; it appears when it is whole.
+        value : str, optional
+            The attribute; by default heights.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            There is no such attribute, or `resolution` is not above 0.
+        MissingExtraError
+            rasterio is not installed.
+        """
+        from delone.distributed.dem import write_dem
+
+        return write_dem(self, resolution, out, value)
+
+
+def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
+    queries = as_vectors(xi, 2, name="xi")
+    return np.ascontiguousarray(queries.reshape(-1, 2)), queries.shape[:-1]
+
+
+def _linear(tile: Tile, queries: Floats, value: str) -> tuple[Floats, NDArray[np.bool_]]:
+    """Values of queries in a tile, and which of them a triangle of it holds."""
+    locator = tile.locator()
+    values = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)
+    some = np.ascontiguousarray(queries)
+    found: Floats = locator.linear(values[:, None].copy(), some, 0, 1).reshape(-1)
+    held = ~np.isnan(found)
+    # Outside, or inside of a triangle that has no value at a corner.
+    held[~held] = locator.find(some[~held], 1) >= 0
+    return found, held

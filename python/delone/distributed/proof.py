@@ -1,0 +1,228 @@
+"""The exact check of a triangulation in tiles, one tile in memory at a time.
+
+Triangles are counter-clockwise; each edge has one triangle on either side or lies on the boundary;
+the boundary is one convex cycle: so the triangles tile the hull. There are 2 n - 2 - h of them for
+n distinct points and h on the boundary: so each point is a vertex. Each inner edge is locally
+Delaunay with ties by coordinates: so all is Delaunay and canonical (B. Delaunay, "Sur la sphère
+vide", 1934). Beside one tile, memory is needed for the edges and vertices that tiles have in
+common.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone.distributed.files import digest
+from delone.distributed.output import tile_names
+from delone.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.distributed.opened import Tile, TiledDelaunay
+
+    Floats = NDArray[np.float64]
+    Numbers = NDArray[np.int64]
+
+__all__ = ["TiledReport", "prove"]
+
+# An edge of a tile that has no other side in it: ends and apex, as rows and as points.
+_EDGE = np.dtype([("ends", "<i8", 2), ("apex", "<i8"), ("tile", "<i8"), ("points", "<f8", (3, 2))])
+_VERTEX = np.dtype([("id", "<i8"), ("point", "<f8", 2), ("tile", "<i8"), ("owner", "<i8")])
+
+
+@dataclass(frozen=True)
+class TiledReport:
+    """What the check of a triangulation in tiles has found.
+
+    Parameters
+    ----------
+    faults : tuple of str
+        What is wrong and where; empty where all is right.
+
+    Examples
+    --------
+    >>> from delone.distributed import TiledReport
+    >>> bool(TiledReport()), str(TiledReport())
+    (True, 'right')
+    """
+
+    faults: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether all is right."""
+        return not self.faults
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        return "\n".join(self.faults) or "right"
+
+
+def prove(tin: TiledDelaunay) -> TiledReport:
+    """Check a triangulation; see `TiledDelaunay.validate`."""
+    faults: list[str] = []
+    edges, foreign = [np.empty(0, _EDGE)], [np.empty(0, _VERTEX)]
+    tree = tin._tree()
+    distinct = triangles = points = 0
+    for number, known in enumerate(tin.manifest["tiles"]):
+        for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
+            if digest(tin._store.path(name)) != known[f"{key}_sha256"]:
+                faults.append(f"{name} is not the file that was written")
+        try:
+            tile = tin.tile(number)
+        except (FileFormatError, KeyError, ValueError) as error:
+            faults.append(f"tile {number} cannot be read: {error}")
+            continue
+        owner = tree.locate(tile.points).astype(np.int64)
+        faults += _inner(tile, owner)
+        edges.append(_open_edges(tile))
+        foreign.append(_foreign(tile, owner))
+        triangles += len(tile.simplices)
+        points += int(tile.owned.sum())
+        distinct += len(np.unique(tile.points[tile.owned] + 0.0, axis=0))
+    boundary = _between(np.concatenate(edges), faults)
+    h = _around(boundary, faults)
+    if points != tin.npoints:
+        faults.append(f"{points} points in place of {tin.npoints}")
+    if triangles != 2 * distinct - 2 - h:
+        faults.append(
+            f"{triangles} triangles in place of {2 * distinct - 2 - h}: a point is missing"
+        )
+    faults += _copies(tin, np.concatenate(foreign))
+    return TiledReport(tuple(faults))
+
+
+def _inner(tile: Tile, owner: Numbers) -> list[str]:
+    """What can be seen in one tile: turns, owners, edges inside of it."""
+    found = []
+    points, simplices = tile.points, tile.simplices
+    a, b, c = (np.ascontiguousarray(points[simplices[:, k]]) for k in range(3))
+    wrong = np.flatnonzero(_core.orient2d(a, b, c) <= 0)
+    if len(wrong):
+        found.append(f"tile {tile.number}: triangle {wrong[0]} is not counter-clockwise")
+    if len(simplices) and (owner[simplices].min(axis=1) != tile.number).any():
+        found.append(f"tile {tile.number} has a triangle of another tile")
+    if (owner[tile.owned] != tile.number).any():
+        found.append(f"tile {tile.number} has a point of another tile")
+    if len(np.unique(tile.ids)) != len(tile.ids):
+        found.append(f"tile {tile.number} has a vertex twice")
+    t, k = np.nonzero((neighbors := _neighbors(tile, found)) >= 0)
+    beyond = neighbors[t, k]
+    once = t < beyond
+    t, k, beyond = t[once], k[once], beyond[once]
+    u, v = simplices[t, (k + 1) % 3], simplices[t, (k + 2) % 3]
+    other = simplices[beyond]
+    q = other[(other != u[:, None]) & (other != v[:, None])]
+    if len(q) != len(t):
+        found.append(f"tile {tile.number} has two triangles with the same vertices")
+        return found
+    a, b, c, d = (np.ascontiguousarray(points[w]) for w in (u, v, simplices[t, k], q))
+    wrong = np.flatnonzero(_core.incircle(a, b, c, d, True) > 0)
+    if len(wrong):
+        pair = f"{t[wrong[0]]} and {beyond[wrong[0]]}"
+        found.append(f"tile {tile.number}: the edge of triangles {pair} is not Delaunay")
+    return found
+
+
+def _neighbors(tile: Tile, found: list[str]) -> NDArray[np.int32]:
+    try:
+        return _core.neighbors2(tile.simplices, len(tile.points))
+    except ValueError as error:
+        found.append(f"tile {tile.number}: {error}")
+        return np.full(tile.simplices.shape, -1, dtype=np.int32)
+
+
+def _open_edges(tile: Tile) -> NDArray[np.void]:
+    """The edges of a tile that have no other side in it."""
+    simplices = tile.simplices
+    t, k = np.nonzero(_neighbors(tile, []) < 0)
+    rows = np.stack([simplices[t, (k + j) % 3] for j in (1, 2, 0)], axis=1)
+    found = np.empty(len(t), _EDGE)
+    found["ends"], found["apex"] = tile.ids[rows[:, :2]], tile.ids[rows[:, 2]]
+    found["tile"], found["points"] = tile.number, tile.points[rows]
+    return found
+
+
+def _between(edges: NDArray[np.void], faults: list[str]) -> NDArray[np.void]:
+    """Match edges across tiles, check those that meet, and return the boundary."""
+    ends = np.sort(edges["ends"], axis=1)
+    order = np.lexsort((ends[:, 1], ends[:, 0]))
+    edges, ends = edges[order], ends[order]
+    same = (ends[1:] == ends[:-1]).all(axis=1)
+    first = np.flatnonzero(same)
+    if (same[1:] & same[:-1]).any():
+        faults.append("an edge has more than two triangles")
+    one, two = edges[first], edges[first + 1]
+    folded = np.flatnonzero((one["ends"] != two["ends"][:, ::-1]).any(axis=1))
+    if len(folded):
+        tiles = one["tile"][folded[0]], two["tile"][folded[0]]
+        faults.append(f"triangles of tiles {tiles[0]} and {tiles[1]} overlap")
+    u, v, p = (np.ascontiguousarray(one["points"][:, k]) for k in range(3))
+    wrong = np.flatnonzero(_core.incircle(u, v, p, two["points"][:, 2].copy(), True) > 0)
+    if len(wrong):
+        tiles = one["tile"][wrong[0]], two["tile"][wrong[0]]
+        faults.append(f"an edge between tiles {tiles[0]} and {tiles[1]} is not Delaunay")
+    alone = np.ones(len(edges), dtype=bool)
+    alone[first] = alone[first + 1] = False
+    return edges[alone]
+
+
+def _around(boundary: NDArray[np.void], faults: list[str]) -> int:
+    """Check that the boundary is one convex cycle; return how many points are on it."""
+    after = dict(boundary["ends"].tolist())
+    at = dict(zip(boundary["ends"][:, 0].tolist(), boundary["points"][:, 0], strict=True))
+    if len(after) != len(boundary) or not len(boundary):
+        faults.append("the boundary meets itself")
+        return len(boundary)
+    start = min(after, key=lambda v: tuple(at[v]))
+    cycle, v = [start], after[start]
+    while v != start and v in after and len(cycle) <= len(after):
+        cycle.append(v)
+        v = after[v]
+    if v != start or len(cycle) != len(after):
+        faults.append("the boundary is no single cycle: there is a hole")
+        return len(boundary)
+    points = np.array([at[v] for v in cycle])
+    ahead, beyond = np.roll(points, -1, axis=0), np.roll(points, -2, axis=0)
+    # One turn in all: x rises once and falls once.
+    order = np.lexsort((np.arange(len(points)), points[:, 1], points[:, 0]))
+    top = int(order[-1])
+    rises = [tuple(p) < tuple(q) for p, q in zip(points, ahead, strict=True)]
+    if rises != [i < top for i in range(len(points))]:
+        faults.append("the boundary turns more than once")
+    if (_core.orient2d(points, ahead, beyond) < 0).any():
+        faults.append("the boundary is not convex")
+    return len(points)
+
+
+def _foreign(tile: Tile, owner: Numbers) -> NDArray[np.void]:
+    beside = np.flatnonzero(~tile.owned)
+    found = np.empty(len(beside), _VERTEX)
+    found["id"], found["point"] = tile.ids[beside], tile.points[beside]
+    found["tile"], found["owner"] = tile.number, owner[beside]
+    return found
+
+
+def _copies(tin: TiledDelaunay, foreign: NDArray[np.void]) -> list[str]:
+    """Check that vertices of other tiles are what their owners say."""
+    faults = []
+    for number in np.unique(foreign["owner"]).tolist():
+        tile = tin.tile(number)
+        copies = foreign[foreign["owner"] == number]
+        ids, points = tile.ids[tile.owned], tile.points[tile.owned]
+        order = np.argsort(ids)
+        at = order[np.minimum(np.searchsorted(ids, copies["id"], sorter=order), len(ids) - 1)]
+        wrong = (ids[at] != copies["id"]) | (points[at] != copies["point"]).any(axis=1)
+        if wrong.any():
+            copy = copies[np.flatnonzero(wrong)[0]]
+            faults.append(
+                f"vertex {copy['id']} of tile {copy['tile']} is not that of tile {number}"
+            )
+    return faults

@@ -1,0 +1,70 @@
+"""Rows of points: what goes from the source through the tiles to the output.
+
+A row is a record of its number in the source, coordinates, and whatever attributes are carried
+along. Of rows with equal coordinates the one with the least number is the vertex, wherever they
+meet.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    Rows = NDArray[np.void]
+
+__all__ = ["coordinates", "first_of_each", "make_rows", "record", "widened"]
+
+_FIXED = ("id", "x", "y", "z")
+
+
+def record(attributes: Mapping[str, str], *, heights: bool) -> np.dtype[np.void]:
+    """Return the type of rows with these attributes, given as names and dtypes."""
+    fields: list[tuple[str, str]] = [("id", "<u8"), ("x", "<f8"), ("y", "<f8")]
+    if heights:
+        fields.append(("z", "<f8"))
+    return np.dtype(fields + [(name, kind) for name, kind in attributes.items()])
+
+
+def make_rows(
+    first: int,
+    points: NDArray[np.float64],
+    z: NDArray[np.float64] | None,
+    attributes: Mapping[str, NDArray[Any]],
+) -> Rows:
+    """Return rows numbered from `first` on."""
+    kinds = {name: np.asarray(values).dtype.str for name, values in attributes.items()}
+    rows = np.empty(len(points), dtype=record(kinds, heights=z is not None))
+    rows["id"] = np.arange(first, first + len(points), dtype=np.uint64)
+    rows["x"], rows["y"] = points[:, 0], points[:, 1]
+    if z is not None:
+        rows["z"] = z
+    for name, values in attributes.items():
+        rows[name] = values
+    return rows
+
+
+def widened(types: Sequence[np.dtype[np.void]]) -> np.dtype[np.void]:
+    """Return the type of rows that holds the attributes of all `types`, whose names are equal."""
+    names = types[0].names or ()
+    kinds = {
+        name: np.result_type(*{t[name] for t in types}).str for name in names if name not in _FIXED
+    }
+    return record(kinds, heights="z" in names)
+
+
+def coordinates(rows: Rows) -> NDArray[np.float64]:
+    """Return the coordinates of rows, (n, 2), contiguous."""
+    points = np.empty((len(rows), 2))
+    points[:, 0], points[:, 1] = rows["x"], rows["y"]
+    return points
+
+
+def first_of_each(rows: Rows) -> Rows:
+    """Return rows without those whose number is there already, by number."""
+    return rows[np.unique(rows["id"], return_index=True)[1]]

@@ -1,0 +1,291 @@
+"""A run from a source to tiles: the stages in their order, what is kept of an interrupted one."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.distributed.files import Store
+from delone.distributed.hull import extreme_rows
+from delone.distributed.layout import Layout, Slices, collect
+from delone.distributed.manifest import FORMAT, assemble, manifest_of
+from delone.distributed.rows import make_rows, widened
+from delone.distributed.stages import note_of
+from delone.distributed.tiles import plant, strips
+from delone.errors import DegenerateInputError, InputError, LimitError, NonFiniteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from delone.distributed.executors import Executor
+    from delone.distributed.rows import Rows
+    from delone.distributed.sources import Choice, Source
+
+    Summaries = dict[int, dict[str, Any]]
+
+__all__ = ["Progress", "Run"]
+
+# Sampled points of a tile, and of all tiles: 64 MB of coordinates.
+_SAMPLE, _SAMPLES = 4096, 1 << 22
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is.
+
+    Parameters
+    ----------
+    stage : str
+        ``"look"``, ``"deal"``, ``"begin"``, ``"answer-0"``, ``"proceed-0"``, ..., ``"finish"``.
+    done, total : int
+        Tasks of the stage.
+    tiles : int
+        How many tiles there are; 0 while that is not known.
+    open : int
+        How many tiles still ask.
+    turn : int
+        The round of questions.
+    foreign : int
+        Points that tiles have been given of other tiles.
+    memory : int
+        The greatest memory of a process, in bytes.
+    """
+
+    stage: str = ""
+    done: int = 0
+    total: int = 0
+    tiles: int = 0
+    open: int = 0
+    turn: int = 0
+    foreign: int = 0
+    memory: int = 0
+
+
+@dataclass
+class Run:
+    """One run.
+
+    Parameters
+    ----------
+    store : Store
+        The output.
+    source : Source
+        What to triangulate.
+    choice : Choice
+        What is wanted of its files.
+    tile_points : int
+        Points in a tile.
+    nan : str
+        ``"raise"`` or ``"drop"``.
+    executor : Executor
+        Who does the tasks.
+    tell : callable
+        Is told of progress.
+    """
+
+    store: Store
+    source: Source
+    choice: Choice
+    tile_points: int
+    nan: str
+    executor: Executor
+    tell: Callable[[Progress], None]
+    progress: Progress = field(default_factory=Progress)
+
+    def go(self, resume: bool) -> None:
+        """Do all that is not done yet."""
+        self._enter(resume)
+        if self.store.exists("manifest.json"):
+            # An earlier run was stopped after its last word.
+            self.store.remove("work")
+            return
+        looks = self._look()
+        layout = self._lay_out(looks)
+        dealt = self._stage("deal", dict.fromkeys(looks, ()))
+        slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
+        self._check_sizes(slices)
+        threads = self.executor.threads
+        begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})
+        turns, told = self._ask(begun)
+        closed = {key for key, summary in begun.items() if summary["asked"]}
+        tasks = {t: (runs, t in closed) for t, runs in enumerate(slices)}
+        finished = self._stage("finish", tasks)
+        figures = {
+            "rows": self.source.count,
+            "points": int(counts.sum()),
+            "dropped": sum(s["bad_count"] for s in looks.values()),
+            "duplicates": sum(s["twins"] for s in begun.values()),
+            "rounds": turns,
+            "given": sum(s["foreign"] for s in begun.values()) + told,
+            "hull": len(layout.hull),
+            "memory": self.progress.memory,
+        }
+        settings = self._settings()
+        manifest = assemble(settings, self.source.crs, layout, figures, finished)
+        self.store.note("manifest.json", manifest)
+        self.store.remove("work")
+
+    def _enter(self, resume: bool) -> None:
+        """Begin in an empty folder, or go on with the same run in its own."""
+        root = self.store.root
+        settings = self._settings()
+        if root.exists() and not root.is_dir():
+            raise InputError(f"{root} is there and is no folder")
+        begun = self.store.noted("work/run.json")
+        before = manifest_of(self.store)["run"] if self.store.exists("manifest.json") else begun
+        if before is None:
+            if root.is_dir() and any(p for p in root.iterdir() if p.name != "work"):
+                raise InputError(f"{root} is there and holds something else: choose another output")
+            self.store.remove("work")
+            self.store.note("work/run.json", settings)
+        elif not resume:
+            raise InputError(f"{root} holds a run already: remove it, or go on with resume=True")
+        elif before != json.loads(json.dumps(settings)):
+            wrong = [name for name in settings if before.get(name) != settings[name]]
+            raise InputError(
+                f"{root} holds a run of another kind ({', '.join(wrong)} differ); nothing is "
+                "mixed: choose another output"
+            )
+
+    def _settings(self) -> dict[str, Any]:
+        """What makes two runs the same."""
+        choice = self.choice
+        return json.loads(  # type: ignore[no-any-return]
+            json.dumps(
+                {
+                    "format": FORMAT,
+                    "source": self.source.identity,
+                    "tile_points": self.tile_points,
+                    "columns": choice.columns,
+                    "classes": choice.classes,
+                    "attributes": choice.attributes,
+                    "nan": self.nan,
+                }
+            )
+        )
+
+    def _look(self) -> Summaries:
+        """Look at all pieces; an array is written down by this process."""
+        pieces = self.source.pieces
+        share = min(1.0, _SAMPLE * self._tiles() / max(self.source.count, 1))
+        share = min(share, _SAMPLES / max(self.source.count, 1))
+        tasks = {k: (piece, self.choice, share) for k, piece in enumerate(pieces)}
+        array = self.source.array
+        if array is not None:
+            for key, piece in enumerate(pieces):
+                if not self.store.exists(note_of("look", key)):
+                    some = array[piece.start : piece.stop]
+                    z = some[:, 2] if some.shape[1] == 3 else None
+                    rows = make_rows(piece.start, some[:, :2], z, {})
+                    self.store.save(f"work/pieces/{key:06}.npy", rows)
+        looks = self._stage("look", tasks)
+        bad = sum(summary["bad_count"] for summary in looks.values())
+        if bad and self.nan == "raise":
+            worst = [row for key in sorted(looks) for row in looks[key]["bad"]]
+            raise NonFiniteError(
+                f"{bad} points have NaN or infinity; nan='drop' leaves them out",
+                rows=worst,
+                count=bad,
+            )
+        return looks
+
+    def _tiles(self) -> int:
+        return max(1, -(-self.source.count // self.tile_points))
+
+    def _lay_out(self, looks: Summaries) -> Layout:
+        if self.store.exists("work/layout.npz"):
+            return Layout.load(self.store)
+        samples = [np.empty((0, 2))]
+        hulls: list[Rows] = []
+        for key in sorted(looks):
+            found = self.store.load_all(f"work/looks/{key:06}.npz")
+            samples.append(found["sample"])
+            hulls.append(found["hull"])
+        if hulls:
+            kind = widened([hull.dtype for hull in hulls])
+            hulls = [extreme_rows(np.concatenate([part.astype(kind) for part in hulls]))]
+        if not hulls or len(hulls[0]) < 3:
+            _refuse_degenerate(hulls[0]["id"].tolist() if hulls else [])
+        sample = np.concatenate(samples)
+        tiles = plant(sample, self._tiles())
+        layout = Layout(tiles, strips(tiles, sample, self.source.count), hulls[0])
+        layout.save(self.store)
+        return layout
+
+    def _check_sizes(self, slices: Sequence[Slices]) -> None:
+        """Refuse a tile whose vertices 32 bits cannot number: more equal points than that."""
+        for tile, runs in enumerate(slices):
+            size = sum(stop - start for part in runs for _, start, stop in part)
+            if size > 1 << 28:
+                raise LimitError(
+                    f"tile {tile} has {size} points, more than {1 << 28}: choose fewer tile_points"
+                )
+        self._say(tiles=len(slices))
+
+    def _ask(self, begun: Summaries) -> tuple[int, int]:
+        """Rounds of questions and answers, until no tile asks; how many, and how many points.
+
+        Each question is answered for good: its triangle is certain from then on, or a point more is
+        known. So there are no more rounds than points.
+        """
+        asked = {key: s["asked"] for key, s in sorted(begun.items()) if s["asked"]}
+        self._say(foreign=sum(s["foreign"] for s in begun.values()))
+        turn = told = 0
+        while asked:
+            self._say(open=len(asked), turn=turn + 1)
+            askers: dict[int, list[int]] = {}
+            for key, tiles in asked.items():
+                for tile in tiles:
+                    askers.setdefault(tile, []).append(key)
+            questions = {tile: (turn, keys) for tile, keys in sorted(askers.items())}
+            self._stage(f"answer-{turn:04}", questions)
+            tasks = {key: (turn, tiles) for key, tiles in asked.items()}
+            found = self._stage(f"proceed-{turn:04}", tasks)
+            told += sum(s["foreign"] for s in found.values())
+            self._say(foreign=self.progress.foreign + sum(s["foreign"] for s in found.values()))
+            asked = {key: s["asked"] for key, s in sorted(found.items()) if s["asked"]}
+            turn += 1
+        self._say(open=0)
+        return turn, told
+
+    def _stage(self, stage: str, tasks: Mapping[int, Sequence[Any]]) -> Summaries:
+        """Do the tasks of a stage that are not done yet; return all summaries."""
+        found: Summaries = {}
+        for key in tasks:
+            summary = self.store.noted(note_of(stage, key))
+            if summary is not None:
+                found[key] = summary
+                self._count(summary)
+        todo = {key: arguments for key, arguments in tasks.items() if key not in found}
+        self._say(stage=stage, done=len(found), total=len(tasks))
+        for key, summary in self._done(stage, todo):
+            found[key] = summary
+            self._count(summary)
+            self._say(done=len(found))
+        return found
+
+    def _done(
+        self, stage: str, todo: Mapping[int, Sequence[Any]]
+    ) -> Iterator[tuple[int, dict[str, Any]]]:
+        if todo:
+            yield from self.executor.run(str(Path(self.store.root).absolute()), stage, todo)
+
+    def _count(self, summary: Mapping[str, Any]) -> None:
+        memory = max(self.progress.memory, int(summary["memory"]))
+        self.progress = replace(self.progress, memory=memory)
+
+    def _say(self, **changes: Any) -> None:
+        self.progress = replace(self.progress, **changes)
+        self.tell(self.progress)
+
+
+def _refuse_degenerate(ends: list[int]) -> None:
+    if len(ends) < 2:
+        reason, words = "too few points", "fewer than three points are distinct"
+    else:
+        reason, words = "collinear", f"all points lie on the line of rows {ends[0]} and {ends[1]}"
+    raise DegenerateInputError(f"{words}: there are no triangles", reason=reason, chain=ends)

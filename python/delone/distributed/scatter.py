@@ -1,0 +1,63 @@
+"""From pieces of the source to tiles: each point goes to its own, and copies to first halos."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.distributed.rows import coordinates
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.distributed.layout import Layout
+    from delone.distributed.rows import Rows
+
+__all__ = ["scatter"]
+
+
+def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
+    """Return the rows of a piece by tile, own ones first, then copies for halos; and where.
+
+    Returns
+    -------
+    ndarray of records
+        The rows, within each run in the order of the source.
+    dict
+        ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top
+        of each run of own rows.
+    """
+    rows = rows.astype(layout.type, copy=False)
+    tile = layout.tiles.locate(coordinates(rows))
+    # A radix sort, for as long as numbers of tiles fit in 16 bits.
+    narrow = tile.astype(np.uint16) if len(layout.tiles) <= 1 << 16 else tile
+    order = np.argsort(narrow, kind="stable")
+    own, tile = rows[order], tile[order]
+    first = np.flatnonzero(np.diff(tile, prepend=-1))
+    ends = np.append(first[1:], len(tile))
+    runs = [[int(tile[a]), int(a), int(b)] for a, b in zip(first, ends, strict=True)]
+    points = coordinates(own)
+    boxes = []
+    copies: dict[int, list[NDArray[np.int64]]] = {}
+    for number, start, stop in runs:
+        some = points[start:stop]
+        low, high = some.min(axis=0), some.max(axis=0)
+        boxes.append([*low.tolist(), *high.tolist()])
+        near = (layout.strips[:, :2] <= high).all(axis=1) & (layout.strips[:, 2:] >= low).all(
+            axis=1
+        )
+        for other in np.flatnonzero(near).tolist():
+            if other != number:
+                strip = layout.strips[other]
+                within = ((some >= strip[:2]) & (some <= strip[2:])).all(axis=1)
+                copies.setdefault(other, []).append(start + np.flatnonzero(within))
+    halo, parts, end = [], [own], len(own)
+    for other in sorted(copies):
+        chosen = np.concatenate(copies[other])
+        chosen = chosen[np.argsort(own["id"][chosen], kind="stable")]
+        if len(chosen):
+            halo.append([other, end, end + len(chosen)])
+            parts.append(own[chosen])
+            end += len(chosen)
+    return np.concatenate(parts), {"own": runs, "halo": halo, "boxes": boxes}

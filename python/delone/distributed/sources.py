@@ -1,0 +1,222 @@
+"""Where points come from: arrays, LAS and LAZ, Parquet, npy, and whatever `delone.io` reads.
+
+A source is cut into pieces of about a million rows, by what files say of themselves, before any
+point is read. Rows are numbered through all files in their order.
+"""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from delone._arrays import as_points
+from delone.distributed.rows import make_rows
+from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
+from delone.io import las, parquet, read_points
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.distributed.rows import Rows
+    from delone.io import PointSet
+
+    Given: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | ArrayLike
+
+__all__ = ["PIECE", "Choice", "Piece", "Source", "find"]
+
+# Rows of a piece: its records are some 32 MB.
+PIECE = 1 << 20
+_LAS = (".las", ".laz")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is wanted of each file; see `delone.io.read_points`."""
+
+    columns: tuple[str | int, ...] | None = None
+    classes: tuple[int, ...] | None = None
+    attributes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Some rows of a file."""
+
+    path: str
+    kind: str
+    start: int
+    stop: int
+    first: int
+
+    def read(self, choice: Choice) -> Rows:
+        """Return the rows, with their numbers in the source."""
+        found = self._points(choice)
+        if len(found) != self.stop - self.start and choice.classes is None:
+            raise FileFormatError(f"{self.path} has changed since it was looked at")
+        attributes = {name: _number(found, name) for name in choice.attributes}
+        rows = make_rows(self.first + self.start, found.points, found.z, attributes)
+        if choice.classes is not None:
+            rows = rows[np.isin(_number(found, "classification"), choice.classes)]
+        return rows
+
+    def _points(self, choice: Choice) -> PointSet:
+        path = Path(self.path)
+        if self.kind == "las":
+            names = list(choice.attributes)
+            if choice.classes is not None and "classification" not in names:
+                names.append("classification")
+            return las.read_range(path, self.start, self.stop, attributes=names)
+        if self.kind == "parquet":
+            return parquet.read_range(
+                path, self.start, self.stop, columns=choice.columns, attributes=choice.attributes
+            )
+        return read_points(path, columns=choice.columns, attributes=choice.attributes)
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """All pieces of a source.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+        In the order of rows.
+    count : int
+        Rows, as files announce them.
+    crs : str or None
+        The reference system of all files.
+    identity : dict
+        What must be the same for a run to go on: names, sizes and times of files, or a hash.
+    array : ndarray of float64, optional
+        The points themselves, with heights in a third column.
+    """
+
+    pieces: tuple[Piece, ...]
+    count: int
+    crs: str | None
+    identity: dict[str, Any]
+    array: NDArray[np.float64] | None = None
+
+
+def find(source: Given, choice: Choice) -> Source:
+    """Look at a source without reading its points.
+
+    Raises
+    ------
+    InputError
+        Nothing matches a pattern, a file is there twice, or reference systems differ.
+    FileFormatError, FileNotFoundError, MissingExtraError
+        As for `delone.io.read_points`.
+    """
+    paths = _paths(source)
+    if paths is None:
+        return _of_array(source, choice)
+    pieces: list[Piece] = []
+    systems: dict[str | None, str] = {}
+    count = 0
+    for path in paths:
+        kind, rows, crs = _look(path, choice)
+        systems.setdefault(crs, str(path))
+        size = PIECE if kind != "file" else max(rows, 1)
+        cuts = range(0, rows, size)
+        pieces += [Piece(str(path), kind, i, min(i + size, rows), count) for i in cuts]
+        count += rows
+    if len(systems) > 1:
+        (one, first), (other, second), *_ = systems.items()
+        raise InputError(
+            f"mixed reference systems: {first} has {one or 'none'}, {second} has "
+            f"{other or 'none'}; bring all files into one"
+        )
+    stats = [path.stat() for path in paths]
+    names = [os.path.abspath(path) for path in paths]
+    files = [[n, s.st_size, s.st_mtime_ns] for n, s in zip(names, stats, strict=True)]
+    return Source(tuple(pieces), count, next(iter(systems), None), {"files": files})
+
+
+def _paths(source: Given) -> list[Path] | None:
+    """Files in their order; None where the source is no file."""
+    if isinstance(source, str | os.PathLike):
+        found = _matching(source)
+    elif isinstance(source, list | tuple) and source:
+        if not all(isinstance(part, str | os.PathLike) for part in source):
+            return None
+        found = [path for part in source for path in _matching(part)]
+    else:
+        return None
+    seen: set[str] = set()
+    for path in found:
+        name = os.path.realpath(path)
+        if name in seen:
+            raise InputError(f"{path} is in the source twice")
+        seen.add(name)
+    return found
+
+
+def _matching(part: str | os.PathLike[str]) -> list[Path]:
+    path = Path(part)
+    if path.is_dir():
+        found = sorted(p for p in path.rglob("*.parquet") if not p.name.startswith((".", "_")))
+        if not found:
+            raise InputError(f"{path} holds no Parquet files; name files of other kinds by a glob")
+        return found
+    if glob.has_magic(str(part)) and not path.exists():
+        found = sorted(Path(name) for name in glob.glob(str(part), recursive=True))
+        if not found:
+            raise InputError(f"no file matches {part}")
+        return found
+    return [path]
+
+
+def _look(path: Path, choice: Choice) -> tuple[str, int, str | None]:
+    """Kind, rows and reference system of a file."""
+    suffix = path.suffix.lower()
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    if path.stat().st_size == 0:
+        raise FileFormatError(f"{path} is empty")
+    if suffix in _LAS:
+        if choice.columns is not None:
+            raise FileFormatError(f"{path}: coordinates in LAS files are x, y and z")
+        return "las", *las.look(path, attributes=choice.attributes)
+    if choice.classes is not None:
+        raise FileFormatError(f"{path}: only LAS and LAZ files have classes")
+    if suffix == ".parquet" and not parquet.holds_geometries(path):
+        rows = parquet.look(path, columns=choice.columns, attributes=choice.attributes)
+        return "parquet", rows, None
+    survey = read_points(path, columns=choice.columns, attributes=choice.attributes)
+    return "file", len(survey), survey.crs
+
+
+def _of_array(source: Any, choice: Choice) -> Source:
+    if choice.columns is not None or choice.classes is not None or choice.attributes:
+        raise InputError("columns, classes and attributes are for files, not for arrays")
+    shape = np.shape(source)
+    if len(shape) == 2 and shape[1] == 3:
+        given = np.asarray(source)
+        if given.dtype.kind not in "iuf":
+            raise DtypeError(f"points must be real numbers, got {given.dtype}")
+        points = np.column_stack([as_points(given[:, :2], ndim=2), given[:, 2].astype(np.float64)])
+    elif len(shape) == 2:
+        points = as_points(source, ndim=2)
+    else:
+        raise ShapeError(f"points must have shape (n, 2) or (n, 3), got {shape}")
+    identity = {"array": hashlib.sha256(points.tobytes()).hexdigest(), "shape": list(points.shape)}
+    n = len(points)
+    pieces = tuple(Piece("", "array", i, min(i + PIECE, n), 0) for i in range(0, n, PIECE))
+    return Source(pieces, n, None, identity, points)
+
+
+def _number(found: PointSet, name: str) -> NDArray[Any]:
+    """An attribute, whose values must be numbers: records are of fixed size."""
+    values = np.asarray(found.attributes[name])
+    if values.dtype.kind not in "biuf" or values.ndim != 1:
+        raise FileFormatError(f"{found.source}: {name!r} holds no numbers ({values.dtype})")
+    return values

@@ -1,0 +1,66 @@
+"""Tiles as tables: partitions of a Dask data frame, polygons in GeoParquet."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from delone.distributed.opened import TiledDelaunay
+
+__all__ = ["dask_frame", "write_geoparquet"]
+
+
+def dask_frame(tin: TiledDelaunay, table: str) -> Any:
+    """Return a Dask data frame; see `TiledDelaunay.to_dask_dataframe`."""
+    if table not in ("triangles", "vertices"):
+        raise InputError(f"table must be 'triangles' or 'vertices', got {table!r}")
+    frames = require("dask.dataframe", extra="dask", what="a Dask data frame")
+    folder = str(tin.path.absolute())
+    meta = partition(0, folder, table).iloc[:0]
+    return frames.from_map(partition, range(tin.ntiles), folder=folder, table=table, meta=meta)
+
+
+def partition(number: int, folder: str, table: str) -> Any:
+    """Return what one tile has of a table, as a pandas data frame."""
+    from delone.distributed.opened import open
+
+    pandas = require("pandas", extra="dask", what="a Dask data frame")
+    tile = open(folder).tile(number)
+    if table == "triangles":
+        corners = tile.ids[tile.simplices]
+        return pandas.DataFrame({name: corners[:, k] for k, name in enumerate("abc")})
+    columns = {"x": tile.points[:, 0], "y": tile.points[:, 1]} | tile.attributes
+    frame = pandas.DataFrame({name: values[tile.owned] for name, values in columns.items()})
+    return frame.set_index(pandas.Index(tile.ids[tile.owned], name="id"))
+
+
+def write_geoparquet(tin: TiledDelaunay, folder: str | os.PathLike[str]) -> None:
+    """Write triangles as polygons; see `TiledDelaunay.to_geoparquet`."""
+    geopandas = require("geopandas", extra="geo", what="writing GeoParquet")
+    shapely = require("shapely", extra="geo", what="writing GeoParquet")
+    target = Path(folder)
+    if target.exists():
+        raise InputError(f"{target} is there already: choose another folder")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    try:
+        for tile in tin.tiles():
+            corners = tile.points[tile.simplices]
+            rings = np.concatenate([corners, corners[:, :1]], axis=1)
+            ids = tile.ids[tile.simplices]
+            columns = {name: ids[:, k] for k, name in enumerate("abc")}
+            frame = geopandas.GeoDataFrame(columns, geometry=shapely.polygons(rings), crs=tin.crs)
+            frame.to_parquet(beside / f"tile={tile.number:06}.parquet")
+        beside.chmod(0o755)
+        os.replace(beside, target)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)

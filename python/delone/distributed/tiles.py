@@ -1,0 +1,187 @@
+"""Tiles: the half-open cells of a k-d tree over a sample, and the first halo of each.
+
+A cell takes its lower sides and leaves its upper ones to its neighbours, so that each point of the
+plane lies in one cell and equal points meet in one tile. Cuts are coordinates of sampled points
+(J. L. Bentley, "Multidimensional binary search trees", 1975); cells at the margin reach to
+infinity.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Numbers = NDArray[np.int64]
+
+__all__ = ["HALO", "Tiles", "plant", "strips"]
+
+# Points in the first halo of a tile, in units of the square root of the points in it. Half of it
+# leaves several times as many triangles to be asked about, twice of it hardly fewer.
+HALO = 11.0
+
+
+@dataclass(frozen=True, eq=False)
+class Tiles:
+    """A k-d tree whose leaves are numbered tiles.
+
+    Parameters
+    ----------
+    axis : ndarray of int8, shape (nodes,)
+        The axis that a node cuts.
+    cut : ndarray of float64, shape (nodes,)
+        Where; points below go left.
+    children : ndarray of int64, shape (nodes, 2)
+        Left and right: the number of a node, or ``~tile``.
+    cells : ndarray of float64, shape (tiles, 4)
+        Left, bottom, right and top of each cell; infinite at the margin.
+    """
+
+    axis: NDArray[np.int8]
+    cut: Floats
+    children: Numbers
+    cells: Floats
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def locate(self, points: Floats) -> NDArray[np.int32]:
+        """Return the tile of each point, (n,)."""
+        if not len(self.cut):
+            return np.zeros(len(points), dtype=np.int32)
+        tile = np.empty(len(points), dtype=np.int32)
+        # A list of rows for each node, so that a cell's points are looked at together.
+        open_nodes: list[tuple[int, NDArray[np.int64] | slice]] = [(0, slice(None))]
+        while open_nodes:
+            node, rows = open_nodes.pop()
+            right = points[rows, self.axis[node]] >= self.cut[node]
+            for side, child in ((~right, self.children[node, 0]), (right, self.children[node, 1])):
+                some = np.flatnonzero(side) if isinstance(rows, slice) else rows[side]
+                if child < 0:
+                    tile[some] = ~child
+                elif len(some):
+                    open_nodes.append((int(child), some))
+        return tile
+
+    def overlaps(self, low: Floats, high: Floats) -> tuple[Numbers, Numbers]:
+        """Return all pairs of a closed box, (n, 2) and (n, 2), and a cell that it meets."""
+        if not len(self.cut):
+            return np.arange(len(low)), np.zeros(len(low), dtype=np.int64)
+        box, node = np.arange(len(low)), np.zeros(len(low), dtype=np.int64)
+        boxes, tiles = [box[:0]], [node[:0]]
+        while len(box):
+            axis, cut = self.axis[node], self.cut[node]
+            left, right = ~(low[box, axis] >= cut), ~(high[box, axis] < cut)
+            pair = np.concatenate([box[left], box[right]])
+            child = np.concatenate([self.children[node[left], 0], self.children[node[right], 1]])
+            leaf = child < 0
+            boxes.append(pair[leaf])
+            tiles.append(~child[leaf])
+            box, node = pair[~leaf], child[~leaf]
+        found_box, found_tile = np.concatenate(boxes), np.concatenate(tiles)
+        order = np.lexsort((found_tile, found_box))
+        return found_box[order], found_tile[order]
+
+
+def plant(sample: Floats, tiles: int) -> Tiles:
+    """Return a tree that cuts the sample, (n, 2), into up to as many parts of about equal size.
+
+    There are fewer where too few points of the sample are distinct.
+    """
+    axes: list[int] = []
+    cuts: list[float] = []
+    children: list[list[int]] = []
+    cells: list[list[float]] = []
+
+    def grow(points: Floats, count: int, cell: list[float]) -> int:
+        place = _cut(points, count) if count > 1 else None
+        if place is None:
+            cells.append(cell)
+            return ~(len(cells) - 1)
+        axis, cut = place
+        node = len(axes)
+        axes.append(axis)
+        cuts.append(cut)
+        children.append([0, 0])
+        right = points[:, axis] >= cut
+        below, above = cell.copy(), cell.copy()
+        below[2 + axis] = above[axis] = cut
+        children[node][0] = grow(points[~right], count // 2, below)
+        children[node][1] = grow(points[right], count - count // 2, above)
+        return node
+
+    grow(sample, tiles, [-math.inf, -math.inf, math.inf, math.inf])
+    return Tiles(
+        np.array(axes, dtype=np.int8),
+        np.array(cuts, dtype=np.float64),
+        np.array(children, dtype=np.int64).reshape(-1, 2),
+        np.array(cells, dtype=np.float64),
+    )
+
+
+def _cut(points: Floats, count: int) -> tuple[int, float] | None:
+    """Where to cut: the longer axis first, about the middle, with points on both sides."""
+    if not len(points):
+        return None
+    with np.errstate(over="ignore"):
+        sides = points.max(axis=0) - points.min(axis=0)
+    for axis in np.argsort(-sides, kind="stable").tolist():
+        values = np.sort(points[:, axis])
+        cut = values[len(values) * (count // 2) // count]
+        if cut == values[0]:
+            # As many equal coordinates as that: the next one, if there is another.
+            cut = values[min(np.searchsorted(values, cut, side="right"), len(values) - 1)]
+        if cut > values[0]:
+            return int(axis), float(cut)
+    return None
+
+
+def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
+    """Return the box that each tile knows at first: its cell, and a strip along each side.
+
+    A strip is as wide as the one inside the cell that holds the share of one side in the halo, by
+    the sample of `count` points, but not so wide that it holds far more than that itself: on the
+    other side of a cut there may be a crowd.
+    """
+    owner = tiles.locate(sample)
+    order = np.argsort(owner, kind="stable")
+    starts = np.searchsorted(owner[order], np.arange(len(tiles) + 1))
+    by_tile = sample[order]
+    share = len(sample) / max(count, 1)
+    boxes = tiles.cells.copy()
+    for tile, cell in enumerate(tiles.cells):
+        own = by_tile[starts[tile] : starts[tile + 1]]
+        wanted = max(1, math.ceil(HALO / 4 * math.sqrt(len(own) * share)))
+        for side in range(4):
+            axis, sign = side % 2, 1.0 if side >= 2 else -1.0
+            if not math.isfinite(cell[side]) or not len(own):
+                continue
+            inside = np.sort(sign * (cell[side] - own[:, axis]))
+            width = float(inside[min(wanted, len(inside)) - 1])
+            outside = _beyond(tiles, by_tile, starts, cell, side, width)
+            if len(outside) > 2 * wanted:
+                width = float(np.partition(outside, 2 * wanted)[2 * wanted])
+            boxes[tile, side] = cell[side] + sign * width
+    return boxes
+
+
+def _beyond(  # noqa: PLR0917
+    tiles: Tiles, by_tile: Floats, starts: Numbers, cell: Floats, side: int, width: float
+) -> Floats:
+    """How far sampled points lie beyond a side of a cell, those within a strip of this width."""
+    axis, high = side % 2, side >= 2
+    box = cell.copy()
+    box[side] = cell[side] + (width if high else -width)
+    box[(side + 2) % 4] = cell[side]
+    near = tiles.overlaps(box[None, :2], box[None, 2:])[1]
+    points = np.concatenate([by_tile[starts[t] : starts[t + 1]] for t in near.tolist()])
+    within = ((points >= box[:2]) & (points <= box[2:])).all(axis=1)
+    distance = points[within, axis] - cell[side]
+    found = distance if high else -distance
+    return np.asarray(found[found > 0] if not high else found)

@@ -1,0 +1,20 @@
+"""How much memory a process has needed at most."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["peak_memory"]
+
+
+def peak_memory() -> int:
+    """Return the greatest resident memory of this process so far, in bytes.
+
+    It is 0 where the system does not tell.
+    """
+    try:
+        import resource
+    except ImportError:
+        return 0
+    found = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return int(found if sys.platform == "darwin" else 1024 * found)

@@ -1,0 +1,96 @@
+"""The union of the tiles is the triangulation in memory, triangle for triangle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets, distributed
+from delone.samples import ahn3, baja
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+GENERATORS = {
+    name: getattr(datasets, name)
+    for name in (
+        "uniform",
+        "gaussian_clusters",
+        "kuzmin",
+        "grid",
+        "tilted_grid",
+        "circle",
+        "spiral",
+        "near_collinear",
+        "duplicates",
+        "collinear_lines",
+        "utm_millimetres",
+        "pythagorean_circle",
+        "integer_lattice",
+        "mixed_exponents",
+    )
+}
+
+
+@pytest.mark.parametrize("tiles", [1, 2, 5, 16, 64])
+@pytest.mark.parametrize("name", GENERATORS)
+def test_tiles_agree_with_memory(
+    name: str, tiles: int, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    # Where exponents are mixed no disk is finite, and every doubt goes to every tile.
+    n = 150 if name == "mixed_exponents" else 640
+    points = GENERATORS[name](n)
+    size = max(3, -(-len(points) // tiles))
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=size)
+    right = Delaunay(points)
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert tin.manifest["duplicates"] == len(right.coplanar)
+    assert tin.npoints == len(points)
+    if tiles in (1, 5):
+        assert tin.validate(), str(tin.validate())
+
+
+@pytest.mark.parametrize("survey", [ahn3, baja])
+def test_surveys_agree_with_memory(
+    survey: Any, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    sample = survey()
+    points = np.column_stack([sample.points, sample.z])
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=4000)
+    assert tin.ntiles > 1
+    right = Delaunay(sample.points)
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    heights = np.concatenate([t.attributes["z"][t.owned] for t in tin.tiles()])
+    ids = np.concatenate([t.ids[t.owned] for t in tin.tiles()])
+    assert np.array_equal(sample.z[ids], heights)
+
+
+def test_the_order_of_rows_changes_nothing(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    points = datasets.grid(400)
+    order = np.random.default_rng(1).permutation(len(points))
+    one = distributed.triangulate(points, tmp_path / "one", tile_points=90)
+    two = distributed.triangulate(points[order], tmp_path / "two", tile_points=70)
+    assert np.array_equal(canonical(one.simplices()), canonical(order[two.simplices()]))
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(0, 0), (1, 0), (0, 1)],
+        [(0, 0), (1, 0), (0, 1), (0, 0), (1, 0)],
+        [(0, 0), (9, 0), (9, 9), (0, 9)],
+        [(x, y) for x in range(4) for y in range(4)] * 3,
+        [(1e-200 * x, 1e-200 * y) for x in range(6) for y in range(6)],
+        [(1e200 * x, 1e200 * y) for x in range(6) for y in range(6)],
+        [(x, 0) for x in range(40)] + [(20.5, 1e-9)],
+        [(x, y) for x in (-0.0, 0.0, 1.0) for y in (0.0, -0.0, 2.0)],
+    ],
+)
+def test_few_points(points: Any, tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    tin = distributed.triangulate(np.array(points, float), tmp_path / "tin", tile_points=3)
+    right = Delaunay(np.array(points, float))
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert tin.validate(), str(tin.validate())
