@@ -59,7 +59,7 @@ def test_surveys_agree_with_memory(
 ) -> None:
     sample = survey()
     points = np.column_stack([sample.points, sample.z])
-    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=4000)
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=15_000)
     assert tin.ntiles > 1
     right = Delaunay(sample.points)
     assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))

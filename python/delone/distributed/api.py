@@ -116,7 +116,11 @@ def triangulate(
     choice = _choice(columns, classes, attributes)
     found = find(source, choice)
     run = Run(Store(output), found, choice, size, nan, worker, progress or _silent)
-    run.go(resume)
+    try:
+        run.go(resume)
+    finally:
+        if isinstance(worker, Processes):
+            worker.close()
     return open(output)
 
 

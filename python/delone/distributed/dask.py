@@ -7,6 +7,7 @@ scheduler holds names and small summaries alone.
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
 from delone.distributed.executors import AHEAD
@@ -21,6 +22,8 @@ __all__ = ["DaskExecutor"]
 
 # How often a task may be started again where its worker has died.
 _RETRIES = 5
+# Seconds that a client may be without a scheduler, and between two looks at it.
+_PATIENCE, _GLANCE = 5.0, 0.005
 
 
 class DaskExecutor:
@@ -47,7 +50,11 @@ class DaskExecutor:
     @property
     def workers(self) -> int:
         """How many tasks can be done at a time."""
-        return max(1, sum(map(int, self.client.nthreads().values())))
+        try:
+            return max(1, sum(map(int, self.client.nthreads().values())))
+        except AttributeError as error:
+            # What a client says that has lost its scheduler.
+            raise ConnectionError("no answer") from error
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
@@ -70,11 +77,12 @@ class DaskExecutor:
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
         queue = iter(list(tasks.items()))
+        room = AHEAD * self.workers
         waiting = self._distributed.as_completed()
         keys: dict[str, int] = {}
         try:
             while True:
-                while len(keys) < AHEAD * self.workers:
+                while len(keys) < room:
                     task = next(queue, None)
                     if task is None:
                         break
@@ -83,12 +91,23 @@ class DaskExecutor:
                     waiting.add(future)
                 if not keys:
                     return
+                self._wait(waiting)
                 future = next(waiting)
                 if future.status == "cancelled":
                     raise self._distributed.CancelledError(future.key)
                 yield keys.pop(future.key), future.result()
         finally:
             waiting.clear()
+
+    def _wait(self, waiting: Any) -> None:
+        """Wait until a task has come back, for as long as there is a scheduler."""
+        left = time.monotonic()
+        while not waiting.has_ready():
+            if self.client.status == "running":
+                left = time.monotonic()
+            elif time.monotonic() - left > _PATIENCE:
+                raise ConnectionError(f"the client is {self.client.status}")
+            time.sleep(_GLANCE)
 
     def _submit(self, root: str, stage: str, key: int, arguments: Sequence[Any]) -> Any:
         """Hand a task to the scheduler."""

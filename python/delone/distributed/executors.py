@@ -71,6 +71,13 @@ class Processes:
 
     def __init__(self, workers: int | None = None) -> None:
         self.workers = workers or os.cpu_count() or 1
+        self._pool: ProcessPoolExecutor | None = None
+
+    def close(self) -> None:
+        """End the processes."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=True, cancel_futures=True)
+            self._pool = None
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
@@ -84,7 +91,7 @@ class Processes:
                     yield key, summary
                 return
             except BrokenProcessPool:
-                continue
+                self.close()
         raise DeloneError(
             f"worker processes died {_DEATHS} times in the stage {stage!r}: is there enough memory "
             "for tiles of this size? What is done is kept; run the same again to go on"
@@ -94,20 +101,22 @@ class Processes:
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
         queue = iter(list(tasks.items()))
-        # A fresh interpreter: a fork of one that has threads may never wake up.
-        context = get_context("spawn")
-        with ProcessPoolExecutor(self.workers, mp_context=context) as pool:
-            running: dict[Future[dict[str, Any]], int] = {}
-            try:
-                while True:
-                    while len(running) < AHEAD * self.workers:
-                        task = next(queue, None)
-                        if task is None:
-                            break
-                        running[pool.submit(perform, root, stage, *task)] = task[0]
-                    if not running:
-                        return
-                    for future in wait(running, return_when=FIRST_COMPLETED).done:
-                        yield running.pop(future), future.result()
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
+        if self._pool is None:
+            # Fresh interpreters: a fork of one that has threads may never wake up.
+            self._pool = ProcessPoolExecutor(self.workers, mp_context=get_context("spawn"))
+        running: dict[Future[dict[str, Any]], int] = {}
+        try:
+            while True:
+                while len(running) < AHEAD * self.workers:
+                    task = next(queue, None)
+                    if task is None:
+                        break
+                    running[self._pool.submit(perform, root, stage, *task)] = task[0]
+                if not running:
+                    return
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    yield running.pop(future), future.result()
+        finally:
+            for future in running:
+                future.cancel()
+            wait(running)

@@ -222,7 +222,7 @@ class TiledDelaunay:
         try:
             with parquet.ParquetFile(self._store.path(name)) as file:
                 table = file.read()
-        except OSError as error:
+        except (OSError, ValueError) as error:
             raise FileFormatError(f"{self._store.path(name)} is torn: {error}") from error
         return {column: table[column].to_numpy() for column in table.column_names}
 

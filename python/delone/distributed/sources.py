@@ -121,10 +121,12 @@ def find(source: Given, choice: Choice) -> Source:
         return _of_array(source, choice)
     pieces: list[Piece] = []
     systems: dict[str | None, str] = {}
+    flat: dict[bool, str] = {}
     count = 0
     for path in paths:
-        kind, rows, crs = _look(path, choice)
+        kind, rows, crs, heights = _look(path, choice)
         systems.setdefault(crs, str(path))
+        flat.setdefault(heights, str(path))
         size = PIECE if kind != "file" else max(rows, 1)
         cuts = range(0, rows, size)
         pieces += [Piece(str(path), kind, i, min(i + size, rows), count) for i in cuts]
@@ -135,6 +137,8 @@ def find(source: Given, choice: Choice) -> Source:
             f"mixed reference systems: {first} has {one or 'none'}, {second} has "
             f"{other or 'none'}; bring all files into one"
         )
+    if len(flat) > 1:
+        raise InputError(f"{flat[True]} has heights and {flat[False]} has none: choose columns")
     stats = [path.stat() for path in paths]
     names = [os.path.abspath(path) for path in paths]
     files = [[n, s.st_size, s.st_mtime_ns] for n, s in zip(names, stats, strict=True)]
@@ -175,8 +179,8 @@ def _matching(part: str | os.PathLike[str]) -> list[Path]:
     return [path]
 
 
-def _look(path: Path, choice: Choice) -> tuple[str, int, str | None]:
-    """Kind, rows and reference system of a file."""
+def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
+    """Kind, rows and reference system of a file, and whether it has heights."""
     suffix = path.suffix.lower()
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")
@@ -185,14 +189,14 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None]:
     if suffix in _LAS:
         if choice.columns is not None:
             raise FileFormatError(f"{path}: coordinates in LAS files are x, y and z")
-        return "las", *las.look(path, attributes=choice.attributes)
+        return "las", *las.look(path, attributes=choice.attributes), True
     if choice.classes is not None:
         raise FileFormatError(f"{path}: only LAS and LAZ files have classes")
     if suffix == ".parquet" and not parquet.holds_geometries(path):
-        rows = parquet.look(path, columns=choice.columns, attributes=choice.attributes)
-        return "parquet", rows, None
+        rows, z = parquet.look(path, columns=choice.columns, attributes=choice.attributes)
+        return "parquet", rows, None, z
     survey = read_points(path, columns=choice.columns, attributes=choice.attributes)
-    return "file", len(survey), survey.crs
+    return "file", len(survey), survey.crs, survey.z is not None
 
 
 def _of_array(source: Any, choice: Choice) -> Source:

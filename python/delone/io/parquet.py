@@ -61,8 +61,10 @@ def read_geometries(
         return geometries_of(geopandas.read_parquet(path), columns=columns, source=str(path))
 
 
-def look(path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]) -> int:
-    """Return how many rows a Parquet file without geometries has.
+def look(
+    path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
+) -> tuple[int, bool]:
+    """Return how many rows a Parquet file without geometries has, and whether it has heights.
 
     Columns that it has not are refused.
     """
@@ -70,9 +72,9 @@ def look(path: Path, *, columns: Sequence[str | int] | None, attributes: Sequenc
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
         with parquet.ParquetFile(path) as file:
             schema = file.schema_arrow
-            choose_columns(_numbers(schema), columns, str(path), named=True)
+            chosen = choose_columns(_numbers(schema), columns, str(path), named=True)
             _known(schema, attributes, path)
-            return int(file.metadata.num_rows)
+            return int(file.metadata.num_rows), len(chosen) == 3
 
 
 def read_range(

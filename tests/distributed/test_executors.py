@@ -1,0 +1,124 @@
+"""Processes and a Dask cluster on this machine, workers killed, a scheduler gone."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets, distributed
+from delone.errors import DeloneError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+POINTS = datasets.gaussian_clusters(3000)
+
+
+def test_processes_agree_with_memory(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    tin = distributed.triangulate(POINTS, tmp_path / "tin", tile_points=800, executor="processes")
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    library = pytest.importorskip("distributed")
+    import dask
+
+    with (
+        dask.config.set({"distributed.comm.timeouts.connect": "5s"}),
+        library.LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=":0",
+            host="127.0.0.1",
+        ) as cluster,
+    ):
+        yield cluster
+
+
+def test_a_killed_worker_changes_nothing(
+    cluster: Any, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    library = pytest.importorskip("distributed")
+    killed: list[int] = []
+
+    def kill(progress: distributed.Progress) -> None:
+        if progress.stage == "begin" and progress.done == 1 and not killed:
+            killed.append(client.submit(os.getpid, pure=False).result())
+            os.kill(killed[0], signal.SIGKILL)
+
+    with library.Client(cluster) as client:
+        before = set(client.run(os.getpid).values())
+        tin = distributed.triangulate(
+            POINTS, tmp_path / "tin", tile_points=300, executor=client, progress=kill
+        )
+        client.wait_for_workers(2)
+    assert killed and killed[0] in before
+    assert tin.ntiles == 10
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    assert tin.validate()
+
+
+def test_errors_of_tasks_come_through(cluster: Any, tmp_path: Path) -> None:
+    library = pytest.importorskip("distributed")
+    with (
+        library.Client(cluster) as client,
+        pytest.raises(InputError, match="line of rows 0 and 49"),
+    ):
+        line = [(i, i) for i in range(50)]
+        distributed.triangulate(np.array(line, float), tmp_path / "tin", executor=client)
+
+
+def test_a_scheduler_that_goes_away_is_named(
+    tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    library = pytest.importorskip("distributed")
+    cluster = library.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1"
+    )
+    client = library.Client(cluster)
+
+    def leave(progress: distributed.Progress) -> None:
+        if progress.stage == "begin" and progress.done == 2:
+            cluster.close()
+
+    try:
+        with pytest.raises(DeloneError, match="the Dask scheduler is gone"):
+            distributed.triangulate(
+                POINTS, tmp_path / "tin", tile_points=300, executor=client, progress=leave
+            )
+    finally:
+        client.close()
+    tin = distributed.triangulate(POINTS, tmp_path / "tin", tile_points=300)
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+
+
+@pytest.mark.parametrize("executor", ["threads", 2, None])
+def test_other_executors_are_refused(executor: Any, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="executor must be"):
+        distributed.triangulate(POINTS, tmp_path / "tin", executor=executor)
+
+
+@pytest.mark.parametrize("missing", ["pyarrow", "distributed"])
+def test_a_missing_extra_is_one_clear_line(missing: str, tmp_path: Path) -> None:
+    code = f"""
+import sys
+sys.modules[{missing!r}] = None
+from delone import distributed, MissingExtraError
+try:
+    distributed.triangulate([(0, 0), (1, 0), (0, 1)], {str(tmp_path / "tin")!r}, executor=7)
+except MissingExtraError as error:
+    print(error.extra, str(error))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.count("\n") == 1
+    assert f"needs {missing}" in done.stdout
+    assert 'pip install "delone[dask]"' in done.stdout

@@ -1,0 +1,190 @@
+"""Reading back: simplices, location, values, rasters, tables, and the exact check."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, distributed
+from delone.errors import FileFormatError, InputError
+from delone.interpolate import Linear, grid
+from delone.samples import baja
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SURVEY = baja()
+
+
+@pytest.fixture(scope="module")
+def tin(tmp_path_factory: pytest.TempPathFactory) -> distributed.TiledDelaunay:
+    folder = tmp_path_factory.mktemp("baja") / "tin"
+    points = np.column_stack([SURVEY.points, SURVEY.z])
+    return distributed.triangulate(points, folder, tile_points=8000)
+
+
+def queries() -> Any:
+    low, high = SURVEY.points.min(axis=0), SURVEY.points.max(axis=0)
+    dice = np.random.default_rng(4)
+    inside = low + (high - low) * dice.random((3000, 2)) * 1.1
+    return np.concatenate([inside, SURVEY.points[::7]])
+
+
+def test_figures(tin: distributed.TiledDelaunay) -> None:
+    right = Delaunay(SURVEY.points)
+    assert (tin.npoints, tin.nsimplex) == (len(SURVEY.points), len(right.simplices))
+    assert np.array_equal(tin.bounds, [*right.min_bound, *right.max_bound])
+    assert str(tin.ntiles) in repr(tin)
+    with pytest.raises(InputError, match="there are tiles"):
+        tin.tile(tin.ntiles)
+
+
+def test_find_simplex(tin: distributed.TiledDelaunay) -> None:
+    asked = queries()
+    found = tin.find_simplex(asked)
+    right = Delaunay(SURVEY.points)
+    assert np.array_equal(found < 0, right.find_simplex(asked) < 0)
+    corners = tin.simplices()[found[found >= 0]]
+    inside = asked[found >= 0]
+    from delone.predicates import orient2d
+
+    for k in range(3):
+        a, b = (SURVEY.points[corners[:, (k + j) % 3]] for j in (0, 1))
+        assert (orient2d(a, b, inside) >= 0).all()
+    assert tin.find_simplex([np.nan, 0.0]).shape == ()
+    assert tin.find_simplex([[[np.nan, 0.0]]]).tolist() == [[-1]]
+
+
+def test_interpolate(tin: distributed.TiledDelaunay) -> None:
+    asked = queries()
+    right = Linear(SURVEY.points, SURVEY.z, duplicates="first")(asked)
+    np.testing.assert_allclose(tin.interpolate(asked), right, rtol=1e-12)
+    with pytest.raises(InputError, match="has no 'depth'; it has z"):
+        tin.interpolate(asked, value="depth")
+
+
+def test_raster_without_seams(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    low, high = SURVEY.points.min(axis=0), SURVEY.points.max(axis=0)
+    cell = float((high - low).max() / 300)
+    tin.to_raster(cell, tmp_path / "dem.tif")
+    mesh = Delaunay(SURVEY.points)
+    right = grid(mesh, SURVEY.z, resolution=cell, duplicates="first")
+    with rasterio.open(tmp_path / "dem.tif") as file:
+        np.testing.assert_allclose(file.read(1)[::-1], right.values, rtol=1e-12)
+        assert np.allclose(file.bounds, np.array(right.extent)[[0, 2, 1, 3]])
+    assert [p.name for p in tmp_path.iterdir()] == ["dem.tif"]
+    with pytest.raises(FileFormatError, match=r"\.tif"):
+        tin.to_raster(cell, tmp_path / "dem.csv")
+    with pytest.raises(InputError, match="above 0"):
+        tin.to_raster(0.0, tmp_path / "dem.tif")
+
+
+def test_dask_data_frames(tin: distributed.TiledDelaunay, canonical: Callable[[Any], Any]) -> None:
+    pytest.importorskip("dask.dataframe")
+    frame = tin.to_dask_dataframe()
+    assert frame.npartitions == tin.ntiles
+    triangles = frame.compute(scheduler="synchronous")[["a", "b", "c"]].to_numpy()
+    assert np.array_equal(triangles, tin.simplices())
+    vertices = tin.to_dask_dataframe("vertices").compute(scheduler="synchronous").sort_index()
+    assert np.array_equal(vertices.index, np.arange(tin.npoints))
+    assert np.array_equal(vertices[["x", "y"]].to_numpy(), SURVEY.points)
+    assert np.array_equal(vertices["z"], SURVEY.z)
+    with pytest.raises(InputError, match="table must be"):
+        tin.to_dask_dataframe("edges")
+
+
+def test_geoparquet(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    tin.to_geoparquet(tmp_path / "triangles")
+    files = sorted((tmp_path / "triangles").iterdir())
+    assert len(files) == tin.ntiles
+    frames = [geopandas.read_parquet(path) for path in files]
+    assert sum(map(len, frames)) == tin.nsimplex
+    area = sum(frame.area.sum() for frame in frames)
+    assert area == pytest.approx(Delaunay(SURVEY.points).areas.sum())
+    with pytest.raises(InputError, match="is there already"):
+        tin.to_geoparquet(tmp_path / "triangles")
+
+
+def test_the_proof_holds(tin: distributed.TiledDelaunay) -> None:
+    assert str(tin.validate()) == "right"
+
+
+def spoil(folder: Path, table: str, change: Callable[[dict[str, Any]], None]) -> None:
+    """Change a table of the first tile."""
+    import pyarrow
+    import pyarrow.parquet
+
+    path = folder / table / "tile=000000.parquet"
+    found = pyarrow.parquet.read_table(path)
+    columns = {name: found[name].to_numpy().copy() for name in found.column_names}
+    change(columns)
+    pyarrow.parquet.write_table(pyarrow.table(columns), path)
+
+
+def drop(columns: dict[str, Any]) -> None:
+    columns |= {name: values[1:] for name, values in columns.items()}
+
+
+def turn(columns: dict[str, Any]) -> None:
+    columns["a"][0], columns["b"][0] = columns["b"][0], columns["a"][0]
+
+
+def move(columns: dict[str, Any]) -> None:
+    columns["x"][0] = columns["x"].max() + 1.0
+
+
+def flip(columns: dict[str, Any]) -> None:
+    """The diagonal of two neighbours."""
+    a, b, c = (columns[name] for name in "abc")
+    t = 0
+    u, v, p = a[t], b[t], c[t]
+    for s in range(1, len(a)):
+        corners = [a[s], b[s], c[s]]
+        if u in corners and v in corners:
+            q = next(w for w in corners if w not in (u, v))
+            a[t], b[t], c[t] = u, q, p
+            a[s], b[s], c[s] = q, v, p
+            return
+    pytest.fail("the first triangle has no neighbour there")
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "words"),
+    [
+        ("triangles", drop, "in place of"),
+        ("triangles", turn, "not counter-clockwise"),
+        ("triangles", flip, "not Delaunay"),
+        ("vertices", move, "tile 0"),
+    ],
+)
+def test_what_is_wrong_is_found(
+    tin: distributed.TiledDelaunay, table: str, change: Any, words: str, tmp_path: Path
+) -> None:
+    shutil.copytree(tin.path, tmp_path / "tin")
+    spoil(tmp_path / "tin", table, change)
+    report = distributed.open(tmp_path / "tin").validate()
+    assert not report
+    assert "is not the file that was written" in str(report)
+    assert words in str(report)
+
+
+def test_torn_outputs(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
+    shutil.copytree(tin.path, tmp_path / "tin")
+    path = tmp_path / "tin" / "triangles" / "tile=000000.parquet"
+    path.write_bytes(path.read_bytes()[:-9])
+    torn = distributed.open(tmp_path / "tin")
+    with pytest.raises(FileFormatError, match="torn"):
+        torn.simplices()
+    assert "cannot be read" in str(torn.validate())
+    path.unlink()
+    with pytest.raises(FileFormatError, match="has lost"):
+        distributed.open(tmp_path / "tin")
+    (tmp_path / "tin" / "manifest.json").write_text('{"format": "other"}')
+    with pytest.raises(FileFormatError, match="is none of"):
+        distributed.open(tmp_path / "tin")

@@ -1,0 +1,176 @@
+"""A run may end between any two changes of the file system; another one goes on from there."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets, distributed
+from delone.distributed import files
+from delone.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+POINTS = datasets.integer_lattice(90, side=12)
+
+
+class Crash(BaseException):
+    """What no handler expects."""
+
+
+def run(folder: Path, **options: Any) -> distributed.TiledDelaunay:
+    return distributed.triangulate(POINTS, folder / "tin", tile_points=30, **options)
+
+
+@pytest.fixture(scope="module")
+def steps() -> int:
+    """How many steps a whole run has."""
+    import tempfile
+
+    count = 0
+
+    def counted(what: str) -> None:
+        nonlocal count
+        count += 1
+
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(files, "step", counted)
+        run(Path(folder))
+    assert count > 100
+    return count
+
+
+def stops(count: int) -> Iterator[int]:
+    """Every step of the beginning and the end, and every third between."""
+    return (i for i in range(count) if i < 30 or i > count - 30 or i % 3 == 0)
+
+
+def crash_at(at: int, how: Callable[[], None]) -> Callable[[str], None]:
+    left = at
+
+    def step(what: str) -> None:
+        nonlocal left
+        if left == 0:
+            how()
+        left -= 1
+
+    return step
+
+
+def test_a_crash_between_any_two_changes_is_survived(
+    steps: int, tmp_path: Path, canonical: Callable[[Any], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = canonical(Delaunay(POINTS).simplices)
+
+    def stop() -> None:
+        raise Crash
+
+    for at in stops(steps):
+        folder = tmp_path / str(at)
+        monkeypatch.setattr(files, "step", crash_at(at, stop))
+        with pytest.raises(Crash):
+            run(folder)
+        monkeypatch.setattr(files, "step", lambda what: None)
+        tin = run(folder)
+        assert np.array_equal(canonical(tin.simplices()), right), at
+        assert not (folder / "tin" / "work").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are killed in forks")
+def test_a_killed_process_leaves_what_can_be_gone_on_from(
+    steps: int, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    right = canonical(Delaunay(POINTS).simplices)
+    for at in range(3, steps, 17):
+        folder = tmp_path / str(at)
+        child = os.fork()
+        if child == 0:
+            files.step = crash_at(at, lambda: os.kill(os.getpid(), signal.SIGKILL))
+            run(folder)
+            os._exit(0)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+        tin = run(folder)
+        assert np.array_equal(canonical(tin.simplices()), right), at
+        # What was cut off beside a file is not taken for one.
+        assert tin.to_dask_dataframe().npartitions == tin.ntiles
+
+
+def test_a_finished_tile_is_not_done_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[str] = []
+
+    def stop_late(what: str) -> None:
+        begun.append(what)
+        if what == "before triangles/tile=000002.parquet":
+            raise Crash
+
+    monkeypatch.setattr(files, "step", stop_late)
+    with pytest.raises(Crash):
+        run(tmp_path)
+    assert "before triangles/tile=000001.parquet" in begun
+    begun.clear()
+    monkeypatch.setattr(files, "step", begun.append)
+    run(tmp_path)
+    assert "before triangles/tile=000002.parquet" in begun
+    assert "before triangles/tile=000001.parquet" not in begun
+    begun.clear()
+    run(tmp_path)
+    assert not [what for what in begun if what.startswith("before tri")]
+
+
+def test_a_full_disk_is_a_clean_stop(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, canonical: Callable[[Any], Any]
+) -> None:
+    def full(what: str) -> None:
+        if what.startswith("before the renaming of vertices"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(files, "step", full)
+    with pytest.raises(OSError, match="make room and run the same again") as caught:
+        run(tmp_path)
+    assert caught.value.errno == errno.ENOSPC
+    assert not list((tmp_path / "tin").rglob(".*"))
+    monkeypatch.setattr(files, "step", lambda what: None)
+    right = canonical(Delaunay(POINTS).simplices)
+    assert np.array_equal(canonical(run(tmp_path).simplices()), right)
+
+
+def test_outputs_are_never_mixed(tmp_path: Path) -> None:
+    run(tmp_path)
+    assert run(tmp_path).npoints == len(POINTS)
+    with pytest.raises(InputError, match="holds a run already"):
+        run(tmp_path, resume=False)
+    with pytest.raises(InputError, match=r"tile_points differ"):
+        distributed.triangulate(POINTS, tmp_path / "tin", tile_points=31)
+    with pytest.raises(InputError, match=r"source differ"):
+        distributed.triangulate(POINTS + 1, tmp_path / "tin", tile_points=30)
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "thesis.txt").write_text("years of work")
+    with pytest.raises(InputError, match="holds something else"):
+        distributed.triangulate(POINTS, other, tile_points=30)
+    assert (other / "thesis.txt").read_text() == "years of work"
+    with pytest.raises(InputError, match="no folder"):
+        distributed.triangulate(POINTS, other / "thesis.txt", tile_points=30)
+
+
+def test_what_is_not_finished_cannot_be_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(what: str) -> None:
+        if what.startswith("before manifest"):
+            raise Crash
+
+    monkeypatch.setattr(files, "step", stop)
+    with pytest.raises(Crash):
+        run(tmp_path)
+    with pytest.raises(FileNotFoundError, match="not finished"):
+        distributed.open(tmp_path / "tin")
+    with pytest.raises(FileNotFoundError, match="no such folder"):
+        distributed.open(tmp_path / "nowhere")

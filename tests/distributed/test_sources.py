@@ -1,0 +1,173 @@
+"""Files of all kinds as sources, and what is wrong with some."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets, distributed
+from delone.distributed import sources
+from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+LIDAR = Path(__file__).parents[2] / "examples" / "data" / "ahn3_crop_100m.laz"
+POINTS = datasets.uniform(900)
+
+
+def table(path: Path, points: Any, **columns: Any) -> Path:
+    import pyarrow
+    import pyarrow.parquet
+
+    columns = {"x": points[:, 0], "y": points[:, 1], **columns}
+    pyarrow.parquet.write_table(pyarrow.table(columns), path, row_group_size=100)
+    return path
+
+
+def test_parquet_in_several_files(
+    tmp_path: Path, canonical: Callable[[Any], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Pieces begin and end within row groups.
+    monkeypatch.setattr(sources, "PIECE", 130)
+    folder = tmp_path / "points"
+    folder.mkdir()
+    for i in range(3):
+        some = slice(300 * i, 300 * i + 300)
+        kind = np.arange(300 * i, 300 * i + 300, dtype=np.int16)
+        table(folder / f"{i}.parquet", POINTS[some], z=POINTS[some, 0], kind=kind)
+    right = canonical(Delaunay(POINTS).simplices)
+    for number, source in enumerate([folder, str(folder / "*.parquet"), sorted(folder.iterdir())]):
+        out = tmp_path / f"tin{number}"
+        tin = distributed.triangulate(source, out, tile_points=200, attributes=["kind"])
+        assert np.array_equal(canonical(tin.simplices()), right)
+        tile = tin.tile(0)
+        assert np.array_equal(tile.attributes["kind"], tile.ids)
+        assert tile.attributes["kind"].dtype == np.int16
+        assert np.array_equal(tile.attributes["z"], tile.points[:, 0])
+
+
+def test_other_files(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    np.save(tmp_path / "points.npy", POINTS)
+    text = "\n".join(f"{x!r},{y!r}" for x, y in POINTS.tolist())
+    (tmp_path / "points.csv").write_text("x,y\n" + text)
+    right = canonical(Delaunay(POINTS).simplices)
+    for name in ("points.npy", "points.csv"):
+        tin = distributed.triangulate(tmp_path / name, tmp_path / f"{name}.tin", tile_points=300)
+        assert np.array_equal(canonical(tin.simplices()), right)
+
+
+@pytest.fixture
+def lidar() -> Any:
+    pytest.importorskip("laspy")
+    pytest.importorskip("lazrs")
+    from delone.io import read_points
+
+    return read_points(LIDAR)
+
+
+def test_lidar(
+    lidar: Any, tmp_path: Path, canonical: Callable[[Any], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sources, "PIECE", 7001)
+    tin = distributed.triangulate(
+        LIDAR, tmp_path / "tin", tile_points=5000, attributes=["classification"]
+    )
+    assert tin.crs == lidar.crs
+    right = Delaunay(lidar.points)
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert tin.tile(0).attributes["classification"].dtype == np.uint8
+
+
+def test_classes_are_chosen(lidar: Any, tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    from delone.io import read_points
+
+    whole = read_points(LIDAR, attributes=["classification"])
+    ground = np.flatnonzero(whole.attributes["classification"] == 2)
+    tin = distributed.triangulate(LIDAR, tmp_path / "tin", tile_points=4000, classes=[2])
+    right = ground[Delaunay(whole.points[ground]).simplices]
+    assert np.array_equal(canonical(tin.simplices()), canonical(right))
+
+
+def test_torn_and_lying_lidar_files(lidar: Any, tmp_path: Path) -> None:
+    whole = LIDAR.read_bytes()
+    torn = tmp_path / "torn.laz"
+    torn.write_bytes(whole[: len(whole) // 2])
+    lying = tmp_path / "lying.laz"
+    at = 247 if whole[25] >= 4 else 107
+    lying.write_bytes(whole[:at] + b"\xff\xff\xff\x7f" + whole[at + 4 :])
+    for path in (torn, lying):
+        with pytest.raises(FileFormatError, match=path.name):
+            distributed.triangulate(path, tmp_path / "tin")
+    # Bytes in the middle say nothing of themselves; the decoder finds out, or reads other points.
+    with pytest.raises(FileFormatError, match="has no 'colour'"):
+        distributed.triangulate(LIDAR, tmp_path / "tin", attributes=["colour"])
+    assert not (tmp_path / "tin").exists()
+
+
+def test_missing_files_and_columns(tmp_path: Path) -> None:
+    path = table(tmp_path / "points.parquet", POINTS)
+    with pytest.raises(FileFormatError, match="kind"):
+        distributed.triangulate(path, tmp_path / "tin", attributes=["kind"])
+    with pytest.raises(FileFormatError, match="east"):
+        distributed.triangulate(path, tmp_path / "tin", columns=["east", "north"])
+    with pytest.raises(FileNotFoundError):
+        distributed.triangulate(tmp_path / "gone.laz", tmp_path / "tin")
+    with pytest.raises(InputError, match="no file matches"):
+        distributed.triangulate(str(tmp_path / "*.laz"), tmp_path / "tin")
+    with pytest.raises(InputError, match="twice"):
+        distributed.triangulate([path, path], tmp_path / "tin")
+    other = table(tmp_path / "other.parquet", POINTS, z=POINTS[:, 0])
+    with pytest.raises(InputError, match="heights"):
+        distributed.triangulate([path, other], tmp_path / "tin")
+
+
+def test_mixed_reference_systems(tmp_path: Path) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    for code in (4326, 28992):
+        points = geopandas.points_from_xy(POINTS[:, 0], POINTS[:, 1])
+        frame = geopandas.GeoDataFrame(geometry=points, crs=code)
+        frame.to_parquet(tmp_path / f"{code}.parquet")
+    with pytest.raises(InputError, match=r"mixed reference systems: .*28992.*4326"):
+        distributed.triangulate(tmp_path, tmp_path.parent / "tin")
+
+
+def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
+    points = POINTS.copy()
+    points[[3, 700]] = np.nan
+    points[512, 1] = np.inf
+    with pytest.raises(NonFiniteError) as caught:
+        distributed.triangulate(points, tmp_path / "tin", tile_points=300)
+    assert caught.value.rows.tolist() == [3, 512, 700]
+    assert caught.value.count == 3
+    tin = distributed.triangulate(points, tmp_path / "other", tile_points=300, nan="drop")
+    assert tin.manifest["dropped"] == 3
+    kept = np.flatnonzero(np.isfinite(points).all(axis=1))
+    right = kept[Delaunay(points[kept]).simplices]
+    assert np.array_equal(canonical(tin.simplices()), canonical(right))
+    with pytest.raises(InputError, match="nan must be"):
+        distributed.triangulate(points, tmp_path / "third", nan="ignore")
+
+
+@pytest.mark.parametrize(
+    ("points", "reason"),
+    [
+        (np.empty((0, 2)), "too few points"),
+        ([(1, 1)] * 9, "too few points"),
+        ([(1, 1), (2, 2)], "collinear"),
+        ([(i, 2 * i) for i in range(500)], "collinear"),
+    ],
+)
+def test_points_that_span_no_area(points: Any, reason: str, tmp_path: Path) -> None:
+    with pytest.raises(DegenerateInputError) as caught:
+        distributed.triangulate(np.array(points, float), tmp_path / "tin", tile_points=100)
+    assert caught.value.reason == reason
+
+
+@pytest.mark.parametrize("size", [0, 2, -5, 1 << 40])
+def test_sizes_of_tiles_out_of_range(size: int, tmp_path: Path) -> None:
+    with pytest.raises(InputError):
+        distributed.triangulate(POINTS, tmp_path / "tin", tile_points=size)
