@@ -283,6 +283,7 @@ def regular2(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
 def periodic2(
     points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
     periods: tuple[float, float],
     taken: NDArray[np.int32],
 ) -> tuple[
@@ -290,6 +291,7 @@ def periodic2(
 ]: ...
 def periodic_centers2(
     points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
     periods: tuple[float, float],
     corners: NDArray[np.int32],
     apexes: NDArray[np.int32],

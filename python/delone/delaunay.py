@@ -6,7 +6,7 @@ what only a Delaunay triangulation has: the convex hull for its boundary, locati
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self, overload
 
 from delone import _core
 from delone._arrays import as_workers
@@ -16,9 +16,12 @@ from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+    from delone.periodic import PeriodicDelaunay
 
     Indices = NDArray[np.int32]
 
@@ -33,6 +36,10 @@ class Delaunay(Triangulation):
     points : array_like, shape (n, 2)
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
         copied and taken as the exact numbers which they denote.
+    periodic : tuple of two floats or None, optional
+        ``(Lx, Ly)``: the points come again after these distances in x and in y; None for a
+        direction in which they do not. Then the result is no `Delaunay` but a
+        `delone.PeriodicDelaunay`, with offsets of corners and of edges.
     method : str, optional
         How to compute it: ``"auto"`` (what is fastest), ``"bowyer-watson"`` (cavities, along a
         space-filling curve), ``"divide-and-conquer"`` (halves, merged), ``"incremental"``
@@ -119,8 +126,48 @@ class Delaunay(Triangulation):
 
     __slots__ = ()
 
+    # A periodic set has no hull, and corners of its triangles have offsets: what comes of it is
+    # another class, for which no method here would be right.
+    @overload
+    def __new__(
+        cls, points: ArrayLike = ..., *, method: str = ..., workers: int | None = ...
+    ) -> Self: ...
+    @overload
+    def __new__(  # type: ignore[misc]
+        cls,
+        points: ArrayLike,
+        *,
+        periodic: Sequence[float | None],
+        method: str = ...,
+        workers: int | None = ...,
+    ) -> PeriodicDelaunay: ...
+    def __new__(  # type: ignore[misc]
+        cls,
+        points: ArrayLike = (),
+        *,
+        periodic: Sequence[float | None] | None = None,
+        method: str = "auto",
+        workers: int | None = None,
+    ) -> Self | PeriodicDelaunay:
+        """Make a `Delaunay`; with periods, a `PeriodicDelaunay`."""
+        if periodic is None:
+            return super().__new__(cls)
+        from delone.periodic import PeriodicDelaunay
+
+        if cls is not Delaunay:
+            raise InputError(f"periodic goes with Delaunay itself, not with {cls.__name__}")
+        if method not in ("auto", "bowyer-watson"):
+            raise InputError(f"periodic goes with 'auto' and 'bowyer-watson', got {method!r}")
+        as_workers(workers)
+        return PeriodicDelaunay(points, periodic)
+
     def __init__(
-        self, points: ArrayLike, *, method: str = "auto", workers: int | None = None
+        self,
+        points: ArrayLike,
+        *,
+        periodic: None = None,
+        method: str = "auto",
+        workers: int | None = None,
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Delaunay never changes: make another one")

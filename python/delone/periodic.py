@@ -1,4 +1,4 @@
-"""Delaunay triangulations of points that are repeated at a period in x, in y, or both.
+"""Triangulations of points that are repeated at a period in x, in y, or both.
 
 The core triangulates the points and copies of them around, with predicates that are exact on the
 sums of coordinates and periods; here one triangle of each class of translates is kept, and
@@ -15,7 +15,8 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import require_finite
-from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
+from delone.regular import as_weights
 from delone.triangulation import counted, first_rows, kept, own_copy, sealed
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["PeriodicDelaunay"]
+__all__ = ["PeriodicDelaunay", "as_periods", "vertex_of"]
 
 # Copies nearer than this many mean distances to the box of the points are tried first.
 _HALO = 8.0
@@ -37,6 +38,9 @@ _FEW = 64
 class PeriodicDelaunay:
     """The Delaunay triangulation of a periodic set of points in the plane.
 
+    With weights it is the regular triangulation. ``Delaunay(points, periodic=periods)`` is one of
+    these, too.
+
     Parameters
     ----------
     points : array_like, shape (n, 2)
@@ -45,6 +49,9 @@ class PeriodicDelaunay:
     periods : tuple of two floats or None
         ``(Lx, Ly)``: after which distance the points come again in x and in y. None for a direction
         without a period.
+    weights : array_like, shape (n,), optional
+        Weights, in the square of the unit of the points, as for `RegularTriangulation`. All copies
+        of a point have its weight.
 
     Attributes
     ----------
@@ -52,6 +59,8 @@ class PeriodicDelaunay:
         The coordinates.
     periods : tuple of two floats or None
         As given.
+    weights : ndarray of float64, shape (n,), or None
+        The weights.
     simplices : ndarray of int32, shape (m, 3)
         One triangle of each class of translates, as rows of `points`, counter-clockwise. A row may
         come twice or three times in one triangle, where points are few.
@@ -68,14 +77,16 @@ class PeriodicDelaunay:
     DegenerateInputError
         There is no triangle: no point at all, or one period and all points on one line along it.
     NonFiniteError
-        A coordinate is NaN or infinite.
+        A coordinate or weight is NaN or infinite.
+    ShapeError
+        There are not as many weights as points.
 
     Notes
     -----
     Exact, as `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general is
     no double, and nothing is rounded before a decision. Ties are broken in the same way, so that
     the set of triangles is one, and the same in all periods. With two periods there are 2 n
-    triangles and 3 n edges for n distinct points.
+    triangles and 3 n edges for n distinct points (with weights, for n that are not hidden).
 
     Copies one period away on all sides are enough, however the points lie. Of many points only
     those copies are taken at first that lie near; circles tell if that was too few. Time is that of
@@ -103,14 +114,21 @@ class PeriodicDelaunay:
     _lock: threading.RLock
     _periods: tuple[float | None, float | None]
 
-    def __init__(self, points: ArrayLike, periods: Sequence[float | None]) -> None:
+    def __init__(
+        self,
+        points: ArrayLike,
+        periods: Sequence[float | None],
+        *,
+        weights: ArrayLike | None = None,
+    ) -> None:
         if hasattr(self, "_arrays"):
             raise AttributeError("a PeriodicDelaunay never changes: make another one")
         own = own_copy(points)
         require_finite(own)
-        lengths = _as_periods(periods)
+        heavy = None if weights is None else as_weights(weights, len(own))
+        lengths = as_periods(periods)
         _require_one_period(own, lengths)
-        self._fill(_triangulated(own, lengths), lengths)
+        self._fill(_triangulated(own, heavy, lengths), lengths)
 
     def _fill(
         self, arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
@@ -134,6 +152,11 @@ class PeriodicDelaunay:
     def periods(self) -> tuple[float | None, float | None]:
         """The periods in x and y; None for none."""
         return self._periods
+
+    @property
+    def weights(self) -> Floats | None:
+        """The weights, (n,); None without."""
+        return self._arrays.get("weights")
 
     @property
     def simplices(self) -> Indices:
@@ -168,8 +191,16 @@ class PeriodicDelaunay:
     @property
     @kept
     def duplicate_of(self) -> Indices:
-        """The vertex of each row, (n,): the first row with the same coordinates."""
-        return sealed(first_rows(self.points).astype(np.int32))
+        """The vertex of each row, (n,): the first row with the same coordinates (and weight)."""
+        return sealed(vertex_of(self.points, self.weights))
+
+    @property
+    @kept
+    def hidden(self) -> Indices:
+        """The rows that are neither vertices nor duplicates of vertices: none without weights."""
+        seen = np.zeros(self.npoints, dtype=bool)
+        seen[self.simplices] = True
+        return sealed(np.flatnonzero(~seen[self.duplicate_of]).astype(np.int32))
 
     @property
     @kept
@@ -229,7 +260,24 @@ def _rebuilt(
     return mesh
 
 
-def _as_periods(periods: Any) -> tuple[float | None, float | None]:
+def as_periods(periods: Any) -> tuple[float | None, float | None]:
+    """Return periods that are positive and finite, or None.
+
+    Parameters
+    ----------
+    periods : sequence of two floats or None
+        As for `PeriodicDelaunay`.
+
+    Returns
+    -------
+    tuple of two floats or None
+        The same.
+
+    Raises
+    ------
+    InputError
+        They are something else, or there is none.
+    """
     try:
         x, y = (None if length is None else float(length) for length in periods)
     except (TypeError, ValueError):
@@ -260,29 +308,66 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
             )
 
 
+def vertex_of(points: Floats, weights: Floats | None) -> Indices:
+    """Return for each row the first one with the same coordinates and weight.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    weights : ndarray of float64, shape (n,), optional
+        Weights: rows that are lighter than another with the same coordinates stay by themselves.
+
+    Returns
+    -------
+    ndarray of int32, shape (n,)
+        Rows.
+    """
+    stands_for = _standing(points, weights)
+    if weights is not None:
+        lighter = weights != weights[stands_for]
+        stands_for[lighter] = np.flatnonzero(lighter)
+    return stands_for.astype(np.int32)
+
+
+def _standing(points: Floats, weights: Floats | None) -> NDArray[np.int64]:
+    """The row that stands for each: the heaviest with its coordinates, the first of these."""
+    first = first_rows(points)
+    if weights is None:
+        return first
+    order = np.lexsort((np.arange(len(first)), -weights, first))
+    group, at = np.unique(first[order], return_index=True)
+    heaviest = np.empty(len(first), dtype=np.int64)
+    heaviest[group] = order[at]
+    return heaviest[first]
+
+
 def _triangulated(
-    points: Floats, periods: tuple[float | None, float | None]
+    points: Floats, weights: Floats | None, periods: tuple[float | None, float | None]
 ) -> dict[str, NDArray[Any]]:
     """One triangle of each class."""
-    rows = np.unique(first_rows(points)).astype(np.int32)
+    rows = np.unique(_standing(points, weights)).astype(np.int32)
     lengths = _lengths(periods)
     if not len(rows):
         raise DegenerateInputError("there is no point", reason="too few points")
     found = None
     if None not in periods and len(rows) > _FEW:
-        found = _with_halo(points, rows, lengths)
+        found = _with_halo(points, weights, rows, lengths)
     if found is None:
-        found = _copied(points, lengths, _copies(rows, periods))
-    simplices, offsets = found
+        found = _copied(points, weights, lengths, _copies(rows, periods))
+    simplices, offsets, chain = found
     if not len(simplices):
         raise DegenerateInputError(
-            "all points lie on one line along the period: there is no triangle",
+            "all points lie on one line along the period: there is no triangle; `chain` has those "
+            "that are not hidden, in order",
             reason="collinear",
-            chain=rows,
+            chain=chain,
         )
     partners = _partners(simplices, offsets, len(points), whole=None not in periods)
+    heavy = {} if weights is None else {"weights": weights}
     return {
         "points": points,
+        **heavy,
         "simplices": simplices,
         "offsets": offsets,
         "partners": partners,
@@ -297,7 +382,9 @@ def _copies(rows: Indices, periods: tuple[float | None, float | None]) -> Indice
     return np.column_stack((np.repeat(rows, len(moves)), np.tile(moves, (len(rows), 1))))
 
 
-def _with_halo(points: Floats, rows: Indices, lengths: Floats) -> tuple[Indices, Indices] | None:
+def _with_halo(
+    points: Floats, weights: Floats | None, rows: Indices, lengths: Floats
+) -> tuple[Indices, Indices, Indices] | None:
     """The triangles by way of those copies that lie near, or None where these are too few."""
     low = points[rows].min(axis=0)
     width = _HALO * float(np.sqrt(lengths[0] / len(rows)) * np.sqrt(lengths[1]))
@@ -306,30 +393,60 @@ def _with_halo(points: Floats, rows: Indices, lengths: Floats) -> tuple[Indices,
     copies = _copies(rows, (1.0, 1.0))
     at = points[copies[:, 0]] + copies[:, 1:] * lengths
     near = ((at >= low - width) & (at <= low + lengths + width)).all(axis=1)
-    simplices, offsets = _copied(points, lengths, np.ascontiguousarray(copies[near]))
-    if len(simplices) != 2 * len(rows):
+    found = _copied(points, weights, lengths, np.ascontiguousarray(copies[near]))
+    simplices, offsets, _ = found
+    if len(simplices) != 2 * len(rows if weights is None else np.unique(simplices)):
         return None
     # A circle within the box of the copies that were taken has been tested against all others.
-    from delone import geometry
-
-    corners = points[simplices] + offsets * lengths
-    center = geometry.circumcenters(corners.reshape(-1, 2), _numbered(len(simplices)))
-    radius = np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
+    circles = _circles(points, weights, lengths, simplices, offsets)
+    if circles is None:
+        return None
+    center, radius = circles
     # The triangle may stand for a translate whose circle is the one that was tested.
     reach = radius[:, None] + np.abs(offsets).max(axis=1) * lengths * 2.0**-40
     inside = (center - reach > low - width) & (center + reach < low + lengths + width)
-    return (simplices, offsets) if inside.all() else None
+    return found if inside.all() else None
+
+
+def _circles(
+    points: Floats, weights: Floats | None, lengths: Floats, simplices: Indices, offsets: Indices
+) -> tuple[Floats, Floats] | None:
+    """Circles, a little larger, outside of which no site has to do with a triangle.
+
+    None where a centre lies beyond the range of doubles.
+    """
+    corners = points[simplices] + offsets * lengths
+    if weights is None:
+        from delone import geometry
+
+        center = geometry.circumcenters(corners.reshape(-1, 2), _numbered(len(simplices)))
+        return center, np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
+    copies = np.ascontiguousarray(np.dstack((simplices, offsets)).reshape(-1, 3), dtype=np.int32)
+    x, y = lengths.tolist()
+    try:
+        center, _ = _core.periodic_centers2(points, weights, (x, y), copies, copies, 1)
+    except ShapeError:
+        return None
+    # The heaviest of all sites comes below a plane from furthest away.
+    heavier = weights.max() - weights[simplices[:, 0]]
+    away = np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)
+    return center, np.hypot(away, np.sqrt(heavier)) * (1 + 2.0**-40)
 
 
 def _numbered(count: int) -> Indices:
     return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
 
 
-def _copied(points: Floats, lengths: Floats, copies: Indices) -> tuple[Indices, Indices]:
-    """The triangles of copies, one of each class that has a corner among the points."""
+def _copied(
+    points: Floats, weights: Floats | None, lengths: Floats, copies: Indices
+) -> tuple[Indices, Indices, Indices]:
+    """The triangles of copies, one of each class that has a corner among the points.
+
+    And the rows that are not hidden in their order, where all copies lie on one line.
+    """
     x, y = lengths.tolist()
     try:
-        triangles, _, _, row, moved = _core.periodic2(points, (x, y), copies)
+        triangles, _, chain, row, moved = _core.periodic2(points, weights, (x, y), copies)
     except InternalError as error:
         error.points = points
         raise
@@ -343,7 +460,8 @@ def _copied(points: Floats, lengths: Floats, copies: Indices) -> tuple[Indices, 
     offsets = np.take_along_axis(offsets, order[..., None], axis=1)
     # That corner is not moved in exactly one of the translates.
     kept = (offsets[:, 0] == 0).all(axis=1)
-    return np.ascontiguousarray(simplices[kept]), np.ascontiguousarray(offsets[kept])
+    own = chain[(moved[chain] == 0).all(axis=1)]
+    return np.ascontiguousarray(simplices[kept]), np.ascontiguousarray(offsets[kept]), row[own]
 
 
 def _directed(

@@ -46,7 +46,7 @@ PYTHON: dict[str, set[str]] = {
     "archive": {"atomic", "predicates", "topology", "errors"},
     "location": {"_core"} | FOUNDATION,
     "triangulation": {"_core", "geometry", "location", "plot", "topology"} | FOUNDATION,
-    "delaunay": {"_core", "archive", "triangulation", "validation"} | FOUNDATION,
+    "delaunay": {"_core", "archive", "periodic", "triangulation", "validation"} | FOUNDATION,
     "segments": {"topology"},
     "regions": {"_core"},
     "coverage": {"topology"},
@@ -89,7 +89,7 @@ PYTHON: dict[str, set[str]] = {
     | FOUNDATION,
     "exchange": {"io", "meshed"},
     "regular": {"_core", "triangulation"} | FOUNDATION,
-    "periodic": {"_core", "geometry", "triangulation"} | FOUNDATION,
+    "periodic": {"_core", "geometry", "regular", "triangulation"} | FOUNDATION,
     "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
     "interpolate": {"_core", "delaunay", "location", "topology", "triangulation"} | FOUNDATION,
     "compat": {

@@ -187,6 +187,27 @@ def test_bad_periods_are_refused(points: Any, periods: Any, message: str) -> Non
         PeriodicDelaunay(points, periods)
 
 
+def test_delaunay_takes_periods_by_name() -> None:
+    points = np.random.default_rng(7).random((40, 2))
+    mesh = Delaunay(points, periodic=(1, None))
+    assert isinstance(mesh, PeriodicDelaunay)
+    assert classes(mesh) == classes(PeriodicDelaunay(points, (1, None)))
+    assert len(mesh.edge_offsets) == len(mesh.edges)
+    assert isinstance(Delaunay(points, periodic=None), Delaunay)
+    with pytest.raises(InputError, match="'auto' and 'bowyer-watson'"):
+        Delaunay(points, periodic=(1, 1), method="sweep")
+    with pytest.raises(InputError, match="workers"):
+        Delaunay(points, periodic=(1, 1), workers=0)
+
+    class Mine(Delaunay):
+        pass
+
+    assert isinstance(Mine(points), Mine)
+    with pytest.raises(InputError, match="Mine"):
+        Mine(points, periodic=(1, 1))
+    assert isinstance(pickle.loads(pickle.dumps(Delaunay(points))), Delaunay)
+
+
 def test_bad_points_are_refused() -> None:
     with pytest.raises(NonFiniteError):
         PeriodicDelaunay([(0, np.nan)], (1, 1))

@@ -234,6 +234,29 @@ def test_an_invalid_outline_can_be_repaired() -> None:
     assert diagram.cell_areas.tolist() == pytest.approx([1.0, 1.0])
 
 
+def test_outlines_come_as_tables_and_mappings_too() -> None:
+    geopandas = pytest.importorskip("geopandas")
+    left, right = shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1)
+    feature = {"type": "Feature", "properties": {}, "geometry": left.__geo_interface__}
+    other = feature | {"geometry": right.__geo_interface__}
+    collection = {"type": "FeatureCollection", "features": [feature, other]}
+    table = geopandas.GeoDataFrame(geometry=[left, None, right])
+    for clip, size in (
+        (table, 2.0),
+        (table.geometry, 2.0),
+        (table.iloc[:1], 1.0),
+        (feature, 1.0),
+        (collection, 2.0),
+        (left.__geo_interface__, 1.0),
+    ):
+        diagram = Voronoi([(0.5, 0.5), (1.5, 0.5)], clip=clip)
+        assert diagram.cell_areas.sum() == pytest.approx(size)
+    with pytest.raises(InputError, match="polygons, and nothing else"):
+        Voronoi([(0, 0)], clip=geopandas.GeoSeries([left, shapely.Point(0, 0)]))
+    with pytest.raises(InputError, match="no geometry"):
+        Voronoi([(0, 0)], clip={"type": "Polygone"})
+
+
 def test_a_table_carries_the_columns_of_the_sites() -> None:
     geopandas = pytest.importorskip("geopandas")
     points = uniform(10, seed=7)

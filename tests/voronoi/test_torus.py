@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from delone.errors import InputError
+from delone import periodic
+from delone.errors import InputError, LimitError, NonFiniteError
 from delone.voronoi import Voronoi
 
 
@@ -85,16 +86,167 @@ def test_it_can_be_drawn_and_tabled() -> None:
     shapely = pytest.importorskip("shapely")
     diagram = Voronoi(np.random.default_rng(2).random((50, 2)), periodic=(1, 1))
     assert len(diagram.plot().collections[0].get_paths()) == 50
+    strip = Voronoi(diagram.points, periodic=(None, 1))
+    assert len(strip.plot().collections[0].get_paths()) == 50
     assert shapely.is_valid(diagram.polygons()).all()
+
+
+STRIPS = [(8, None), (None, 6), (8.5, None), (None, 30)]
+
+
+def in_strip(points: Any, weights: Any, periods: Any, box: Any) -> tuple[Any, Any, Any]:
+    """A diagram in a strip, the plain one of copies in a wide box, and the period."""
+    lengths = np.array([length or 0.0 for length in periods])
+    steps = [step for step in range(-2, 3) if step]
+    everyone = np.concatenate([points, *(points + step * lengths for step in steps)])
+    heavy = None if weights is None else np.tile(weights, 5)
+    wide = np.where(np.isfinite(box), box, [-500, -500, 500, 500])
+    diagram = Voronoi(points, weights=weights, periodic=periods, clip=box)
+    return diagram, Voronoi(everyone, weights=heavy, clip=wide), lengths.max()
+
+
+@settings(max_examples=120, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 7), st.integers(0, 5), st.integers(-3, 6)),
+        min_size=1,
+        max_size=10,
+        unique_by=lambda site: site[:2],
+    ),
+    st.sampled_from(STRIPS),
+    st.booleans(),
+)
+def test_one_period_makes_strips(
+    sites: list[tuple[int, int, int]], periods: Any, heavy: bool
+) -> None:
+    table = np.array(sites, dtype=float)
+    points, weights = table[:, :2], table[:, 2] if heavy else None
+    box = (-np.inf, -2, np.inf, 7) if periods[1] is None else (-1, -np.inf, 9, np.inf)
+    diagram, plain, width = in_strip(points, weights, periods, box)
+    assert diagram.cell_areas.sum() == pytest.approx(width * (9 if periods[1] is None else 10))
+    assert diagram.cell_areas == pytest.approx(plain.cell_areas[: len(points)])
+    assert diagram.cell_perimeters == pytest.approx(plain.cell_perimeters[: len(points)])
+    assert diagram.cell_centroids == pytest.approx(plain.cell_centroids[: len(points)], nan_ok=True)
+    for row in range(len(points)):
+        found, expected = diagram.cell(row), plain.cell(row)
+        assert corners(diagram, row) == corners(plain, row)
+        assert found.bounded == expected.bounded
+        rings = [sorted(np.round(part[0], 9).tolist()) for part in found.parts]
+        assert rings == [sorted(np.round(part[0], 9).tolist()) for part in expected.parts]
+        # Neighbours of a cell: with several translates of one site it is one neighbour.
+        beside = sorted(zip(np.round(found.lengths, 9), found.neighbors.tolist(), strict=True))
+        theirs: dict[int, float] = {}
+        for j, length in zip(expected.neighbors % len(points), expected.lengths, strict=True):
+            theirs[int(j)] = theirs.get(int(j), 0.0) + float(length)
+        total: dict[int, float] = {}
+        for length, j in beside:
+            total[j] = total.get(j, 0.0) + float(length)
+        assert {j: x for j, x in total.items() if x > 1e-9} == pytest.approx(
+            {j: x for j, x in theirs.items() if x > 1e-9}, abs=1e-8
+        )
+
+
+@pytest.mark.parametrize("periods", STRIPS)
+def test_open_cells_of_a_strip_have_rays_across_it(periods: Any) -> None:
+    points = np.random.default_rng(3).integers(0, 6, (12, 2)).astype(float)
+    diagram = Voronoi(points, periodic=periods)
+    ridge, origin, direction = diagram.rays
+    axis = 1 if periods[1] is None else 0
+    assert len(ridge) > 0 and (np.abs(direction[:, axis]) == 1).all()
+    assert (direction[:, 1 - axis] == 0).all()
+    lengths = np.array([length or 0.0 for length in periods])
+    far = origin + 50 * direction
+    a = points[diagram.ridge_points[ridge, 0]]
+    b = points[diagram.ridge_points[ridge, 1]] + diagram.ridge_offsets[ridge] * lengths
+    assert np.allclose(np.hypot(*(far - a).T), np.hypot(*(far - b).T))
+    everyone = np.concatenate([points + k * lengths for k in range(-3, 4)])
+    nearest = np.hypot(*(far[:, None] - everyone).T).T.min(axis=1)
+    assert np.allclose(nearest, np.hypot(*(far - a).T))
+
+
+def test_sites_on_a_line_along_the_period_have_strips() -> None:
+    diagram = Voronoi([(4, 0), (1, 0), (4, 0)], periodic=(8, None), clip=(-np.inf, -1, np.inf, 1))
+    assert diagram.triangulation is None
+    assert diagram.cell_areas.tolist() == [8.0, 8.0, 8.0]
+    assert diagram.duplicate_of.tolist() == [0, 1, 0]
+    assert diagram.ridge_points.tolist() == [[1, 0], [0, 1]]
+    assert diagram.ridge_offsets.tolist() == [[0, 0], [1, 0]]
+    one = Voronoi([(3, 5)], periodic=(None, 2), clip=(0, -np.inf, 10, np.inf))
+    assert sorted(one.cell(0).parts[0][0].tolist()) == [[0, 4], [0, 6], [10, 4], [10, 6]]
+    heavy = Voronoi([(0, 0), (1, 0), (4, 0)], weights=[9, 0, 0], periodic=(8, None))
+    assert heavy.hidden.tolist() == [1]
+    assert heavy.periods == (8.0, None)
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 7), st.integers(0, 5), st.integers(-3, 6)),
+        min_size=1,
+        max_size=10,
+        unique_by=lambda site: site[:2],
+    ),
+    st.sampled_from([(8, 6), (8, 8), (24, 6)]),
+)
+def test_weights_go_with_periods(sites: list[tuple[int, int, int]], periods: Any) -> None:
+    table = np.array(sites, dtype=float)
+    points, weights = table[:, :2], table[:, 2]
+    diagram = Voronoi(points, weights=weights, periodic=periods)
+    plain = Voronoi(copies(points, periods), weights=np.tile(weights, 25))
+    assert diagram.hidden.tolist() == [row for row in plain.hidden if row < len(points)]
+    assert diagram.cell_areas == pytest.approx(plain.cell_areas[: len(points)])
+    for row in range(len(points)):
+        assert corners(diagram, row) == corners(plain, row)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_near_copies_are_enough_with_weights(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(seed)
+    points, weights = rng.random((500, 2)), rng.random(500) * [1e-5, 1e-3, 0.02][seed]
+    near = Voronoi(points, weights=weights, periodic=(1, 1))
+    monkeypatch.setattr(periodic, "_FEW", 10**9)
+    every = Voronoi(points, weights=weights, periodic=(1, 1))
+    assert near.hidden.tolist() == every.hidden.tolist()
+    assert near.cell_areas == pytest.approx(every.cell_areas, rel=1e-12)
+    assert near.cell_areas.sum() == pytest.approx(1)
+
+
+def test_equal_weights_change_no_periodic_diagram() -> None:
+    points = np.random.default_rng(6).random((200, 2))
+    plain, heavy = (
+        Voronoi(points, periodic=(1, 1)),
+        Voronoi(points, periodic=(1, 1), weights=np.full(200, 3.5)),
+    )
+    assert np.array_equal(plain.vertices, heavy.vertices)
+    assert np.array_equal(plain.ridge_points, heavy.ridge_points)
+
+
+def test_of_equal_sites_the_heaviest_has_the_cell() -> None:
+    points = [(0, 0), (0.5, 0.5), (0, 0), (0, 0)]
+    diagram = Voronoi(points, weights=[0, 0, 0.1, 0.1], periodic=(1, 1))
+    assert diagram.hidden.tolist() == [0]
+    assert diagram.duplicate_of.tolist() == [0, 1, 2, 2]
+    assert diagram.cell_areas[2] == diagram.cell_areas[3] > diagram.cell_areas[1] > 0
+    with pytest.raises(NonFiniteError):
+        Voronoi(points, weights=[0, 0, 0, np.nan], periodic=(1, 1))
+
+
+def test_vertices_beyond_the_range_are_refused() -> None:
+    flat = [(0.0, 0.0), (0.5, 5e-324)]
+    with pytest.raises(LimitError, match="beyond the range"):
+        Voronoi(flat, periodic=(1, None))
 
 
 def test_what_does_not_go_together_is_refused() -> None:
     points = [(0, 0), (0.5, 0.25)]
-    with pytest.raises(InputError, match="neither clip nor weights"):
-        Voronoi(points, periodic=(1, 1), clip="box")
-    with pytest.raises(InputError, match="neither clip nor weights"):
-        Voronoi(points, periodic=(1, 1), weights=[1, 2])
-    with pytest.raises(InputError, match="a period in x and in y"):
-        Voronoi(points, periodic=(1, None))  # type: ignore[arg-type]
+    for clip in ("box", (0, 0, 1, 1), object()):
+        with pytest.raises(InputError, match="no border"):
+            Voronoi(points, periodic=(1, 1), clip=clip)
+    shapely = pytest.importorskip("shapely")
+    for clip in ("hull", (0, 0, 1, 1), (-np.inf, 0, np.inf), shapely.box(0, 0, 1, 1), 5):
+        with pytest.raises(InputError, match=r"'box' or four numbers \(-inf, ymin, inf, ymax\)"):
+            Voronoi(points, periodic=(1, None), clip=clip)
+    with pytest.raises(InputError, match="no area"):
+        Voronoi(points, periodic=(None, 1), clip=(2, -np.inf, 2, np.inf))
     with pytest.raises(InputError, match="apart in x"):
         Voronoi(points, periodic=(0.5, 1))

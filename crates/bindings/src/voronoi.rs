@@ -26,6 +26,19 @@ pub(crate) fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) ->
     in_range(values.as_chunks::<1>().0, from, to, name)
 }
 
+/// Weights of `n` points, all finite; none where nothing is given.
+fn finite_weights<'a>(
+    weights: Option<&'a PyReadonlyArray1<'_, f64>>,
+    n: usize,
+) -> Result<&'a [f64]> {
+    let Some(given) = weights else { return Ok(&[]) };
+    let found = entries(given, "weights")?;
+    if found.len() == n && found.iter().all(|w| w.is_finite()) {
+        return Ok(found);
+    }
+    Err(Error::Shape("each point needs one finite weight".into()))
+}
+
 /// Checks that `starts` cuts `length` entries into pieces.
 pub(crate) fn are_starts(starts: &[i32], length: usize) -> Result<()> {
     let right =
@@ -75,6 +88,7 @@ pub fn voronoi2<'py>(
     out.set_item("sites", table(py, made.ridges.sites)?)?;
     out.set_item("ends", table(py, made.ridges.ends)?)?;
     out.set_item("rays", table(py, made.ridges.rays)?)?;
+    out.set_item("beyond", table(py, made.ridges.beyond)?)?;
     out.set_item("region", column(py, made.regions.of_point))?;
     out.set_item("site", column(py, made.regions.site))?;
     out.set_item("starts", column(py, made.regions.starts))?;
@@ -102,7 +116,7 @@ pub fn voronoi_clip2<'py>(
         |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> { item(diagram, name)?.extract() };
     let list =
         |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> { item(diagram, name)?.extract() };
-    let (vertices, rays) = (pairs("vertices")?, pairs("rays")?);
+    let (vertices, rays, beyond) = (pairs("vertices")?, pairs("rays")?, pairs("beyond")?);
     let (sites, ends) = (codes("sites")?, codes("ends")?);
     let (site, starts) = (list("site")?, list("starts")?);
     let (region_vertices, region_ridges) = (list("region_vertices")?, list("region_ridges")?);
@@ -116,6 +130,7 @@ pub fn voronoi_clip2<'py>(
             sites: rows(&sites, "sites")?,
             ends: rows(&ends, "ends")?,
             rays: rows(&rays, "rays")?,
+            beyond: rows(&beyond, "beyond")?,
             site: entries(&site, "site")?,
             starts: entries(&starts, "starts")?,
             entry_vertices: entries(&region_vertices, "region_vertices")?,
@@ -233,31 +248,36 @@ pub fn regular2(
 /// `(simplices, neighbors, chain, rows, moved)`.
 type Repeated = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
-/// The Delaunay triangulation of points and their copies one period away: `taken` has rows and by how
+/// The Delaunay triangulation (with weights the regular one) of points and their copies one period
+/// away: `taken` has rows and by how
 /// many periods they are moved; vertices number the copies.
 #[pyfunction]
 pub fn periodic2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
     periods: [f64; 2],
     taken: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<Repeated> {
-    let (points, taken) = (|| {
+    let (points, heavy, taken) = (|| {
         let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
+        let heavy = finite_weights(weights.as_ref(), points.len())?;
         let right = |t: &[i32; 3]| {
             t[0] >= 0
                 && (t[0] as usize) < points.len()
                 && t[1..].iter().all(|k| (-1..=1).contains(k))
         };
         if taken.iter().all(right) {
-            return Ok((points, taken));
+            return Ok((points, heavy, taken));
         }
         Err(Error::Shape(
             "copies are rows and periods of -1, 0 or 1".into(),
         ))
     })()
     .map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| regular::periodic(points, periods, taken, watch))?;
+    let made = watched(py, |watch| {
+        regular::periodic(points, heavy, periods, taken, watch)
+    })?;
     Ok((
         table(py, made.triangles.simplices)?,
         table(py, made.triangles.neighbors)?,
@@ -273,13 +293,15 @@ pub fn periodic2(
 pub fn periodic_centers2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
     periods: [f64; 2],
     corners: PyReadonlyArray2<'_, i32>,
     apexes: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-    let (points, corners, apexes) = (|| {
+    let (points, heavy, corners, apexes) = (|| {
         let points = rows(&points, "points")?;
+        let heavy = finite_weights(weights.as_ref(), points.len())?;
         let (corners, apexes) = (
             rows::<i32, 3>(&corners, "corners")?,
             rows(&apexes, "apexes")?,
@@ -293,7 +315,7 @@ pub fn periodic_centers2(
             && corners.len() % 3 == 0
             && corners.iter().chain(apexes).all(right)
         {
-            return Ok((points, corners, apexes));
+            return Ok((points, heavy, corners, apexes));
         }
         Err(Error::Shape(
             "copies are rows and small numbers of periods".into(),
@@ -301,7 +323,7 @@ pub fn periodic_centers2(
     })()
     .map_err(|e| raise(py, &e))?;
     let (centers, shared) = watched(py, |watch| {
-        voronoi::centers(points, periods, corners, apexes, workers, watch)
+        voronoi::centers(points, heavy, periods, corners, apexes, workers, watch)
     })?;
     Ok((table(py, centers)?, table(py, shared)?))
 }

@@ -15,8 +15,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.delaunay import Delaunay
-from delone.errors import DegenerateInputError, InputError
-from delone.periodic import PeriodicDelaunay
+from delone.errors import DegenerateInputError
+from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.triangulation import counted, first_rows, kept, own_copy, sealed
 from delone.voronoi import clipping, dual, shapes, torus
@@ -44,16 +44,19 @@ class Voronoi:
     clip : "box", sequence of 4 floats, or geometry, optional
         What to cut the cells to: the box of the sites; the box
         ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without
-        holes. Sites may lie outside.
+        holes, also as a mapping of the form of GeoJSON, or the polygons of a table or series of
+        geopandas together. Sites may lie outside.
     fix : bool, optional
         Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of refusing
         it.
     weights : array_like, shape (n,), optional
         Weights of the sites, in the square of the unit of the points: then this is the power
         diagram, in which a place belongs to the site with the least ``|x - p|**2 - w``.
-    periodic : tuple of two floats, optional
+    periodic : tuple of two floats or None, optional
         ``(Lx, Ly)``: the sites come again after these distances in x and in y, as for
-        `PeriodicDelaunay`. Goes with neither `clip` nor `weights`.
+        `PeriodicDelaunay`; None for a direction in which they do not. With two periods there is
+        nothing to clip. With one, `clip` is ``"box"`` or a box that is infinite in the direction
+        of the period, as ``(-inf, ymin, inf, ymax)``.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
 
@@ -88,7 +91,10 @@ class Voronoi:
     ShapeError, DtypeError
         `points` is no array of real points in the plane, or there are not as many weights.
     InputError
-        `clip` has no area, is no polygon, or is invalid; the message says where.
+        `clip` has no area, is no polygon, or is invalid; the message says where. Or there are
+        periods, and it is no box as above.
+    LimitError
+        There are periods, and a vertex lies beyond the range of doubles.
     MissingExtraError
         `clip` is a geometry, and shapely is not installed.
 
@@ -98,8 +104,7 @@ class Voronoi:
     and all that is combinatorial in it is exact: sites on one circle share one vertex, whatever
     their number, and no ridge has length 0. One thing is rounded, the coordinates of vertices: each
     is within 4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex
-    beyond the range of doubles is not listed; ridges that lead to it end in -1 and have a ray in
-    its direction.
+    beyond the range of doubles is not listed; ridges that lead to it end in -1 and have a ray.
 
     Names and meanings are those of ``scipy.spatial.Voronoi``. What SciPy refuses is no exception
     here: one site has the whole plane for its cell, two have half-planes, and sites on one line
@@ -108,9 +113,10 @@ class Voronoi:
     With weights a cell need not hold its site, and a site may have no cell: it is *hidden*. Edges
     lie on radical axes instead of bisectors.
 
-    With periods all cells are bounded, and their areas sum to that of one period. Each is given
-    around its site, where that is: vertices are listed with all translates that some cell or ridge
-    has, and `ridge_offsets` tells across which border of the period a neighbour lies.
+    With two periods all cells are bounded, and their areas sum to that of one period; with one,
+    cells at the border of the strip are open. Each cell is given around its site, where that is:
+    vertices are listed with all translates that some cell or ridge has, and `ridge_offsets` tells
+    across which border of the period a neighbour lies.
 
     In a `clip`, areas, centroids, perimeters, neighbours and polygons are those of what is left of
     the cells; the attributes listed above remain those of the whole diagram. In a box the exact
@@ -152,6 +158,7 @@ class Voronoi:
         "_dual",
         "_lock",
         "_mesh",
+        "_periods",
         "_points",
         "_weights",
         "_workers",
@@ -162,6 +169,7 @@ class Voronoi:
     _dual: dict[str, NDArray[Any]]
     _lock: threading.RLock
     _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
+    _periods: tuple[float | None, float | None] | None
     _points: Floats
     _weights: Floats | None
     _workers: int
@@ -173,7 +181,7 @@ class Voronoi:
         clip: Any = None,
         fix: bool = False,
         weights: ArrayLike | None = None,
-        periodic: tuple[float, float] | None = None,
+        periodic: tuple[float | None, float | None] | None = None,
         workers: int | None = None,
     ) -> None:
         if hasattr(self, "_points"):
@@ -182,16 +190,23 @@ class Voronoi:
         own = own_copy(points)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
+        lengths = None
         if periodic is not None:
-            if clip is not None or heavy is not None:
-                raise InputError("periodic goes with neither clip nor weights")
-            mesh, arrays = _periodic_dual(own, periodic, threads)
+            mesh, arrays, lengths = _periodic_dual(own, heavy, periodic, threads)
         elif heavy is not None:
             mesh, arrays = _power_dual(own, heavy, threads)
         else:
             mesh, arrays = _dual(own, threads)
-        where = clipping.as_clip(clip, own, fix=fix)
-        self._fill(points=own, weights=heavy, mesh=mesh, dual=arrays, clip=where, workers=threads)
+        where = clipping.as_clip(clip, own, fix=fix, periods=lengths)
+        self._fill(
+            points=own,
+            weights=heavy,
+            mesh=mesh,
+            dual=arrays,
+            clip=where,
+            periods=lengths,
+            workers=threads,
+        )
 
     def _fill(
         self,
@@ -219,7 +234,7 @@ class Voronoi:
         return diagram
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("points", "weights", "mesh", "dual", "clip", "workers")
+        names = ("points", "weights", "mesh", "dual", "clip", "periods", "workers")
         return self._from_parts, ({name: getattr(self, f"_{name}") for name in names},)
 
     @property
@@ -257,7 +272,7 @@ class Voronoi:
     @property
     def periods(self) -> tuple[float | None, float | None] | None:
         """The periods in x and y; None without."""
-        return self._mesh.periods if isinstance(self._mesh, PeriodicDelaunay) else None
+        return self._periods
 
     @property
     def triangulation(self) -> Delaunay | RegularTriangulation | PeriodicDelaunay | None:
@@ -347,26 +362,55 @@ class Voronoi:
     def rays(self) -> Rays:
         """The ridges that go on for ever, with origins and directions.
 
-        A ridge that lies beyond the range of doubles as a whole has no ray.
+        A ridge that lies beyond the range of doubles as a whole has no ray. Where only its ends do,
+        it has two from one origin, like a line.
         """
         ends, directions = self._dual["ends"], self._dual["rays"]
         ridge, which = np.nonzero(ends < 0)
         other = ends[ridge, 1 - which]
-        a, b = self._points[self.ridge_points[ridge]].swapaxes(0, 1)
-        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge]]
-        origin = dual.foot(a, b, heavy)
+        line = np.flatnonzero(other < 0)
+        a, b = self._ends_of(ridge[line])
+        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge[line]]]
+        origin = np.empty((len(ridge), 2))
+        origin[line] = dual.foot(a, b, heavy)
         origin[other >= 0] = self.vertices[other[other >= 0]]
         direction = directions[~ends[ridge, which]]
-        opposite = directions[np.where(other < 0, ~other, 0)]
-        there = (other >= 0) | ((direction * opposite).sum(axis=1) < 0)
+        there: NDArray[np.bool_] = np.all(np.isfinite(origin), axis=1)
+        there[line] &= self._lies_between(origin[line], ends[ridge[line]])
         found = ridge[there].astype(np.int32), origin[there], direction[there]
         return Rays(*map(sealed, found))
+
+    def _lies_between(self, origin: Floats, ends: Indices) -> NDArray[np.bool_]:
+        """Whether points of lines lie before the vertices beyond the range that end them."""
+        found = np.ones(len(origin), dtype=bool)
+        for end in ends.T:
+            direction, place = self._dual["rays"][~end], self._dual["beyond"][~end]
+            k = np.abs(direction).argmax(axis=1)[:, None]
+            with np.errstate(over="ignore", invalid="ignore"):
+                way = np.take_along_axis(direction, k, 1) * np.take_along_axis(place - origin, k, 1)
+            found &= ~(way[:, 0] <= 0)
+        return found
+
+    def _ends_of(self, ridges: NDArray[Any]) -> tuple[Floats, Floats]:
+        """Where the two sites of some ridges are, as the first one sees the second."""
+        a, b = self._points[self.ridge_points[ridges]].swapaxes(0, 1)
+        if self.periods is None:
+            return a, b
+        lengths = np.array([length or 0.0 for length in self.periods])
+        return a, b + self.ridge_offsets[ridges] * lengths
 
     @property
     @kept
     def _clipped(self) -> Clipped:
         """What is left of the cells: all bounded ones where there is no clip."""
-        return clipping.cells(self._points, self._weights, self._dual, self._clip, self._workers)
+        return clipping.cells(
+            self._points,
+            self._weights,
+            self._dual,
+            self._clip,
+            periods=self._periods,
+            workers=self._workers,
+        )
 
     @property
     @kept
@@ -596,15 +640,19 @@ def _power_dual(
 
 
 def _periodic_dual(
-    points: Floats, periods: Any, workers: int
-) -> tuple[PeriodicDelaunay, dict[str, NDArray[Any]]]:
-    """The same with periods."""
-    mesh = PeriodicDelaunay(points, periods)
-    if None in mesh.periods:
-        raise InputError(
-            "a diagram needs a period in x and in y; PeriodicDelaunay takes one alone, too"
-        )
-    return mesh, torus.of_periodic(mesh, workers)
+    points: Floats, weights: Floats | None, periods: Any, workers: int
+) -> tuple[PeriodicDelaunay | None, dict[str, NDArray[Any]], tuple[float | None, float | None]]:
+    """The same with periods, which come third."""
+    try:
+        mesh = PeriodicDelaunay(points, periods, weights=weights)
+    except DegenerateInputError as error:
+        if not len(error.chain):
+            raise
+        lengths = as_periods(periods)
+        arrays = torus.of_line(points, error.chain.astype(np.int32), lengths)
+        arrays["region"] = arrays["region"][vertex_of(points, weights)]
+        return None, arrays, lengths
+    return mesh, torus.of_periodic(mesh, workers), mesh.periods
 
 
 def _without_repeated_gaps(region: list[int]) -> list[int]:

@@ -3,8 +3,9 @@
 A `Dual` is what the core's `voronoi2` returns, and means the same in both cases:
 
 * ridge r has the sites ``sites[r]`` and the ends ``ends[r]``: vertex v, or ``~i`` for ray i with
-  direction ``rays[i]``. Its first site lies to the left of the way from its first end to its
-  second.
+  direction ``rays[i]``. The ray leads to the vertex ``beyond[i]``, outside the range of doubles and
+  with infinite coordinates there, or on for ever where that is NaN. The first site of a ridge lies
+  to the left of the way from its first end to its second.
 * cell c has the site ``site[c]`` and the entries ``starts[c]:starts[c + 1]``: counter-clockwise, a
   vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that leads on from there
   in ``region_ridges``.
@@ -13,6 +14,7 @@ A `Dual` is what the core's `voronoi2` returns, and means the same in both cases
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     Dual = dict[str, NDArray[Any]]
 
 __all__ = ["foot", "of_chain"]
+
+# Squares of lengths between these have lost nothing to under- or overflow.
+_SMALLEST, _LARGEST = 2.0**-900, 2.0**900
 
 
 def of_chain(points: Floats, chain: Indices) -> Dual:
@@ -66,6 +71,7 @@ def of_chain(points: Floats, chain: Indices) -> Dual:
         "sites": np.column_stack((chain[:-1], chain[1:])).astype(np.int32),
         "ends": ~np.column_stack((2 * ridges, 2 * ridges + 1)),
         "rays": np.stack((-up, up), axis=1).reshape(-1, 2) + 0.0,
+        "beyond": np.full((2 * (k - 1), 2), np.nan),
         "region": region,
         "site": chain.astype(np.int32),
         "starts": np.concatenate(([0], np.cumsum(counts))).astype(np.int32),
@@ -80,8 +86,11 @@ def _directions(a: Floats, b: Floats) -> Floats:
         vector = b - a
     overflown = ~np.isfinite(vector).all(axis=1)
     vector[overflown] = b[overflown] / 2 - a[overflown] / 2
-    vector /= np.abs(vector).max(axis=1, initial=0.0)[:, None]
-    unit: Floats = vector / np.hypot(*vector.T)[:, None]
+    share = vector / np.abs(vector).max(axis=1, initial=0.0)[:, None]
+    unit: Floats = share / np.hypot(*share.T)[:, None]
+    # What is not along an axis must not seem to be, however little is missing.
+    lost = (unit == 0) & (vector != 0)
+    unit[lost] = np.copysign(5e-324, vector[lost])
     return unit
 
 
@@ -98,7 +107,8 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
     Returns
     -------
     ndarray of float64, shape (k, 2)
-        Points.
+        Points; where one is beyond the range of doubles, the point of the same axis that is
+        nearest to the origin of the plane, and infinity where that is beyond the range, too.
 
     Examples
     --------
@@ -108,11 +118,35 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
     >>> foot(a, b), foot(a, b, np.array([[4.0, 0]]))
     (array([[1., 0.]]), array([[2., 0.]]))
     """
-    middle = a / 2 + b / 2
-    if weights is None:
-        return middle
-    unit = _directions(a, b)
-    distance = np.hypot(*(b - a).T)
-    shift = (weights[:, 0] - weights[:, 1]) / (2 * distance)
-    found: Floats = middle + unit * shift[:, None]
+    with np.errstate(all="ignore"):
+        total = a + b
+        found: Floats = np.where(np.isfinite(total), total / 2, a / 2 + b / 2)
+        if weights is None:
+            return found
+        heavy = weights[:, 0] - weights[:, 1]
+        way = b - a
+        square = (way * way).sum(axis=1)
+        share = heavy / square / 2
+        found += np.where(share[:, None] == 0, 0.0, way * share[:, None])
+        safe = (square > _SMALLEST) & (square < _LARGEST) & np.isfinite(found).all(axis=1)
+    for row in np.flatnonzero(~safe & (weights[:, 0] != weights[:, 1])).tolist():
+        found[row] = _exact_foot(a[row].tolist(), b[row].tolist(), *weights[row].tolist())
     return found
+
+
+def _exact_foot(a: list[float], b: list[float], u: float, v: float) -> list[float]:
+    """The same in fractions; beyond the range the point of the line that is nearest to (0, 0)."""
+    p, q = [Fraction(x) for x in a], [Fraction(x) for x in b]
+    d = [y - x for x, y in zip(p, q, strict=True)]
+    square = d[0] * d[0] + d[1] * d[1]
+    heavy = Fraction(u) - Fraction(v)
+    right = sum(y * y - x * x for x, y in zip(p, q, strict=True)) + heavy
+    try:
+        share = heavy / square / 2
+        return [float((p[k] + q[k]) / 2 + d[k] * share) for k in range(2)]
+    except OverflowError:
+        share = right / square / 2
+    try:
+        return [float(d[k] * share) for k in range(2)]
+    except OverflowError:
+        return [np.inf, np.inf]

@@ -177,15 +177,34 @@ def _drawable(diagram: Voronoi) -> tuple[Voronoi, Floats, Floats]:
     """A diagram of bounded cells, and the window in which it is seen."""
     from delone.voronoi.diagram import Voronoi
 
+    if diagram.periods is not None:
+        return _drawable_periodic(diagram, diagram.periods)
     if diagram._clip is not None:
         bounds = np.array(diagram._clip.bounds)
         return diagram, bounds[:2], bounds[2:]
-    if diagram.periods is not None:
-        return diagram, diagram.vertices.min(axis=0), diagram.vertices.max(axis=0)
     low, high = diagram.points.min(axis=0), diagram.points.max(axis=0)
     margin = _MARGIN * float((high - low).max()) or 1.0
     low, high = low - margin, high + margin
     return Voronoi(diagram.points, clip=(*low, *high), weights=diagram.weights), low, high
+
+
+def _drawable_periodic(
+    diagram: Voronoi, periods: tuple[float | None, float | None]
+) -> tuple[Voronoi, Floats, Floats]:
+    """The same with periods: all of the cells, strips to a little beyond the sites."""
+    from delone.voronoi.diagram import Voronoi
+
+    if None in periods and diagram._clip is None:
+        axis = 0 if periods[1] is None else 1
+        low, high = diagram.points.min(axis=0), diagram.points.max(axis=0)
+        margin = _MARGIN * max(float((high - low).max()), periods[axis] or 0.0)
+        box = np.concatenate((low - margin, high + margin))
+        box[[axis, axis + 2]] = -np.inf, np.inf
+        diagram = Voronoi(
+            diagram.points, clip=box.tolist(), weights=diagram.weights, periodic=periods
+        )
+    corners = diagram._clipped.corners
+    return diagram, corners.min(axis=0), corners.max(axis=0)
 
 
 def _path(make: Any, diagram: Voronoi, site: int) -> Any:

@@ -4,6 +4,16 @@ A vertex of the periodic diagram has translates; those around a site are listed 
 corner of a triangle that is moved by some periods sees the centre of the triangle moved back by as
 many. Where triangles share their centre, decided exactly, it is known of each by how many periods
 it is moved against that of the first of them.
+
+With one period the hull is a strip: its two borders are parallel to the period, and the ridges that
+cross them are rays at right angles to it. Sites on one line along the period have strips for cells.
+
+Besides what every `dual` has there are
+
+* ``moved``, (r, 2): by how many periods the second site of each ridge is moved, seen from the
+  first. The ends of a ridge lie where its first site sees them.
+* ``beside`` and ``beside_moved``, for each entry of a cell: the site across the ridge that leads on
+  from there, and by how many periods it is moved, seen from the cell.
 """
 
 from __future__ import annotations
@@ -13,21 +23,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone.errors import LimitError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.periodic import PeriodicDelaunay
 
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
     Longs = NDArray[np.int64]
+    Dual = dict[str, NDArray[Any]]
 
-__all__ = ["of_periodic"]
+__all__ = ["of_line", "of_periodic", "unrolled"]
 
 _AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
+# Of an entry that is an end at infinity.
+_GAP = -1
 
 
-def of_periodic(mesh: PeriodicDelaunay, workers: int) -> dict[str, NDArray[Any]]:
-    """Return the diagram of a set with a period in x and in y.
+def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
+    """Return the diagram of a set with a period in x, in y, or both.
 
     Parameters
     ----------
@@ -39,27 +55,30 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> dict[str, NDArray[Any]]
     Returns
     -------
     dict of ndarray
-        As from the core, and ``moved``, (r, 2): by how many periods the second site of each ridge
-        is moved, seen from the first. The ends of a ridge lie where its first site sees them.
+        As from the core, and what the head of this module names.
+
+    Raises
+    ------
+    LimitError
+        A vertex lies beyond the range of doubles.
     """
-    lengths = np.array(mesh.periods, dtype=np.float64)
-    triangle, corner = np.divmod(mesh.partners.astype(np.int64), 3)
+    lengths = np.array([length or 0.0 for length in mesh.periods])
+    bounded = mesh.partners >= 0
+    partners = np.where(bounded, mesh.partners, np.arange(mesh.partners.size).reshape(-1, 3))
+    triangle, corner = np.divmod(partners.astype(np.int64), 3)
     # By how much each neighbour is moved against its own place.
     tau = mesh.offsets[:, _BEFORE] - mesh.offsets[triangle, (corner + 1) % 3]
+    tau[~bounded] = 0
     apexes = np.dstack((mesh.simplices[triangle, corner], mesh.offsets[triangle, corner] + tau))
-    corners = np.dstack((mesh.simplices, mesh.offsets))
-    centers, shared = _core.periodic_centers2(
-        mesh.points,
-        (float(lengths[0]), float(lengths[1])),
-        np.ascontiguousarray(corners.reshape(-1, 3), dtype=np.int32),
-        np.ascontiguousarray(apexes.reshape(-1, 3), dtype=np.int32),
-        workers,
-    )
+    centers, shared = _centers(mesh, lengths, apexes, workers)
+    shared &= bounded
     first, shift = _shared_centers(triangle, tau, shared)
-    ridge, edges = _ridges(mesh, shared)
-    sites, cells = _cells(mesh, shared)
-    t, k = np.divmod(cells, 3)
+    ridge, edges = _ridges(partners, shared)
+    cells, codes, gaps = _cells(mesh.simplices, np.where(bounded, partners, -1), shared)
+    t, k = np.divmod(codes, 3)
     entries = np.column_stack((first[t], shift[t] - mesh.offsets[t, k]))
+    # An end at infinity leads on along the edge at which the way around its site begins.
+    along = np.where(gaps, (k + 2) % 3, (k + 1) % 3)
     left, e = np.divmod(edges, 3)
     right, seen_from = triangle[left, e], mesh.offsets[left, (e + 1) % 3]
     ends = np.stack(
@@ -73,22 +92,164 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> dict[str, NDArray[Any]]
     listed = np.concatenate((entries, ends.reshape(-1, 3), everywhere))
     vertices, number = np.unique(listed, axis=0, return_inverse=True)
     number = number.reshape(-1).astype(np.int32)
+    ends = number[len(entries) : len(entries) + 2 * len(edges)].reshape(-1, 2).copy()
+    open_ridges = np.flatnonzero(~bounded[left, e])
+    ends[open_ridges, 0] = ~np.arange(len(open_ridges))
     a, b = mesh.simplices[left, (e + 1) % 3], mesh.simplices[left, (e + 2) % 3]
+    moved = mesh.offsets[left, (e + 2) % 3] - seen_from
     region = np.full(mesh.npoints, -1, dtype=np.int32)
-    region[sites["site"]] = np.arange(len(sites["site"]))
+    region[cells["site"]] = np.arange(len(cells["site"]))
+    leads = ridge[t, along]
+    of_first = gaps | (partners.reshape(-1)[3 * t + along] == edges[leads])
+    of_first &= gaps | (edges[leads] != 3 * t + along)
     return {
         "vertices": centers[vertices[:, 0]] + vertices[:, 1:] * lengths,
         "triangle_vertex": number[len(entries) + 2 * len(edges) :].copy(),
         "sites": np.column_stack((a, b)),
-        "ends": number[len(entries) : len(entries) + 2 * len(edges)].reshape(-1, 2).copy(),
-        "rays": np.empty((0, 2)),
-        "moved": mesh.offsets[left, (e + 2) % 3] - seen_from,
+        "ends": ends,
+        "rays": _outward(mesh, a[open_ridges]),
+        "beyond": np.full((len(open_ridges), 2), np.nan),
+        "moved": moved,
         "region": region[mesh.duplicate_of],
-        "site": sites["site"],
-        "starts": sites["starts"],
-        "region_vertices": number[: len(entries)].copy(),
-        "region_ridges": ridge[t, (k + 1) % 3],
+        "site": cells["site"],
+        "starts": cells["starts"],
+        "region_vertices": np.where(gaps, _GAP, number[: len(entries)]).astype(np.int32),
+        "region_ridges": leads,
+        "beside": np.where(of_first, b[leads], a[leads]),
+        "beside_moved": np.where(of_first[:, None], moved[leads], -moved[leads]),
     }
+
+
+def _centers(
+    mesh: PeriodicDelaunay, lengths: Floats, apexes: NDArray[Any], workers: int
+) -> tuple[Floats, NDArray[np.bool_]]:
+    corners = np.dstack((mesh.simplices, mesh.offsets))
+    try:
+        return _core.periodic_centers2(
+            mesh.points,
+            mesh.weights,
+            (float(lengths[0]), float(lengths[1])),
+            np.ascontiguousarray(corners.reshape(-1, 3), dtype=np.int32),
+            np.ascontiguousarray(apexes.reshape(-1, 3), dtype=np.int32),
+            workers,
+        )
+    except ShapeError as error:
+        raise LimitError(str(error)) from error
+
+
+def _outward(mesh: PeriodicDelaunay, sites: Indices) -> Floats:
+    """The directions in which ridges cross the border on which sites lie."""
+    axis = 1 if mesh.periods[1] is None else 0
+    heights = mesh.points[sites, axis]
+    found = np.zeros((len(sites), 2))
+    found[:, axis] = np.where(heights == heights.max(initial=-np.inf), 1.0, -1.0)
+    return found
+
+
+def of_line(points: Floats, chain: Indices, periods: tuple[float | None, float | None]) -> Dual:
+    """Return the diagram of sites on one line along their one period: strips.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    chain : ndarray of int32, shape (k,)
+        Rows of the sites in their order along the line, k > 0.
+    periods : tuple of two floats or None
+        The periods.
+
+    Returns
+    -------
+    dict of ndarray
+        As from `of_periodic`.
+    """
+    k = len(chain)
+    axis = 0 if periods[1] is None else 1
+    ridges = np.arange(k, dtype=np.int32)
+    moved = np.zeros((k, 2), dtype=np.int32)
+    moved[-1, axis] = 1
+    # The way of a ridge has its first site to its left.
+    way = np.array([0.0, 1.0] if axis == 0 else [-1.0, 0.0])
+    region = np.full(len(points), -1, dtype=np.int32)
+    region[chain] = ridges
+    # Each cell has the ridge to the site after it, then that to the site before it.
+    before = np.roll(ridges, 1)
+    after_site, before_site = np.roll(chain, -1), np.roll(chain, 1)
+    return {
+        "vertices": np.empty((0, 2)),
+        "triangle_vertex": np.empty(0, dtype=np.int32),
+        "sites": np.column_stack((chain, after_site)).astype(np.int32),
+        "ends": ~np.column_stack((2 * ridges, 2 * ridges + 1)),
+        "rays": np.tile([-way, way], (k, 1)) + 0.0,
+        "beyond": np.full((2 * k, 2), np.nan),
+        "moved": moved,
+        "region": region,
+        "site": chain.astype(np.int32),
+        "starts": np.arange(0, 2 * k + 1, 2, dtype=np.int32),
+        "region_vertices": np.full(2 * k, _GAP, dtype=np.int32),
+        "region_ridges": np.column_stack((ridges, before)).reshape(-1).astype(np.int32),
+        "beside": np.column_stack((after_site, before_site)).reshape(-1).astype(np.int32),
+        "beside_moved": np.stack((moved, -np.roll(moved, 1, axis=0)), axis=1).reshape(-1, 2),
+    }
+
+
+def unrolled(
+    points: Floats, weights: Floats | None, dual: Dual, periods: tuple[float | None, float | None]
+) -> tuple[Floats, Floats | None, Dual]:
+    """Return the cells of one period with ridges of their own, as parts of a diagram without one.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        The sites.
+    weights : ndarray of float64, shape (n,), optional
+        Their weights.
+    dual : dict of ndarray
+        Their diagram, with one period.
+    periods : tuple of two floats or None
+        The periods.
+
+    Returns
+    -------
+    points, weights : ndarray
+        The sites, and behind them for each entry of a cell the one across its ridge, where the cell
+        sees that.
+    dual : dict of ndarray
+        The cells. Their ridges are their entries.
+    """
+    lengths = np.array([length or 0.0 for length in periods])
+    starts, entries = dual["starts"], dual["region_vertices"]
+    count, sizes = len(entries), np.diff(starts)
+    owner = np.repeat(dual["site"], sizes)
+    following = np.arange(1, count + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    at = points[dual["beside"]] + dual["beside_moved"] * lengths
+    ends = np.column_stack((entries, entries[following]))
+    opens = np.flatnonzero(ends < 0)
+    # A ray leads up or down with the border beside its site; a line first down, then up.
+    axis = 1 if periods[1] is None else 0
+    rays = np.zeros((len(opens), 2))
+    turned = dual["region_ridges"][opens // 2]
+    of_first = (dual["sites"][turned, 0] == owner[opens // 2]) & (
+        dual["moved"][turned] == dual["beside_moved"][opens // 2]
+    ).all(axis=1)
+    which = np.where(of_first, opens % 2, 1 - opens % 2)
+    codes = dual["ends"][turned, which]
+    rays[:, axis] = dual["rays"][~codes, axis]
+    ends.reshape(-1)[opens] = ~np.arange(len(opens))
+    unfolded = {
+        "vertices": dual["vertices"],
+        "sites": np.column_stack((owner, len(points) + np.arange(count))).astype(np.int32),
+        "ends": ends.astype(np.int32),
+        "rays": rays,
+        "beyond": np.full((len(opens), 2), np.nan),
+        "site": dual["site"],
+        "starts": starts,
+        "region_vertices": entries,
+        "region_ridges": np.arange(count, dtype=np.int32),
+    }
+    heavy = None if weights is None else np.concatenate((weights, weights[dual["beside"]]))
+    return np.concatenate((points, at)), heavy, unfolded
 
 
 def _shared_centers(
@@ -117,11 +278,14 @@ def _shared_centers(
 
 
 def _ridges(
-    mesh: PeriodicDelaunay, shared: NDArray[np.bool_]
+    partners: NDArray[Any], shared: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """The ridge of each edge of each triangle, and for each ridge the first edge that has it."""
+    """The ridge of each edge of each triangle, and for each ridge the first edge that has it.
+
+    An edge of the border is its own partner.
+    """
     codes = np.arange(shared.size, dtype=np.int64).reshape(-1, 3)
-    owner = np.minimum(codes, mesh.partners)
+    owner = np.minimum(codes, partners)
     edges = np.flatnonzero(((owner == codes) & ~shared).reshape(-1))
     number = np.full(shared.size, -1, dtype=np.int32)
     number[edges] = np.arange(len(edges))
@@ -129,30 +293,36 @@ def _ridges(
 
 
 def _cells(
-    mesh: PeriodicDelaunay, shared: NDArray[np.bool_]
-) -> tuple[dict[str, NDArray[np.int32]], NDArray[np.int64]]:
+    simplices: Indices, partners: NDArray[Any], shared: NDArray[np.bool_]
+) -> tuple[dict[str, NDArray[np.int32]], Longs, NDArray[np.bool_]]:
     """Sites, where the entries of each begin, and the corner (3 t + k) of each entry.
 
     All sites are gone around at once, a triangle a step, so that there are as many steps as the
-    largest number of triangles around one site.
+    largest number of triangles around one site. On a border the way begins there, with an entry
+    for the end at infinity; the third result tells which these are.
     """
-    partner = mesh.partners[:, _AFTER].astype(np.int64)
-    after = (partner // 3 * 3 + (partner % 3 + 1) % 3).reshape(-1)
+    across = partners[:, _AFTER].astype(np.int64)
+    after = np.where(across < 0, -1, across // 3 * 3 + (across % 3 + 1) % 3).reshape(-1)
     emits = ~shared[:, _AFTER].reshape(-1)
-    site, start = np.unique(mesh.simplices.reshape(-1), return_index=True)
-    owners, places, codes = [], [], []
-    going, now, step = np.arange(len(site)), start.astype(np.int64), 0
+    site, start = np.unique(simplices.reshape(-1), return_index=True)
+    begins = np.flatnonzero(partners[:, _BEFORE].reshape(-1) < 0)
+    place_of = np.searchsorted(site, simplices.reshape(-1)[begins])
+    start = start.astype(np.int64)
+    start[place_of] = begins
+    owners, places, codes = [place_of], [np.full(len(begins), -1)], [begins]
+    going, now, step = np.arange(len(site)), start, 0
     while len(going):
         owners.append(going)
         places.append(np.full(len(going), step))
         codes.append(now)
         now = after[now]
-        further = now != start[going]
+        further = (now != start[going]) & (now >= 0)
         going, now, step = going[further], now[further], step + 1
     owner, place, code = map(np.concatenate, (owners, places, codes))
     order = np.lexsort((place, owner))
-    owner, code = owner[order], code[order]
-    owner, code = owner[emits[code]], code[emits[code]]
+    owner, code, gap = owner[order], code[order], place[order] < 0
+    kept = emits[code] | gap
+    owner, code, gap = owner[kept], code[kept], gap[kept]
     starts = np.zeros(len(site) + 1, dtype=np.int32)
     np.cumsum(np.bincount(owner, minlength=len(site)), out=starts[1:])
-    return {"site": site.astype(np.int32), "starts": starts}, code
+    return {"site": site.astype(np.int32), "starts": starts}, code, gap

@@ -248,7 +248,7 @@ impl<'a> Work<'a> {
             points: with_room(pairs.len())?,
         };
         for (i, [s, t]) in pairs.into_iter().enumerate() {
-            if i.is_multiple_of(1 << 16) {
+            if i.is_multiple_of(WATCH_EVERY) {
                 watch.check()?;
             }
             let ([a, b], [c, d]) = (at(s), at(t));

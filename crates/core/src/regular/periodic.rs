@@ -18,7 +18,12 @@
 //! largest rounded difference. A difference errs by 4 u m at most (three roundings). A turn has 2
 //! monomials of degree 2, each off by 2 D 4 u m, and roundings of 4 u D^2: together less than
 //! 32 u D (m + D). An in-circle test has 12 of degree 4, each off by 4 D^3 4 u m and roundings of
-//! 16 u D^4: less than 256 u D^3 (m + D). Magnitudes are kept between 2^-200 and 2^200.
+//! 16 u D^4: less than 256 u D^3 (m + D). With weights, W the largest difference of two, a square of up
+//! to 2 D^2 becomes one of up to 2 D^2 + W, and all of the above stays below
+//! 256 u D (m + D) (D^2 + W). Magnitudes are kept between 2^-200 and 2^200.
+//!
+//! All copies of a site have its weight. A copy of q one period nearer to z than another is nearer, and
+//! therefore of less power, so that copies one period away are enough with weights, too.
 
 use delone_predicates::{Point2, Sign};
 use num_bigint::BigInt;
@@ -44,6 +49,8 @@ pub struct Images<'a> {
     pub points: &'a [Point2],
     /// Lengths of the periods, 0 for none.
     pub periods: Point2,
+    /// Weights of the points; empty for none.
+    pub weights: &'a [f64],
     /// The point, and by how many periods it is moved.
     pub of: Vec<(u32, [i8; 2])>,
 }
@@ -62,9 +69,11 @@ pub struct Copies {
 }
 
 /// Triangulates distinct points and those copies of them that `taken` names: row, and periods in x
-/// and y of -1, 0 or 1. A period of 0 stands for none.
+/// and y of -1, 0 or 1. A period of 0 stands for none. With weights, as many as points, the
+/// triangulation is the regular one.
 pub fn periodic(
     points: &[Point2],
+    weights: &[f64],
     periods: Point2,
     taken: &[[i32; 3]],
     watch: &Watch,
@@ -85,6 +94,7 @@ pub fn periodic(
     let sites = Images {
         points,
         periods,
+        weights,
         of: order.iter().map(|&i| images[i as usize]).collect(),
     };
     let (triangles, chain) = match insert_all(&sites, order.len(), watch)? {
@@ -132,7 +142,7 @@ impl Images<'_> {
     pub fn coordinates<const N: usize>(&self, sites: [u32; N]) -> ([[BigInt; 2]; N], i64) {
         let mut corners = vec![self.periods];
         corners.extend(sites.map(|v| self.points[self.of[v as usize].0 as usize]));
-        let low = lowest(&corners, &[]);
+        let low = lowest(&corners, &sites.map(|v| self.weight(v)));
         let found = sites.map(|v| {
             let (row, moved) = self.of[v as usize];
             let p = self.points[row as usize];
@@ -141,11 +151,31 @@ impl Images<'_> {
         (found, low)
     }
 
+    fn weight(&self, v: u32) -> f64 {
+        let row = self.of[v as usize].0 as usize;
+        self.weights.get(row).copied().unwrap_or(0.0)
+    }
+
+    /// The weights of some sites in units of 2^(2 low).
+    pub fn exact_weights<const N: usize>(&self, sites: [u32; N], low: i64) -> [BigInt; N] {
+        sites.map(|v| scaled(self.weight(v), 2 * low))
+    }
+
     /// Exact differences to the last site.
     fn seen_from_last<const N: usize, const M: usize>(&self, sites: [u32; N]) -> [[BigInt; 2]; M] {
         const { assert!(M + 1 == N, "one site is the origin") }
         let (at, _) = self.coordinates(sites);
         std::array::from_fn(|i| [0, 1].map(|k| &at[i][k] - &at[M][k]))
+    }
+}
+
+impl Images<'_> {
+    fn exact_height(&self, sites: [u32; 4]) -> Sign {
+        let (at, low) = self.coordinates(sites);
+        let [wa, wb, wc, wd] = self.exact_weights(sites, low);
+        let corners: [[BigInt; 2]; 3] =
+            std::array::from_fn(|i| [0, 1].map(|k| &at[i][k] - &at[3][k]));
+        determinant(&corners, [&wd - wa, &wd - wb, &wd - wc])
     }
 }
 
@@ -174,22 +204,32 @@ impl Sites for Images<'_> {
 
     fn height(&self, [a, b, c, d]: [u32; 4]) -> Sign {
         let ([p, q, r], most) = self.differences([a, b, c], d);
-        let square = |v: Point2| v[0] * v[0] + v[1] * v[1];
+        let w = [a, b, c, d].map(|v| self.weight(v));
+        let extra = [w[3] - w[0], w[3] - w[1], w[3] - w[2]];
+        let heaviest = extra.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let lifted = |v: Point2, w: f64| v[0] * v[0] + v[1] * v[1] + w;
         let cross = |v: Point2, w: Point2| v[0] * w[1] - v[1] * w[0];
-        let det = square(p) * cross(q, r) + square(q) * cross(r, p) + square(r) * cross(p, q);
-        match largest(&[p, q, r], most) {
-            Some(d) if det.abs() > 256.0 * U * d * d * d * (most + d) => Sign::of(det),
-            _ => determinant(
-                &self.seen_from_last([a, b, c, d]),
-                [const { BigInt::ZERO }; 3],
-            ),
+        let det = lifted(p, extra[0]) * cross(q, r)
+            + lifted(q, extra[1]) * cross(r, p)
+            + lifted(r, extra[2]) * cross(p, q);
+        let inside = heaviest == 0.0 || (heaviest > RANGE.0 && heaviest < RANGE.1);
+        match largest(&[p, q, r], most).filter(|_| inside) {
+            Some(size)
+                if det.abs() > 256.0 * U * size * (most + size) * (size * size + heaviest) =>
+            {
+                Sign::of(det)
+            }
+            _ => self.exact_height([a, b, c, d]),
         }
     }
 
     fn height_in_line(&self, [a, b, p]: [u32; 3]) -> Sign {
-        let [b, p] = self.seen_from_last([b, p, a]);
-        let height = |q: &[BigInt; 2]| &q[0] * &q[0] + &q[1] * &q[1];
-        in_line([&b, &p], [height(&b), height(&p)])
+        let sites = [b, p, a];
+        let (at, low) = self.coordinates(sites);
+        let [wb, wp, wa] = self.exact_weights(sites, low);
+        let [b, p] = [0, 1].map(|i| [0, 1].map(|k| &at[i][k] - &at[2][k]));
+        let height = |q: &[BigInt; 2], w| &q[0] * &q[0] + &q[1] * &q[1] - w + &wa;
+        in_line([&b, &p], [height(&b, &wb), height(&p, &wp)])
     }
 
     fn smaller(&self, a: u32, b: u32) -> bool {

@@ -28,7 +28,7 @@
 
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point2, lexicographic};
-use num_bigint::BigInt;
+use num_bigint::{BigInt, Sign};
 
 use crate::wide::{lowest, ratio, scaled};
 
@@ -53,7 +53,7 @@ pub struct Corners {
 pub enum Center {
     /// Its rounded coordinates.
     At(Point2),
-    /// A coordinate is beyond the range: the direction in which the centre lies, of length 1.
+    /// A coordinate is beyond the range, and infinite here; the other is rounded.
     Beyond(Point2),
 }
 
@@ -193,7 +193,15 @@ pub(super) fn meeting(
     let y = &dx * &m - &ex * &l + &a[1] * &den;
     match (ratio(&x, &den, low), ratio(&y, &den, low)) {
         (Some(x), Some(y)) => Center::At([x, y]),
-        _ => Center::Beyond(direction(&x, &y)),
+        (x_found, y_found) => {
+            let far = |n: &BigInt| {
+                f64::INFINITY.copysign(if n.sign() == Sign::Minus { -1.0 } else { 1.0 })
+            };
+            Center::Beyond([
+                x_found.unwrap_or_else(|| far(&x)),
+                y_found.unwrap_or_else(|| far(&y)),
+            ])
+        }
     }
 }
 
@@ -205,16 +213,6 @@ fn quotient(n: Pair, d: Pair) -> Pair {
     let second = rest.hi / d.hi;
     let rest = rest - d * as_pair(second);
     (as_pair(first) + as_pair(second)) + as_pair(rest.hi / d.hi)
-}
-
-/// The direction of (x, y), of length 1.
-fn direction(x: &BigInt, y: &BigInt) -> Point2 {
-    // Sixty bits of the longer one are more than a double holds.
-    let shift = x.bits().max(y.bits()).saturating_sub(60);
-    let part = |v: &BigInt| i64::try_from(v >> shift).unwrap_or(0) as f64;
-    let (x, y) = (part(x), part(y));
-    let length = x.hypot(y);
-    [x / length, y / length]
 }
 
 #[cfg(test)]
@@ -273,11 +271,11 @@ mod tests {
     }
 
     #[test]
-    fn a_center_beyond_the_range_has_a_direction() {
+    fn a_center_beyond_the_range_has_infinite_coordinates() {
         let flat = [[0.0, 0.0], [1.0, 5e-324], [-1.0, 5e-324]];
         assert_eq!(
             Corners::new(flat, NONE).center(),
-            Center::Beyond([0.0, 1.0])
+            Center::Beyond([0.0, f64::INFINITY])
         );
         let far = [[0.0, 0.0], [f64::MAX, 0.0], [0.0, f64::MAX]];
         let half = f64::MAX / 2.0;

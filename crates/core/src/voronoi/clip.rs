@@ -4,7 +4,8 @@
 //! Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974). A cell that goes on for ever
 //! has corners at infinity, each given by its direction, and edges at infinity, which turn by less
 //! than a quadrant; so no far corner is invented, and half-planes, strips and the whole plane are
-//! cut like any other cell.
+//! cut like any other cell. A vertex beyond the range of doubles has infinite coordinates, which
+//! compare as they should, and no side of the box is there.
 //!
 //! Where a ridge crosses a side of the box follows from the bisector of its two sites, not from its
 //! ends, which may be far away; the result is held between the ends. It hangs on the ridge and the
@@ -14,6 +15,7 @@
 
 use delone_predicates::Point2;
 
+use super::axis::{crossing, foot};
 use crate::error::{Error, Result};
 use crate::memory::with_room;
 use crate::parallel;
@@ -39,6 +41,8 @@ pub struct Cells<'a> {
     pub ends: &'a [[i32; 2]],
     /// Directions of rays.
     pub rays: &'a [Point2],
+    /// The vertices beyond the range of doubles to which they lead, NaN for none.
+    pub beyond: &'a [Point2],
     /// The site of each cell.
     pub site: &'a [i32],
     /// Where the entries of each cell begin, and the end.
@@ -214,6 +218,10 @@ impl Cells<'_> {
                 corners.push((End::At(self.vertices[v as usize]), Edge::Ridge(ridge)));
                 continue;
             }
+            if let Some(place) = self.beyond(row, ridge)? {
+                corners.push((End::At(place), Edge::Ridge(ridge)));
+                continue;
+            }
             let before = ridges[(i + ridges.len() - 1) % ridges.len()];
             let out = self.ray(row, before, 1)?;
             let back = self.ray(row, ridge, 0)?;
@@ -221,26 +229,22 @@ impl Cells<'_> {
             let between = axes_between(out, back);
             corners.extend(between.map(|axis| (End::Towards(axis), Edge::Infinity)));
             corners.push((End::Towards(back), Edge::Ridge(ridge)));
-            let ends = self.ends[ridge as usize];
-            if ends[1] < 0 && dot(self.ray(row, ridge, 1)?, back) < 0.0 {
-                // A whole line. A point of it tells on which side of a parallel it runs.
-                corners.push((End::At(self.foot(ridge)), Edge::Ridge(ridge)));
+            if self.endless(ridge) {
+                // A whole line. A point of it tells on which side of a parallel it runs; one beyond
+                // the range does so only for lines along an axis.
+                let (at, along) = (self.foot(ridge), back.contains(&0.0));
+                if along || at.iter().all(|x| x.is_finite()) {
+                    corners.push((End::At(at), Edge::Ridge(ridge)));
+                }
             }
         }
         Ok(())
     }
 
-    /// The point where the bisector of a ridge meets the line through its sites.
+    /// The point where the bisector of a ridge meets the line through its sites; infinite beyond the
+    /// range of doubles.
     fn foot(&self, ridge: i32) -> Point2 {
-        let [(a, u), (b, v)] = self.sites[ridge as usize].map(|v| self.weighted(v));
-        let d = [b[0] - a[0], b[1] - a[1]];
-        let share = (u - v) / dot(d, d) / 2.0;
-        let at = |k: usize, share: f64| a[k] / 2.0 + b[k] / 2.0 + d[k] * share;
-        let found = [at(0, share), at(1, share)];
-        if u == v || !found.iter().all(|x| x.is_finite()) {
-            return [at(0, 0.0), at(1, 0.0)];
-        }
-        found
+        foot(self.sites[ridge as usize].map(|v| self.weighted(v)))
     }
 
     fn weighted(&self, v: i32) -> (Point2, f64) {
@@ -248,14 +252,34 @@ impl Cells<'_> {
         (self.points[v as usize], weight.unwrap_or(0.0))
     }
 
+    fn end(&self, row: usize, ridge: i32, which: usize) -> i32 {
+        let turned = usize::from(self.sites[ridge as usize][0] != self.site[row]);
+        self.ends[ridge as usize][which ^ turned]
+    }
+
     /// The direction of the ray with which a ridge begins (0) or ends (1), seen from a cell.
     fn ray(&self, row: usize, ridge: i32, which: usize) -> Result<Point2> {
-        let ridge = ridge as usize;
-        let turned = usize::from(self.sites[ridge][0] != self.site[row]);
-        let end = self.ends[ridge][which ^ turned];
-        let ray = self.rays.get(!end as usize);
+        let ray = self.rays.get(!self.end(row, ridge, which) as usize);
         ray.copied()
             .ok_or_else(|| Error::Shape(format!("ridge {ridge} has no ray at its end")))
+    }
+
+    /// The vertex beyond the range with which a ridge begins, seen from a cell.
+    fn beyond(&self, row: usize, ridge: i32) -> Result<Option<Point2>> {
+        let ray = self.end(row, ridge, 0);
+        let place = self.beyond.get(!ray as usize);
+        let place = place
+            .copied()
+            .ok_or_else(|| Error::Shape(format!("ridge {ridge} has no ray at its end")))?;
+        Ok((!place[0].is_nan()).then_some(place))
+    }
+
+    /// Whether a ridge is a whole line.
+    fn endless(&self, ridge: i32) -> bool {
+        let far = |end: i32| self.beyond.get(!end as usize);
+        let ends = self.ends[ridge as usize];
+        ends.iter()
+            .all(|&end| end < 0 && far(end).is_some_and(|place| place[0].is_nan()))
     }
 
     /// Cuts a convex polygon by a half-plane.
@@ -302,11 +326,8 @@ impl Cells<'_> {
 
     /// The other coordinate where the bisector of a ridge meets the line of a half-plane.
     fn bisector(&self, ridge: i32, half: Half) -> f64 {
-        let [(a, u), (b, v)] = self.sites[ridge as usize].map(|v| self.weighted(v));
-        let (k, l) = (half.axis, 1 - half.axis);
-        let middle = |k: usize| a[k] / 2.0 + b[k] / 2.0;
-        let shift = (b[k] - a[k]) * (middle(k) - half.value) + (u - v) / 2.0;
-        middle(l) + shift / (b[l] - a[l])
+        let sites = self.sites[ridge as usize].map(|v| self.weighted(v));
+        crossing(sites, half.axis, half.value)
     }
 }
 
@@ -390,6 +411,7 @@ mod tests {
             sites: &[],
             ends: &[],
             rays: &[],
+            beyond: &[],
             site,
             starts,
             entry_vertices: &[],
@@ -413,6 +435,7 @@ mod tests {
             sites: &[[0, 1]],
             ends: &[[!0, !1]],
             rays: &[[0.0, -1.0], [0.0, 1.0]],
+            beyond: &[[f64::NAN; 2]; 2],
             entry_vertices: &[-1, -1],
             entry_ridges: &[0, 0],
             ..plane(&[[0.0, 0.0], [1.0, 0.0]], &[0, 1], &[0, 1, 2])

@@ -82,7 +82,7 @@ pub struct Diagram {
 pub(super) const SHARED: u8 = 0b111;
 pub(super) const OWNED: u32 = 3;
 
-/// A triangle whose centre is beyond the range of doubles, and the direction of that.
+/// A triangle whose centre is beyond the range of doubles, and where that is, as in `Center::Beyond`.
 type Far = (usize, Point2);
 
 /// The diagram of a triangulation.
@@ -129,8 +129,8 @@ fn centers(given: Given, workers: usize) -> Result<(Vec<Point2>, Vec<Far>)> {
             for (t, (slot, corners)) in (from..).zip(part.iter_mut().zip(&batch)) {
                 *slot = match corners.center() {
                     Center::At(at) => at,
-                    Center::Beyond(direction) => {
-                        beyond.push((t, direction));
+                    Center::Beyond(at) => {
+                        beyond.push((t, at));
                         [f64::NAN; 2]
                     }
                 };
@@ -188,8 +188,8 @@ fn tied(given: Given, t: usize, other: usize) -> Result<bool> {
     Ok(sign.is_zero())
 }
 
-/// The vertex of each triangle: its number, or !i for number i of the far ones, whose directions are
-/// the second result. `centers` becomes the list of vertices.
+/// The vertex of each triangle: its number, or !i for number i of the far ones, whose places are the
+/// second result. `centers` becomes the list of vertices.
 fn number(
     given: Given,
     masks: &[u8],
@@ -206,7 +206,7 @@ fn number(
             continue;
         }
         let mut at = centers[t];
-        let mut direction = None;
+        let mut place = None;
         if masks[t] & SHARED != 0
             && !at[0].is_nan()
             && let Center::At(rounded) = given.corners(t).rounded()
@@ -215,12 +215,12 @@ fn number(
             at = rounded;
         }
         if at[0].is_nan() {
-            let place = beyond.binary_search_by_key(&t, |&(t, _)| t);
-            direction = place.ok().map(|i| beyond[i].1);
+            let found = beyond.binary_search_by_key(&t, |&(t, _)| t);
+            place = found.ok().map(|i| beyond[i].1);
         }
-        let number = match direction {
-            Some(direction) => {
-                far.push(direction);
+        let number = match place {
+            Some(place) => {
+                far.push(place);
                 !(far.len() as i32 - 1)
             }
             None => {

@@ -7,6 +7,7 @@
 //! Where an edge of a cell does not end within the range of doubles, its end is a *ray*: a direction,
 //! in which it goes on for ever, or to a vertex beyond the range.
 
+mod axis;
 mod center;
 mod clip;
 mod dual;

@@ -20,10 +20,13 @@ pub struct Ridges {
     pub ends: Vec<[i32; 2]>,
     /// Direction of each ray, away from the ridge's other end, of length 1.
     pub rays: Vec<Point2>,
+    /// Ray: the vertex beyond the range of doubles to which it leads, with one coordinate or both
+    /// infinite; NaN where it goes on for ever.
+    pub beyond: Vec<Point2>,
 }
 
 /// Ridges in the order of the triangles with which they are numbered, and the number of the first
-/// ridge of each triangle. `far` are the directions of vertices beyond the range.
+/// ridge of each triangle. `far` are the vertices beyond the range.
 pub(super) fn ridges(
     given: Given,
     masks: &[u8],
@@ -45,13 +48,22 @@ pub(super) fn ridges(
     let open = parallel::map(workers, tasks, |(from, sites, ends)| {
         fill(given, masks, vertex, from, sites, ends)
     });
-    let mut rays = Vec::new();
+    let (mut rays, mut beyond) = (Vec::new(), Vec::new());
     for (open, &start) in open.into_iter().zip(&starts) {
         for row in open.into_iter().map(|row| start + row) {
-            close(given, far, &mut sites[row], &mut ends[row], &mut rays);
+            for end in ends[row].into_iter().filter(|end| *end < 0) {
+                beyond.push(far.get(!end as usize).copied().unwrap_or([f64::NAN; 2]));
+            }
+            close(given, &mut sites[row], &mut ends[row], &mut rays);
         }
     }
-    Ok((Ridges { sites, ends, rays }, first))
+    let ridges = Ridges {
+        sites,
+        ends,
+        rays,
+        beyond,
+    };
+    Ok((ridges, first))
 }
 
 /// The first ridge of each triangle, the first one of each share, and how many there are.
@@ -105,13 +117,7 @@ fn fill(
 }
 
 /// Gives a ridge rays for the ends that are no vertices.
-fn close(
-    given: Given,
-    far: &[Point2],
-    sites: &mut [i32; 2],
-    ends: &mut [i32; 2],
-    rays: &mut Vec<Point2>,
-) {
+fn close(given: Given, sites: &mut [i32; 2], ends: &mut [i32; 2], rays: &mut Vec<Point2>) {
     let [a, b] = sites.map(|v| given.point(v));
     let normal = unit([a[1], b[0]], [b[1], a[0]]);
     let back = normal.map(|x| 0.0 - x);
@@ -119,11 +125,8 @@ fn close(
         if *end >= 0 {
             continue;
         }
-        // A far vertex is one point at infinity, the same for all its ridges: with directions of
-        // their own they would cross beyond it.
-        let direction = far.get(!*end as usize).copied().unwrap_or(outward);
         *end = !(rays.len() as i32);
-        rays.push(direction);
+        rays.push(outward);
     }
     if ends[1] < 0 && ends[0] >= 0 {
         ends.swap(0, 1);
@@ -139,7 +142,16 @@ fn unit(a: Point2, b: Point2) -> Point2 {
     }
     // By its longer part first, so that no square over- or underflows.
     let longest = v[0].abs().max(v[1].abs());
-    let v = v.map(|x| x / longest);
-    let length = v[0].hypot(v[1]);
-    v.map(|x| x / length + 0.0)
+    let share = v.map(|x| x / longest);
+    let length = share[0].hypot(share[1]);
+    // What is not along an axis must not seem to be, however little is missing.
+    let least = f64::from_bits(1);
+    let slanted = |x: f64, from: f64| {
+        if x == 0.0 && from != 0.0 {
+            least.copysign(from)
+        } else {
+            x
+        }
+    };
+    [0, 1].map(|k| slanted(share[k] / length, v[k]) + 0.0)
 }

@@ -2,7 +2,6 @@
 //! general. All is exact before the one rounding at the end.
 
 use delone_predicates::{Point2, Sign};
-use num_bigint::BigInt;
 
 use super::center::{Center, meeting};
 use crate::error::{Error, Result};
@@ -18,6 +17,7 @@ const SHARE: usize = 1 << 10;
 /// centre, correctly rounded, and for each edge whether the apex across it lies on the circle.
 pub fn centers(
     points: &[Point2],
+    weights: &[f64],
     periods: Point2,
     corners: &[[i32; 3]],
     apexes: &[[i32; 3]],
@@ -33,7 +33,12 @@ pub fn centers(
         watch.check()?;
         for (j, (center, shared)) in centers.iter_mut().zip(shared).enumerate() {
             let rows = 3 * (i * SHARE + j)..3 * (i * SHARE + j) + 3;
-            (*center, *shared) = one(points, periods, &corners[rows.clone()], &apexes[rows])?;
+            (*center, *shared) = one(
+                (points, weights),
+                periods,
+                &corners[rows.clone()],
+                &apexes[rows],
+            )?;
         }
         Ok(())
     });
@@ -42,7 +47,7 @@ pub fn centers(
 }
 
 fn one(
-    points: &[Point2],
+    (points, weights): (&[Point2], &[f64]),
     periods: Point2,
     corners: &[[i32; 3]],
     apexes: &[[i32; 3]],
@@ -50,6 +55,7 @@ fn one(
     let images = Images {
         points,
         periods,
+        weights,
         of: corners
             .iter()
             .chain(apexes)
@@ -57,7 +63,8 @@ fn one(
             .collect(),
     };
     let (at, low) = images.coordinates([0, 1, 2]);
-    let Center::At(center) = meeting(&at, &[const { BigInt::ZERO }; 3], low) else {
+    let weights = images.exact_weights([0, 1, 2], low);
+    let Center::At(center) = meeting(&at, &weights, low) else {
         return Err(Error::Shape(
             "a vertex lies beyond the range of doubles".into(),
         ));
