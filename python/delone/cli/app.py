@@ -15,7 +15,7 @@ import typer
 
 from delone import ConstrainedDelaunay, __version__
 from delone.atomic import check_target, replacing
-from delone.cli import cells, field
+from delone.cli import cells, field, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
@@ -226,6 +226,9 @@ def info(
 app.callback()(_options)
 for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
     app.command(epilog="The table of exit codes is in: delone --help")(_command)
+
+app.command(epilog="The table of exit codes is in: delone --help")(tiles.tile)
+app.command(epilog="The table of exit codes is in: delone --help")(tiles.dem)
 
 app.command(name="mesh", epilog="The table of exit codes is in: delone --help")(make_mesh)
 

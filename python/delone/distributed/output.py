@@ -65,8 +65,9 @@ def write_tile(  # noqa: PLR0917
         "points": own,
         "foreign": len(vertices) - own,
         "triangles": len(triangles),
+        # The vertices of triangles may lie far out of the box of the tile's points.
         "box": _box(points[:own]),
-        "extent": _extent(points, triangles) if len(triangles) else None,
+        "extent": _box(points) if len(triangles) else None,
         "vertices_sha256": digest(store.path(names[0])),
         "triangles_sha256": digest(store.path(names[1])),
     }
@@ -125,11 +126,5 @@ def _write_parquet(parquet: Any, table: Any, path: Path) -> None:
 
 
 def _box(points: NDArray[np.float64]) -> list[float]:
-    return [*points.min(axis=0).tolist(), *points.max(axis=0).tolist()]
-
-
-def _extent(points: NDArray[np.float64], triangles: Indices) -> list[float]:
-    """The box of the triangles, which may reach far out of the box of the tile's points."""
-    used = np.zeros(len(points), dtype=bool)
-    used[triangles] = True
-    return _box(points[used])
+    x, y = points.T
+    return [float(x.min()), float(y.min()), float(x.max()), float(y.max())]

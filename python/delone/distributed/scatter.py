@@ -42,7 +42,8 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
     copies: dict[int, list[NDArray[np.int64]]] = {}
     for number, start, stop in runs:
         some = points[start:stop]
-        low, high = some.min(axis=0), some.max(axis=0)
+        x, y = some.T
+        low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
         boxes.append([*low.tolist(), *high.tolist()])
         near = (layout.strips[:, :2] <= high).all(axis=1) & (layout.strips[:, 2:] >= low).all(
             axis=1
@@ -50,7 +51,7 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
         for other in np.flatnonzero(near).tolist():
             if other != number:
                 strip = layout.strips[other]
-                within = ((some >= strip[:2]) & (some <= strip[2:])).all(axis=1)
+                within = (x >= strip[0]) & (x <= strip[2]) & (y >= strip[1]) & (y <= strip[3])
                 copies.setdefault(other, []).append(start + np.flatnonzero(within))
     halo, parts, end = [], [own], len(own)
     for other in sorted(copies):

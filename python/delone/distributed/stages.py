@@ -62,10 +62,10 @@ def look(store: Store, key: int, piece: Piece, choice: Choice, share: float) -> 
     """
     staged = f"work/pieces/{key:06}.npy"
     rows = store.load(staged) if piece.kind == "array" else piece.read(choice)
-    points = coordinates(rows)
-    finite = np.isfinite(points).all(axis=1)
+    finite = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
     bad = rows["id"][~finite]
-    rows, points = rows[finite], points[finite]
+    rows = rows[finite] if len(bad) else rows
+    points = coordinates(rows)
     if piece.kind != "array" or len(bad):
         store.save(staged, rows)
     dice = np.random.default_rng([5, key])
@@ -94,7 +94,8 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     foreign = rows[own:]
     owner = np.full(len(rows), key, dtype=np.int32)
     owner[own:] = layout.tiles.locate(points[own:])
-    needed = simplices.min(axis=1) < own
+    lowest, highest = _ends(simplices)
+    needed = lowest < own
     certain = needed & known.certain(points, simplices)
     doubtful = np.flatnonzero(needed & ~certain)
     questions = known.questions(points, simplices[doubtful])
@@ -103,8 +104,9 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     certain[doubtful[~asked]] = True
     # Who may be in conflict with a triangle of another tile: vertices that are not closed, and
     # neighbours of points of others.
-    told = np.unique(simplices[(needed & ~certain) | (simplices.max(axis=1) >= own)])
-    store.save(f"work/told/{key:06}.npy", rows[told[told < own]])
+    told = np.zeros(len(rows), dtype=bool)
+    told[simplices[(needed & ~certain) | (highest >= own)]] = True
+    store.save(f"work/told/{key:06}.npy", rows[:own][told[:own]])
     kept = simplices[certain]
     store.save(f"work/certain/{key:06}.npy", kept[belongs(kept, owner, key)])
     summary = {"foreign": len(foreign), "twins": int((twins[:, 0] < own).sum()), "asked": []}
@@ -117,6 +119,12 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
         none = np.empty((0, 3), dtype=np.uint64)
         summary["asked"] = _ask(store, 0, key, border, questions, none, rows[:0])
     return summary
+
+
+def _ends(simplices: Any) -> tuple[Any, Any]:
+    """The least and the greatest vertex of each triangle, by columns: the axis is too short."""
+    a, b, c = simplices.T
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:

@@ -1,0 +1,273 @@
+"""The commands of tiles: ``tile`` triangulates more than memory holds, ``dem`` makes rasters."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from delone import __version__, distributed
+from delone.atomic import check_target
+from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.show import memory_text, print_json, print_rows, spinner
+from delone.distributed.executors import Processes
+from delone.errors import DeloneError
+from delone.io import input_suffixes
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from delone.distributed import Plan, Progress, TiledDelaunay
+
+__all__ = ["dem", "tile"]
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+def tile(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="INPUT...",
+            help="Files, globs, folders of Parquet files: " + " ".join(input_suffixes()),
+        ),
+    ],
+    *,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FOLDER", help="New, or of an interrupted run to go on with."
+        ),
+    ] = None,
+    tile_points: Annotated[int, typer.Option(help="Points in a tile, on average.")] = 2_000_000,
+    workers: Annotated[
+        int, typer.Option(help="Processes on this machine; 1: this one, with all cores.")
+    ] = 1,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler: tcp://host:8786.")
+    ] = None,
+    columns: Annotated[
+        str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
+    ] = None,
+    classes: Annotated[
+        str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
+    ] = None,
+    attributes: Annotated[
+        str | None, typer.Option(help="Columns to carry to the vertices: intensity,gps_time.")
+    ] = None,
+    nan: Annotated[str, typer.Option(help="Rows with NaN or infinity: raise or drop.")] = "raise",
+    resume: Annotated[
+        bool, typer.Option(help="Go on with an interrupted run of the same input.")
+    ] = True,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what it would need, and do nothing.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Triangulate more points than memory holds, in tiles whose union is the one triangulation."""
+    options: dict[str, Any] = {
+        "tile_points": tile_points,
+        "columns": _split(columns),
+        "classes": _numbers(classes),
+        "attributes": _split(attributes) or (),
+    }
+    if workers < 1:
+        raise Failure(f"--workers must be at least 1, got {workers}", Exit.USAGE)
+    with reading():
+        if dry_run:
+            _print_plan(distributed.plan(sources, workers=workers, **options), as_json)
+            return
+    if output is None:
+        raise Failure("give the folder to write to: --output", Exit.USAGE)
+    start = time.perf_counter()
+    with _executor(scheduler, workers) as executor, _live(quiet or as_json) as tell:
+        try:
+            tin = distributed.triangulate(
+                sources, output, executor=executor, resume=resume, nan=nan, progress=tell, **options
+            )
+        except OSError as error:
+            raise _blamed(error, output) from error
+        except DeloneError as error:
+            # Workers or the scheduler are gone, which is nobody's bug.
+            if type(error) is DeloneError:
+                raise Failure(str(error), Exit.OUTPUT) from error
+            raise
+    _report(tin, output, time.perf_counter() - start, as_json=as_json, quiet=quiet)
+
+
+def dem(
+    tin: Annotated[Path, typer.Argument(metavar="FOLDER", help="What delone tile has written.")],
+    *,
+    resolution: Annotated[
+        str, typer.Option("--resolution", "-r", help="Size of a cell: 1 or 0.5,0.25.")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUTPUT", help="GeoTIFF.")],
+    value: Annotated[str, typer.Option(help="Column of the values.")] = "z",
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Interpolate a triangulation in tiles to a GeoTIFF, linearly and without seams."""
+    try:
+        sides = [float(part) for part in resolution.split(",")]
+    except ValueError:
+        raise Failure(f"--resolution takes numbers, got {resolution!r}", Exit.USAGE) from None
+    if len(sides) > 2:
+        raise Failure(f"--resolution takes one or two numbers, got {resolution!r}", Exit.USAGE)
+    with writing():
+        check_target(output)
+    with reading():
+        found = distributed.open(tin)
+    cells = (sides * 2)[0], (sides * 2)[1]
+    with spinner(quiet or as_json) as say, writing():
+        say(f"interpolating {found.ntiles:,} tiles")
+        found.to_raster(cells, output, value=value)
+    if as_json:
+        print_json({"delone": __version__, "input": str(tin), "outputs": [str(output)]})
+    elif not quiet:
+        print_rows(str(tin), [("cell", " x ".join(map(str, cells))), ("written", str(output))])
+
+
+@contextlib.contextmanager
+def _executor(scheduler: str | None, workers: int) -> Iterator[Any]:
+    """Who works."""
+    if scheduler is None:
+        yield Processes(workers) if workers > 1 else "serial"
+        return
+    library = require("distributed", extra="dask", what="--scheduler")
+    try:
+        client = library.Client(scheduler, timeout=10)
+    except (OSError, ValueError) as error:
+        raise Failure(f"no Dask scheduler answers at {scheduler}", Exit.USAGE) from error
+    with client:
+        yield client
+
+
+@contextlib.contextmanager
+def _live(silent: bool) -> Iterator[Callable[[Progress], None] | None]:
+    """Show on a terminal how far a run is."""
+    if silent or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+
+    columns = [
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[more]}"),
+        TimeElapsedColumn(),
+    ]
+    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+        task = bars.add_task("beginning", total=None, more="")
+
+        def tell(progress: Progress) -> None:
+            description, more = _words(progress)
+            bars.update(
+                task,
+                description=description,
+                completed=progress.done,
+                total=progress.total or None,
+                more=more,
+            )
+
+        yield tell
+
+
+_STAGES = {
+    "look": "looking at pieces",
+    "deal": "dealing points to tiles",
+    "begin": "triangulating tiles",
+    "answer": "answering",
+    "proceed": "inserting",
+    "finish": "writing tiles",
+}
+
+
+def _words(progress: Progress) -> tuple[str, str]:
+    """What to say of progress: the stage, and tiles, rounds, foreign points, memory."""
+    stage = progress.stage.partition("-")[0]
+    said = _STAGES.get(stage, "beginning")
+    if stage in ("answer", "proceed"):
+        said += f", round {progress.turn}"
+    parts = [f"{progress.tiles:,} tiles"] if progress.tiles else []
+    if progress.open:
+        parts.append(f"{progress.open:,} open")
+    if progress.foreign:
+        parts.append(f"{progress.foreign:,} foreign points")
+    if progress.memory:
+        parts.append(memory_text(progress.memory))
+    return said, " · ".join(parts)
+
+
+def _blamed(error: OSError, output: Path) -> BaseException:
+    """Tell errors of the input from those of the output by the file."""
+    if isinstance(error, DeloneError):
+        return error
+    name = str(error.filename or "")
+    inside = name.startswith((str(output), str(output.absolute())))
+    message = str(error) if error.errno is None else f"{name}: {error.strerror}"
+    return Failure(message, Exit.OUTPUT if inside else Exit.INPUT)
+
+
+def _print_plan(plan: Plan, as_json: bool) -> None:
+    if as_json:
+        print_json({"delone": __version__, **asdict(plan)})
+        return
+    rows = [
+        ("points", f"{plan.points:,}"),
+        ("tiles", f"{plan.tiles:,}"),
+        ("tasks", f"{plan.tasks:,}"),
+        ("foreign points", f"{plan.foreign:,} a tile"),
+        ("memory", f"{memory_text(plan.worker_memory)} a worker"),
+        ("disk", f"{memory_text(plan.disk)} while it runs, {memory_text(plan.output)} after"),
+        ("time", f"{plan.seconds:,.0f} s, and that of decompression"),
+    ]
+    print_rows("it would need", rows)
+
+
+def _report(
+    tin: TiledDelaunay, output: Path, seconds: float, *, as_json: bool, quiet: bool
+) -> None:
+    names = ("points", "dropped", "duplicates", "triangles", "rounds", "given", "memory", "crs")
+    figures = {name: tin.manifest[name] for name in names}
+    if as_json:
+        print_json(
+            {"delone": __version__, "output": str(output), "tiles": tin.ntiles, **figures}
+            | {"seconds": seconds}
+        )
+    elif not quiet:
+        share = figures["given"] / max(figures["points"], 1)
+        rows = [
+            ("points", f"{figures['points']:,}"),
+            ("duplicates", f"{figures['duplicates']:,}"),
+            ("dropped", f"{figures['dropped']:,}"),
+            ("triangles", f"{figures['triangles']:,}"),
+            ("tiles", f"{tin.ntiles:,}"),
+            ("rounds", f"{figures['rounds']:,}"),
+            ("foreign points", f"{figures['given']:,}, {share:.3%}"),
+            ("peak memory", f"{memory_text(figures['memory'])} a process"),
+            ("seconds", f"{seconds:.1f}"),
+            ("written", str(output)),
+        ]
+        print_rows("tiles", rows)
+
+
+def _split(text: str | None) -> list[str] | None:
+    return None if text is None else [part.strip() for part in text.split(",")]
+
+
+def _numbers(text: str | None) -> list[int] | None:
+    try:
+        return None if text is None else [int(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(f"--classes takes numbers, as 2 or 2,6; got {text!r}", Exit.USAGE) from None
