@@ -19,6 +19,7 @@ __all__ = [
     "gradients_global2",
     "gradients_local2",
     "halfspaces3",
+    "improve3",
     "incircle",
     "insphere",
     "lawson2",
@@ -174,6 +175,18 @@ def refine2(
     lines: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]] | None = None,
     circles: bool = False,
     progress: Callable[[int, float], object] | None = None,
+) -> dict[str, Any]: ...
+def improve3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    labels: NDArray[np.int32],
+    fixed: NDArray[np.bool_],
+    min_angle: float,
+    flips: bool,
+    smooth: bool,
+    turn: bool,
+    passes: int,
+    progress: Callable[[int, int], object] | None = None,
 ) -> dict[str, Any]: ...
 def combine2(
     indptr: NDArray[np.int64],

@@ -31,6 +31,7 @@ PUBLIC = {
     "lawson",
     "meshed",
     "predicates",
+    "tetmesh",
     "validation",
 }
 PYTHON: dict[str, set[str]] = {
@@ -71,6 +72,7 @@ PYTHON: dict[str, set[str]] = {
     "polygons": {"_core", "constrained", "geodata", "triangulation"} | FOUNDATION,
     "domains": {"_core", "constrained", "topology"} | FOUNDATION,
     "quality": {"geometry", "plot", "triangulation"},
+    "quality3": {"plot"},
     "refinement": {"domains", "quality", "triangulation"},
     "meshed": {
         "adaptivity",
@@ -87,7 +89,10 @@ PYTHON: dict[str, set[str]] = {
     "smoothing": {"domains", "geometry", "meshed", "quality"} | FOUNDATION,
     "adaptivity": {"domains", "geometry", "meshed", "refine", "sizing", "smoothing", "topology"}
     | FOUNDATION,
-    "exchange": {"io", "meshed"},
+    "exchange": {"io", "meshed", "tetmesh"},
+    "improvement": {"plot", "quality3", "triangulation"},
+    "tetmesh": {"exchange", "improvement", "quality3", "triangulation"},
+    "improve": {"_core", "improvement", "quality3", "tetmesh"} | FOUNDATION,
     "regular": {"_core", "triangulation"} | FOUNDATION,
     "periodic": {"_core", "geometry", "regular", "triangulation"} | FOUNDATION,
     "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
@@ -132,6 +137,8 @@ PYTHON: dict[str, set[str]] = {
         "distributed",
         "editing",
         "errors",
+        "improve",
+        "improvement",
         "interpolate",
         "io",
         "lawson",
@@ -141,12 +148,14 @@ PYTHON: dict[str, set[str]] = {
         "polygons",
         "predicates",
         "quality",
+        "quality3",
         "reference",
         "refine",
         "refinement",
         "regular",
         "segments",
         "testing",
+        "tetmesh",
         "validation",
         "voronoi",
     },
@@ -168,6 +177,7 @@ CORE: dict[str, set[str]] = {
     "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
+    "improve": {"delone_predicates"} | GROUND,
     "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "locate3": {"locate", "order", "parallel", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
@@ -324,6 +334,9 @@ LAZY = {
     ("meshed", "exchange"),
     ("meshed", "smoothing"),
     ("quality", "plot"),
+    ("quality3", "plot"),
+    ("improvement", "plot"),
+    ("tetmesh", "exchange"),
 }
 
 

@@ -5,6 +5,7 @@ mod arrays;
 mod constrained;
 mod distributed;
 mod errors;
+mod improve;
 mod interpolate;
 mod lawson;
 mod locate;
@@ -44,6 +45,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
+    m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::neighbors2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::voronoi2, m)?)?;

@@ -8,6 +8,7 @@ pub mod delaunay2;
 pub mod delaunay3;
 pub mod distributed;
 pub mod error;
+pub mod improve;
 pub mod interpolate;
 pub mod locate;
 pub mod locate3;

@@ -1,0 +1,245 @@
+//! Tetrahedra that change: corners, the tetrahedron across each face, and one tetrahedron of each
+//! vertex. Knows coordinates only to hold them.
+//!
+//! Corner `k` of a positively oriented tetrahedron lies on the positive side of its face [`FACES`]`[k]`.
+//! A face is a *wall* where nothing lies behind it, or something of another label. Walls never
+//! change, except that [`Store::replace`] may turn two of them in one plane.
+
+use delone_predicates::Point3;
+
+use crate::error::{Error, Result};
+use crate::memory::{filled, push, with_room};
+
+/// No tetrahedron, or no vertex.
+pub const NONE: u32 = u32::MAX;
+
+/// The corners of the face opposite each corner, such that the corner lies on its positive side.
+pub const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// Vertices of a tetrahedron, positively oriented.
+pub type Corners = [u32; 4];
+
+/// Tetrahedra over points.
+#[derive(Debug)]
+pub struct Store {
+    /// Coordinates of the vertices.
+    pub points: Vec<Point3>,
+    /// The corners of each tetrahedron; [`NONE`] where there is none any more.
+    pub corners: Vec<Corners>,
+    /// What lies across the face opposite each corner.
+    pub across: Vec<[u32; 4]>,
+    /// The label of each.
+    pub label: Vec<i32>,
+    /// A measure of each, kept by who changes coordinates or asks for a replacement.
+    pub quality: Vec<f64>,
+    /// A tetrahedron of each vertex.
+    pub at: Vec<u32>,
+    /// Vertices that stay where they are.
+    pub fixed: Vec<bool>,
+    free: Vec<u32>,
+    faces: Vec<Side>,
+}
+
+/// A face, its vertices ascending, and the tetrahedron and corner that it is seen from.
+type Side = ([u32; 3], u32, usize);
+
+/// Three numbers, ascending.
+fn ascending(mut v: [u32; 3]) -> [u32; 3] {
+    v.sort_unstable();
+    v
+}
+
+impl Store {
+    /// Joins tetrahedra by their faces. Refuses a face that three of them have.
+    pub fn new(points: Vec<Point3>, corners: Vec<Corners>, label: Vec<i32>) -> Result<Self> {
+        let (n, m) = (points.len(), corners.len());
+        let mut at = filled(n, NONE)?;
+        let mut sides: Vec<Side> = with_room(4 * m)?;
+        for (t, v) in (0..).zip(&corners) {
+            for k in 0..4 {
+                at[v[k] as usize] = t;
+                sides.push((ascending(FACES[k].map(|i| v[i])), t, k));
+            }
+        }
+        sides.sort_unstable();
+        let mut across = filled(m, [NONE; 4])?;
+        let mut fixed = filled(n, false)?;
+        let mut rest = sides.as_slice();
+        while let Some((&(face, t, k), others)) = rest.split_first() {
+            let same = others.iter().take_while(|other| other.0 == face).count();
+            let mut wall = true;
+            match (same, others) {
+                (0, _) => {}
+                (1, [(_, u, i), ..]) => {
+                    across[t as usize][k] = *u;
+                    across[*u as usize][*i] = t;
+                    wall = label[t as usize] != label[*u as usize];
+                }
+                _ => {
+                    let [a, b, c] = face;
+                    return Err(Error::Shape(format!(
+                        "more than two tetrahedra have the face of vertices {a}, {b} and {c}"
+                    )));
+                }
+            }
+            if wall {
+                for v in face {
+                    fixed[v as usize] = true;
+                }
+            }
+            rest = &others[same..];
+        }
+        let quality = filled(m, 0.0)?;
+        Ok(Self {
+            points,
+            corners,
+            across,
+            label,
+            quality,
+            at,
+            fixed,
+            free: Vec::new(),
+            faces: Vec::new(),
+        })
+    }
+
+    /// How many places for tetrahedra there are, empty ones included.
+    pub fn places(&self) -> u32 {
+        self.corners.len() as u32
+    }
+
+    /// Whether there is a tetrahedron in a place.
+    #[inline]
+    pub fn is_there(&self, t: u32) -> bool {
+        self.corners[t as usize][0] != NONE
+    }
+
+    /// The coordinates of corners.
+    #[inline]
+    pub fn places_of(&self, v: Corners) -> [Point3; 4] {
+        v.map(|v| self.points[v as usize])
+    }
+
+    /// Which corner of a tetrahedron a vertex is.
+    #[inline]
+    pub fn corner(&self, t: u32, v: u32) -> Option<usize> {
+        self.corners[t as usize].iter().position(|&x| x == v)
+    }
+
+    /// The tetrahedron across the face opposite a corner, unless that is a wall.
+    #[inline]
+    pub fn beyond(&self, t: u32, k: usize) -> Option<u32> {
+        let u = self.across[t as usize][k];
+        (u != NONE && self.label[u as usize] == self.label[t as usize]).then_some(u)
+    }
+
+    /// Collects the tetrahedra of a vertex that faces without walls join to `at[v]`.
+    pub fn star(&self, v: u32, found: &mut Vec<u32>) -> Result<()> {
+        found.clear();
+        push(found, self.at[v as usize])?;
+        let mut next = 0;
+        while let Some(&t) = found.get(next) {
+            next += 1;
+            for k in 0..4 {
+                if self.corners[t as usize][k] == v {
+                    continue;
+                }
+                if let Some(u) = self.beyond(t, k)
+                    && !found.contains(&u)
+                {
+                    push(found, u)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts new tetrahedra into the place of old ones of one label, and returns their numbers in
+    /// `made`. Both fill the same place; with `turning` two walls in one plane may differ.
+    pub fn replace(
+        &mut self,
+        old: &[u32],
+        new: &[Corners],
+        turning: bool,
+        made: &mut Vec<u32>,
+    ) -> Result<()> {
+        let mut faces = std::mem::take(&mut self.faces);
+        faces.clear();
+        for &t in old {
+            for (k, corners) in FACES.iter().enumerate() {
+                let u = self.across[t as usize][k];
+                if u != NONE && old.contains(&u) {
+                    continue;
+                }
+                let face = corners.map(|i| self.corners[t as usize][i]);
+                let back = match u {
+                    NONE => 0,
+                    _ => (0..4)
+                        .find(|&i| self.across[u as usize][i] == t)
+                        .ok_or_else(|| Error::Internal("a face without a way back".into()))?,
+                };
+                push(&mut faces, (ascending(face), u, back))?;
+            }
+        }
+        let label = self.label[old[0] as usize];
+        for &t in old {
+            self.corners[t as usize] = [NONE; 4];
+        }
+        made.clear();
+        for (i, &v) in new.iter().enumerate() {
+            let t = self.place(old.get(i).copied())?;
+            push(made, t)?;
+            self.corners[t as usize] = v;
+            self.label[t as usize] = label;
+            for k in 0..4 {
+                self.at[v[k] as usize] = t;
+                push(&mut faces, (ascending(FACES[k].map(|i| v[i])), t, k))?;
+            }
+        }
+        for &t in old.iter().skip(new.len()) {
+            push(&mut self.free, t)?;
+        }
+        faces.sort_unstable();
+        let joined = self.join(&faces, turning);
+        self.faces = faces;
+        joined
+    }
+
+    /// A place for a tetrahedron: the one offered, an empty one or another one.
+    fn place(&mut self, offered: Option<u32>) -> Result<u32> {
+        if let Some(t) = offered.or_else(|| self.free.pop()) {
+            return Ok(t);
+        }
+        push(&mut self.corners, [NONE; 4])?;
+        push(&mut self.across, [NONE; 4])?;
+        push(&mut self.label, 0)?;
+        push(&mut self.quality, 0.0)?;
+        Ok(self.places() - 1)
+    }
+
+    /// Joins the sides of faces, sorted: two of each, or one where walls turn.
+    fn join(&mut self, faces: &[Side], turning: bool) -> Result<()> {
+        let mut rest = faces;
+        while let Some((&(face, t, k), others)) = rest.split_first() {
+            match others.first() {
+                Some(&(other, u, i)) if other == face => {
+                    if t != NONE {
+                        self.across[t as usize][k] = u;
+                    }
+                    if u != NONE {
+                        self.across[u as usize][i] = t;
+                    }
+                    rest = &others[1..];
+                }
+                _ if turning => {
+                    if t != NONE {
+                        self.across[t as usize][k] = NONE;
+                    }
+                    rest = others;
+                }
+                _ => return Err(Error::Internal("a face that fits no other".into())),
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,312 @@
+//! Improved tetrahedra, judged exactly where the promise is exact.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use delone_core::Point3;
+use delone_core::error::{Error, Result};
+use delone_core::improve::{Improved, Task, improve};
+use delone_core::watch::Watch;
+use delone_predicates::{Sign, orient3d};
+use num_rational::BigRational;
+use num_traits::Zero;
+
+/// A cube of n^3 cells of six tetrahedra each; the vertices inside are shaken.
+fn shaken(n: usize, by: f64) -> (Vec<Point3>, Vec<[i32; 4]>) {
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let side = n + 1;
+    let mut points = Vec::new();
+    for x in 0..side {
+        for y in 0..side {
+            for z in 0..side {
+                let inside = [x, y, z].iter().all(|&c| c > 0 && c < n);
+                let shake = if inside { by } else { 0.0 };
+                points.push([x, y, z].map(|c| c as f64 + shake * random()));
+            }
+        }
+    }
+    let mut simplices = Vec::new();
+    let index = |c: [usize; 3]| ((c[0] * side + c[1]) * side + c[2]) as i32;
+    for cell in 0..n * n * n {
+        let low = [cell / (n * n), cell / n % n, cell % n];
+        for [i, j] in [[0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2]] {
+            let mut corners = [low; 4];
+            corners[1][i] += 1;
+            corners[2][i] += 1;
+            corners[2][j] += 1;
+            corners[3] = low.map(|c| c + 1);
+            let mut v = corners.map(index);
+            let [a, b, c, d] = v.map(|v| points[v as usize]);
+            if orient3d(a, b, c, d) == Sign::Negative {
+                v.swap(0, 1);
+            }
+            simplices.push(v);
+        }
+    }
+    (points, simplices)
+}
+
+fn task<'a>(points: &'a [Point3], simplices: &'a [[i32; 4]]) -> Task<'a> {
+    Task {
+        points,
+        simplices,
+        labels: &[],
+        fixed: &[],
+        min_angle: 30.0,
+        flips: true,
+        smooth: true,
+        turn: false,
+        passes: 10,
+    }
+}
+
+fn run(task: Task) -> Result<Improved> {
+    improve(task, &Watch::idle(), &mut |_, _| Ok(()))
+}
+
+/// Six times the volume, exactly.
+fn volume(p: [Point3; 4]) -> BigRational {
+    let [a, b, c, d] = p.map(|p| p.map(|x| BigRational::from_float(x).unwrap()));
+    let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|k| &p[k] - &a[k]));
+    let minor = |i: usize, j: usize| &v[i] * &w[j] - &v[j] * &w[i];
+    &u[0] * minor(1, 2) + &u[1] * minor(2, 0) + &u[2] * minor(0, 1)
+}
+
+fn total(points: &[Point3], simplices: &[[i32; 4]]) -> BigRational {
+    let places = |v: &[i32; 4]| v.map(|v| points[v as usize]);
+    let all = simplices.iter().map(|v| volume(places(v)));
+    all.inspect(|v| assert!(*v > BigRational::zero()))
+        .fold(BigRational::zero(), |sum, v| sum + v)
+}
+
+/// The largest squared cosine of an acute angle, exactly: that of the smallest angle.
+fn sharpest(points: &[Point3], simplices: &[[i32; 4]]) -> BigRational {
+    let mut worst = BigRational::zero();
+    for v in simplices {
+        let p = v.map(|v| points[v as usize].map(|x| BigRational::from_float(x).unwrap()));
+        let normal = |[a, b, c]: [usize; 3]| {
+            let [u, w] = [b, c].map(|q| [0, 1, 2].map(|k| &p[q][k] - &p[a][k]));
+            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &u[i] * &w[j] - &u[j] * &w[i])
+        };
+        let n = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]].map(normal);
+        let dot = |i: usize, j: usize| {
+            let products = (0..3).map(|k| &n[i][k] * &n[j][k]);
+            products.fold(BigRational::zero(), |sum, x| sum + x)
+        };
+        for i in 0..4 {
+            for j in 0..i {
+                let cosine = -dot(i, j);
+                if cosine > BigRational::zero() {
+                    let square = &cosine * &cosine / (dot(i, i) * dot(j, j));
+                    worst = worst.max(square);
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// Faces with one tetrahedron, as sets; checks neighbours on the way.
+fn boundary(simplices: &[[i32; 4]], neighbors: Option<&[[i32; 4]]>) -> BTreeSet<[i32; 3]> {
+    let mut sides: BTreeMap<[i32; 3], Vec<(usize, usize)>> = BTreeMap::new();
+    for (t, v) in simplices.iter().enumerate() {
+        for k in 0..4 {
+            let mut face = [1, 2, 3].map(|i| v[(k + i) % 4]);
+            face.sort_unstable();
+            sides.entry(face).or_default().push((t, k));
+        }
+    }
+    for sides in sides.values() {
+        assert!(sides.len() <= 2);
+        for (i, &(t, k)) in sides.iter().enumerate() {
+            let other = sides.get(1 - i).map_or(-1, |&(u, _)| u as i32);
+            if let Some(neighbors) = neighbors {
+                assert_eq!(neighbors[t][k], other);
+            }
+        }
+    }
+    let alone = sides.into_iter().filter(|(_, s)| s.len() == 1);
+    alone.map(|(face, _)| face).collect()
+}
+
+#[test]
+fn a_shaken_cube_becomes_better() {
+    let (points, simplices) = shaken(4, 0.6);
+    let made = run(task(&points, &simplices)).unwrap();
+    assert!(made.counts.edges > 0 && made.counts.faces > 0 && made.counts.moves > 0);
+    let (before, after) = (
+        sharpest(&points, &simplices),
+        sharpest(&made.points, &made.simplices),
+    );
+    assert!(after < before);
+    assert_eq!(
+        total(&points, &simplices),
+        total(&made.points, &made.simplices)
+    );
+    let walls = boundary(&made.simplices, Some(&made.neighbors));
+    assert_eq!(boundary(&simplices, None), walls);
+    for &v in walls.iter().flatten() {
+        assert_eq!(points[v as usize], made.points[v as usize]);
+    }
+}
+
+#[test]
+fn removals_alone_move_nothing() {
+    let (points, simplices) = shaken(4, 0.6);
+    let made = run(Task {
+        smooth: false,
+        ..task(&points, &simplices)
+    });
+    let made = made.unwrap();
+    assert_eq!((made.counts.moves, &made.points), (0, &points));
+    assert!(made.counts.edges > 0);
+    assert!(sharpest(&points, &made.simplices) <= sharpest(&points, &simplices));
+}
+
+#[test]
+fn the_order_of_rows_does_not_show() {
+    let (points, simplices) = shaken(3, 0.6);
+    let n = points.len();
+    let row = |v: usize| (v * 7 + 3) % n;
+    let mut mixed = vec![[0.0; 3]; n];
+    for (v, &p) in points.iter().enumerate() {
+        mixed[row(v)] = p;
+    }
+    let mut other: Vec<[i32; 4]> = simplices
+        .iter()
+        .map(|v| v.map(|v| row(v as usize) as i32))
+        .map(|[a, b, c, d]| [c, a, b, d])
+        .collect();
+    other.reverse();
+    let (one, two) = (
+        run(task(&points, &simplices)).unwrap(),
+        run(task(&mixed, &other)).unwrap(),
+    );
+    for (v, p) in one.points.iter().enumerate() {
+        assert_eq!(*p, two.points[row(v)]);
+    }
+    let same = one.simplices.iter().zip(&two.simplices);
+    for (a, b) in same {
+        assert_eq!(a.map(|v| row(v as usize) as i32), *b);
+    }
+    assert_eq!(one.counts, two.counts);
+}
+
+#[test]
+fn labels_are_walls_and_fixed_vertices_stay() {
+    let (points, simplices) = shaken(4, 0.6);
+    let labels: Vec<i32> = (0..simplices.len())
+        .map(|t| (t >= simplices.len() / 2) as i32)
+        .collect();
+    let fixed: Vec<bool> = (0..points.len()).map(|v| v % 3 == 0).collect();
+    let made = run(Task {
+        labels: &labels,
+        fixed: &fixed,
+        ..task(&points, &simplices)
+    })
+    .unwrap();
+    let part = |simplices: &[[i32; 4]], labels: &[i32], label: i32| -> Vec<[i32; 4]> {
+        let all = simplices.iter().zip(labels);
+        all.filter(|(_, l)| **l == label).map(|(v, _)| *v).collect()
+    };
+    for label in 0..2 {
+        let (old, new) = (
+            part(&simplices, &labels, label),
+            part(&made.simplices, &made.labels, label),
+        );
+        assert_eq!(boundary(&old, None), boundary(&new, None));
+        assert_eq!(total(&points, &old), total(&made.points, &new));
+    }
+    for v in (0..points.len()).filter(|&v| fixed[v]) {
+        assert_eq!(points[v], made.points[v]);
+    }
+    assert!(made.counts.moves > 0);
+}
+
+#[test]
+fn faces_of_the_boundary_turn_in_their_plane() {
+    // Two tetrahedra over a flat kite: the long diagonal is the worse one.
+    let points = [
+        [0.0, -4.0, 0.0],
+        [0.0, 4.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ];
+    let simplices = [[0, 2, 1, 4], [0, 1, 3, 4]];
+    let kept = run(task(&points, &simplices)).unwrap();
+    assert_eq!(kept.counts.edges, 0);
+    let made = run(Task {
+        turn: true,
+        min_angle: 60.0,
+        ..task(&points, &simplices)
+    });
+    let made = made.unwrap();
+    assert_eq!(made.simplices.len(), 2);
+    assert_eq!(made.counts.boundary, made.counts.edges);
+    assert_eq!(
+        total(&points, &simplices),
+        total(&made.points, &made.simplices)
+    );
+}
+
+#[test]
+fn tiny_and_huge_coordinates_behave_as_others() {
+    let (points, simplices) = shaken(3, 0.5);
+    let plain = run(task(&points, &simplices)).unwrap();
+    for power in [-600, 700] {
+        let scale = 2_f64.powi(power);
+        let scaled: Vec<Point3> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+        let made = run(task(&scaled, &simplices)).unwrap();
+        assert_eq!(made.simplices, plain.simplices);
+        let back: Vec<Point3> = made.points.iter().map(|p| p.map(|x| x / scale)).collect();
+        assert_eq!(back, plain.points);
+    }
+}
+
+#[test]
+fn what_is_no_mesh_is_refused() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, 2.0],
+        [0.0, 0.0, 0.0],
+    ];
+    let refused = |simplices: &[[i32; 4]], what: &str| {
+        let Err(Error::Shape(message)) = run(task(&corners, simplices)) else {
+            panic!("{what} was not refused");
+        };
+        assert!(message.contains(what), "{message}");
+    };
+    refused(&[[1, 0, 2, 3]], "negatively oriented");
+    refused(&[[0, 3, 4, 1]], "flat");
+    refused(&[[0, 1, 2, 3], [5, 1, 2, 4]], "one point");
+    refused(
+        &[[0, 1, 2, 3], [0, 1, 2, 4], [1, 2, 3, 4], [0, 1, 2, 3]],
+        "more than two",
+    );
+    let nothing = run(task(&corners, &[])).unwrap();
+    assert_eq!(nothing.simplices.len(), 0);
+}
+
+#[test]
+fn a_watch_stops_it() {
+    let (points, simplices) = shaken(6, 0.6);
+    let stop = || true;
+    let outcome = improve(
+        Task {
+            min_angle: 60.0,
+            ..task(&points, &simplices)
+        },
+        &Watch::new(&stop),
+        &mut |_, _| Ok(()),
+    );
+    assert!(matches!(outcome, Err(Error::Interrupted)));
+}
