@@ -30,15 +30,19 @@ from delone.errors import (
     NonFiniteError,
     ShapeError,
 )
+from delone.improve import improve
+from delone.improvement import ImproveReport
 from delone.lawson import LawsonResult, lawson
 from delone.meshed import Mesh
 from delone.periodic import PeriodicDelaunay
 from delone.polygons import PolygonTriangles, from_geometry, triangulate_polygon
 from delone.quality import Quality
+from delone.quality3 import TetQuality
 from delone.refine import mesh
 from delone.refinement import MeshReport
 from delone.regular import RegularTriangulation
 from delone.segments import SegmentReport
+from delone.tetmesh import TetMesh
 from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd
 
@@ -56,6 +60,7 @@ __all__ = [
     "DtypeError",
     "Editing",
     "FileFormatError",
+    "ImproveReport",
     "InputError",
     "InternalError",
     "LawsonResult",
@@ -71,6 +76,8 @@ __all__ = [
     "RegularTriangulation",
     "SegmentReport",
     "ShapeError",
+    "TetMesh",
+    "TetQuality",
     "ValidationReport",
     "Voronoi",
     "__version__",
@@ -78,6 +85,7 @@ __all__ = [
     "datasets",
     "distributed",
     "from_geometry",
+    "improve",
     "interpolate",
     "io",
     "lawson",

@@ -12,8 +12,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.meshed import Mesh
+    from delone.tetmesh import TetMesh
 
-__all__ = ["to_dolfinx_arrays", "to_matplotlib", "to_meshio", "to_pyvista", "to_skfem"]
+__all__ = [
+    "draw_tetrahedra",
+    "tetrahedra_to_meshio",
+    "tetrahedra_to_pyvista",
+    "to_dolfinx_arrays",
+    "to_matplotlib",
+    "to_meshio",
+    "to_pyvista",
+    "to_skfem",
+]
+
+# The number of a tetrahedron among the cells of VTK.
+_VTK_TETRA = 10
 
 
 def to_meshio(mesh: Mesh) -> Any:
@@ -90,3 +103,40 @@ def to_matplotlib(mesh: Mesh) -> Any:
     """Return a ``matplotlib.tri.Triangulation``; see ``Mesh.to_matplotlib``."""
     tri = require("matplotlib.tri", extra="plot", what="to_matplotlib")
     return tri.Triangulation(*mesh.points.T, triangles=mesh.simplices)
+
+
+def tetrahedra_to_meshio(mesh: TetMesh) -> Any:
+    """Return tetrahedra as a ``meshio.Mesh``; see ``TetMesh.to_meshio``."""
+    meshio = require("meshio", extra="mesh", what="to_meshio")
+    return meshio.Mesh(
+        mesh.points,
+        [("tetra", mesh.simplices)],
+        cell_data={
+            "region": [mesh.region],
+            "smallest_dihedral": [mesh.quality().smallest_dihedral],
+        },
+    )
+
+
+def tetrahedra_to_pyvista(mesh: TetMesh) -> Any:
+    """Return a ``pyvista.UnstructuredGrid``; see ``TetMesh.to_pyvista``."""
+    pyvista = require("pyvista", extra="pyvista", what="to_pyvista")
+    cells = np.column_stack((np.full(mesh.nsimplex, 4), mesh.simplices)).ravel()
+    kinds = np.full(mesh.nsimplex, _VTK_TETRA, dtype=np.uint8)
+    found = pyvista.UnstructuredGrid(cells, kinds, mesh.points)
+    found.cell_data["region"] = mesh.region
+    found.cell_data["smallest_dihedral"] = mesh.quality().smallest_dihedral
+    return found
+
+
+def draw_tetrahedra(mesh: TetMesh, plotter: Any, bound: float) -> Any:
+    """Draw the surface and tetrahedra with small angles; see ``TetMesh.plot``."""
+    pyvista = require("pyvista", extra="pyvista", what="drawing")
+    grid = tetrahedra_to_pyvista(mesh)
+    plotter = pyvista.Plotter() if plotter is None else plotter
+    plotter.add_mesh(grid.extract_surface(), color="#2f6f9f", opacity=0.15, show_edges=True)
+    below = np.flatnonzero(mesh.quality().smallest_dihedral < bound)
+    if len(below):
+        bad = grid.extract_cells(below)
+        plotter.add_mesh(bad, scalars="smallest_dihedral", clim=(0, bound), show_edges=True)
+    return plotter

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
-__all__ = ["draw_angles", "plot", "save_picture"]
+__all__ = ["draw_angles", "draw_histograms", "plot", "save_picture"]
 
 # A triangle of fewer pixels than this is no triangle to the eye.
 _VISIBLE = 14.0
@@ -279,6 +279,55 @@ def draw_angles(
     if bound is not None:
         ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"bound {bound:g}°")
     ax.set(xlabel="angle in degrees", ylabel="triangles", xlim=(0, 180), xticks=range(0, 181, 30))
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.legend(frameon=False)
+    return ax
+
+
+def draw_histograms(
+    bounds: Floats, counts: dict[str, Any], *, ax: Any = None, bound: float | None = None
+) -> Any:
+    """Draw histograms of smallest dihedral angles side by side, on a logarithmic scale.
+
+    Parameters
+    ----------
+    bounds : ndarray of float64, shape (k + 1,)
+        Bounds of the classes in degrees.
+    counts : dict of ndarray of int64, shape (k,)
+        How many tetrahedra are in each class, by what the bars are called.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on new axes.
+    bound : float, optional
+        An angle to be marked.
+
+    Returns
+    -------
+    matplotlib Axes
+        What was drawn on.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.plot import draw_histograms
+    >>> counts = {"before": np.array([3, 1]), "after": np.array([0, 4])}
+    >>> draw_histograms(np.array([0.0, 20, 40]), counts, bound=20).get_yscale()
+    'log'
+    """
+    if ax is None:
+        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    wide = np.diff(bounds) / (len(counts) + 0.5)
+    for k, (label, color) in enumerate(zip(counts, ("#d98f3d", "#2f6f9f"), strict=False)):
+        left = bounds[:-1] + wide * (k + 0.25)
+        ax.bar(left, counts[label], wide, align="edge", color=color, label=label)
+    if bound is not None:
+        ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"goal {bound:g}°")
+    ax.set(xlabel="smallest dihedral angle in degrees", ylabel="tetrahedra", yscale="log")
+    ax.set(xlim=(bounds[0], bounds[-1]), ylim=(0.7, None))
     ax.spines[["top", "right"]].set_visible(False)
     ax.legend(frameon=False)
     return ax

@@ -1,0 +1,265 @@
+"""The class TetMesh: tetrahedra that are no Delaunay triangulation any more, or never were one.
+
+Unlike a `Delaunay` of points in space it may have any boundary, and of what follows from its arrays
+only that is here which holds for all of them.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, NoReturn, Self
+
+import numpy as np
+
+from delone import quality3
+from delone.quality3 import EDGES, FACES, counted_tetrahedra
+from delone.triangulation import counted, kept, sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.improvement import ImproveReport
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["TetMesh"]
+
+_ARRAYS = ("points", "simplices", "neighbors", "region")
+
+
+class TetMesh:
+    """A mesh of tetrahedra, as `delone.improve` makes it.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        The coordinates, row for row those that were given, some of them moved.
+    simplices : ndarray of int32, shape (m, 4)
+        The tetrahedra as rows of `points`, positively oriented.
+    neighbors : ndarray of int32, shape (m, 4)
+        ``neighbors[t, k]`` is the tetrahedron across the face opposite vertex k of tetrahedron t;
+        -1 outside.
+    region : ndarray of int32, shape (m,)
+        The region of each tetrahedron.
+    report : ImproveReport
+        What was changed, angles before and after, and what is left.
+
+    Notes
+    -----
+    All arrays are read-only, and attributes cannot be set. Tetrahedra are in an order that hangs on
+    coordinates alone.
+
+    Examples
+    --------
+    >>> import delone
+    >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+    >>> mesh = delone.improve(corner)
+    >>> mesh
+    <TetMesh of 4 points: 1 tetrahedron>
+    >>> mesh.boundary.shape, mesh.volumes
+    ((4, 3), array([0.16666667]))
+    """
+
+    __slots__ = ("__weakref__", "_cache", "_lock", "_neighbors", "_points", "_region", "_report",
+                 "_simplices")  # fmt: skip
+
+    _cache: dict[str, Any]
+    _lock: threading.RLock
+    _neighbors: Indices
+    _points: Floats
+    _region: Indices
+    _report: ImproveReport
+    _simplices: Indices
+
+    @classmethod
+    def _of(cls, arrays: dict[str, NDArray[Any]], report: ImproveReport) -> Self:
+        mesh = cls.__new__(cls)
+        values: dict[str, Any] = {"_cache": {}, "_lock": threading.RLock(), "_report": report}
+        values |= {f"_{name}": sealed(arrays[name]) for name in _ARRAYS}
+        for name, value in values.items():
+            object.__setattr__(mesh, name, value)
+        return mesh
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, 3)."""
+        return self._points
+
+    @property
+    def simplices(self) -> Indices:
+        """The tetrahedra as rows of `points`, (m, 4), positively oriented."""
+        return self._simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The tetrahedron opposite each vertex, (m, 4); -1 outside."""
+        return self._neighbors
+
+    @property
+    def region(self) -> Indices:
+        """The region of each tetrahedron, (m,); 0 where none were given."""
+        return self._region
+
+    @property
+    def report(self) -> ImproveReport:
+        """What was changed, angles before and after, and what is left."""
+        return self._report
+
+    @property
+    def ndim(self) -> int:
+        """Number of coordinates, 3."""
+        return 3
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, those that no tetrahedron uses included."""
+        return len(self._points)
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of tetrahedra."""
+        return len(self._simplices)
+
+    @property
+    @kept
+    def boundary(self) -> Indices:
+        """The faces with one tetrahedron, (h, 3), counter-clockwise seen from outside."""
+        faces = [
+            self._simplices[self._neighbors[:, k] < 0][:, list(face[::-1])]
+            for k, face in enumerate(FACES)
+        ]
+        return sealed(np.concatenate(faces))
+
+    @property
+    @kept
+    def edges(self) -> Indices:
+        """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
+        pairs = np.concatenate([self._simplices[:, list(pair)] for pair in EDGES])
+        pairs.sort(axis=1)
+        keys = np.unique(pairs[:, 0].astype(np.int64) * self.npoints + pairs[:, 1])
+        found = np.column_stack(np.divmod(keys, max(self.npoints, 1)))
+        return sealed(np.ascontiguousarray(found.astype(np.int32)))
+
+    @property
+    def volumes(self) -> Floats:
+        """Volumes of the tetrahedra, (m,), in the cube of the unit of the points."""
+        return self.quality().volume
+
+    @kept
+    def quality(self) -> quality3.TetQuality:
+        """Measure the tetrahedra.
+
+        Returns
+        -------
+        TetQuality
+            Smallest and largest dihedral angles, volumes, ratios of radii and of edges.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).quality().largest_dihedral
+        array([90.])
+        """
+        return quality3.measured(self._points, self._simplices)
+
+    def to_meshio(self) -> Any:
+        """Return the mesh as a mesh of meshio.
+
+        Returns
+        -------
+        meshio.Mesh
+            Tetrahedra with their ``region`` and ``smallest_dihedral``.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``mesh``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).to_meshio().cells_dict["tetra"].shape
+        (1, 4)
+        """
+        from delone import exchange
+
+        return exchange.tetrahedra_to_meshio(self)
+
+    def to_pyvista(self) -> Any:
+        """Return the mesh as an unstructured grid of PyVista.
+
+        Returns
+        -------
+        pyvista.UnstructuredGrid
+            With ``region`` and ``smallest_dihedral`` of tetrahedra.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed (extra ``pyvista``).
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).to_pyvista().n_cells  # doctest: +SKIP
+        1
+        """
+        from delone import exchange
+
+        return exchange.tetrahedra_to_pyvista(self)
+
+    def plot(self, plotter: Any = None, *, below: float | None = None) -> Any:
+        """Draw the surface and the tetrahedra with small dihedral angles (extra ``pyvista``).
+
+        Parameters
+        ----------
+        plotter : pyvista.Plotter, optional
+            Where to draw; by default a new one.
+        below : float, optional
+            Up to which smallest dihedral angle, in degrees; by default the goal of the report.
+
+        Returns
+        -------
+        pyvista.Plotter
+            What was drawn on; ``show()`` shows it.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).plot().show()  # doctest: +SKIP
+        """
+        from delone import exchange
+
+        bound = self._report.min_angle if below is None else float(below)
+        return exchange.draw_tetrahedra(self, plotter, bound)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = {name: getattr(self, f"_{name}") for name in _ARRAYS}
+        return type(self)._of, (arrays, self._report)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_points"):
+            return "<TetMesh of nothing yet>"
+        return f"<TetMesh of {counted(self.npoints, 'point')}: {counted_tetrahedra(self.nsimplex)}>"

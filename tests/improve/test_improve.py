@@ -1,0 +1,415 @@
+"""Improved tetrahedra, judged exactly: volumes, orientation, boundary, neighbours, angles."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import pickle
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import delone
+from delone import DtypeError, InputError, NonFiniteError, ShapeError, TetMesh, _core
+
+FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
+Tetrahedra = tuple[np.ndarray, np.ndarray]
+
+
+def determinant(a: Any, b: Any, c: Any) -> Any:
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def exact(points: np.ndarray) -> list[list[Fraction]]:
+    return [[Fraction(x) for x in p] for p in points.tolist()]
+
+
+def minus(a: Any, b: Any) -> list[Fraction]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def cross(a: Any, b: Any) -> list[Fraction]:
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+
+
+def dot(a: Any, b: Any) -> Any:
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def volume(points: np.ndarray, simplices: np.ndarray) -> Fraction:
+    """Six times the volume; every tetrahedron must be positive."""
+    p = exact(points)
+    total = Fraction(0)
+    for a, b, c, d in simplices.tolist():
+        six = determinant(*(minus(p[v], p[a]) for v in (b, c, d)))
+        assert six > 0
+        total += six
+    return total
+
+
+def sharpest(points: np.ndarray, simplices: np.ndarray) -> Fraction:
+    """The largest squared cosine of an acute dihedral angle: that of the smallest angle."""
+    p = exact(points)
+    worst = Fraction(0)
+    for v in simplices.tolist():
+        n = [cross(minus(p[v[j]], p[v[i]]), minus(p[v[k]], p[v[i]])) for i, j, k in FACES]
+        for a, b in itertools.combinations(n, 2):
+            cosine = -dot(a, b)
+            if cosine > 0:
+                worst = max(worst, cosine * cosine / (dot(a, a) * dot(b, b)))
+    return worst
+
+
+def outside(simplices: np.ndarray) -> set[tuple[int, ...]]:
+    """The faces of one tetrahedron, turned so that the smallest vertex is first."""
+    sides: dict[frozenset[int], list[tuple[int, ...]]] = {}
+    for v in simplices.tolist():
+        for face in FACES:
+            corners = [v[k] for k in face]
+            first = corners.index(min(corners))
+            sides.setdefault(frozenset(corners), []).append(
+                tuple(corners[first:] + corners[:first])
+            )
+    assert max(map(len, sides.values())) <= 2
+    return {s[0] for s in sides.values() if len(s) == 1}
+
+
+def checked(given: Tetrahedra, **options: Any) -> TetMesh:
+    """An improvement of which all that is promised has been checked."""
+    points, simplices = given
+    mesh = delone.improve(given, **options)
+    assert volume(mesh.points, mesh.simplices) == volume(points, simplices)
+    assert sharpest(mesh.points, mesh.simplices) <= sharpest(points, simplices)
+    assert mesh.report.smallest_after >= mesh.report.smallest_before - 1e-9
+    walls = outside(mesh.simplices)
+    if options.get("boundary", "faces") == "faces":
+        assert walls == outside(simplices)
+    rim = np.unique(list(itertools.chain(*outside(simplices))))
+    assert np.array_equal(mesh.points[rim], points[rim])
+    assert set(np.unique(mesh.simplices)) == set(np.unique(simplices))
+    assert {tuple(sorted(f)) for f in walls} == {tuple(sorted(f)) for f in mesh.boundary.tolist()}
+    for t, row in enumerate(mesh.neighbors.tolist()):
+        for k, u in enumerate(row):
+            if u >= 0:
+                face = set(mesh.simplices[t].tolist()) - {int(mesh.simplices[t, k])}
+                assert face < set(mesh.simplices[u].tolist())
+                assert t in mesh.neighbors[u]
+    return mesh
+
+
+def delaunay(points: np.ndarray) -> Tetrahedra:
+    """Delaunay tetrahedra; none of them is flat."""
+    return points, _core.triangulate3(np.ascontiguousarray(points), 1)[0]
+
+
+def uniform(count: int, seed: int = 0) -> Tetrahedra:
+    return delaunay(np.random.default_rng(seed).random((count, 3)))
+
+
+def ball(count: int, rim: int) -> Tetrahedra:
+    """Points inside of a sphere and well spaced ones on it."""
+    rng = np.random.default_rng(1)
+    i = np.arange(rim) + 0.5
+    angle, z = np.pi * (1 + 5**0.5) * i, 1 - 2 * i / rim
+    r = np.sqrt(1 - z * z)
+    inner = rng.normal(size=(count, 3))
+    inner *= (0.9 * rng.random(count) ** (1 / 3) / np.linalg.norm(inner, axis=1))[:, None]
+    return delaunay(np.concatenate((np.column_stack((r * np.cos(angle), r * np.sin(angle), z)),
+                                    inner)))  # fmt: skip
+
+
+def lattice(side: int, jitter: float) -> Tetrahedra:
+    points = np.array(list(itertools.product(range(side), repeat=3)), dtype=float)
+    inner = ((points > 0) & (points < side - 1)).all(axis=1)
+    points[inner] += np.random.default_rng(2).uniform(-jitter, jitter, (inner.sum(), 3))
+    return delaunay(points)
+
+
+OCTAHEDRON = (
+    np.array([(0, 0, 0), (1, 0, 0.01), (1, 1, 0), (0, 1, 0.01), (0.5, 0.5, 1), (0.5, 0.5, -1)]),
+    np.array([(0, 1, 2, 3), (0, 1, 3, 4), (1, 2, 3, 4), (1, 0, 2, 5), (0, 3, 2, 5)]),
+)
+
+
+def test_a_sliver_in_an_octahedron_goes() -> None:
+    mesh = checked(OCTAHEDRON)
+    assert mesh.nsimplex == 4
+    assert mesh.report.ok
+    assert (mesh.report.edge_removals, mesh.report.moves) == (1, 0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_slivers_of_uniform_points_go(seed: int) -> None:
+    given = uniform(300, seed)
+    mesh = checked(given)
+    report = mesh.report
+    assert report.smallest_before < 1
+    assert len(report.below) < (report.before[:4].sum()) / 4
+    assert report.before.sum() == len(given[1])
+    assert report.after.sum() == mesh.nsimplex
+    # Away from the boundary little is left.
+    rim = np.unique(mesh.boundary)
+    inner = ~np.isin(mesh.simplices, rim).any(axis=1)
+    assert mesh.quality().smallest_dihedral[inner].min() > 8
+
+
+def test_a_ball_reaches_its_goal() -> None:
+    mesh = checked(ball(400, 200), min_angle=15)
+    assert mesh.report.ok
+    assert mesh.report.smallest_after >= 15
+    assert mesh.report.smallest_before < 3
+
+
+def test_a_jittered_lattice_reaches_its_goal() -> None:
+    mesh = checked(lattice(7, 0.3), min_angle=15)
+    assert mesh.report.ok
+
+
+@pytest.mark.parametrize("jitter", [1e-9, 1e-15])
+def test_a_lattice_all_but_cospherical(jitter: float) -> None:
+    mesh = checked(lattice(5, jitter))
+    assert mesh.report.smallest_before < 1e-6
+    assert mesh.report.ok
+
+
+def test_flips_alone_move_nothing() -> None:
+    given = uniform(300)
+    mesh = checked(given, smooth=False)
+    assert np.array_equal(mesh.points, given[0])
+    assert mesh.report.moves == 0
+    assert mesh.report.edge_removals > 0 < mesh.report.face_removals
+
+
+def test_moves_alone_keep_tetrahedra() -> None:
+    given = uniform(300)
+    mesh = checked(given, flips=False)
+    assert {tuple(sorted(t)) for t in mesh.simplices.tolist()} == {
+        tuple(sorted(t)) for t in given[1].tolist()
+    }
+    assert mesh.report.moves > 0 == mesh.report.edge_removals + mesh.report.face_removals
+    assert mesh.report.after[:2].sum() < mesh.report.before[:2].sum()
+
+
+def test_nothing_is_done_without_leave() -> None:
+    given = uniform(100)
+    for options in ({"flips": False, "smooth": False}, {"max_passes": 0}, {"min_angle": 0}):
+        mesh = delone.improve(given, **options)
+        assert np.array_equal(mesh.points, given[0])
+        assert len(mesh.simplices) == len(given[1])
+
+
+def test_a_second_run_starts_where_the_first_ended() -> None:
+    first = delone.improve(uniform(300), max_passes=1000)
+    again = checked((first.points, first.simplices), max_passes=1000)
+    assert len(again.report.below) <= 1.2 * len(first.report.below)
+    assert again.report.smallest_before == first.report.smallest_after
+    done = delone.improve(ball(400, 200), min_angle=15)
+    same = delone.improve(done, min_angle=15)
+    assert {tuple(sorted(t)) for t in same.simplices.tolist()} == {
+        tuple(sorted(t)) for t in done.simplices.tolist()
+    }
+    assert np.array_equal(same.points, done.points)
+    assert same.report.passes == 0
+
+
+def test_rows_may_come_in_any_order() -> None:
+    points, simplices = uniform(200)
+    mesh = delone.improve((points, simplices))
+    rng = np.random.default_rng(5)
+    order = rng.permutation(len(points))
+    row = np.argsort(order)
+    even = np.array([(0, 1, 2, 3), (1, 2, 0, 3), (3, 2, 1, 0), (2, 3, 0, 1)])
+    mixed = row[simplices][rng.permutation(len(simplices))]
+    mixed = np.take_along_axis(mixed, even[rng.integers(4, size=len(mixed))], axis=1)
+    other = delone.improve((points[order], mixed))
+    assert np.array_equal(mesh.points, other.points[row])
+    assert np.array_equal(mesh.simplices, order[other.simplices])
+    assert np.array_equal(mesh.neighbors, other.neighbors)
+
+
+def test_powers_of_two_and_signs_of_zero_change_nothing() -> None:
+    points, simplices = lattice(4, 0.3)
+    mesh = delone.improve((points, simplices))
+    for factor in (2.0**-300, 0.25, 2.0**500):
+        scaled = delone.improve((points * factor, simplices))
+        assert np.array_equal(scaled.points, mesh.points * factor)
+        assert np.array_equal(scaled.simplices, mesh.simplices)
+    signed = np.where(points == 0, -0.0, points)
+    assert np.array_equal(delone.improve((signed, simplices)).simplices, mesh.simplices)
+
+
+def test_regions_are_kept_apart() -> None:
+    points, simplices = lattice(6, 0.3)
+    centers = points[simplices].mean(axis=1)
+    region = (centers[:, 0] > 2.4).astype(int) + 7
+    mesh = delone.improve((points, simplices), region=region)
+    for number in (7, 8):
+        old, new = simplices[region == number], mesh.simplices[mesh.region == number]
+        assert outside(old) == outside(new)
+        assert volume(points, old) == volume(mesh.points, new)
+    again = delone.improve(mesh, min_angle=25)
+    assert set(again.region.tolist()) == {7, 8}
+    assert outside(mesh.simplices[mesh.region == 7]) == outside(again.simplices[again.region == 7])
+
+
+def test_fixed_points_stay() -> None:
+    points, simplices = uniform(300)
+    rows = np.arange(0, 300, 2)
+    mesh = checked((points, simplices), fixed=rows)
+    assert np.array_equal(mesh.points[rows], points[rows])
+    mask = np.zeros(300, dtype=bool)
+    mask[rows] = True
+    same = delone.improve((points, simplices), fixed=mask)
+    assert np.array_equal(same.points, mesh.points)
+    still = delone.improve((points, simplices), fixed=np.arange(300))
+    assert np.array_equal(still.points, points)
+
+
+def test_flat_sides_may_be_flipped() -> None:
+    """Two tetrahedra over a kite whose long diagonal is an edge of the flat side below."""
+    points = np.array([(0, -4, 0), (0, 4, 0), (1, 0, 0), (-1, 0, 0), (0, 0, 1.0)])
+    kite = points, np.array([(0, 2, 1, 4), (0, 1, 3, 4)])
+    kept = checked(kite, min_angle=60)
+    assert kept.report.edge_removals + kept.report.boundary_flips == 0
+    cube = lattice(5, 0.0)[0]
+    shear = cube[:, 0] + 0.3 * cube[:, 1]
+    given = delaunay(np.column_stack((shear, cube[:, 1:])))
+    mesh = checked(given, min_angle=60, boundary="surface", smooth=False)
+    assert mesh.report.boundary_flips > 0
+    assert outside(mesh.simplices) != outside(given[1])
+    area = sum(np.linalg.norm(np.cross(*(mesh.points[f[1:]] - mesh.points[f[0]])))
+               for f in mesh.boundary)  # fmt: skip
+    before = [list(f) for f in outside(given[1])]
+    was = sum(np.linalg.norm(np.cross(*(given[0][f[1:]] - given[0][f[0]]))) for f in before)
+    assert area == pytest.approx(was, rel=1e-12)
+
+
+def test_what_is_left_has_its_cause() -> None:
+    flat = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.3, 0.3, 0.01)])
+    report = delone.improve((flat, [(0, 1, 2, 3)])).report
+    assert report.cause.tolist() == ["angle"]
+    hull = ball(0, 40)
+    left = delone.improve(hull, min_angle=30).report
+    assert set(left.cause.tolist()) <= {"angle", "boundary"}
+    assert len(left.below)
+    assert "boundary" in str(left)
+    cut = delone.improve(uniform(300), max_passes=1).report
+    assert cut.exhausted
+    assert "budget" in cut.cause.tolist()
+    assert "the limit on passes ended the work" in str(cut)
+
+
+def test_progress_is_told_and_may_stop_it() -> None:
+    told: list[tuple[int, int]] = []
+    mesh = delone.improve(uniform(300), progress=lambda *at: told.append(at))
+    assert [number for number, _ in told] == list(range(1, mesh.report.passes + 1))
+
+    def stop(number: int, below: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        delone.improve(uniform(300), progress=stop)
+
+
+def test_a_mesh_is_immutable_and_travels() -> None:
+    mesh = delone.improve(uniform(50))
+    assert repr(mesh) == f"<TetMesh of 50 points: {mesh.nsimplex} tetrahedra>"
+    with pytest.raises(AttributeError):
+        mesh.points = mesh.points  # type: ignore[misc]
+    with pytest.raises(AttributeError):
+        del mesh._points
+    with pytest.raises(ValueError, match="read-only"):
+        mesh.points[0] = 0
+    other = pickle.loads(pickle.dumps(mesh))
+    assert np.array_equal(other.simplices, mesh.simplices)
+    assert other.report.smallest_after == mesh.report.smallest_after
+    assert copy.copy(mesh) is mesh is copy.deepcopy(mesh)
+    v, e, f = 50, len(mesh.edges), (4 * mesh.nsimplex + len(mesh.boundary)) // 2
+    assert v - e + f - mesh.nsimplex == 1
+    assert repr(TetMesh.__new__(TetMesh)) == "<TetMesh of nothing yet>"
+
+
+def test_the_volume_is_that_of_the_hull() -> None:
+    mesh = delone.improve(uniform(100))
+    assert mesh.volumes.sum() == pytest.approx(float(volume(mesh.points, mesh.simplices) / 6))
+
+
+CORNER = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1.0), (0, 0, 2), (0, 0, 0)])
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "message"),
+    [
+        ((CORNER, [(1, 0, 2, 3)]), InputError, "1 tetrahedron is negatively oriented.*first: 0"),
+        ((CORNER, [(0, 1, 2, 3), (0, 3, 4, 1)]), InputError, "1 tetrahedron is flat; first: 1"),
+        ((CORNER, [(0, 1, 2, 2)]), InputError, "flat"),
+        ((CORNER, [(0, 1, 2, 3), (5, 1, 2, 4)]), InputError, "rows 0 and 5 are one point"),
+        ((CORNER, [(0, 1, 2, 3), (0, 1, 2, 4), (0, 1, 2, 3)]), InputError, "more than two"),
+        ((CORNER, [(0, 1, 2, 9)]), InputError, "9"),
+        ((CORNER, [(0, 1, 2)]), ShapeError, "shape"),
+        ((CORNER[:, :2], [(0, 1, 2, 3)]), ShapeError, "points"),
+        ((CORNER, np.empty((0, 4), dtype=int)), InputError, "no tetrahedra"),
+        ((np.where(CORNER == 2, np.nan, CORNER), [(0, 1, 2, 3)]), NonFiniteError, "NaN"),
+        ((CORNER,), ShapeError, "points, simplices"),
+        ((CORNER, [(0.5, 1, 2, 3)]), DtypeError, "integer"),
+        ("mesh", DtypeError, "Delaunay of points in space"),
+        (delone.Delaunay([(0, 0), (1, 0), (0, 1)]), DtypeError, "Delaunay"),
+    ],
+)
+def test_what_is_no_mesh_is_refused(given: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        delone.improve(given)
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        ({"min_angle": -1}, InputError),
+        ({"min_angle": 71}, InputError),
+        ({"min_angle": np.nan}, InputError),
+        ({"min_angle": "steep"}, DtypeError),
+        ({"boundary": "any"}, InputError),
+        ({"max_passes": -1}, InputError),
+        ({"max_passes": 1.5}, DtypeError),
+        ({"region": [0.5]}, DtypeError),
+        ({"region": [1, 2]}, ShapeError),
+        ({"region": [2**40]}, InputError),
+        ({"fixed": [True]}, ShapeError),
+        ({"fixed": [7]}, InputError),
+        ({"fixed": [0.5]}, DtypeError),
+        ({"fixed": [[1]]}, ShapeError),
+        ({"progress": 3}, DtypeError),
+    ],
+)
+def test_options_are_checked(options: dict[str, Any], error: type[Exception]) -> None:
+    with pytest.raises(error):
+        delone.improve((CORNER, [(0, 1, 2, 3)]), **options)
+
+
+def test_tetrahedra_that_overlap_at_a_vertex_are_refused() -> None:
+    """Two stars around one vertex, each closed."""
+    outer = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1.0)])
+    points = np.concatenate(([(0, 0, 0)], outer, 2 * outer))
+    star = np.array([(0, 1, 3, 2), (0, 1, 2, 4), (0, 2, 3, 4), (0, 3, 1, 4)])
+    signs = delone.predicates.orient3d(*(points[star[:, k]] for k in range(4)))
+    star[signs < 0] = star[signs < 0][:, [1, 0, 2, 3]]
+    other = np.where(star > 0, star + 4, 0)
+    assert delone.improve((points, star)).nsimplex == 4
+    with pytest.raises(InputError, match="overlap"):
+        delone.improve((points, np.concatenate((star, other))))
+
+
+def test_points_that_nothing_uses_stay() -> None:
+    points = np.concatenate((OCTAHEDRON[0], [(9, 9, 9), (0, 0, 0)]))
+    mesh = delone.improve((points, OCTAHEDRON[1]))
+    assert np.array_equal(mesh.points, points)
