@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["CONSTRAINED", "DELAUNAY", "Kind", "read", "write"]
+__all__ = ["CONSTRAINED", "DELAUNAY", "MESH", "Kind", "read", "write"]
 
 _VERSION = 1
 
@@ -301,6 +301,66 @@ def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
     _check_range("source", source, 0, len(arrays["input"]))
 
 
+def _check_mesh(**arrays: NDArray[Any]) -> None:
+    """Check triangles that need not fill a hull, and lines under their edges."""
+    points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
+    n, m, lines = len(points), len(simplices), len(arrays["ends"])
+    _require(np.isfinite(points).all(), "a coordinate is not finite")
+    _require(m > 0 and neighbors.shape == simplices.shape, "it has no neighbours of triangles")
+    _require(arrays["sides"].shape == simplices.shape, "it has no sides of triangles")
+    for name, indices, least, end in (
+        ("simplices", simplices, 0, n),
+        ("neighbors", neighbors, -1, m),
+        ("sides", arrays["sides"], -1, lines),
+        ("on", arrays["on"], -1, lines),
+        ("ends", arrays["ends"], 0, n),
+        ("point_source", arrays["point_source"], -1, 2**31),
+        ("source", arrays["source"], 0, 2**31),
+        ("counts", arrays["counts"], 0, 2**63),
+    ):
+        _check_range(name, indices, least, end)
+    for wanted, names in (
+        (m, ("region",)),
+        (n, ("on", "point_source", "point_markers")),
+        (lines, ("frozen", "line_markers")),
+        (len(arrays["source"]), ("forward",)),
+        (lines + 1, ("start",)),
+        (4, ("counts",)),
+        (1, ("bound",)),
+        (0, ("duplicates",)),
+    ):
+        for name in names:
+            _require(len(arrays[name]) == wanted, f"{name} has not {wanted} entries")
+    start = arrays["start"]
+    _require(start[0] == 0 and start[-1] == len(arrays["source"]), "sources are out of range")
+    _require((np.diff(start) >= 0).all(), "sources are out of order")
+    _require((arrays["bound"] >= 0).all() and (arrays["bound"] < 60).all(), "its bound is odd")
+    vertex = np.zeros(n, dtype=bool)
+    vertex[simplices] = True
+    _require(vertex.all(), "a point is no vertex")
+    _check_sides(arrays)
+
+
+def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Check that triangles are mutual and agree on the lines and regions between them."""
+    points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
+    sides, region = arrays["sides"], arrays["region"]
+    _require(is_mutual(simplices, neighbors).all(), "neighbours are not mutual")
+    turns = predicates.orient2d(*(points[simplices[:, k]] for k in range(3)))
+    _require((turns > 0).all(), "a triangle is not counter-clockwise")
+    inner = neighbors >= 0
+    _require((sides[~inner] >= 0).all(), "the boundary has an edge on no line")
+    t, k = np.nonzero(inner)
+    across = neighbors[t, k]
+    back = (neighbors[across] == t[:, None]) & (
+        simplices[across] != simplices[t, (k + 1) % 3][:, None]
+    ) & (simplices[across] != simplices[t, (k + 2) % 3][:, None])  # fmt: skip
+    other = sides[across, back.argmax(axis=1)]
+    _require((other == sides[t, k]).all(), "two triangles do not agree on the line between")
+    same = (region[across] == region[t]) | (other >= 0)
+    _require(same.all(), "a region ends where no line is")
+
+
 _TRIANGLES = {
     "points": ("<f8", 2),
     "simplices": ("<i4", 3),
@@ -330,4 +390,24 @@ CONSTRAINED = Kind(
         "options": ("<i8", 0),
     },
     _check_constrained,
+)
+MESH = Kind(
+    "delone.Mesh",
+    _TRIANGLES
+    | {
+        "region": ("<i4", 0),
+        "sides": ("<i4", 3),
+        "on": ("<i4", 0),
+        "point_source": ("<i4", 0),
+        "point_markers": ("<i4", 0),
+        "ends": ("<i4", 2),
+        "start": ("<i8", 0),
+        "source": ("<i4", 0),
+        "forward": ("|b1", 0),
+        "frozen": ("|b1", 0),
+        "line_markers": ("<i4", 0),
+        "bound": ("<f8", 0),
+        "counts": ("<i8", 0),
+    },
+    _check_mesh,
 )

@@ -51,10 +51,48 @@ def test_files_of_triangulations(mesh: delone.Mesh, tmp_path: Path, suffix: str)
     assert (tmp_path / f"mesh{suffix}").stat().st_size > 100
 
 
+def test_a_file_of_its_own(mesh: delone.Mesh, tmp_path: Path) -> None:
+    file = tmp_path / "mesh.npz"
+    write_mesh(file, mesh, z=np.arange(mesh.npoints, dtype=float))
+    found = read_mesh(file)
+    assert np.array_equal(found.simplices, mesh.simplices)
+    assert found.z is not None
+    assert found.z[-1] == mesh.npoints - 1
+    assert np.array_equal(delone.Mesh.load(file).segment_markers, mesh.segment_markers)
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
+def test_what_is_written_is_read(mesh: delone.Mesh, tmp_path: Path, suffix: str) -> None:
+    pytest.importorskip("meshio")
+    file = tmp_path / f"mesh{suffix}"
+    write_mesh(file, mesh)
+    found = read_mesh(file)
+    assert np.array_equal(found.points, mesh.points)
+    assert np.array_equal(found.simplices, mesh.simplices)
+
+
+def test_a_torn_file_of_gmsh(mesh: delone.Mesh, tmp_path: Path) -> None:
+    pytest.importorskip("meshio")
+    file = tmp_path / "mesh.msh"
+    write_mesh(file, mesh)
+    whole = file.read_bytes()
+    at = whole.index(b"$Nodes\n") + len(b"$Nodes\n")
+    start = whole.index(b"\n", at) + 1
+    for torn in (
+        whole[:at] + b"99999999999\n" + whole[start:],
+        whole[:start] + b"\xff\xff\xff\x7f" + whole[start + 4 :],
+        whole[: start + 40],
+        whole[:at],
+    ):
+        file.write_bytes(torn)
+        with pytest.raises(FileFormatError):
+            read_mesh(file)
+
+
 def test_what_files_cannot_hold(mesh: delone.Mesh, tmp_path: Path) -> None:
     pytest.importorskip("meshio")
     with pytest.raises(FileFormatError):
-        write_mesh(tmp_path / "mesh.npz", mesh)
+        write_mesh(tmp_path / "mesh.npz", mesh, edges=True)
     with pytest.raises(FileFormatError):
         write_mesh(tmp_path / "mesh.su2", mesh, z=np.zeros(mesh.npoints))
     with pytest.raises(FileFormatError):
@@ -133,4 +171,10 @@ def test_scikit_fem(mesh: delone.Mesh) -> None:
 
 def test_pyvista(mesh: delone.Mesh) -> None:
     pytest.importorskip("pyvista")
-    assert mesh.to_pyvista().n_cells == mesh.nsimplex
+    found = mesh.to_pyvista()
+    assert found.n_cells == mesh.nsimplex
+    assert np.array_equal(found.regular_faces, mesh.simplices)
+    assert np.array_equal(found.points[:, :2], mesh.points)
+    assert np.array_equal(found.cell_data["region"], mesh.region)
+    assert np.array_equal(found.point_data["marker"], mesh.point_markers)
+    assert found.area == pytest.approx(mesh.areas.sum())

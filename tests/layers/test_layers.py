@@ -76,6 +76,7 @@ PYTHON: dict[str, set[str]] = {
     "refinement": {"domains", "quality", "triangulation"},
     "meshed": {
         "adaptivity",
+        "archive",
         "domains",
         "exchange",
         "quality",

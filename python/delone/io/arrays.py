@@ -21,7 +21,6 @@ from delone.errors import FileFormatError, InputError
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.registry import MeshFile
-from delone.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -111,8 +110,6 @@ def write_mesh(
     """Write a triangulation, and heights beside it, to an npz file."""
     if edges:
         raise FileFormatError(f"{path.suffix} files hold the whole triangulation, not edges alone")
-    if isinstance(triangulation, QualityMesh):
-        raise FileFormatError(f"{path.suffix} files hold triangulations; write meshes as .vtu")
     heights = as_values(z, triangulation.npoints)
     triangulation.save(path)
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
