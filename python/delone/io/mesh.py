@@ -164,12 +164,19 @@ def _is_text_stl(path: Path) -> bool:
         return file.read(_HEAD).lstrip().startswith(b"solid")
 
 
+# A node of a binary MSH file of version 2.
+_NODE = np.dtype([("number", "<i4"), ("place", "<f8", 3)])
+
+
 def _gmsh_claims(head: bytes, file: IO[bytes]) -> list[int]:
     """Return the counts behind $Nodes and $Elements, and the largest number of a node.
 
     meshio sets memory aside for both.
     """
-    binary = re.match(rb"\s*\$MeshFormat\s+[\d.]+\s+1\s", head) is not None
+    found = re.match(rb"\s*\$MeshFormat\s+(\d)[\d.]*\s+1\s", head)
+    # Version 2 writes counts as text, binary or not.
+    old = found is not None and found[1] == b"2"
+    binary = found is not None and not old
     claims: list[int] = []
     for section in re.finditer(rb"\$(?:Nodes|Elements)\r?\n", head):
         rest = head[section.end() : section.end() + 32]
@@ -180,7 +187,16 @@ def _gmsh_claims(head: bytes, file: IO[bytes]) -> list[int]:
                 claims.append(_largest_node(file.read(), section.end()))
         elif not binary:
             claims += [int(n) for n in rest.split(b"\n")[0].split()[:2] if n.isdigit()]
+            if old and section[0].startswith(b"$Nodes") and claims:
+                file.seek(section.end() + rest.find(b"\n") + 1)
+                claims.append(_largest_numbered(file.read()[: _NODE.itemsize * claims[-1]]))
     return claims
+
+
+def _largest_numbered(records: bytes) -> int:
+    """Return the largest number of a node in records of a binary MSH file of version 2."""
+    whole = len(records) // _NODE.itemsize
+    return int(np.frombuffer(records, _NODE, whole)["number"].max(initial=0))
 
 
 def _largest_node(content: bytes, at: int) -> int:
