@@ -22,7 +22,7 @@ CARGO_TEST := cargo test --workspace --exclude delone-bindings
 # What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
 NEEDS_build :=
 NEEDS_demo := -E cli,las,mesh,plot
-EXTRAS := cli,fem,geo,las,mesh,plot,raster,xarray,dask,learn
+EXTRAS := cli,fem,geo,las,mesh,plot,pyvista,raster,xarray,dask,learn
 NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := -E $(EXTRAS) -G bench
@@ -108,6 +108,7 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/wheels.py $(BENCH)
 	$(BIN)/python benchmarks/crates.py $(BENCH)
 	$(BIN)/python benchmarks/constrained.py $(BENCH)
+	$(BIN)/python benchmarks/refine.py $(BENCH)
 	$(BIN)/python benchmarks/interpolate.py $(BENCH)
 	$(BIN)/python benchmarks/voronoi.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
