@@ -161,6 +161,9 @@ class Locator3:
     def locate(
         self, xi: NDArray[np.float64], workers: int
     ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+    def laplace(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
 def refine2(

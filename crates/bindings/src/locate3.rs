@@ -2,6 +2,7 @@
 
 use delone_core::Point3;
 use delone_core::error::{Error, Result};
+use delone_core::interpolate3::natural;
 use delone_core::locate3::{Batch, Kept, Locator, Tetrahedra, coordinates, find, nearest};
 use delone_core::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
@@ -25,6 +26,9 @@ pub struct Locator3 {
 
 /// `(simplex, weights, beyond)`.
 type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// `(indptr, indices, weights, simplex)`.
+type Neighbours3 = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
 /// Borrowed arrays whose indices have been checked, which takes a look at each.
 pub fn checked3<'a>(
@@ -138,6 +142,23 @@ impl Locator3 {
             column(py, found.simplex),
             shaped(py, found.weights, [n, 4])?,
             shaped(py, found.beyond, [n, 2])?,
+        ))
+    }
+
+    /// Laplace weights of natural neighbours, as compressed rows, and the tetrahedra of queries.
+    fn laplace(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<Neighbours3> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let (found, simplex) = self.batch(py, queries, workers, natural)?;
+        Ok((
+            column(py, found.indptr),
+            column(py, found.indices),
+            column(py, found.weights),
+            column(py, simplex),
         ))
     }
 

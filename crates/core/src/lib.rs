@@ -10,6 +10,7 @@ pub mod distributed;
 pub mod error;
 pub mod improve;
 pub mod interpolate;
+pub mod interpolate3;
 pub mod locate;
 pub mod locate3;
 pub mod memory;

@@ -20,7 +20,7 @@ pub use field::Field;
 pub use gradients::{Adjacency, global_gradients, local_gradients};
 pub use leave_one_out::{Method, leave_one_out};
 pub use linear::linear;
-pub use natural::{natural, natural_values};
+pub use natural::{Part, natural, natural_values};
 pub use rows::{Rows, Table};
 pub use weights::Kind;
 

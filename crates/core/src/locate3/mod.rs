@@ -20,7 +20,7 @@ pub use barycentric::barycentric;
 pub use batch::Batch;
 pub use nearest::nearest;
 pub use star::{Place, Star};
-pub use tiling::{Side, Tetrahedra};
+pub use tiling::{FACES, Side, Tetrahedra};
 
 use crate::error::Result;
 use crate::locate::{Output, Start};

@@ -1,0 +1,134 @@
+//! The cavity of a query: the Delaunay tetrahedra whose spheres have it inside, which are those that
+//! its insertion would remove (A. Bowyer and D. F. Watson, both 1981), and its boundary, the *rim*.
+//!
+//! Strictly inside counts. That is enough on any Delaunay triangulation, however sites of one sphere are
+//! cut into tetrahedra: those left out for a tie would take no volume from anyone. The query sees each
+//! face of the rim from strictly inside, except for faces of the hull: one in the plane of another
+//! face would be in the sphere beyond, too.
+
+use std::collections::HashMap;
+
+use delone_predicates::{Point3, Sign, insphere, orient3d};
+
+use crate::error::{Error, Result};
+use crate::locate3::{FACES, Tetrahedra};
+
+/// Up to here a list is searched from its beginning; more go to a table.
+const FEW: usize = 64;
+
+/// Numbers for keys, in the order in which they come.
+#[derive(Debug, Default)]
+pub struct Numbers {
+    keys: Vec<i32>,
+    table: HashMap<i32, u32>,
+}
+
+impl Numbers {
+    fn clear(&mut self) {
+        self.keys.clear();
+        self.table.clear();
+    }
+
+    /// The keys.
+    pub fn keys(&self) -> &[i32] {
+        &self.keys
+    }
+
+    /// The number of a key.
+    fn find(&self, key: i32) -> Option<u32> {
+        if self.keys.len() > FEW {
+            return self.table.get(&key).copied();
+        }
+        let place = self.keys.iter().position(|&k| k == key);
+        place.map(|i| i as u32)
+    }
+
+    /// The number of a key, a new one where it has none.
+    fn number(&mut self, key: i32) -> u32 {
+        self.find(key).unwrap_or_else(|| self.add(key))
+    }
+
+    fn add(&mut self, key: i32) -> u32 {
+        let number = self.keys.len() as u32;
+        self.keys.push(key);
+        if self.keys.len() == FEW + 1 {
+            self.table.extend(self.keys.iter().copied().zip(0..));
+        } else if self.keys.len() > FEW {
+            self.table.insert(key, number);
+        }
+        number
+    }
+}
+
+/// A face of the rim.
+#[derive(Debug, Clone, Copy)]
+pub struct Face {
+    /// Numbers of its corners, counter-clockwise as seen from outside.
+    pub corners: [u32; 3],
+    /// Whether it is one of the hull that has the query in its plane.
+    pub flat: bool,
+}
+
+/// A cavity, for one query after the other.
+#[derive(Debug, Default)]
+pub struct Cavity {
+    /// The vertices of the rim: the natural neighbours.
+    pub vertices: Numbers,
+    /// The rim.
+    pub rim: Vec<Face>,
+    inside: Numbers,
+    outside: Numbers,
+}
+
+impl Cavity {
+    /// Finds the cavity of `q`, which is in the closed tetrahedron `seed` and at no vertex; `on` tells
+    /// whether it is on a face of that.
+    pub fn find(&mut self, given: &Tetrahedra, seed: usize, on: bool, q: Point3) -> Result<()> {
+        self.vertices.clear();
+        self.rim.clear();
+        self.inside.clear();
+        self.outside.clear();
+        self.inside.add(seed as i32);
+        let mut next = 0;
+        // Each tetrahedron comes once.
+        while next < self.inside.keys.len() {
+            let t = self.inside.keys[next] as usize;
+            next += 1;
+            for k in 0..4 {
+                let other = given.neighbors[t][k];
+                if other >= 0 && self.takes(given, other, q) {
+                    continue;
+                }
+                let face = FACES[k].map(|i| given.simplices[t][i]);
+                let [a, b, c] = face.map(|v| given.point(v));
+                let flat = other < 0 && on && orient3d(a, b, c, q) == Sign::Zero;
+                let corners = face.map(|v| self.vertices.number(v));
+                self.rim.push(Face { corners, flat });
+            }
+            if self.inside.keys.len() > given.simplices.len() {
+                return Err(Error::Internal(
+                    "natural neighbours need a Delaunay triangulation".into(),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a tetrahedron is in the cavity, which it then joins.
+    fn takes(&mut self, given: &Tetrahedra, t: i32, q: Point3) -> bool {
+        if self.inside.find(t).is_some() {
+            return true;
+        }
+        if self.outside.find(t).is_some() {
+            return false;
+        }
+        let [a, b, c, d] = given.corners(t as usize);
+        let inside = insphere(a, b, c, d, q) == Sign::Positive;
+        if inside {
+            self.inside.add(t);
+        } else {
+            self.outside.add(t);
+        }
+        inside
+    }
+}

@@ -1,0 +1,6 @@
+//! Natural neighbours in space: what a query would have for neighbours as a site, and how they count.
+
+mod cavity;
+mod laplace;
+
+pub use laplace::natural;
