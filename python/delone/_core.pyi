@@ -26,6 +26,7 @@ __all__ = [
     "measures2",
     "measures3",
     "methods2",
+    "nearest_on_faces3",
     "neighbors2",
     "orient2d",
     "orient3d",
@@ -34,6 +35,7 @@ __all__ = [
     "polygon2",
     "refine2",
     "regular2",
+    "regular3",
     "touched2",
     "triangulate2",
     "triangulate3",
@@ -282,6 +284,15 @@ def measures3(
     diagram: dict[str, NDArray[Any]],
     workers: int,
 ) -> dict[str, NDArray[Any]]: ...
+def regular3(
+    points: NDArray[np.float64], weights: NDArray[np.float64]
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
+def nearest_on_faces3(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    xi: NDArray[np.float64],
+    workers: int,
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
 def halfspaces3(
     planes: NDArray[np.float64], size: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...

@@ -185,10 +185,10 @@ CORE: dict[str, set[str]] = {
     "distributed": {"points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
-    "regular3": {"wide", "delone_predicates"} | GROUND,
+    "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "delone_predicates"} | GROUND,
-    "interpolate3": {"interpolate", "locate", "locate3", "delone_predicates"} | GROUND,
+    "interpolate3": {"interpolate", "locate", "locate3", "parallel", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.
 NEEDS = {

@@ -1,6 +1,7 @@
 //! Voronoi and power diagrams of space, their measures, and cells cut to a polyhedron, as arrays.
 
 use delone_core::error::{Error, Result};
+use delone_core::regular3::regular;
 use delone_core::voronoi3::{self as dual, Cells, Clip, Given, Measures};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -210,5 +211,31 @@ pub fn halfspaces3(
         column(py, made.starts),
         column(py, made.corners),
         column(py, made.labels),
+    ))
+}
+
+/// `(simplices, neighbors, stands_for)`.
+type Weighed = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
+/// The regular triangulation of weighted points of space.
+#[pyfunction]
+pub fn regular3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Weighed> {
+    let (points, weights) = (|| {
+        let (points, weights) = (rows(&points, "points")?, entries(&weights, "weights")?);
+        if points.len() == weights.len() && weights.iter().all(|w| w.is_finite()) {
+            return Ok((points, weights));
+        }
+        Err(Error::Shape("each point needs one finite weight".into()))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let made = watched(py, |watch| regular(points, weights, watch))?;
+    Ok((
+        table(py, made.tetrahedra.simplices)?,
+        table(py, made.tetrahedra.neighbors)?,
+        column(py, made.stands_for),
     ))
 }

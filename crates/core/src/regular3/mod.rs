@@ -1,6 +1,78 @@
 //! Regular triangulations of space: the lower hull of sites lifted to |p|^2 - w, exact and canonical.
 
+mod insertion;
 mod power;
 
+use delone_predicates::{Point3, orient3d};
+
+use crate::error::Result;
+use crate::memory::{filled, with_room};
+use crate::order::space::arrange;
+use crate::points;
+use crate::watch::Watch;
+
+pub use insertion::{Tetrahedra, Weighted};
 pub(crate) use power::determinant;
 pub use power::{power_canonical, power_sign};
+
+/// The regular triangulation of weighted points of space.
+#[derive(Debug)]
+pub struct Regular {
+    /// Tetrahedra of rows.
+    pub tetrahedra: Tetrahedra,
+    /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
+    pub stands_for: Vec<i32>,
+}
+
+/// Triangulates finite points with finite weights, as many, that do not all lie in one plane.
+pub fn regular(points: &[Point3], weights: &[f64], watch: &Watch) -> Result<Regular> {
+    points::scan(points)?;
+    let arranged = arrange(points, watch)?;
+    let mut heaviest = arranged.rows.clone();
+    let mut place = filled(points.len(), 0_u32)?;
+    for (i, &row) in (0_u32..).zip(&arranged.rows) {
+        place[row as usize] = i;
+    }
+    for &[row, first] in &arranged.duplicates {
+        let best = &mut heaviest[place[first as usize] as usize];
+        if weights[row as usize] > weights[*best as usize] {
+            *best = row;
+        }
+    }
+    let mut stands_for = with_room(points.len())?;
+    stands_for.extend(0..points.len() as i32);
+    for &[row, first] in &arranged.duplicates {
+        stands_for[row as usize] = heaviest[place[first as usize] as usize] as i32;
+    }
+    for (&row, &best) in arranged.rows.iter().zip(&heaviest) {
+        stands_for[row as usize] = best as i32;
+    }
+    let mut own = with_room(heaviest.len())?;
+    own.extend(heaviest.iter().map(|&row| weights[row as usize]));
+    let Some(first) = spanning(&arranged.points) else {
+        return Err(points::degenerate_in_space(
+            &arranged.points,
+            &arranged.rows,
+        ));
+    };
+    let sites = Weighted {
+        points: &arranged.points,
+        weights: &own,
+    };
+    let mut tetrahedra = insertion::insert_all(sites, first, watch)?;
+    for corners in &mut tetrahedra.simplices {
+        *corners = corners.map(|v| heaviest[v as usize] as i32);
+    }
+    Ok(Regular {
+        tetrahedra,
+        stands_for,
+    })
+}
+
+/// The first four of distinct points that span space.
+fn spanning(points: &[Point3]) -> Option<[u32; 4]> {
+    let (&a, &b) = (points.first()?, points.get(1)?);
+    let i = (2..points.len()).find(|&i| !points::collinear(a, b, points[i]))?;
+    let j = (2..points.len()).find(|&j| !orient3d(a, b, points[i], points[j]).is_zero())?;
+    Some([0, 1, i as u32, j as u32])
+}
