@@ -94,12 +94,12 @@ impl Cavity {
         while next < self.inside.keys.len() {
             let t = self.inside.keys[next] as usize;
             next += 1;
-            for k in 0..4 {
+            for (k, face) in FACES.into_iter().enumerate() {
                 let other = given.neighbors[t][k];
                 if other >= 0 && self.takes(given, other, q) {
                     continue;
                 }
-                let face = FACES[k].map(|i| given.simplices[t][i]);
+                let face = face.map(|i| given.simplices[t][i]);
                 let [a, b, c] = face.map(|v| given.point(v));
                 let flat = other < 0 && on && orient3d(a, b, c, q) == Sign::Zero;
                 let corners = face.map(|v| self.vertices.number(v));
