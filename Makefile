@@ -111,6 +111,7 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/refine.py $(BENCH)
 	$(BIN)/python benchmarks/interpolate.py $(BENCH)
 	$(BIN)/python benchmarks/voronoi.py $(BENCH)
+	$(BIN)/python benchmarks/tiles.py
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
 
 fuzz: need

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 POINTS = datasets.integer_lattice(90, side=12)
+SIZE = 45
 
 
 class Crash(BaseException):
@@ -26,7 +27,7 @@ class Crash(BaseException):
 
 
 def run(folder: Path, **options: Any) -> distributed.TiledDelaunay:
-    return distributed.triangulate(POINTS, folder / "tin", tile_points=30, **options)
+    return distributed.triangulate(POINTS, folder / "tin", tile_points=SIZE, **options)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +89,7 @@ def test_a_killed_process_leaves_what_can_be_gone_on_from(
     steps: int, tmp_path: Path, canonical: Callable[[Any], Any]
 ) -> None:
     right = canonical(Delaunay(POINTS).simplices)
-    for at in range(3, steps, 17):
+    for at in range(3, steps, 23):
         folder = tmp_path / str(at)
         child = os.fork()
         if child == 0:
@@ -107,18 +108,18 @@ def test_a_finished_tile_is_not_done_again(tmp_path: Path, monkeypatch: pytest.M
 
     def stop_late(what: str) -> None:
         begun.append(what)
-        if what == "before triangles/tile=000002.parquet":
+        if what == "before triangles/tile=000001.parquet":
             raise Crash
 
     monkeypatch.setattr(files, "step", stop_late)
     with pytest.raises(Crash):
         run(tmp_path)
-    assert "before triangles/tile=000001.parquet" in begun
+    assert "before triangles/tile=000000.parquet" in begun
     begun.clear()
     monkeypatch.setattr(files, "step", begun.append)
     run(tmp_path)
-    assert "before triangles/tile=000002.parquet" in begun
-    assert "before triangles/tile=000001.parquet" not in begun
+    assert "before triangles/tile=000001.parquet" in begun
+    assert "before triangles/tile=000000.parquet" not in begun
     begun.clear()
     run(tmp_path)
     assert not [what for what in begun if what.startswith("before tri")]
@@ -147,17 +148,17 @@ def test_outputs_are_never_mixed(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds a run already"):
         run(tmp_path, resume=False)
     with pytest.raises(InputError, match=r"tile_points differ"):
-        distributed.triangulate(POINTS, tmp_path / "tin", tile_points=31)
+        distributed.triangulate(POINTS, tmp_path / "tin", tile_points=SIZE + 1)
     with pytest.raises(InputError, match=r"source differ"):
-        distributed.triangulate(POINTS + 1, tmp_path / "tin", tile_points=30)
+        distributed.triangulate(POINTS + 1, tmp_path / "tin", tile_points=SIZE)
     other = tmp_path / "other"
     other.mkdir()
     (other / "thesis.txt").write_text("years of work")
     with pytest.raises(InputError, match="holds something else"):
-        distributed.triangulate(POINTS, other, tile_points=30)
+        distributed.triangulate(POINTS, other, tile_points=SIZE)
     assert (other / "thesis.txt").read_text() == "years of work"
     with pytest.raises(InputError, match="no folder"):
-        distributed.triangulate(POINTS, other / "thesis.txt", tile_points=30)
+        distributed.triangulate(POINTS, other / "thesis.txt", tile_points=SIZE)
 
 
 def test_what_is_not_finished_cannot_be_opened(

@@ -93,9 +93,9 @@ def triangulate(
     documentation, under mathematics.
 
     Memory is that of one tile for each worker, whatever the number of points, but for the corners
-    of the hull, which each tile gets. On disk a run needs three times what the source needs as
-    doubles. The folder holds ``manifest.json``, which is written last, ``vertices/tile=*.parquet``
-    and ``triangles/tile=*.parquet``.
+    of the hull, which each tile gets. On disk a run needs some 120 bytes a point, of which half
+    stay. The folder holds ``manifest.json``, which is written last, ``vertices/tile=*.parquet`` and
+    ``triangles/tile=*.parquet``.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """What a run costs: a model of few constants, each measured.
 
-The constants are those of ``benchmarks/distributed.py``; the page on planning in the guide shows
+The constants are those of ``benchmarks/tiles.py``; the page on planning in the guide shows
 how well they fit.
 """
 
@@ -16,9 +16,8 @@ __all__ = ["Plan", "estimate"]
 
 # Bytes of a worker that imports the package and pyarrow, and beyond that for each point of a tile.
 _BASE, _MEMORY = 150e6, 190.0
-# Bytes on disk for each point: of a row as it waits, three times while tiles are finished, and of
-# the output.
-_ROW, _OUTPUT = 32.0, 62.0
+# Bytes on disk for each point: of a row as it waits, of two triangles as they wait, of the output.
+_ROW, _WAITING, _OUTPUT = 32.0, 24.0, 62.0
 # Seconds of one core for each point, without the reading of compressed files.
 _SECONDS = 1.2e-6
 # Questions are put in this many rounds.
@@ -77,7 +76,7 @@ def estimate(points: int, tile_points: int, workers: int, attributes: int) -> Pl
         tasks=2 * pieces + tiles * (2 + 2 * rounds),
         foreign=foreign,
         worker_memory=round(_BASE + (_MEMORY + 3 * 8 * attributes) * max(size, PIECE)),
-        disk=round((2 * row + _OUTPUT + 8 * attributes) * points),
+        disk=round((row + _WAITING + _OUTPUT + 8 * attributes) * points),
         output=round((_OUTPUT + 8 * attributes) * points),
         seconds=_SECONDS * points / max(workers, 1),
     )

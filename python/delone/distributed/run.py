@@ -108,6 +108,8 @@ class Run:
         dealt = self._stage("deal", dict.fromkeys(looks, ()))
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
+        # What is dealt is not looked at again.
+        self.store.remove("work/pieces")
         threads = self.executor.threads
         begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})
         turns, told = self._ask(begun)

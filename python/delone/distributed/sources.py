@@ -18,7 +18,7 @@ import numpy as np
 from delone._arrays import as_points
 from delone.distributed.rows import make_rows
 from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
-from delone.io import las, parquet, read_points
+from delone.io import PointSet, las, parquet, read_points
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.distributed.rows import Rows
-    from delone.io import PointSet
 
     Given: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | ArrayLike
 
@@ -78,6 +77,10 @@ class Piece:
             return parquet.read_range(
                 path, self.start, self.stop, columns=choice.columns, attributes=choice.attributes
             )
+        if self.kind == "npy":
+            some = np.array(np.load(path, mmap_mode="r")[self.start : self.stop], order="C")
+            z = some[:, 2] if some.shape[1] == 3 else None
+            return PointSet(points=some[:, :2], z=z, source=str(path))
         return read_points(path, columns=choice.columns, attributes=choice.attributes)
 
 
@@ -195,8 +198,22 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
     if suffix == ".parquet" and not parquet.holds_geometries(path):
         rows, z = parquet.look(path, columns=choice.columns, attributes=choice.attributes)
         return "parquet", rows, None, z
+    if suffix == ".npy" and (shape := _mappable(path, choice)) is not None:
+        return "npy", shape[0], None, shape[1] == 3
     survey = read_points(path, columns=choice.columns, attributes=choice.attributes)
     return "file", len(survey), survey.crs, survey.z is not None
+
+
+def _mappable(path: Path, choice: Choice) -> tuple[int, int] | None:
+    """The shape of an array of which parts can be read; None where there is more to it."""
+    if choice.columns is not None or choice.attributes:
+        return None
+    try:
+        array = np.load(path, mmap_mode="r")
+    except ValueError as error:
+        raise FileFormatError(f"{path} is torn or no npy file: {error}") from error
+    fits = array.ndim == 2 and array.shape[1] in (2, 3) and array.dtype == np.float64
+    return array.shape if fits else None
 
 
 def _of_array(source: Any, choice: Choice) -> Source:
