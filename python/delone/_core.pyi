@@ -20,6 +20,8 @@ __all__ = [
     "gradients_local2",
     "halfspaces3",
     "improve3",
+    "hull2",
+    "hull3",
     "incircle",
     "insphere",
     "lawson2",
@@ -150,6 +152,21 @@ class Locator2:
     def leave_one_out(
         self, kind: str, workers: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]: ...
+
+def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
+def hull3(
+    points: NDArray[np.float64],
+) -> (
+    tuple[
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.int32],
+    ]
+    | None
+): ...
 
 @final
 class Locator3:

@@ -6,6 +6,7 @@ mod constrained;
 mod distributed;
 mod errors;
 mod improve;
+mod hull;
 mod interpolate;
 mod lawson;
 mod locate;
@@ -46,6 +47,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
+    m.add_function(wrap_pyfunction!(hull::hull2, m)?)?;
+    m.add_function(wrap_pyfunction!(hull::hull3, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::neighbors2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::voronoi2, m)?)?;

@@ -9,6 +9,7 @@ pub mod delaunay3;
 pub mod distributed;
 pub mod error;
 pub mod improve;
+pub mod hull;
 pub mod interpolate;
 pub mod interpolate3;
 pub mod locate;

@@ -2,10 +2,10 @@
 
 use delone_predicates::Point3;
 
-use super::curve;
 use super::tiling::Side;
 use super::{Located, Locator, Star, is_finite};
 use crate::error::Result;
+use crate::order::morton;
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -54,7 +54,7 @@ impl Batch<'_> {
             });
             return ends.into_iter().collect();
         }
-        let order = curve::order_of(queries)?;
+        let order = morton(queries)?;
         self.watch.check()?;
         let ends = parallel::map(self.workers, order.chunks(share).collect(), |rows| {
             let rows = rows.iter().map(|&row| row as usize);

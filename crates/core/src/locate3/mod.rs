@@ -6,7 +6,6 @@
 mod barycentric;
 mod batch;
 mod boundary;
-mod curve;
 mod nearest;
 mod star;
 mod tiling;

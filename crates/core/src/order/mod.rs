@@ -6,7 +6,9 @@ pub mod blocks;
 pub mod curve;
 mod hilbert;
 mod hilbert3;
-pub mod radix;
+mod morton;
+mod radix;
 pub mod space;
 
 pub use arrange::{Arranged, arrange};
+pub use morton::morton;

@@ -1,18 +1,17 @@
-//! Queries along a curve: Morton's order of the cells of a cube around them (G. M. Morton, "A computer
-//! oriented geodetic data base", 1966).
+//! Points of space along a curve: Morton's order of the cells of a cube around them (G. M. Morton, "A
+//! computer oriented geodetic data base", 1966). For points of which nothing is built in that order.
 
 use delone_predicates::Point3;
 
-use super::is_finite;
+use super::radix;
 use crate::error::Result;
 use crate::memory::with_room;
-use crate::order::radix;
 
 /// Bits of a cell along each axis: three of them fit the upper half of an item.
 const BITS: u32 = 10;
 
 /// The rows of the finite points, from cell to cell along the curve.
-pub fn order_of(points: &[Point3]) -> Result<Vec<u32>> {
+pub fn morton(points: &[Point3]) -> Result<Vec<u32>> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in points.iter().filter(|&&p| is_finite(p)) {
         for k in 0..3 {
@@ -40,6 +39,10 @@ pub fn order_of(points: &[Point3]) -> Result<Vec<u32>> {
         .into_iter()
         .map(|item| (item & u64::from(u32::MAX)) as u32)
         .collect())
+}
+
+fn is_finite(p: Point3) -> bool {
+    p.iter().all(|x| x.is_finite())
 }
 
 /// The bits of a number below 2^10, two zeros after each.
@@ -74,9 +77,9 @@ mod tests {
             })
             .chain([[f64::NAN, 0.0, 0.0], [f64::MAX, f64::MIN, 0.0]])
             .collect();
-        let mut rows = order_of(&points).unwrap();
+        let mut rows = morton(&points).unwrap();
         rows.sort_unstable();
         assert!(rows.into_iter().eq((0..1000).chain([1001])));
-        assert_eq!(order_of(&[[2.0; 3]; 3]).unwrap(), [0, 1, 2]);
+        assert_eq!(morton(&[[2.0; 3]; 3]).unwrap(), [0, 1, 2]);
     }
 }

@@ -1,0 +1,93 @@
+//! The sides of a polytope: coplanar triangles of its surface merged to polygons of extreme points.
+//!
+//! A plane that supports the polytope meets it in one convex polygon, so triangles are of one side
+//! exactly where they are joined by edges whose two triangles are coplanar, and the rim of a side is
+//! one cycle.
+
+use delone_predicates::{Point3, Sign, orient3d};
+
+use super::insertion::{Facet, in_line};
+use crate::error::{Error, Result};
+use crate::memory::filled;
+
+/// Lists of vertices, one after the other.
+#[derive(Debug, Default)]
+pub struct Polygons {
+    /// The vertices of all.
+    pub vertices: Vec<u32>,
+    /// Where each begins, and the end.
+    pub starts: Vec<u32>,
+}
+
+impl Polygons {
+    /// The polygons.
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let ends = self.starts.windows(2);
+        ends.map(|w| &self.vertices[w[0] as usize..w[1] as usize])
+    }
+}
+
+/// The corners of each side, counter-clockwise seen from outside.
+pub fn polygons(points: &[Point3], facets: &[Facet]) -> Result<Polygons> {
+    let mut met = filled(facets.len(), false)?;
+    // The next vertex on the rim of the side in work, for those on it.
+    let mut after = filled(points.len(), 0)?;
+    let mut rim = Vec::new();
+    let mut open = Vec::new();
+    let mut found = Polygons {
+        starts: vec![0],
+        ..Polygons::default()
+    };
+    for seed in 0..facets.len() {
+        if std::mem::replace(&mut met[seed], true) {
+            continue;
+        }
+        let plane = facets[seed].corners.map(|v| points[v as usize]);
+        rim.clear();
+        open.push(seed);
+        while let Some(i) = open.pop() {
+            let Facet {
+                corners, beyond, ..
+            } = facets[i];
+            for k in 0..3 {
+                let j = beyond[k] as usize;
+                if !lies_in(points, plane, facets[j].corners) {
+                    let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                    after[u as usize] = v;
+                    rim.push(u);
+                } else if !std::mem::replace(&mut met[j], true) {
+                    open.push(j);
+                }
+            }
+        }
+        add_corners(points, &rim, &after, &mut found)?;
+    }
+    Ok(found)
+}
+
+fn lies_in(points: &[Point3], [a, b, c]: [Point3; 3], corners: [u32; 3]) -> bool {
+    corners
+        .iter()
+        .all(|&v| orient3d(a, b, c, points[v as usize]) == Sign::Zero)
+}
+
+/// Adds the cycle of a rim, without the vertices in the middle of an edge.
+fn add_corners(points: &[Point3], rim: &[u32], after: &[u32], found: &mut Polygons) -> Result<()> {
+    let broken = || Error::Internal("the rim of a side is no cycle".into());
+    let &start = rim.first().ok_or_else(broken)?;
+    let at = |v: u32| points[v as usize];
+    let mut v = start;
+    for step in 0..rim.len() {
+        let next = after[v as usize];
+        let next_but_one = after[next as usize];
+        if !in_line(at(v), at(next), at(next_but_one)) {
+            found.vertices.push(next);
+        }
+        v = next;
+        if (v == start) != (step + 1 == rim.len()) {
+            return Err(broken());
+        }
+    }
+    found.starts.push(found.vertices.len() as u32);
+    Ok(())
+}

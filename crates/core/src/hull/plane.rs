@@ -1,0 +1,109 @@
+//! The convex hull in the plane: A. M. Andrew, "Another efficient algorithm for convex hulls in two
+//! dimensions" (1979), of the points that are not strictly inside of a polygon of extreme points (S. G.
+//! Akl and G. T. Toussaint, "A fast convex hull algorithm", 1978).
+
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+
+/// The extreme points, counter-clockwise from the lexicographically smallest on, each by its first
+/// row; fewer than three where there is no area. And `[row, vertex]` for rows that repeat one.
+pub fn hull2(points: &[Point2]) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut rows = outside_of_octagon(points);
+    let at = |v: u32| points[v as usize];
+    rows.sort_unstable_by(|&u, &v| lexicographic(at(u), at(v)).then(u.cmp(&v)));
+    let mut first: Vec<u32> = Vec::new();
+    let mut repeats = Vec::new();
+    for &row in &rows {
+        match first.last() {
+            Some(&last) if at(last) == at(row) => repeats.push([row, last]),
+            _ => first.push(row),
+        }
+    }
+    let mut hull = chain(points, first.iter().copied());
+    hull.pop();
+    let mut above = chain(points, first.iter().rev().copied());
+    above.pop();
+    hull.append(&mut above);
+    if hull.is_empty() {
+        hull = first;
+    }
+    let mut vertices = hull.clone();
+    vertices.sort_unstable();
+    repeats.retain(|[_, vertex]| vertices.binary_search(vertex).is_ok());
+    repeats.sort_unstable();
+    (hull, repeats)
+}
+
+/// The chain of left turns over points in order.
+fn chain(points: &[Point2], rows: impl Iterator<Item = u32>) -> Vec<u32> {
+    let at = |v: u32| points[v as usize];
+    let mut kept: Vec<u32> = Vec::new();
+    for row in rows {
+        while let [.., a, b] = kept[..]
+            && orient2d(at(a), at(b), at(row)) != Sign::Positive
+        {
+            kept.pop();
+        }
+        kept.push(row);
+    }
+    kept
+}
+
+/// Rows of points that are not known to be inside of the polygon of the extreme ones in eight
+/// directions.
+fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
+    let rows = || (0u32..).zip(points);
+    let directions = [
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [0.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, 0.0],
+        [-1.0, -1.0],
+        [0.0, -1.0],
+        [1.0, -1.0],
+    ];
+    let mut corners = [0usize; 8];
+    let mut most = [f64::NEG_INFINITY; 8];
+    for (row, p) in rows() {
+        for k in 0..8 {
+            // Any point will do as a corner: rounding and overflow choose a worse one.
+            let along = directions[k][0] * p[0] + directions[k][1] * p[1];
+            if along > most[k] {
+                (most[k], corners[k]) = (along, row as usize);
+            }
+        }
+    }
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let polygon: Vec<Point2> = corners.iter().map(|&c| points[c]).collect();
+    let inside = |p: Point2| {
+        let sides = (0..8).map(|k| (polygon[k], polygon[(k + 1) % 8]));
+        // Equal corners have no side between them; a polygon of one point has no inside.
+        let mut proper = sides.filter(|(a, b)| a != b).peekable();
+        proper.peek().is_some() && proper.all(|(a, b)| orient2d(a, b, p) == Sign::Positive)
+    };
+    rows()
+        .filter(|&(_, &p)| !inside(p))
+        .map(|(row, _)| row)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extreme_points_alone_are_vertices() {
+        let points: Vec<Point2> = (0..5)
+            .flat_map(|x| (0..5).map(move |y| [f64::from(x), f64::from(y)]))
+            .chain([[0.0, 0.0], [4.0, 4.0], [2.0, 2.0]])
+            .collect();
+        let (hull, repeats) = hull2(&points);
+        assert_eq!(hull, [0, 20, 24, 4]);
+        assert_eq!(repeats, [[25, 0], [26, 24]]);
+        assert_eq!(hull2(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).0, [0, 2]);
+        assert_eq!(hull2(&[[1.0, 1.0]; 3]).0, [0]);
+        assert!(hull2(&[]).0.is_empty());
+    }
+}
