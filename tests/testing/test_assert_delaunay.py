@@ -229,7 +229,7 @@ def test_bad_points_are_input_errors() -> None:
     with pytest.raises(InputError, match="NaN"):
         assert_delaunay([[0, 0], [1, np.nan], [0, 1]], [(0, 1, 2)])
     with pytest.raises(InputError, match="shape"):
-        assert_delaunay(np.zeros((4, 3)), [(0, 1, 2)])
+        assert_delaunay(np.zeros((5, 4)), [(0, 1, 2)])
 
 
 def test_triangle_set_and_same_triangles() -> None:

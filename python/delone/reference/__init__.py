@@ -3,7 +3,7 @@
 Everything here computes with Python's unbounded integers and `fractions.Fraction`, so that no
 answer depends on rounding, and follows the textbook word for word where the fast core does not. It
 is the oracle of the package's tests and a place to read; no other module of the package uses it.
-Two-dimensional.
+`bowyer_watson` also triangulates space, with the signs of `space`; the rest is two-dimensional.
 
 The five points that every textbook draws, a rectangle and one point inside:
 
@@ -33,6 +33,7 @@ from delone.reference.exact import (
 )
 from delone.reference.lawson import lawson
 from delone.reference.natural import natural_weights
+from delone.reference.space import insphere, insphere_canonical, orient3d
 
 __all__ = [
     "Circle",
@@ -44,7 +45,10 @@ __all__ = [
     "exact_point",
     "incircle",
     "incircle_canonical",
+    "insphere",
+    "insphere_canonical",
     "lawson",
     "natural_weights",
     "orient",
+    "orient3d",
 ]

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.reference.exact import exact_point, incircle_canonical, orient
+from delone.reference.space import tetrahedra
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,28 +30,33 @@ Triangle: TypeAlias = tuple[int, int, int]
 INFINITE = -1
 
 
-def bowyer_watson(points: Sequence[Sequence[Any]]) -> list[Triangle]:
+def bowyer_watson(
+    points: Sequence[Sequence[Any]],
+) -> list[Any]:
     """Triangulate points by the algorithm of Bowyer and Watson.
 
     Parameters
     ----------
-    points : sequence of pairs of numbers, length n
+    points : sequence of pairs or triples of numbers, length n
         Integers, floats, fractions or decimals, all taken exactly.
 
     Returns
     -------
     list of tuple of int
         Triangles as counter-clockwise triples of row numbers, each beginning with its smallest, in
-        ascending order. Of equal points only the first appears.
+        ascending order. In space tetrahedra, positively oriented, their row numbers ascending but
+        for the last two, which are exchanged where orientation wants it. Of equal points only the
+        first appears.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     DegenerateInputError
-        Fewer than three points are distinct, or all lie on one line.
+        Fewer than three points are distinct, or all lie on one line. In space, fewer than four, or
+        all on one line or in one plane.
     ShapeError
-        A point has not two coordinates.
+        A point has another number of coordinates than the first one, or than two or three.
 
     Notes
     -----
@@ -63,7 +69,15 @@ def bowyer_watson(points: Sequence[Sequence[Any]]) -> list[Triangle]:
     >>> from delone.reference import bowyer_watson
     >>> bowyer_watson([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
     [(0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4)]
+
+    The corners of a cube, which are on one sphere:
+
+    >>> cube = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> len(bowyer_watson(cube))
+    6
     """
+    if len(points) and len(points[0]) == 3:
+        return tetrahedra(points)
     exact = exact_rows(points)
     rows = first_rows(exact)
     a, b, c = first_triangle(exact, rows)

@@ -63,7 +63,7 @@ def exact_point(point: Sequence[Any]) -> ExactPoint:
     (3, Fraction(1, 2))
     """
     x, y = point
-    return _exact_number(x), _exact_number(y)
+    return exact_number(x), exact_number(y)
 
 
 def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
@@ -88,7 +88,7 @@ def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
     0
     """
     (ax, ay), (bx, by), (cx, cy) = map(exact_point, (a, b, c))
-    return _sign((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+    return sign((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
 
 
 def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]) -> int:
@@ -120,7 +120,7 @@ def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
     """
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = map(exact_point, (a, b, c, d))
     ax, ay, bx, by, cx, cy = ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy
-    return _sign(
+    return sign(
         (ax * ax + ay * ay) * (bx * cy - by * cx)
         + (bx * bx + by * by) * (cx * ay - cy * ax)
         + (cx * cx + cy * cy) * (ax * by - ay * bx)
@@ -162,9 +162,9 @@ def incircle_canonical(
     >>> incircle_canonical((1, 0), (1, 1), (0, 1), (0, 0))
     1
     """
-    sign = incircle(a, b, c, d)
-    if sign != 0:
-        return sign
+    found = incircle(a, b, c, d)
+    if found != 0:
+        return found
     a, b, c, d = map(exact_point, (a, b, c, d))
     smallest = min(a, b, c, d)
     if smallest == d:
@@ -213,7 +213,24 @@ def circumcircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Circle
     return Circle((ax + x, ay + y), x * x + y * y)
 
 
-def _exact_number(value: Any) -> ExactNumber:
+def exact_number(value: Any) -> ExactNumber:
+    """Return a number as an exact one.
+
+    Parameters
+    ----------
+    value : number
+        An integer, a float of any width, a fraction or a decimal.
+
+    Returns
+    -------
+    int or Fraction
+        The same value.
+
+    Raises
+    ------
+    ValueError, OverflowError
+        NaN or infinity denotes no number.
+    """
     if isinstance(value, int | Fraction):
         return value
     if isinstance(value, Rational):  # NumPy's integers, which would overflow silently
@@ -221,5 +238,17 @@ def _exact_number(value: Any) -> ExactNumber:
     return Fraction(*value.as_integer_ratio())
 
 
-def _sign(number: ExactNumber) -> int:
+def sign(number: ExactNumber) -> int:
+    """Return the sign of a number: 1, 0 or -1.
+
+    Parameters
+    ----------
+    number : int or Fraction
+        The number.
+
+    Returns
+    -------
+    int
+        Its sign.
+    """
     return (number > 0) - (number < 0)

@@ -3,14 +3,14 @@
 Nothing here uses the compiled core: coordinates become Python integers at one common power of two,
 which no arithmetic on them can round, and every test is a few lines of textbook geometry over NumPy
 arrays of such integers. What passes is the Delaunay triangulation of the real numbers that the
-doubles denote. Two-dimensional.
+doubles denote. `assert_delaunay` also takes points in space; the rest is two-dimensional.
 """
 
 from delone.testing.constrained import ConstrainedArrays, assert_constrained_delaunay
 from delone.testing.delaunay import assert_delaunay
 from delone.testing.meshes import assert_mesh
 from delone.testing.regions import assert_regions
-from delone.testing.sets import same_triangles, triangle_set
+from delone.testing.sets import same_tetrahedra, same_triangles, triangle_set
 
 __all__ = [
     "ConstrainedArrays",
@@ -18,6 +18,7 @@ __all__ = [
     "assert_delaunay",
     "assert_mesh",
     "assert_regions",
+    "same_tetrahedra",
     "same_triangles",
     "triangle_set",
 ]

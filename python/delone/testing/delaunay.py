@@ -13,6 +13,7 @@ from delone.testing.checks import (
     assert_vertices,
 )
 from delone.testing.exact import Mesh, as_rows, require, spans_no_area
+from delone.testing.space import SpaceMesh, assert_delaunay_space
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -25,16 +26,16 @@ def assert_delaunay(
     neighbors: ArrayLike | None = None,
     canonical: bool = True,
 ) -> None:
-    """Assert, exactly, that triangles are the Delaunay triangulation of points.
+    """Assert, exactly, that simplices are the Delaunay triangulation of points.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
+    points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates.
-    simplices : array_like of int, shape (m, 3)
-        Vertices of the triangles, as rows of `points`.
-    neighbors : array_like of int, shape (m, 3), optional
-        The triangle opposite each vertex, -1 outside. By default neighbours are not looked at.
+    simplices : array_like of int, shape (m, d + 1)
+        Vertices of the triangles or tetrahedra, as rows of `points`.
+    neighbors : array_like of int, shape (m, d + 1), optional
+        The simplex opposite each vertex, -1 outside. By default neighbours are not looked at.
     canonical : bool, optional
         Whether cocircular vertices must be fanned from their lexicographically smallest one, as
         delone does. False accepts every Delaunay triangulation.
@@ -55,6 +56,11 @@ def assert_delaunay(
     locally Delaunay, and canonical where four points share a circle; that neighbours are those
     across the edges. Of points which span no area, only the empty triangulation passes.
 
+    In space: that tetrahedra are positively oriented, and each face is used once from either side;
+    that the boundary is one closed surface, convex at each edge; Euler's formula and the volume;
+    that each inner face is locally Delaunay, and canonical where five points share a sphere; for up
+    to 64 points also that no sphere has any point inside.
+
     O(n log n) exact operations, for 10,000 points well below a second. That the local test suffices
     is shown by Delaunay, B. (1934), "Sur la sphère vide".
 
@@ -70,8 +76,12 @@ def assert_delaunay(
     AssertionError: 1 edge is not canonical: the smallest of four cocircular points is not on it:
       edge 1 (1.0, 0.0), 3 (0.0, 1.0) between 0 (0.0, 0.0), 2 (1.0, 1.0)
     """
-    points = as_points(points, ndim=2)
+    points = as_points(points)
     require_finite(points)
+    if points.shape[1] == 3:
+        tetrahedra = as_rows(simplices, len(points), noun="tetrahedron", width=4)
+        assert_delaunay_space(SpaceMesh.of(points, tetrahedra), neighbors, canonical=canonical)
+        return
     triangles = as_rows(simplices, len(points))
     mesh = Mesh.of(points, triangles)
     if spans_no_area(mesh):

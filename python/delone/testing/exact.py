@@ -61,6 +61,12 @@ class Mesh(NamedTuple):
 
 def scaled_to_integers(points: NDArray[np.float64]) -> tuple[Integers, Integers, int]:
     """Multiply all coordinates by the power of two that makes the finest of them an integer."""
+    integers, lowest = integers_of(points)
+    return integers[:, 0], integers[:, 1], lowest
+
+
+def integers_of(points: NDArray[np.float64]) -> tuple[Integers, int]:
+    """The same for any number of coordinates, (n, d)."""
     fraction, exponent = np.frexp(points)
     mantissa = np.ldexp(fraction, 53).astype(np.int64)
     exponent = exponent.astype(np.int64) - 53
@@ -75,7 +81,7 @@ def scaled_to_integers(points: NDArray[np.float64]) -> tuple[Integers, Integers,
     shift = exponent - lowest
     shift[mantissa == 0] = 0
     integers = np.left_shift(mantissa.astype(object), shift.astype(object))
-    return integers[:, 0], integers[:, 1], lowest
+    return integers, lowest
 
 
 def orient(mesh: Mesh, a: Any, b: Any, c: Any) -> Any:
@@ -136,6 +142,7 @@ def assert_none(culprits: list[str], count: int, fault: str, noun: str) -> None:
         return
     if count > 1:
         noun += "s"
+        noun = noun.replace("tetrahedrons", "tetrahedra")
         fault = fault.replace("is ", "are ", 1).replace("has ", "have ", 1)
     more = "\n  ..." if count > len(culprits) else ""
     raise AssertionError(f"{count} {noun} {fault}:\n  " + "\n  ".join(culprits) + more)

@@ -67,6 +67,51 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
     return sorted(_turned(a, "a")) == sorted(_turned(b, "b"))
 
 
+def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
+    """Tell whether two arrays hold the same tetrahedra with the same orientation.
+
+    Parameters
+    ----------
+    a, b : array_like of int, shape (m, 4)
+        Vertices of the tetrahedra.
+
+    Returns
+    -------
+    bool
+        False also where one of them holds a tetrahedron more often than the other.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `a` or `b` is no array of integers of shape (m, 4), nor empty.
+
+    Examples
+    --------
+    >>> from delone.testing import same_tetrahedra
+    >>> same_tetrahedra([(0, 1, 2, 3)], [(2, 0, 1, 3)])
+    True
+    >>> same_tetrahedra([(0, 1, 2, 3)], [(1, 0, 2, 3)])
+    False
+    """
+    return _even(a, "a") == _even(b, "b")
+
+
+def _even(simplices: ArrayLike, name: str) -> list[tuple[int, ...]]:
+    """Tetrahedra in ascending order, but for the last two where that is an odd permutation."""
+    array = np.asarray(simplices)
+    if array.shape in ((0,), (0, 4)):
+        return []
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ShapeError(f"{name} must have shape (m, 4), got {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+    pairs = [(i, j) for i in range(4) for j in range(i + 1, 4)]
+    odd = sum((array[:, i] > array[:, j]).astype(int) for i, j in pairs) % 2 == 1
+    turned = np.sort(array, axis=1)
+    turned[odd] = turned[odd][:, [0, 1, 3, 2]]
+    return sorted(map(tuple, turned.tolist()))
+
+
 def _turned(simplices: ArrayLike, name: str) -> list[tuple[int, int, int]]:
     """Triangles as triples, each from its smallest vertex on."""
     try:

@@ -1,0 +1,264 @@
+"""The exact check of Delaunay triangulations in space, over unbounded integers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.testing.exact import SHOWN, assert_none, integers_of, require
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Indices = NDArray[np.int64]
+    Integers = NDArray[np.object_]
+
+# The face opposite each corner, with the corner on its inner side: counter-clockwise from outside.
+_FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
+# Up to so many points every tetrahedron is tested against every point.
+_FEW = 64
+
+
+class SpaceMesh(NamedTuple):
+    """Tetrahedra with exact coordinates and what every check needs of them."""
+
+    points: NDArray[np.float64]
+    tetrahedra: Indices
+    at: Integers  # (n, 3)
+    rank: Indices  # equal for equal points, ascending lexicographically
+    first: Indices  # of each row, the first row with the same coordinates
+
+    @classmethod
+    def of(cls, points: NDArray[np.float64], tetrahedra: Indices) -> SpaceMesh:
+        """Take points that are finite and tetrahedra whose indices are in range."""
+        flat = points + 0.0  # makes -0.0 the same as 0.0
+        order = np.lexsort(flat.T[::-1])
+        fresh = np.ones(len(points), dtype=bool)
+        fresh[1:] = (flat[order[1:]] != flat[order[:-1]]).any(axis=1)
+        rank = np.empty(len(points), dtype=np.int64)
+        rank[order] = np.cumsum(fresh) - 1
+        at, _ = integers_of(points)
+        return cls(points, tetrahedra, at, rank, order[fresh][rank])
+
+    def name(self, rows: Iterable[int]) -> str:
+        """Rows with their coordinates, for error messages."""
+        return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
+
+    def names(self, which: Indices) -> list[str]:
+        """Tetrahedra with their corners, the first few."""
+        return [
+            f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
+            for t in which[:SHOWN].tolist()
+        ]
+
+
+def orient3d(mesh: SpaceMesh, a: Any, b: Any, c: Any, d: Any) -> Any:
+    """Six times the signed volume of tetrahedra, exactly; rows or arrays of rows."""
+    at = mesh.at
+    return _determinant(at[b] - at[a], at[c] - at[a], at[d] - at[a])
+
+
+def insphere(mesh: SpaceMesh, corners: Indices, e: Any) -> Any:
+    """Positive where e is inside the sphere of the positively oriented corners, (k, 4)."""
+    p, q, r, s = (mesh.at[corners[:, k]] - mesh.at[e] for k in range(4))
+    return (
+        (p * p).sum(axis=-1) * _determinant(q, r, s)
+        - (q * q).sum(axis=-1) * _determinant(p, r, s)
+        + (r * r).sum(axis=-1) * _determinant(p, q, s)
+        - (s * s).sum(axis=-1) * _determinant(p, q, r)
+    )
+
+
+def insphere_of_tie(mesh: SpaceMesh, corners: Indices, e: int) -> int:
+    """The sign for five points of one sphere: that of the smallest point that matters."""
+    five = [*corners.tolist(), e]
+    for k in np.argsort(mesh.rank[five]).tolist():
+        if k == 4:
+            value = orient3d(mesh, *corners.tolist())
+        else:
+            p, q, r, s = (e if i == k else five[i] for i in range(4))
+            value = -orient3d(mesh, p, q, r, s)
+        if value != 0:
+            return 1 if value > 0 else -1
+    return 0
+
+
+def assert_delaunay_space(mesh: SpaceMesh, neighbors: ArrayLike | None, *, canonical: bool) -> None:
+    """Assert that tetrahedra are the Delaunay triangulation of points."""
+    if _spans_no_volume(mesh):
+        count = len(mesh.tetrahedra)
+        require(count == 0, f"{count} tetrahedra of points that span no volume")
+    else:
+        _assert_vertices(mesh)
+        _assert_positive(mesh)
+        beyond = _opposites(mesh)
+        _assert_hull(mesh, beyond)
+        _assert_count_and_volume(mesh, beyond)
+        _assert_empty_spheres(mesh, beyond, canonical)
+        if len(mesh.points) <= _FEW:
+            _assert_all_spheres_empty(mesh, canonical)
+    if neighbors is not None:
+        _assert_neighbors(mesh, neighbors)
+
+
+def _determinant(u: Any, v: Any, w: Any) -> Any:
+    return (
+        u[..., 0] * (v[..., 1] * w[..., 2] - v[..., 2] * w[..., 1])
+        + u[..., 1] * (v[..., 2] * w[..., 0] - v[..., 0] * w[..., 2])
+        + u[..., 2] * (v[..., 0] * w[..., 1] - v[..., 1] * w[..., 0])
+    )
+
+
+def _spans_no_volume(mesh: SpaceMesh) -> bool:
+    """Tell whether all points lie in one plane."""
+    rows = np.unique(mesh.first)
+    if len(rows) < 4:
+        return True
+    a, b = rows[0], rows[1]
+    u, v = mesh.at[b] - mesh.at[a], mesh.at[rows] - mesh.at[a]
+    across = np.stack([u[i] * v[:, j] - u[j] * v[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], 1)
+    off = np.flatnonzero((across != 0).any(axis=1))
+    return len(off) == 0 or not (orient3d(mesh, a, b, rows[off[0]], rows) != 0).any()
+
+
+def _assert_vertices(mesh: SpaceMesh) -> None:
+    used = np.zeros(len(mesh.points), dtype=bool)
+    used[mesh.tetrahedra] = True
+    is_first = mesh.first == np.arange(len(mesh.points))
+    repeats, lost = np.flatnonzero(used & ~is_first), np.flatnonzero(is_first & ~used)
+    assert_none(
+        [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
+        len(repeats),
+        "is used in spite of an earlier equal row",
+        "row",
+    )
+    names = [mesh.name([row]) for row in lost[:SHOWN].tolist()]
+    assert_none(names, len(lost), "is no vertex of any tetrahedron", "point")
+
+
+def _assert_positive(mesh: SpaceMesh) -> None:
+    flat = np.flatnonzero(orient3d(mesh, *mesh.tetrahedra.T) <= 0)
+    assert_none(mesh.names(flat), len(flat), "is not positively oriented", "tetrahedron")
+
+
+def _opposites(mesh: SpaceMesh) -> Indices:
+    """Of each corner 4 t + k, the corner beyond the face opposite it, or -1 on the boundary."""
+    faces = mesh.tetrahedra[:, _FACES].reshape(-1, 3)
+    # With the smallest vertex first, the two sides of a face differ by the order of the others.
+    start = faces.argmin(axis=1)[:, None]
+    turned = np.take_along_axis(faces, (start + np.arange(3)) % 3, axis=1)
+    sides: dict[tuple[int, ...], int] = {}
+    doubled = []
+    for corner, face in enumerate(map(tuple, turned.tolist())):
+        if face in sides:
+            doubled.append(face)
+        sides[face] = corner
+    names = [f"face {mesh.name(face)}" for face in doubled[:SHOWN]]
+    assert_none(names, len(doubled), "is used more than once from the same side", "face")
+    found = [sides.get((a, c, b), -1) for a, b, c in turned.tolist()]
+    return np.array(found, dtype=np.int64)
+
+
+def _assert_hull(mesh: SpaceMesh, beyond: Indices) -> None:
+    """The boundary is one closed surface, convex at each edge: so it is the convex hull."""
+    t, k = np.divmod(np.flatnonzero(beyond < 0), 4)
+    faces = np.take_along_axis(mesh.tetrahedra[t], np.array(_FACES)[k], axis=1)
+    edges: dict[tuple[int, int], int] = {}
+    for i, (a, b, c) in enumerate(faces.tolist()):
+        for edge in ((a, b), (b, c), (c, a)):
+            require(edge not in edges, f"boundary edge {mesh.name(edge)} is there twice")
+            edges[edge] = i
+    met, open_faces = {0}, [0]
+    while open_faces:
+        i = open_faces.pop()
+        a, b, c = faces[i].tolist()
+        for u, v in ((a, b), (b, c), (c, a)):
+            require((v, u) in edges, f"the boundary is open at edge {mesh.name((u, v))}")
+            j = edges[v, u]
+            (far,) = set(faces[j].tolist()) - {u, v}
+            require(
+                orient3d(mesh, a, b, c, far) <= 0,
+                f"the boundary is not convex: {mesh.name([far])} is beyond {mesh.name((a, b, c))}",
+            )
+            if j not in met:
+                met.add(j)
+                open_faces.append(j)
+    require(len(met) == len(faces), "the boundary is more than one surface")
+    vertices = len(np.unique(faces))
+    require(vertices - len(edges) // 2 + len(faces) == 2, "the boundary is no sphere")
+
+
+def _assert_count_and_volume(mesh: SpaceMesh, beyond: Indices) -> None:
+    """Euler's formula and the volume; both follow from what was asserted: they check the checks."""
+    t, k = np.divmod(np.flatnonzero(beyond < 0), 4)
+    faces = np.take_along_axis(mesh.tetrahedra[t], np.array(_FACES)[k], axis=1)
+    pairs = [mesh.tetrahedra[:, [i, j]] for i in range(4) for j in range(i)]
+    edges = len(np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0))
+    m = len(mesh.tetrahedra)
+    vertices, all_faces = len(np.unique(mesh.first)), (4 * m + len(faces)) // 2
+    euler = vertices - edges + all_faces - m
+    require(euler == 1, f"vertices - edges + faces - tetrahedra is {euler}, not 1")
+    volume = orient3d(mesh, *mesh.tetrahedra.T).sum()
+    a, b, c = faces.T
+    hull = -orient3d(mesh, a, b, c, faces[0, 0]).sum()
+    require(volume == hull, "the tetrahedra have not the volume of the hull")
+
+
+def _assert_empty_spheres(mesh: SpaceMesh, beyond: Indices, canonical: bool) -> None:
+    """Inner faces are locally Delaunay."""
+    corner = np.flatnonzero(beyond > np.arange(len(beyond)))
+    t, far = corner // 4, mesh.tetrahedra.ravel()[beyond[corner]]
+    inside = insphere(mesh, mesh.tetrahedra[t], far)
+
+    def names(which: Indices) -> list[str]:
+        return [
+            f"tetrahedron {mesh.name(mesh.tetrahedra[t[i]].tolist())} and {mesh.name([far[i]])}"
+            for i in which[:SHOWN].tolist()
+        ]
+
+    wrong = np.flatnonzero(inside > 0)
+    assert_none(names(wrong), len(wrong), "is not locally Delaunay", "face")
+    if not canonical:
+        return
+    ties = np.flatnonzero(inside == 0).tolist()
+    signs = [insphere_of_tie(mesh, mesh.tetrahedra[t[i]], int(far[i])) for i in ties]
+    tied = np.array([i for i, s in zip(ties, signs, strict=True) if s > 0], dtype=np.int64)
+    assert_none(names(tied), len(tied), "is not canonical: five points share a sphere", "face")
+
+
+def _assert_all_spheres_empty(mesh: SpaceMesh, canonical: bool) -> None:
+    """No tetrahedron has any point inside its sphere."""
+    for e in np.unique(mesh.first).tolist():
+        inside = insphere(mesh, mesh.tetrahedra, e)
+        held = np.flatnonzero(inside > 0)
+        fault = f"has point {mesh.name([e])} inside its sphere"
+        assert_none(mesh.names(held), len(held), fault, "tetrahedron")
+        for t in np.flatnonzero(inside == 0).tolist() if canonical else []:
+            corners = mesh.tetrahedra[t]
+            if e not in corners:
+                tie = insphere_of_tie(mesh, corners, e)
+                require(
+                    tie <= 0, f"{mesh.names(np.array([t]))[0]} is not canonical: {mesh.name([e])}"
+                )
+
+
+def _assert_neighbors(mesh: SpaceMesh, neighbors: ArrayLike) -> None:
+    array = np.asarray(neighbors)
+    require(
+        array.dtype.kind in "iu" and array.shape == mesh.tetrahedra.shape,
+        f"neighbors must be integers of shape {mesh.tetrahedra.shape}, got {array.shape}",
+    )
+    if len(array) == 0:
+        return
+    beyond = _opposites(mesh)
+    wanted = np.where(beyond < 0, -1, beyond // 4).reshape(-1, 4)
+    wrong = np.flatnonzero((array != wanted).any(axis=1))
+    assert_none(
+        [f"tetrahedron {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
+        len(wrong),
+        "has wrong neighbours",
+        "tetrahedron",
+    )
