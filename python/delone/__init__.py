@@ -30,6 +30,7 @@ from delone.errors import (
     NonFiniteError,
     ShapeError,
 )
+from delone.hull import ConvexHull
 from delone.improve import improve
 from delone.improvement import ImproveReport
 from delone.lawson import LawsonResult, lawson
@@ -47,12 +48,23 @@ from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd
 
 if TYPE_CHECKING:
-    from delone import compat, datasets, distributed, interpolate, io, plot, reference, testing
+    from delone import (
+        compat,
+        datasets,
+        distributed,
+        interpolate,
+        io,
+        plot,
+        reference,
+        scene,
+        testing,
+    )
 
 __all__ = [
     "BudgetExceededError",
     "ConstrainedDelaunay",
     "ConstrainedReport",
+    "ConvexHull",
     "CrossingSegmentsError",
     "DegenerateInputError",
     "Delaunay",
@@ -94,13 +106,24 @@ __all__ = [
     "plot",
     "predicates",
     "reference",
+    "scene",
     "testing",
     "triangulate_polygon",
 ]
 
 # Modules that not every program needs; they are imported when they are first asked for.
 _LATER = frozenset(
-    {"compat", "datasets", "distributed", "interpolate", "io", "plot", "reference", "testing"}
+    {
+        "compat",
+        "datasets",
+        "distributed",
+        "interpolate",
+        "io",
+        "plot",
+        "reference",
+        "scene",
+        "testing",
+    }
 )
 
 

@@ -21,15 +21,16 @@ import numpy as np
 from delone import predicates
 from delone.atomic import replacing
 from delone.errors import FileFormatError
+from delone.space import topology as space
 from delone.topology import among, boundary_edges, boundary_next, edge_keys, is_mutual
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["CONSTRAINED", "DELAUNAY", "MESH", "Kind", "read", "write"]
+__all__ = ["CONSTRAINED", "DELAUNAY", "DELAUNAY3", "MESH", "Kind", "read", "write"]
 
 _VERSION = 1
 
@@ -68,15 +69,17 @@ def write(
         np.savez(file, format=np.array(kind.format), version=np.array(_VERSION), **columns)
 
 
-def read(path: str | os.PathLike[str], kind: Kind | None = None) -> dict[str, NDArray[Any]]:
+def read(
+    path: str | os.PathLike[str], kinds: Kind | Sequence[Kind] = ()
+) -> dict[str, NDArray[Any]]:
     """Read a triangulation from a file.
 
     Parameters
     ----------
     path : str or path-like
         A file that `write` made.
-    kind : Kind, optional
-        The kind of archive, by default `DELAUNAY`.
+    kinds : Kind or sequence of Kind, optional
+        The kinds of archives that are welcome, by default `DELAUNAY`.
 
     Returns
     -------
@@ -95,7 +98,8 @@ def read(path: str | os.PathLike[str], kind: Kind | None = None) -> dict[str, ND
     if source.exists() and not source.is_file() and not source.is_dir():
         raise OSError(f"{source} is not a regular file")
     with source.open("rb") as file:
-        return _parsed(file, source, kind or DELAUNAY)
+        wanted = (kinds,) if isinstance(kinds, Kind) else tuple(kinds)
+        return _parsed(file, source, wanted or (DELAUNAY,))
 
 
 def _path(path: str | os.PathLike[str]) -> Path:
@@ -106,10 +110,10 @@ def _path(path: str | os.PathLike[str]) -> Path:
         raise TypeError(f"path must be a string or a path-like object, got {kind}") from None
 
 
-def _parsed(file: IO[bytes], path: Path, kind: Kind) -> dict[str, NDArray[Any]]:
+def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, NDArray[Any]]:
     try:
         with zipfile.ZipFile(file) as archive:
-            _check_kind(archive, kind.format)
+            kind = _kind(archive, kinds)
             arrays = {name: _array(archive, name, *kind.layout[name]) for name in kind.layout}
         kind.check(**arrays)
     except _DAMAGE as error:
@@ -145,11 +149,14 @@ def _require(condition: bool | np.bool_, message: str) -> None:
         raise _ContradictionError(message)
 
 
-def _check_kind(archive: zipfile.ZipFile, wanted: str) -> None:
+def _kind(archive: zipfile.ZipFile, kinds: tuple[Kind, ...]) -> Kind:
     found = _scalar(archive, "format")
-    _require(found == wanted, f"its format is {found!r}, not {wanted!r}")
+    fitting = [kind for kind in kinds if kind.format == found]
+    wanted = " or ".join(repr(kind.format) for kind in kinds)
+    _require(bool(fitting), f"its format is {found!r}, not {wanted}")
     version = _scalar(archive, "version")
     _require(version == _VERSION, f"its version is {version!r}, this release reads {_VERSION}")
+    return fitting[0]
 
 
 def _scalar(archive: zipfile.ZipFile, name: str) -> Any:
@@ -219,6 +226,32 @@ def _check(
     _require(len(cycle) == len(boundary), "the boundary is not one cycle")
     expected = 2 * (n - len(duplicates)) - len(boundary) - 2
     _require(m == expected, f"it has {m} triangles, {expected} are expected")
+
+
+def _check_space(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+) -> None:
+    """The same for tetrahedra."""
+    n, m = len(points), len(simplices)
+    _require(np.isfinite(points).all(), "a coordinate is not finite")
+    _require(m > 0 and neighbors.shape == simplices.shape, "it has no neighbours of tetrahedra")
+    _check_range("simplices", simplices, 0, n)
+    _check_range("neighbors", neighbors, -1, m)
+    _check_range("duplicates", duplicates, 0, n)
+    _check_duplicates(points, simplices, duplicates)
+    _require(space.is_mutual(simplices, neighbors).all(), "neighbours are not mutual")
+    turns = predicates.orient3d(*(points[simplices[:, k]] for k in range(4)))
+    _require((turns > 0).all(), "a tetrahedron is not positively oriented")
+    boundary = space.boundary_faces(simplices, neighbors)
+    _require(len(boundary) > 3, "it has no boundary")
+    # Each edge of a closed surface is there once in either direction.
+    tail, head = boundary.ravel().astype(np.int64), boundary[:, [1, 2, 0]].ravel().astype(np.int64)
+    keys, reverse = np.sort(tail * n + head), np.sort(head * n + tail)
+    closed = (keys == reverse).all() and (keys[1:] > keys[:-1]).all()
+    _require(closed, "the boundary is not one closed surface")
 
 
 def _check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
@@ -367,7 +400,14 @@ _TRIANGLES = {
     "neighbors": ("<i4", 3),
     "duplicates": ("<i4", 2),
 }
+_TETRAHEDRA = {
+    "points": ("<f8", 3),
+    "simplices": ("<i4", 4),
+    "neighbors": ("<i4", 4),
+    "duplicates": ("<i4", 2),
+}
 DELAUNAY = Kind("delone.Delaunay", _TRIANGLES, _check)
+DELAUNAY3 = Kind("delone.Delaunay of space", _TETRAHEDRA, _check_space)
 CONSTRAINED = Kind(
     "delone.ConstrainedDelaunay",
     _TRIANGLES

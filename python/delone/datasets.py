@@ -3,7 +3,7 @@
 Every generator is a function of the number of points and a seed, and returns float64 points of
 shape (n, 2); n must be an integer of at least 0, or InputError is raised. Each is here because it
 breaks something: a float predicate, a sort, a tolerance, a super-triangle. `GENERATORS` lists them
-by name. The surveys live in `delone.samples`.
+by name, and `GENERATORS3` those of points in space. The surveys live in `delone.samples`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 from delone._arrays import as_count
 from delone.errors import InputError
 from delone.samples import Sample, ahn3, baja
+from delone.space.datasets import GENERATORS as GENERATORS3
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "GENERATORS",
+    "GENERATORS3",
     "Sample",
     "ahn3",
     "baja",

@@ -1,7 +1,8 @@
-"""The class Delaunay: a triangulation of points in the plane as immutable arrays.
+"""The class Delaunay: a triangulation of points in the plane or in space as immutable arrays.
 
-The core makes `simplices` and `neighbors`; what follows from them is in `triangulation`, apart from
-what only a Delaunay triangulation has: the convex hull for its boundary, location by a walk, proof.
+The core makes `simplices` and `neighbors`; what follows from them is in `triangulation` and, where
+there are three coordinates, in `space`. Here is what only a Delaunay triangulation has: its
+construction, proof, and files.
 """
 
 from __future__ import annotations
@@ -10,9 +11,11 @@ from typing import TYPE_CHECKING, Any, Self, overload
 
 from delone import _core
 from delone._arrays import as_workers
-from delone.errors import InputError, InternalError
-from delone.triangulation import Triangulation, counted, own_copy
-from delone.validation import ValidationReport
+from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.space.plane import plane_of
+from delone.space.spatial import Spatial
+from delone.triangulation import counted, own_copy
+from delone.validation import SpaceReport, ValidationReport
 
 if TYPE_CHECKING:
     import os
@@ -23,17 +26,18 @@ if TYPE_CHECKING:
 
     from delone.periodic import PeriodicDelaunay
 
-    Indices = NDArray[np.int32]
-
 __all__ = ["Delaunay"]
 
+# In space cavities along a curve are the one method; both names mean it.
+_METHODS3 = ["auto", "bowyer-watson"]
 
-class Delaunay(Triangulation):
-    """The Delaunay triangulation of points in the plane.
+
+class Delaunay(Spatial):
+    """The Delaunay triangulation of points in the plane, or of points in space.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
+    points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
         copied and taken as the exact numbers which they denote.
     periodic : tuple of two floats or None, optional
@@ -44,35 +48,38 @@ class Delaunay(Triangulation):
         How to compute it: ``"auto"`` (what is fastest), ``"bowyer-watson"`` (cavities, along a
         space-filling curve), ``"divide-and-conquer"`` (halves, merged), ``"incremental"``
         (randomised insertion and flips), ``"sweep"`` (a line over the plane) or ``"lifting"`` (the
-        convex hull of points lifted to a paraboloid). The triangles are the same.
+        convex hull of points lifted to a paraboloid). The triangles are the same. In space the
+        choices are ``"auto"`` and ``"bowyer-watson"``.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
 
     Attributes
     ----------
-    points : ndarray of float64, shape (n, 2)
+    points : ndarray of float64, shape (n, d)
         The coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        The triangles as rows of `points`, counter-clockwise.
-    neighbors : ndarray of int32, shape (m, 3)
-        ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1
-        outside.
+    simplices : ndarray of int32, shape (m, d + 1)
+        The simplices as rows of `points`: triangles, counter-clockwise, or tetrahedra, positively
+        oriented. (The second, third and fourth vertex, seen from the first, go round clockwise; the
+        determinant of the vectors from the first to the others is positive.)
+    neighbors : ndarray of int32, shape (m, d + 1)
+        ``neighbors[t, k]`` is the simplex across the edge or face opposite vertex k of simplex t;
+        -1 outside.
     ndim : int
-        The number of coordinates, 2.
+        The number of coordinates, 2 or 3.
     npoints, nsimplex : int
-        Numbers of points (rows, duplicates included) and of triangles.
-    min_bound, max_bound : ndarray of float64, shape (2,)
+        Numbers of points (rows, duplicates included) and of simplices.
+    min_bound, max_bound : ndarray of float64, shape (d,)
         The least and the greatest coordinates.
 
     Raises
     ------
     DegenerateInputError
-        Fewer than three points are distinct, or all lie on one line; ``error.chain`` has them in
-        order.
+        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
+        order. Or points in space all lie in one plane; ``error.plane`` is its triangulation.
     NonFiniteError
         A coordinate is NaN or infinite; ``error.rows`` tells where.
     ShapeError, DtypeError
-        `points` is no array of real points in the plane.
+        `points` is no array of real points in the plane or in space.
     InputError
         `method` or `workers` is none of its choices.
     MemoryError
@@ -86,7 +93,8 @@ class Delaunay(Triangulation):
     is a vertex, those in the middle of a side of the convex hull included; of rows with the same
     coordinates (-0.0 and 0.0 are the same) the first is the vertex. Where more than three points
     lie on one circle and none inside, their polygon is fanned from its lexicographically smallest
-    vertex, so that one set of points has one triangulation, however its rows are ordered.
+    vertex, so that one set of points has one triangulation, however its rows are ordered. In space
+    the same perturbation decides about points on one sphere, and no tetrahedron is flat.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -122,6 +130,14 @@ class Delaunay(Triangulation):
     ((4, 3), 8, np.float64(12.0))
     >>> bool(mesh.validate())
     True
+
+    The corners of a cube and its centre:
+
+    >>> cube = Delaunay([(x, y, z) for x in (0, 2) for y in (0, 2) for z in (0, 2)] + [(1, 1, 1)])
+    >>> cube
+    <Delaunay of 9 points: 12 tetrahedra>
+    >>> cube.volumes.sum(), cube.convex_hull.shape
+    (np.float64(8.0), (12, 3))
     """
 
     __slots__ = ()
@@ -171,14 +187,15 @@ class Delaunay(Triangulation):
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Delaunay never changes: make another one")
-        methods = _core.methods2()
+        threads = as_workers(workers)
+        own = own_copy(points, ndim=None)
+        methods = _core.methods2() if own.shape[1] == 2 else _METHODS3
         if method not in methods:
             names = ", ".join(map(repr, methods))
-            raise InputError(f"method must be one of {names}, got {method!r}")
-        threads = as_workers(workers)
-        own = own_copy(points)
+            where = "" if own.shape[1] == 2 else " in space"
+            raise InputError(f"method must be one of {names}{where}, got {method!r}")
         try:
-            simplices, neighbors, duplicates, stages = _core.triangulate2(own, method, threads)
+            simplices, neighbors, duplicates, stages = _triangles(own, method, threads)
         except InternalError as error:
             error.points = own
             raise
@@ -200,9 +217,9 @@ class Delaunay(Triangulation):
         Returns
         -------
         ValidationReport
-            Truthy when all is right: triangles counter-clockwise and tiling the exact convex hull,
-            neighbours mutual, each distinct point a vertex, each edge locally Delaunay, ties broken
-            canonically.
+            Truthy when all is right: simplices positively oriented and tiling the exact hull,
+            neighbours mutual, each distinct point a vertex, each edge or face locally Delaunay,
+            ties broken canonically.
 
         Notes
         -----
@@ -214,6 +231,9 @@ class Delaunay(Triangulation):
         >>> print(Delaunay([(0, 0), (1, 0), (0, 1)]).validate())
         a canonical Delaunay triangulation
         """
+        if self.ndim == 3:
+            found = _core.validate3(self._points, self._simplices, self._neighbors)
+            return SpaceReport.from_culprits(found)
         found = _core.validate2(self._points, self._simplices, self._neighbors)
         return ValidationReport.from_culprits(found)
 
@@ -252,7 +272,8 @@ class Delaunay(Triangulation):
         """
         from delone import archive
 
-        archive.write(path, self._arrays())
+        kind = archive.DELAUNAY if self.ndim == 2 else archive.DELAUNAY3
+        archive.write(path, self._arrays(), kind)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Delaunay:
@@ -284,7 +305,8 @@ class Delaunay(Triangulation):
         """
         from delone import archive
 
-        return cls._from_arrays(archive.read(path), {}, None)
+        kinds = (archive.DELAUNAY, archive.DELAUNAY3)
+        return cls._from_arrays(archive.read(path, kinds), {}, None)
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         return {
@@ -301,4 +323,19 @@ class Delaunay(Triangulation):
         duplicates = len(self._duplicates)
         if duplicates:
             points += f" ({counted(duplicates, 'duplicate')})"
-        return f"<Delaunay of {points}: {counted(self.nsimplex, 'triangle')}>"
+        if self.ndim == 2:
+            return f"<Delaunay of {points}: {counted(self.nsimplex, 'triangle')}>"
+        simplices = "1 tetrahedron" if self.nsimplex == 1 else f"{self.nsimplex} tetrahedra"
+        return f"<Delaunay of {points}: {simplices}>"
+
+
+def _triangles(points: NDArray[np.float64], method: str, workers: int) -> Any:
+    """Simplices, neighbours, duplicates and stages, as the core gives them."""
+    if points.shape[1] == 2:
+        return _core.triangulate2(points, method, workers)
+    try:
+        return _core.triangulate3(points, workers)
+    except DegenerateInputError as error:
+        if error.reason == "coplanar" or len(error.chain) == 3:
+            error.plane = plane_of(points, workers)
+        raise

@@ -8,7 +8,7 @@ be acted upon by a program. All of them pickle, so that they cross process bound
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -91,27 +91,34 @@ class NonFiniteError(InputError):
 
 
 class DegenerateInputError(InputError):
-    """The points span no area: too few of them are distinct, or all lie on one line.
+    """The points span no area, or no volume: too few are distinct, or they lie on a line or plane.
 
     Parameters
     ----------
     message : str
         What the user reads.
     reason : str, optional
-        ``"too few points"`` or ``"collinear"``.
+        ``"too few points"``, ``"collinear"`` or, in space, ``"coplanar"``.
     chain : iterable of int, optional
         Row numbers of the distinct points, in their order along the line.
+    plane : PlaneTriangulation, optional
+        The triangulation of the plane.
 
     Attributes
     ----------
     reason : str
-        ``"too few points"`` or ``"collinear"``; empty where it is not known.
+        ``"too few points"``, ``"collinear"`` or ``"coplanar"``; empty where it is not known.
     chain : ndarray of int64
-        Row numbers of the distinct points, in their order along the line.
+        Row numbers of the distinct points, in their order along the line; lexicographic where they
+        are on none. Empty for coplanar points.
+    plane : PlaneTriangulation or None
+        Of points in space that lie in one plane and not on one line, three points among them, the
+        Delaunay triangulation of that plane.
     """
 
     reason: str
     chain: NDArray[np.int64]
+    plane: Any
 
     def __init__(
         self,
@@ -119,10 +126,12 @@ class DegenerateInputError(InputError):
         *,
         reason: str = "",
         chain: Iterable[int] | NDArray[np.integer] = (),
+        plane: Any = None,
     ) -> None:
         super().__init__(message)
         self.reason = reason
         self.chain = _row_numbers(chain)
+        self.plane = plane
 
 
 class CrossingSegmentsError(InputError):

@@ -495,9 +495,9 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def own_copy(points: ArrayLike) -> Floats:
+def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> Floats:
     """Return points that no one else can change, neither now nor while the core runs."""
-    array = as_points(points, ndim=2)
+    array = as_points(points, ndim=ndim)
     if isinstance(points, list | tuple):
         return array
     if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):

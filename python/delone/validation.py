@@ -14,13 +14,14 @@ import numpy as np
 from delone import _core, topology
 from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
 from delone.errors import InternalError
+from delone.space import topology as space
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["SENTENCES", "ValidationReport", "validate"]
+__all__ = ["SENTENCES", "SpaceReport", "ValidationReport", "validate"]
 
 _SHOWN = 5
 
@@ -173,25 +174,76 @@ class ValidationReport:
         return "\n".join(lines)
 
 
-def validate(
-    points: ArrayLike, simplices: ArrayLike, *, neighbors: ArrayLike | None = None
-) -> ValidationReport:
-    """Prove that any triangles are the canonical Delaunay triangulation, or name the culprits.
+_SPACE_SENTENCES = SENTENCES | {
+    "orientation": (
+        "tetrahedron is not positively oriented",
+        "tetrahedra are not positively oriented",
+    ),
+    "facets": ("oriented face is used more than once", "oriented faces are used more than once"),
+    "neighbors": ("tetrahedron has wrong neighbours", "tetrahedra have wrong neighbours"),
+    "hull": ("boundary face is not on the hull", "boundary faces are not on the hull"),
+    "delaunay": (
+        "pair of tetrahedra is not locally Delaunay",
+        "pairs of tetrahedra are not locally Delaunay",
+    ),
+    "ties": (
+        "pair of cospherical tetrahedra is not canonical",
+        "pairs of cospherical tetrahedra are not canonical",
+    ),
+}
+
+
+def _no_triples() -> NDArray[np.int64]:
+    return np.empty((0, 3), dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SpaceReport(ValidationReport):
+    """The answer of ``validate()`` in space: truthy when the triangulation is right.
+
+    The fields are those of `ValidationReport`, with tetrahedra where that says triangles, and faces
+    of three vertices in `hull`; `edges` and `count` are always empty. One more:
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
+    facets : ndarray of int, shape (k, 3)
+        Oriented faces that more than one tetrahedron has.
+
+    Examples
+    --------
+    >>> from delone.validation import validate
+    >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    >>> print(validate(corners, [(0, 1, 2, 3)]))
+    a canonical Delaunay triangulation
+    >>> print(validate(corners, [(1, 0, 2, 3)]).orientation)
+    [0]
+    """
+
+    facets: NDArray[np.integer] = field(default_factory=_no_triples)
+
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = _SPACE_SENTENCES
+
+
+def validate(
+    points: ArrayLike, simplices: ArrayLike, *, neighbors: ArrayLike | None = None
+) -> ValidationReport:
+    """Prove that any simplices are the canonical Delaunay triangulation, or name the culprits.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates.
-    simplices : array_like of int, shape (m, 3)
-        Vertices of the triangles, as rows of `points`.
-    neighbors : array_like of int, shape (m, 3), optional
-        The triangle opposite each vertex, -1 outside. By default they follow from the triangles.
+    simplices : array_like of int, shape (m, d + 1)
+        Vertices of the triangles or tetrahedra, as rows of `points`.
+    neighbors : array_like of int, shape (m, d + 1), optional
+        The simplex opposite each vertex, -1 outside. By default they follow from the simplices.
 
     Returns
     -------
     ValidationReport
         Truthy when all is right. Only `ties` filled means Delaunay, but fanned in another way; only
-        `repeats`, that of equal points another one than the first is the vertex.
+        `repeats`, that of equal points another one than the first is the vertex. In space it is a
+        `SpaceReport`.
 
     Raises
     ------
@@ -216,14 +268,27 @@ def validate(
     not a canonical Delaunay triangulation:
       ties: 1 pair of cocircular triangles is not canonical: 0-1
     """
-    rows = as_points(points, ndim=2)
+    rows = as_points(points)
     require_finite(rows)
+    if rows.shape[1] == 3:
+        return _validate_space(rows, simplices, neighbors)
     triangles = as_simplices(simplices, len(rows), 2)
     if neighbors is None:
         beyond = topology.neighbors(triangles, len(rows))
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
     return ValidationReport.from_culprits(_core.validate2(rows, triangles, beyond))
+
+
+def _validate_space(
+    points: NDArray[np.float64], simplices: ArrayLike, neighbors: ArrayLike | None
+) -> SpaceReport:
+    tetrahedra = as_simplices(simplices, len(points), 3)
+    if neighbors is None:
+        beyond = space.neighbors(tetrahedra)
+    else:
+        beyond = as_neighbors(neighbors, len(tetrahedra), 3)
+    return SpaceReport.from_culprits(_core.validate3(points, tetrahedra, beyond))
 
 
 def _list(culprits: NDArray[np.integer]) -> str:

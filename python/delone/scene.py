@@ -1,0 +1,203 @@
+"""Pictures of triangulations in space and of convex hulls, by pyvista (extra ``pyvista``).
+
+Tetrahedra hide each other, so half of them can be left out where a plane cuts through, and each can
+be shrunk about its centre. Drawn off screen where no window is wanted or there is none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_choice
+from delone.errors import InputError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.delaunay import Delaunay
+    from delone.hull import ConvexHull
+
+__all__ = ["draw", "plot", "unstructured"]
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+# VTK's number for a tetrahedron.
+_TETRA = 10
+_FACE, _EDGE, _POINT = "#9ecae1", "#08306b", "#08306b"
+_SIZE = (900, 760)
+
+
+def unstructured(mesh: Delaunay, *, values: ArrayLike | None = None, name: str = "values") -> Any:
+    """Return tetrahedra as a grid of pyvista.
+
+    Parameters
+    ----------
+    mesh : Delaunay
+        A triangulation in space.
+    values : array_like, shape (n,) or (m,), optional
+        A number for each point or each tetrahedron.
+    name : str, optional
+        Of these numbers.
+
+    Returns
+    -------
+    pyvista.UnstructuredGrid
+        With the points and tetrahedra.
+
+    Raises
+    ------
+    InputError
+        The triangulation is in the plane, or there is another number of values.
+    MissingExtraError
+        pyvista is not installed.
+    """
+    pyvista = require("pyvista", extra="pyvista", what="drawing in space")
+    if mesh.ndim != 3:
+        raise InputError("a scene needs points in space: draw those in the plane by delone.plot")
+    return _grid(pyvista, mesh.points, mesh.simplices, values, name)
+
+
+def plot(
+    shape: Delaunay | ConvexHull,
+    *,
+    plotter: Any = None,
+    values: ArrayLike | None = None,
+    cut: str = "none",
+    shrink: float = 1.0,
+    points: bool = False,
+    off_screen: bool | None = None,
+    cmap: str = "viridis",
+) -> Any:
+    """Draw a triangulation in space, or a convex hull, with its edges.
+
+    Parameters
+    ----------
+    shape : Delaunay or ConvexHull
+        What to draw.
+    plotter : pyvista.Plotter, optional
+        Where to draw; by default a new one.
+    values : array_like, shape (n,) or (m,), optional
+        A number for each point or each simplex, for colours. By default one colour.
+    cut : {"none", "x", "y", "z"}, optional
+        The axis along which the farther half of the tetrahedra is left out.
+    shrink : float, optional
+        How much of each tetrahedron is drawn, up to 1.
+    points : bool, optional
+        Whether the points are drawn as well.
+    off_screen : bool, optional
+        Whether a new plotter draws without a window.
+    cmap : str, optional
+        The colours of values.
+
+    Returns
+    -------
+    pyvista.Plotter
+        What was drawn on: ``show()`` opens the window, ``screenshot(path)`` writes a picture.
+
+    Raises
+    ------
+    InputError
+        `shape` is in the plane, or an option is none of its choices.
+    MissingExtraError
+        pyvista is not installed.
+
+    Examples
+    --------
+    >>> from delone import Delaunay, datasets, scene
+    >>> mesh = Delaunay(datasets.uniform(50, ndim=3))
+    >>> plotter = scene.plot(mesh, values=mesh.volumes, cut="x", off_screen=True)
+    >>> plotter.close()
+    """
+    pyvista = require("pyvista", extra="pyvista", what="drawing in space")
+    as_choice(cut, ("none", *_AXES), name="cut")
+    if shape.ndim != 3:
+        raise InputError("a scene needs points in space: draw those in the plane by delone.plot")
+    if not 0 < shrink <= 1:
+        raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
+    if plotter is None:
+        plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(_SIZE))
+        plotter.set_background("white")
+    rows = _kept(shape, cut)
+    chosen = None if values is None else np.asarray(values, dtype=np.float64)
+    if chosen is not None and len(chosen) == shape.nsimplex != shape.npoints:
+        chosen = chosen[rows]
+    grid = _grid(pyvista, shape.points, shape.simplices[rows], chosen, "values")
+    if shrink < 1:
+        grid = grid.shrink(shrink)
+    colours = {"color": _FACE} if values is None else {"scalars": "values", "cmap": cmap}
+    plotter.add_mesh(grid, show_edges=True, edge_color=_EDGE, line_width=1, **colours)
+    if points:
+        plotter.add_points(
+            np.array(shape.points), color=_POINT, point_size=6, render_points_as_spheres=True
+        )
+    return plotter
+
+
+def draw(path: str | os.PathLike[str], shape: Delaunay | ConvexHull, **options: Any) -> None:
+    """Draw into a PNG file, off screen.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    shape : Delaunay or ConvexHull
+        What to draw.
+    **options
+        As in `plot`.
+
+    Raises
+    ------
+    InputError
+        As in `plot`.
+    MissingExtraError
+        pyvista is not installed.
+    """
+    plotter = plot(shape, off_screen=True, **options)
+    try:
+        # Not along an axis, so that nothing is seen edge on.
+        plotter.camera_position = "xy"
+        plotter.camera.azimuth, plotter.camera.elevation = 30, 20
+        plotter.reset_camera()
+        plotter.screenshot(str(path))
+    finally:
+        plotter.close()
+
+
+def _kept(shape: Delaunay | ConvexHull, cut: str) -> NDArray[np.intp]:
+    """The simplices whose centre is on the nearer side of the middle of the box."""
+    if cut == "none":
+        return np.arange(shape.nsimplex)
+    axis = _AXES[cut]
+    along = shape.points[:, axis]
+    middle = along.min() / 2 + along.max() / 2
+    width = shape.simplices.shape[1]
+    centre = sum(along[shape.simplices[:, k]] / width for k in range(width))
+    return np.flatnonzero(centre <= middle)
+
+
+def _grid(
+    pyvista: Any,
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    values: ArrayLike | None,
+    name: str,
+) -> Any:
+    width = simplices.shape[1]
+    if width == 4:
+        grid = pyvista.UnstructuredGrid({_TETRA: simplices}, np.array(points))
+    else:
+        grid = pyvista.PolyData.from_regular_faces(np.array(points), simplices)
+    if values is not None:
+        array = np.asarray(values, dtype=np.float64)
+        if len(array) not in (len(points), len(simplices)):
+            raise InputError(
+                f"values must be one for each of {len(points)} points or {len(simplices)} "
+                f"simplices, got {len(array)}"
+            )
+        data = grid.point_data if len(array) == len(points) else grid.cell_data
+        data[name] = array
+    return grid

@@ -1,0 +1,258 @@
+"""Point sets in space to try, test and measure with: seeded generators.
+
+As those in the plane, every generator is a function of the number of points and a seed, returns
+float64 points of shape (n, 3), and is here because it breaks something. `GENERATORS` lists them by
+name; `delone.datasets` has it as `GENERATORS3`.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone._arrays import as_count
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    Points = NDArray[np.float64]
+
+__all__ = ["GENERATORS"]
+
+
+def uniform(n: int, *, seed: int = 0) -> Points:
+    """Return points uniform in the unit cube.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    return np.random.default_rng(seed).random((as_count(n), 3))
+
+
+def grid(n: int, *, seed: int | None = 0) -> Points:
+    """Return the first n points of the smallest cubic grid of integers that has as many.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int or None, optional
+        Of their order; None for that of the grid.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points: each small cube is eight points on one sphere.
+    """
+    n = as_count(n)
+    side = max(1, int(np.ceil(np.cbrt(n))))
+    rows = np.arange(n)
+    columns = (rows // side**2, rows // side % side, rows % side)
+    points = np.column_stack(columns).astype(np.float64)
+    return points if seed is None else np.random.default_rng(seed).permutation(points)
+
+
+def integer_lattice(n: int, *, seed: int = 0, side: int = 4) -> Points:
+    """Return random points of a cubic lattice, most of them more than once.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+    side : int, optional
+        Lattice points along an axis.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    rng = np.random.default_rng(seed)
+    return rng.integers(0, side, (as_count(n), 3)).astype(np.float64)
+
+
+def sphere(n: int, *, seed: int = 0) -> Points:
+    """Return points on the unit sphere, as well as doubles allow: all are on the hull.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    points = np.random.default_rng(seed).standard_normal((as_count(n), 3))
+    points /= np.sqrt((points * points).sum(axis=1))[:, None]
+    return points
+
+
+def integer_sphere(n: int, *, seed: int = 0) -> Points:
+    """Return integer points exactly on one sphere about the origin, distinct where n is not large.
+
+    Parameters
+    ----------
+    n : int
+        Number of points; beyond 294 some come again.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points, at distance 45.
+    """
+    n = as_count(n)
+    radius = 45
+    axis = np.arange(-radius, radius + 1)
+    x, y = (a.ravel() for a in np.meshgrid(axis, axis, indexing="ij"))
+    rest = radius**2 - x * x - y * y
+    z = np.sqrt(np.maximum(rest, 0)).round().astype(np.int64)
+    on = (rest >= 0) & (z * z == rest)
+    half = np.column_stack((x[on], y[on], z[on]))
+    below = half[half[:, 2] > 0] * (1, 1, -1)
+    points = np.concatenate((half, below)).astype(np.float64)
+    order = np.random.default_rng(seed).permutation(len(points))
+    return points[np.resize(order, n)]
+
+
+def clusters(n: int, *, seed: int = 0) -> Points:
+    """Return normal clusters in the unit cube, of widths over ten orders of magnitude.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    n, rng = as_count(n), np.random.default_rng(seed)
+    centres, widths = rng.random((11, 3)), np.logspace(-11, -1, 11)
+    which = rng.integers(0, 11, n)
+    return centres[which] + widths[which, None] * rng.standard_normal((n, 3))
+
+
+def planes(n: int, *, seed: int = 0, count: int = 3) -> Points:
+    """Return lattice points of a few parallel tilted planes: most are coplanar and cocircular.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+    count : int, optional
+        Number of planes.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    n, rng = as_count(n), np.random.default_rng(seed)
+    side = max(2, int(np.sqrt(n)))
+    x, y = rng.integers(0, side, (2, n))
+    return np.column_stack((x, y, x + 2 * y + 7 * rng.integers(0, count, n))).astype(np.float64)
+
+
+def near_coplanar(n: int, *, seed: int = 0) -> Points:
+    """Return points within a few of the least doubles of a plane.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    n, rng = as_count(n), np.random.default_rng(seed)
+    points = rng.random((n, 3))
+    points[:, 2] = np.ldexp(rng.integers(0, 3, n).astype(np.float64), -1074)
+    return points
+
+
+def prism(n: int, *, seed: int = 0) -> Points:
+    """Return points of a prism over a regular polygon: two large cocircular facets.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points: copies of one rounded polygon in two planes.
+    """
+    n = as_count(n)
+    angle = 2 * np.pi * (np.arange(n) // 2) / max(1, (n + 1) // 2)
+    points = np.column_stack((np.cos(angle), np.sin(angle), (np.arange(n) % 2).astype(np.float64)))
+    return np.random.default_rng(seed).permutation(points)
+
+
+def mixed_exponents(n: int, *, seed: int = 0) -> Points:
+    """Return coordinates of all magnitudes that doubles have, subnormal ones included.
+
+    Parameters
+    ----------
+    n : int
+        Number of points.
+    seed : int, optional
+        The same seed gives the same points.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+        The points.
+    """
+    n, rng = as_count(n), np.random.default_rng(seed)
+    return np.ldexp(rng.uniform(-1, 1, (n, 3)), rng.integers(-1073, 1024, (n, 3)))
+
+
+_ALL: dict[str, Callable[..., Points]] = {
+    each.__name__: each
+    for each in (
+        clusters,
+        grid,
+        integer_lattice,
+        integer_sphere,
+        mixed_exponents,
+        near_coplanar,
+        planes,
+        prism,
+        sphere,
+        uniform,
+    )
+}
+GENERATORS: Mapping[str, Callable[..., Points]] = MappingProxyType(_ALL)

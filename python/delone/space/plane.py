@@ -1,0 +1,130 @@
+"""The Delaunay triangulation of points that all lie in one plane of space.
+
+In-circle tests in a tilted plane have no exact coordinates of the plane to work with. So the points
+are joined with one more off the plane and triangulated in space: spheres cut the plane in circles,
+hence the tetrahedra are cones over the Delaunay triangles, and ties go by the same rule.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core, predicates, topology
+from delone.space.topology import FACES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["PlaneTriangulation", "plane_of"]
+
+# Axes of the projections to coordinate planes: that along z first, then along y, then along x.
+_PROJECTIONS = ((2, (0, 1)), (1, (2, 0)), (0, (1, 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneTriangulation:
+    """The Delaunay triangulation of points of one plane in space.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        The coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        The triangles as rows of `points`: counter-clockwise seen from where z grows; in a vertical
+        plane from where y grows, and in one of constant x from where x grows.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each vertex, -1 outside.
+    duplicates : ndarray of int32, shape (k, 2)
+        Rows that repeat earlier ones, and these.
+
+    Examples
+    --------
+    >>> from delone import DegenerateInputError, Delaunay
+    >>> try:
+    ...     Delaunay([(0, 0, 0), (1, 0, 0), (1, 1, 1), (0, 1, 1)])
+    ... except DegenerateInputError as error:
+    ...     reason, plane = error.reason, error.plane
+    >>> reason, plane.simplices.shape, len(plane.convex_hull)
+    ('coplanar', (2, 3), 4)
+    """
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    duplicates: Indices
+
+    def __post_init__(self) -> None:
+        for array in (self.points, self.simplices, self.neighbors, self.duplicates):
+            array.flags.writeable = False
+
+    @cached_property
+    def convex_hull(self) -> Indices:
+        """The edges of the convex hull, (h, 2), each with the triangulation to its left."""
+        return topology.boundary_edges(self.simplices, self.neighbors)
+
+
+def plane_of(points: Floats, workers: int) -> PlaneTriangulation | None:
+    """Triangulate points of one plane.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        Finite points, all in one plane.
+    workers : int
+        How many threads may work.
+
+    Returns
+    -------
+    PlaneTriangulation or None
+        None where all points lie on one line.
+    """
+    corners = _corners(points)
+    if corners is None:
+        return None
+    axis, pair, first = corners
+    extended = np.concatenate((points, _apex(points, first[0], axis)))
+    simplices, neighbors, duplicates, _ = _core.triangulate3(extended, workers)
+    # Three columns of each row: those of the base, which is opposite the apex.
+    rows, corner = np.nonzero(simplices == len(points))
+    order = np.array(FACES)[corner]
+    triangles = np.take_along_axis(simplices[rows], order, axis=1)
+    beyond = np.take_along_axis(neighbors[rows], order, axis=1)
+    if predicates.orient2d(*points[triangles[0]][:, pair]) < 0:
+        triangles, beyond = triangles[:, [0, 2, 1]], beyond[:, [0, 2, 1]]
+    return PlaneTriangulation(
+        points.view(), np.ascontiguousarray(triangles), np.ascontiguousarray(beyond), duplicates
+    )
+
+
+def _corners(points: Floats) -> tuple[int, list[int], tuple[int, int, int]] | None:
+    """An axis that is not parallel to the plane, the other two, and three points off a line."""
+    if len(points) < 3:
+        return None
+    other = np.flatnonzero((points != points[0]).any(axis=1))
+    if not len(other):
+        return None
+    a, b = 0, int(other[0])
+    for axis, pair in _PROJECTIONS:
+        flat = np.ascontiguousarray(points[:, pair])
+        turned = np.flatnonzero(predicates.orient2d(flat[a], flat[b], flat))
+        if len(turned):
+            return axis, list(pair), (a, b, int(turned[0]))
+    return None
+
+
+def _apex(points: Floats, row: int, axis: int) -> Floats:
+    """A point off the plane, as far from one of its points as the points are from each other."""
+    apex = points[[row]]
+    with np.errstate(over="ignore"):
+        size = float((points.max(axis=0) - points.min(axis=0)).max())
+        at = float(apex[0, axis])
+        places = [at + size, at - size, 2 * at, 0.0, 1.0]
+    apex[0, axis] = next(place for place in places if np.isfinite(place) and place != at)
+    return apex

@@ -1,0 +1,200 @@
+"""What follows from the arrays of tetrahedra alone: edges, faces, boundary, neighbours.
+
+No coordinate and no predicate is needed here. Assumed is a triangulation as the core exports it:
+tetrahedra positively oriented, `neighbors[t, k]` across the face opposite vertex k, -1 outside.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Indices = NDArray[np.int32]
+
+__all__ = ["FACES", "boundary_faces", "edges", "faces", "is_mutual", "neighbors"]
+
+# The face opposite vertex k, counter-clockwise as seen from outside.
+FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
+
+_PAIRS = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
+# Simplices whose edges are sorted at once, so that the keys of all need not be there together.
+_CHUNK = 1 << 20
+
+
+def edges(simplices: Indices, npoints: int) -> Indices:
+    """Return every edge once.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra.
+    npoints : int
+        Number of points.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        The smaller vertex first, rows ascending.
+
+    Notes
+    -----
+    O(m log m).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.space.topology import edges
+    >>> edges(np.array([[0, 1, 2, 3]]), 4).tolist()
+    [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+    """
+    parts = [np.empty(0, dtype=np.int64)]
+    for start in range(0, len(simplices), _CHUNK):
+        part = simplices[start : start + _CHUNK].astype(np.int64)
+        part.sort(axis=1)
+        keys = np.concatenate([part[:, i] * npoints + part[:, j] for i, j in _PAIRS])
+        parts.append(_distinct(keys))
+    keys = _distinct(np.concatenate(parts)) if len(parts) > 2 else parts[-1]
+    return np.column_stack(np.divmod(keys, max(npoints, 1))).astype(np.int32)
+
+
+def _distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
+    keys.sort()
+    fresh = np.ones(len(keys), dtype=bool)
+    np.not_equal(keys[1:], keys[:-1], out=fresh[1:])
+    return keys[fresh]
+
+
+def faces(simplices: Indices, neighbors: Indices) -> Indices:
+    """Return every face once.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra.
+    neighbors : ndarray of int32, shape (m, 4)
+        The tetrahedron opposite each vertex.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 3)
+        Vertices ascending in each row, rows ascending.
+
+    Notes
+    -----
+    O(m log m).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.space.topology import faces
+    >>> faces(np.array([[0, 1, 2, 3]]), np.array([[-1, -1, -1, -1]])).tolist()
+    [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
+    """
+    # Of the two sides of an inner face, the one in the later tetrahedron counts.
+    once = neighbors < np.arange(len(simplices), dtype=np.int32)[:, None]
+    found = simplices[:, FACES][once]
+    found.sort(axis=1)
+    return found[np.lexsort(found.T[::-1])]
+
+
+def boundary_faces(simplices: Indices, neighbors: Indices) -> Indices:
+    """Return the faces that have a tetrahedron on one side only.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra.
+    neighbors : ndarray of int32, shape (m, 4)
+        The tetrahedron opposite each vertex.
+
+    Returns
+    -------
+    ndarray of int32, shape (h, 3)
+        Counter-clockwise as seen from outside, in the order of the tetrahedra.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.space.topology import boundary_faces
+    >>> boundary_faces(np.array([[0, 1, 2, 3]]), np.array([[-1, 0, -1, 0]])).tolist()
+    [[1, 2, 3], [0, 1, 3]]
+    """
+    simplex, corner = np.nonzero(neighbors < 0)
+    return np.take_along_axis(simplices[simplex], np.array(FACES)[corner], axis=1)
+
+
+def neighbors(simplices: Indices) -> Indices:
+    """Return the tetrahedron opposite each vertex.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra, all of one orientation; no face is used more than twice.
+
+    Returns
+    -------
+    ndarray of int32, shape (m, 4)
+        Tetrahedra, -1 where there is none.
+
+    Notes
+    -----
+    O(m log m).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.space.topology import neighbors
+    >>> neighbors(np.array([[0, 1, 2, 3], [4, 1, 3, 2]])).tolist()
+    [[1, -1, -1, -1], [0, -1, -1, -1]]
+    """
+    sides = np.sort(simplices[:, FACES].reshape(-1, 3), axis=1)
+    order = np.lexsort(sides.T)
+    pair = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))
+    found = np.full(4 * len(simplices), -1, dtype=np.int32)
+    one, other = order[pair], order[pair + 1]
+    found[one], found[other] = other // 4, one // 4
+    return found.reshape(-1, 4)
+
+
+def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
+    """Tell for each tetrahedron whether its row of neighbours is right.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra.
+    neighbors : ndarray of int32, shape (m, 4)
+        The tetrahedron opposite each vertex, in range.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+        Whether each neighbour has the same three vertices, and this tetrahedron across them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.space.topology import is_mutual
+    >>> simplices = np.array([[0, 1, 2, 3], [4, 1, 3, 2]])
+    >>> is_mutual(simplices, np.array([[1, -1, -1, -1], [0, -1, -1, -1]]))
+    array([ True,  True])
+    >>> is_mutual(simplices, np.array([[1, -1, -1, -1], [-1, 0, -1, -1]]))
+    array([False, False])
+    """
+    here = np.arange(len(simplices), dtype=neighbors.dtype)
+    right = np.ones(len(simplices), dtype=bool)
+    # Which face of the neighbour has the same vertices: all but the one at its corner j.
+    for k in range(4):
+        beyond = neighbors[:, k]
+        inner = beyond >= 0
+        mine = np.sort(simplices[:, FACES[k]], axis=1)
+        back = np.zeros(len(simplices), dtype=bool)
+        for j in range(4):
+            theirs = np.sort(simplices[beyond][:, FACES[j]], axis=1)
+            back |= (neighbors[beyond, j] == here) & (mine == theirs).all(axis=1)
+        right &= back | ~inner
+    return right
