@@ -48,6 +48,8 @@ def finer(
     progress: Any,
 ) -> Mesh:
     """Return a finer mesh; see ``Mesh.refine``."""
+    if not isinstance(ratio, int | float | np.integer | np.floating):
+        raise DtypeError(f"ratio must be a number, got {ratio!r:.60}")
     if not 0 < ratio <= 1:
         raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
@@ -101,7 +103,7 @@ def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
     chosen = slice(None) if marked is None else _chosen(marked, mesh.nsimplex)
     free = np.zeros(mesh.npoints, dtype=bool)
     free[mesh.simplices[chosen]] = True
-    free &= (mesh.point_source < 0) & (mesh._on < 0)
+    free &= mesh._inner
     free[mesh.simplices[mesh._below]] = False
     gone = _independent(mesh, free)
     while gone.any():

@@ -296,6 +296,14 @@ class Mesh(Triangulation):
 
     @property
     @kept
+    def _inner(self) -> Bools:
+        """Points that were added inside: neither on a line nor, as crossings are, its end."""
+        found = (self._point_source < 0) & (self._on < 0)
+        found[self._ends] = False
+        return sealed(found)
+
+    @property
+    @kept
     def _below(self) -> NDArray[np.int64]:
         """Triangles below the bound."""
         return sealed(quality.below(self._points, self._simplices, float(self._bound[0])))

@@ -169,9 +169,11 @@ def measured(points: Floats, simplices: Indices) -> Quality:
         dots.sort(axis=0)
         found[0, block] = np.degrees(np.arctan2(twice, dots[2]))
         found[1, block] = np.degrees(np.arctan2(twice, dots[0]))
-        around = lengths.sum(axis=0) * lengths.prod(axis=0)
-        found[2, block] = 4 * twice * twice / around
-        found[3, block] = ordered[2] / ordered[0]
+        # Where squares of lengths leave the range, ratios are infinite or NaN.
+        with np.errstate(all="ignore"):
+            around = lengths.sum(axis=0) * lengths.prod(axis=0)
+            found[2, block] = 4 * twice * twice / around
+            found[3, block] = ordered[2] / ordered[0]
     return Quality(
         smallest_angle=found[0],
         largest_angle=found[1],

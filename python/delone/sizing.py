@@ -17,7 +17,7 @@ import numpy as np
 
 from delone import _core, geometry
 from delone._arrays import as_workers
-from delone.errors import BudgetExceededError, InputError
+from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
 from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class Sizing:
         if given is None:
             return
         if not isinstance(given, Mapping):
-            self._by_region = np.minimum(self._by_region, area(_positive(given, name)))
+            self._by_region = np.minimum(self._by_region, _cap(given, name, area))
             return
         unknown = sorted(set(given) - set(regions.tolist()))
         if unknown:
@@ -79,7 +79,7 @@ class Sizing:
             raise InputError(f"{name}: there is no region {unknown[0]!r}; there are {known}")
         for region, value in given.items():
             at = np.flatnonzero(regions == region)
-            cap = area(_positive(value, f"{name} of region {region}"))
+            cap = _cap(value, f"{name} of region {region}", area)
             self._by_region[at] = np.minimum(self._by_region[at], cap)
 
     @property
@@ -93,7 +93,12 @@ class Sizing:
         if self._evaluate is None or not len(places):
             return caps
         sizes = _checked(self._evaluate(places), places)
-        found: Floats = np.minimum(caps, EQUILATERAL * sizes * sizes)
+        with np.errstate(over="ignore", under="ignore"):
+            areas = EQUILATERAL * sizes * sizes
+        lost = np.flatnonzero((areas == 0) | (np.isinf(areas) & np.isfinite(sizes)))
+        if lost.size:
+            raise LimitError(_out_of_range(f"size {sizes[lost[0]]} at {_place(places[lost[0]])}"))
+        found: Floats = np.minimum(caps, areas)
         return found
 
     def caps(self, domain: Domain, samples: Samples | None = None) -> tuple[Floats, bool]:
@@ -148,10 +153,15 @@ class Sizing:
         """
         inside = np.flatnonzero(domain.labels >= 0)
         areas = geometry.areas(domain.points, domain.simplices[inside])
-        inverse = 1 / self._at(_centres(domain, inside), domain.labels[inside])
-        if samples is not None:
-            inverse = samples.mean_inverse(domain, inside, inverse)
-        return float((areas * inverse).sum()) / _SHARE
+        caps = self._at(_centres(domain, inside), domain.labels[inside])
+        if not np.isfinite(areas[np.isfinite(caps)]).all():
+            raise LimitError(_out_of_range("the area of the domain"))
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            inverse = 1 / caps
+            if samples is not None:
+                inverse = samples.mean_inverse(domain, inside, inverse)
+            # An area without a cap counts nothing, be it infinite.
+            return float(np.where(inverse > 0, areas * inverse, 0).sum()) / _SHARE
 
     def require_within(self, domain: Domain, samples: Samples | None, max_points: int) -> None:
         """Refuse sizes that no mesh with so few points can have.
@@ -253,8 +263,28 @@ def _positive(value: Any, name: str) -> float:
     return number
 
 
+def _cap(value: Any, name: str, area: Callable[[float], float]) -> float:
+    number = _positive(value, name)
+    cap = area(number)
+    if cap == 0 or (math.isinf(cap) and math.isfinite(number)):
+        raise LimitError(_out_of_range(f"{name} {value!r}"))
+    return cap
+
+
+def _out_of_range(what: str) -> str:
+    return f"{what}: its square leaves the range of doubles; scale the coordinates"
+
+
+def _place(place: Floats) -> str:
+    x, y = place.tolist()
+    return f"({x!r}, {y!r})"
+
+
 def _checked(sizes: Any, places: Floats) -> Floats:
-    found = np.asarray(sizes, dtype=np.float64)
+    given = np.asarray(sizes)
+    if given.dtype.kind not in "iuf":
+        raise DtypeError(f"size must return real numbers, got dtype {given.dtype}")
+    found = given.astype(np.float64)
     if found.ndim == 0:
         found = np.full(len(places), float(found))
     if found.shape != (len(places),):
@@ -263,9 +293,8 @@ def _checked(sizes: Any, places: Floats) -> Floats:
         )
     wrong = np.flatnonzero(~(found > 0))
     if wrong.size:
-        x, y = places[wrong[0]].tolist()
         raise InputError(
-            f"size is {found[wrong[0]]} at ({x!r}, {y!r}), it must be above 0; so are "
+            f"size is {found[wrong[0]]} at {_place(places[wrong[0]])}, it must be above 0; so are "
             f"{len(wrong)} of {len(places)} places asked for"
         )
     return found

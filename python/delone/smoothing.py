@@ -53,7 +53,7 @@ def smoothed(mesh: Mesh, iterations: int, method: str) -> Mesh:
 
 def _free(mesh: Mesh) -> Bools:
     """Points that were added and lie on no segment, except those of triangles that are spoilt."""
-    free = (mesh.point_source < 0) & (mesh._on < 0)
+    free = mesh._inner.copy()
     free[mesh.simplices[mesh._below]] = False
     return free
 
@@ -176,9 +176,7 @@ def _astray(
 ) -> NDArray[np.intp]:
     """Return the free points that a triangle outside of their region has for a corner."""
     own = np.full(len(kept), -2, dtype=np.int32)
-    inner = np.zeros(mesh.npoints, dtype=bool)
-    inner[mesh.point_source < 0] = True
-    inner[mesh._on >= 0] = False
+    inner = mesh._inner
     first = mesh.vertex_to_simplex
     region = np.searchsorted(mesh._regions, mesh.region[first]).astype(np.int32)
     own[row[kept]] = np.where(inner[kept], region[kept], -2)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import delone
-from delone import InputError
+from delone import DtypeError, InputError
 from delone.testing import assert_mesh
 
 THIRTY = Fraction(3, 4)
@@ -59,6 +61,8 @@ def test_nothing_to_refine_changes_nothing(mesh: delone.Mesh) -> None:
     same = mesh.refine()
     assert same.nsimplex == mesh.nsimplex
     assert mesh.refine([]).nsimplex == mesh.nsimplex
+    with pytest.raises(DtypeError, match="ratio"):
+        mesh.refine([0], ratio="half")  # type: ignore[arg-type]
     for wrong in ([-1], [mesh.nsimplex], np.zeros(3, dtype=bool), [[0]]):
         with pytest.raises(InputError):
             mesh.refine(wrong)
@@ -105,6 +109,39 @@ def test_smoothing_beside_sharp_corners() -> None:
     better = mesh.smooth(5, "odt")
     assert_mesh(better, CORNER, RAYS, squared_cosine=THIRTY, spoilt=better.report.below)
     assert len(better.report.below) <= len(mesh.report.below)
+
+
+def test_crossings_of_segments_stay() -> None:
+    """They were added, but hold segments together."""
+    shapes = [
+        {"type": "Polygon", "coordinates": [[(0, 0), (6, 0), (6, 5), (0, 5), (0, 0)]]},
+        {"type": "LineString", "coordinates": [(1, 1), (5, 4)]},
+        {"type": "LineString", "coordinates": [(1, 4), (5, 1.5)]},
+        {"type": "LineString", "coordinates": [(3, -1), (3.5, 6)]},
+    ]
+    mesh = delone.mesh(shapes, max_area=0.02)
+    ends = np.flatnonzero((mesh.point_source < 0) & np.isin(np.arange(mesh.npoints), mesh._ends))
+    assert len(ends) == 5
+    places = {tuple(p) for p in mesh.points[ends].tolist()}
+    for other in (mesh.coarsen(), mesh.smooth(3, "laplace"), mesh.coarsen().coarsen().smooth(2)):
+        assert places <= {tuple(p) for p in other.points.tolist()}
+        assert other.areas.sum() == pytest.approx(30)
+        assert len(other.report.below) <= len(mesh.report.below)
+
+
+CORPUS = Path(__file__).parents[1] / "corpus"
+
+
+@pytest.mark.parametrize("name", ["earcut-bad-hole", "earcut-water", "earcut-touching-holes"])
+def test_real_outlines_that_cross(name: str) -> None:
+    case = json.loads((CORPUS / f"{name}.json").read_text("utf-8"))
+    points = np.array(case["points"], dtype=float)
+    rings = np.split(points, case["rings"][1:])
+    shape = {"type": "Polygon", "coordinates": [[*r.tolist(), r[0].tolist()] for r in rings]}
+    mesh = delone.mesh(shape, max_area=np.ptp(points, axis=0).prod() / 2000)
+    other = mesh.refine(np.arange(0, mesh.nsimplex, 7)).coarsen().smooth(2, "odt")
+    assert other.areas.sum() == pytest.approx(mesh.areas.sum())
+    assert len(other.report.below) <= 1.1 * len(mesh.report.below) + 2
 
 
 def test_smoothing_while_meshing() -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
 import pytest
 
 import delone
-from delone import Delaunay, InputError
+from delone import Delaunay, DtypeError, InputError, LimitError
 
 SQUARE = [(0.0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
 EQUILATERAL = np.sqrt(3) / 4
@@ -108,3 +109,28 @@ def test_a_size_that_never_ends_is_stopped() -> None:
     mesh = delone.mesh(SQUARE, size=size, max_points=3000)
     assert mesh.report.exhausted
     assert mesh.nadded == 3000
+
+
+def test_sizes_that_are_no_numbers() -> None:
+    for wrong in (lambda xy: xy[:, 0] + 1j, lambda xy: ["a"] * len(xy), lambda _: None):
+        with pytest.raises(DtypeError, match="real numbers"):
+            delone.mesh(SQUARE, size=wrong)
+
+
+def test_sizes_whose_squares_leave_the_range_are_refused() -> None:
+    """A cap that cannot be compared is never passed over in silence."""
+    points, ring = np.array(SQUARE[0], dtype=float), SQUARE[1]
+    for scale, options in (
+        (1e300, {"size": 1e299}),
+        (1e300, {"max_area": 1.0}),
+        (1e-300, {"size": 1e-301}),
+        (1e-300, {"size": {0: 1e-301}}),
+        (1e-300, {"size": lambda xy: np.full(len(xy), 1e-301)}),
+    ):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with pytest.raises(LimitError, match="range of doubles"):
+                delone.mesh((points * scale, ring), **options)
+    for scale in (1e300, 1e-300):
+        mesh = delone.mesh((points * scale, ring), min_angle=33)
+        assert mesh.nsimplex == 2
