@@ -16,7 +16,7 @@ from delone import domains, topology
 from delone._arrays import as_count
 from delone.domains import Counts
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
-from delone.refine import Limits, as_min_angle, rounds
+from delone.refine import MOST_ADDED, Limits, as_min_angle, rounds
 from delone.sizing import EQUILATERAL, Sizing
 from delone.smoothing import rebuilt, worse
 
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
 
 __all__ = ["coarsened", "finer"]
-
-_MOST_ADDED = 5_000_000
 
 
 def finer(
@@ -53,7 +51,7 @@ def finer(
     if not 0 < ratio <= 1:
         raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
-    most = _MOST_ADDED if max_points is None else as_count(max_points, name="max_points")
+    most = MOST_ADDED if max_points is None else as_count(max_points, name="max_points")
     limits = Limits(bound, most, False, progress, mesh._workers)
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:

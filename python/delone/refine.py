@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Limits", "as_min_angle", "as_rows", "mesh", "rounds"]
+__all__ = ["MOST_ADDED", "Limits", "as_min_angle", "as_rows", "filled", "mesh", "rounds"]
 
 # Ten million triangles, in about 4 GB.
-_MOST_ADDED = 5_000_000
+MOST_ADDED = 5_000_000
 # Above this nobody has seen refinement end on most inputs.
 _DARING = 33.0
 # Each round that asks for sizes makes triangles smaller by up to four; 80 span what doubles hold.
@@ -51,6 +51,8 @@ class Limits(NamedTuple):
     circles: bool
     progress: Callable[[int, float], object] | None
     workers: int | None
+    # Whether sizes that need more points are an error before the work starts.
+    refuse: bool = True
 
 
 def mesh(
@@ -169,7 +171,7 @@ def mesh(
         raise InputError("a mesh always conforms to its segments: conforming must be True")
     limits = Limits(
         as_min_angle(min_angle),
-        _MOST_ADDED if max_points is None else as_count(max_points, name="max_points"),
+        MOST_ADDED if max_points is None else as_count(max_points, name="max_points"),
         bool(delaunay),
         progress,
         workers,
@@ -177,22 +179,74 @@ def mesh(
     as_workers(workers)
     clock = time.perf_counter()
     base, region = _base(domain, holes, regions, crossing, workers)
+    stages = {"triangulate": time.perf_counter() - clock}
+    found = filled(
+        base,
+        region,
+        limits,
+        sizes=(max_area, size),
+        frozen=frozen,
+        markers=(segment_markers, point_markers),
+        stages=stages,
+    )
+    return found.smooth(smooth) if smooth else found
+
+
+def filled(
+    base: ConstrainedDelaunay,
+    region: Indices,
+    limits: Limits,
+    *,
+    sizes: tuple[Any, Any],
+    frozen: bool | str | ArrayLike,
+    markers: tuple[ArrayLike | None, ArrayLike | None],
+    stages: dict[str, float],
+) -> Mesh:
+    """Mesh what a constrained triangulation keeps.
+
+    Parameters
+    ----------
+    base : ConstrainedDelaunay
+        The triangulation.
+    region : ndarray of int32, shape (m,)
+        The region of each of its triangles.
+    limits : Limits
+        How far.
+    sizes : tuple
+        `max_area` and `size` of `mesh`.
+    frozen : bool, "boundary" or array_like of bool
+        As for `mesh`.
+    markers : tuple
+        `segment_markers` and `point_markers` of `mesh`.
+    stages : dict
+        Seconds so far, by stage; those of the refinement are added.
+
+    Returns
+    -------
+    Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        As for `mesh`.
+    """
+    clock = time.perf_counter()
+    if not base.nsimplex:
+        raise InputError(f"the domain has no inside: {_open_ends(base)}")
     count = len(base.input_segments)
     start = domains.of_constrained(
         base,
         region=region,
-        segment_markers=as_rows(segment_markers, count, "segment_markers"),
-        point_markers=as_rows(point_markers, base.npoints - base.nadded, "point_markers"),
+        segment_markers=as_rows(markers[0], count, "segment_markers"),
+        point_markers=as_rows(markers[1], base.npoints - base.nadded, "point_markers"),
         frozen=_frozen(frozen, count),
     )
     if isinstance(frozen, str):
         start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
-    stages = {"triangulate": time.perf_counter() - clock}
-    clock = time.perf_counter()
-    made, counts = rounds(start, Sizing(max_area, size, start.regions), limits)
+    made, counts = rounds(start, Sizing(*sizes, start.regions), limits)
     stages["refine"] = time.perf_counter() - clock
-    found = Mesh._of(made, counts, limits.min_angle, stages, workers)
-    return found.smooth(smooth) if smooth else found
+    return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)
 
 
 def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Counts]:
@@ -215,7 +269,8 @@ def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Coun
         The points added.
     """
     samples = sizing.samples(domain, limits.workers)
-    sizing.require_within(domain, samples, limits.max_points)
+    if limits.refuse:
+        sizing.require_within(domain, samples, limits.max_points)
     counts = Counts()
     for turn in range(_MOST_ROUNDS):
         caps, done = sizing.caps(domain, samples)
@@ -373,8 +428,6 @@ def _base(
             domain, boundary="polygons", crossing=crossing or "split", workers=workers
         )
         region = base.polygon
-    if not base.nsimplex:
-        raise InputError(f"the domain has no inside: {_open_ends(base)}")
     return base, region
 
 

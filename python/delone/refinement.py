@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from delone.domains import Lines
 
-    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
@@ -173,8 +172,8 @@ def report(
     measures = quality.measured(points, simplices)
     rows = quality.below(points, simplices, min_angle)
     corner = _responsible(points, simplices[rows], sides[rows], on, lines)
-    touched = _touches_frozen(points, simplices[rows], sides[rows], on, lines)
-    rest = np.where(touched, _FROZEN, _BUDGET if counts[3] else _OTHER)
+    # What may not be split keeps vertices away also from triangles that do not touch it.
+    rest = _BUDGET if counts[3] else _FROZEN if lines.frozen.any() else _OTHER
     cause = np.where(corner >= 0, _CORNER, rest)
     return MeshReport(
         min_angle=min_angle,
@@ -188,19 +187,6 @@ def report(
         for_sizes=int(counts[2]),
         exhausted=bool(counts[3]),
     )
-
-
-def _touches_frozen(
-    points: Floats, simplices: Indices, sides: Indices, on: Indices, lines: Lines
-) -> Bools:
-    """Tell which triangles have a vertex on a line that may not be split."""
-    if not lines.frozen.any():
-        return np.zeros(len(simplices), dtype=bool)
-    touched = np.zeros(len(points), dtype=bool)
-    touched[lines.ends[lines.frozen]] = True
-    rows = np.flatnonzero(on >= 0)
-    touched[rows[lines.frozen[on[rows]]]] = True
-    return np.asarray(touched[simplices].any(axis=1), dtype=bool)
 
 
 def _responsible(

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import copy
+import os
 import pickle
+import signal
+import threading
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -13,6 +16,7 @@ import pytest
 
 import delone
 from delone import BudgetExceededError, ConstrainedDelaunay, CrossingSegmentsError, InputError
+from delone.refine import MOST_ADDED
 from delone.testing import assert_mesh
 
 SQUARE = np.array([(0.0, 0), (1, 0), (1, 1), (0, 1)])
@@ -196,6 +200,15 @@ def test_frozen_segments_are_not_split() -> None:
     assert (counts[~some] > 1).any()
 
 
+def test_sizes_are_kept_between_frozen_segments() -> None:
+    mesh = delone.mesh((SQUARE, RING), frozen=True, max_area=0.001)
+    assert_mesh(mesh, SQUARE, RING)
+    assert len(mesh.segments) == 4
+    assert mesh.areas.max() <= 0.001
+    assert not mesh.report.exhausted
+    assert set(mesh.report.cause.tolist()) <= {"frozen"}
+
+
 def test_a_budget_ends_the_work_and_is_reported() -> None:
     mesh = delone.mesh(loops(wavy(60, 5)), max_points=10)
     assert mesh.report.exhausted
@@ -272,3 +285,28 @@ def test_progress_is_told() -> None:
 
     with pytest.raises(RuntimeError, match="enough"):
         delone.mesh((SQUARE, RING), max_area=2e-6, progress=stop)
+
+
+def test_interruption_returns_control_and_loses_nothing() -> None:
+    mesh = delone.mesh((SQUARE, RING), max_area=0.001)
+    before = mesh.points.copy()
+    for work in (
+        lambda: delone.mesh((SQUARE, RING), max_area=2e-7),
+        lambda: mesh.refine(max_area=2e-7),
+    ):
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            work()
+        timer.join()
+    assert np.array_equal(mesh.points, before)
+    assert mesh.refine(max_area=0.0005).report
+
+
+def test_the_default_limit_on_points_keeps_memory_bounded() -> None:
+    """A bound that has no end is not tried for ever; here the limit is lower, to be quick."""
+    assert MOST_ADDED == 5_000_000
+    with pytest.warns(UserWarning, match="59"):
+        mesh = delone.mesh(loops(wavy(60, 5)), min_angle=59, max_points=5000)
+    assert mesh.report.exhausted
+    assert mesh.nadded == 5000

@@ -19,7 +19,7 @@ from delone.constrained import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.meshed import Mesh
-from delone.refine import as_rows, mesh
+from delone.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -182,17 +182,25 @@ def _meshed(
     if "a" in switches.on and area is None:
         present = set(np.unique(base.region).tolist())
         area = {i: a for i, a in enumerate(seeds[:, 3].tolist()) if a > 0 and i in present}
-    found = mesh(
+    # S ends the work, as in Triangle, where mesh() would refuse what it cannot do with so few.
+    limits = Limits(
+        as_min_angle(switches.angle),
+        MOST_ADDED if switches.steiner is None else switches.steiner,
+        "D" in switches.on,
+        None,
+        None,
+        refuse=switches.steiner is None,
+    )
+    markers = tri.get("segment_markers") if planar else None, tri.get("vertex_markers")
+    found = filled(
         base,
-        min_angle=switches.angle,
-        max_area=area,
-        max_points=switches.steiner,
-        delaunay="D" in switches.on,
+        base.region,
+        limits,
+        sizes=(area, None),
         frozen=switches.frozen,
-        segment_markers=as_rows(tri.get("segment_markers") if planar else None, len(segments),
-                                "segment_markers"),
-        point_markers=as_rows(tri.get("vertex_markers"), len(points), "vertex_markers"),
-    )  # fmt: skip
+        markers=markers,
+        stages={},
+    )
     attributes = None
     if "A" in switches.on and len(seeds):
         attributes = np.append(seeds[:, 2], 0.0)[found.region][:, None]

@@ -12,7 +12,7 @@ from delone._arrays import as_segments, as_simplices
 from delone.domains import Domain, Lines
 from delone.errors import InputError, ShapeError
 from delone.meshed import Mesh
-from delone.refine import as_min_angle, as_rows
+from delone.refine import MOST_ADDED, as_min_angle, as_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
 
 __all__ = ["again", "interpolated", "rows_of"]
-
-_MOST_ADDED = 5_000_000
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
@@ -105,7 +103,7 @@ def again(
     index = location.locator(points, simplices, neighbors)
     domain = _domain(tri, points, simplices, neighbors, switches)
     caps = _caps(tri, domain, index, switches)
-    most = _MOST_ADDED if switches.steiner is None else switches.steiner
+    most = MOST_ADDED if switches.steiner is None else switches.steiner
     bound = as_min_angle(switches.angle)
     made, counts = domains.refined(domain, caps, bound, most, circles="D" in switches.on)
     found = Mesh._of(made, counts, bound, {}, None)

@@ -392,8 +392,25 @@ impl<'a> Work<'a> {
         };
         match self.dig(t, p) {
             Dug::Free => self.insert(p, reason),
-            Dug::Walled(walls) => self.yield_to(t, &walls),
+            Dug::Walled(walls) => {
+                if self.yield_to(t, &walls)? || seen.area2 <= cap {
+                    return Ok(());
+                }
+                // No wall gives way: a size is kept all the same.
+                let third = |k: usize| points.iter().map(|p| p[k] / 3.0).sum();
+                self.insert_beside_walls(t, [third(0), third(1)])
+            }
             Dug::Lost => Ok(()),
+        }
+    }
+
+    /// Inserts a vertex in triangle `t` whether or not it encroaches.
+    fn insert_beside_walls(&mut self, t: u32, p: Point2) -> Result<()> {
+        match walk(&mut self.marked, t, p) {
+            Walk::Home(home) if self.cavity.dig(&mut self.marked, home, p).is_none() => {
+                self.insert(p, Reason::Size)
+            }
+            _ => Ok(()),
         }
     }
 
@@ -490,8 +507,9 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Splits subsegments that keep a vertex from mending triangle `t`, which is judged again.
-    fn yield_to(&mut self, t: u32, walls: &[Code]) -> Result<()> {
+    /// Splits subsegments that keep a vertex from mending triangle `t`, which is judged again; false
+    /// where none of them can be split.
+    fn yield_to(&mut self, t: u32, walls: &[Code]) -> Result<bool> {
         let corners = self.marked.patch().corners(t);
         let mesh = self.marked.patch();
         let waiting: Vec<Waiting> = walls
@@ -513,7 +531,7 @@ impl<'a> Work<'a> {
         if parted && self.marked.patch().corners(t) == corners {
             self.judge(t);
         }
-        Ok(())
+        Ok(parted)
     }
 
     /// Whether the smallest angle of a triangle is forced by the input: it lies between two
