@@ -41,6 +41,16 @@ def test_one_side_does_not_show_on_the_other(method: str) -> None:
     assert not right[made.weights(queries).indices].any()
 
 
+def test_matrices_share_duplicates_on_both_sides() -> None:
+    points = np.concatenate((datasets.uniform(300, seed=3), SQUARE, FAULT, FAULT[2:4], FAULT[2:3]))
+    segments = [(304 + i, 305 + i) for i in range(5)]
+    values = np.random.default_rng(4).normal(size=len(points))
+    mesh = ConstrainedDelaunay(points, segments)
+    made = NaturalNeighbor(mesh, values, duplicates="mean", respect_constraints=True)
+    queries = np.concatenate((np.random.default_rng(5).random((300, 2)), FAULT))
+    np.testing.assert_allclose(made.weights(queries).csr() @ values, made(queries), rtol=1e-10)
+
+
 def test_without_respect_it_shows() -> None:
     mesh, right = faulted()
     values = mesh.points[:, 1] + 10.0 * right

@@ -198,6 +198,29 @@ def test_duplicates(method: str) -> None:
         interpolator(method, twice, values * 1j, duplicates="min")
 
 
+@pytest.mark.parametrize("method", SIMPLE)
+@pytest.mark.parametrize("drop", [False, True])
+def test_matrices_share_duplicates(method: str, drop: bool) -> None:
+    points = datasets.uniform(30)
+    points = np.concatenate((points[20:22], points, points[[3, 3, 5, 8]]))
+    values = np.random.default_rng(4).normal(size=len(points))
+    if drop:
+        values[[4, 33, 9]] = np.nan
+    queries = np.concatenate((np.random.default_rng(5).random((100, 2)), points))
+    for policy in ("first", "last", "mean"):
+        made = interpolator(
+            method, points, values, duplicates=policy, nan="drop" if drop else "error"
+        )
+        matrix = made.weights(queries).csr()
+        assert matrix.shape == (136, 36)
+        found = matrix[:, ~np.isnan(values)] @ values[~np.isnan(values)]
+        np.testing.assert_allclose(found, made(queries), rtol=1e-12, atol=1e-14)
+    for policy in ("min", "max"):
+        with pytest.raises(InputError, match="use apply"):
+            interpolator(method, points, duplicates=policy).weights(queries).csr()
+        interpolator(method, points[2:32], duplicates=policy).weights(queries).csr()
+
+
 def test_a_mean_of_equal_values_is_that_value() -> None:
     points = np.concatenate((datasets.uniform(10), np.repeat(datasets.uniform(1), 6, axis=0)))
     values = np.full(len(points), 0.1)

@@ -247,7 +247,44 @@ class Interpolator:
         if self._duplicates == "last":
             # Assignments to the same row happen in order, so the last one stays.
             rows[self._mesh.duplicate_of] = rows.copy()
-        return rows if self._kept is None else self._kept[rows].astype(np.int32)
+        found: NDArray[np.int32] = rows[self._spoken_of()]
+        return found if self._kept is None else self._kept[found].astype(np.int32)
+
+    def mixed_rows(self) -> tuple[Rows, NDArray[np.int32]] | None:
+        """Return which of the caller's rows have their mean in each row that a table speaks of.
+
+        Returns
+        -------
+        tuple of ndarray, or None
+            Compressed rows (indptr, rows); None where `caller_rows` says it all.
+
+        Raises
+        ------
+        InputError
+            The least or the greatest value of points that coincide counts.
+        """
+        first = self._mesh.duplicate_of
+        if self._duplicates not in ("mean", "min", "max") or not len(self._mesh.coplanar):
+            return None
+        if self._duplicates != "mean":
+            raise InputError(
+                f"duplicates={self._duplicates!r} counts one value of points that coincide, which "
+                "depends on the values; use apply"
+            )
+        # Points of one group side by side; each row of it has the whole group.
+        order = np.argsort(first, kind="stable")
+        starts = np.searchsorted(first[order], first)
+        counts = np.bincount(first)[first]
+        places = self._spoken_of()
+        starts, counts = starts[places], counts[places]
+        indptr = np.concatenate(([0], np.cumsum(counts)))
+        within = np.arange(indptr[-1]) - np.repeat(indptr[:-1] - starts, counts)
+        rows = order[within]
+        return indptr, (rows if self._kept is None else self._kept[rows]).astype(np.int32)
+
+    def _spoken_of(self) -> NDArray[np.integer]:
+        """The point of the mesh that each row of a table is."""
+        return np.arange(self._mesh.npoints)
 
     def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 0)

@@ -159,11 +159,9 @@ class Smooth(Interpolator):
         source = self._sheet.source
         return columns if source is None else np.ascontiguousarray(columns[source])
 
-    def caller_rows(self) -> Indices:
-        """Return the caller's rows for those of the sheet; see `Interpolator.caller_rows`."""
-        rows = super().caller_rows()
+    def _spoken_of(self) -> NDArray[np.integer]:
         source = self._sheet.source
-        return rows if source is None else rows[source]
+        return super()._spoken_of() if source is None else source
 
     @property
     def _sheet(self) -> Sheet:

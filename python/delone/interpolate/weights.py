@@ -50,6 +50,9 @@ class Sites(Protocol):
     def caller_rows(self) -> Indices:
         """The caller's row that stands for each row that a table speaks of."""
 
+    def mixed_rows(self) -> tuple[NDArray[np.int64], Indices] | None:
+        """Groups of the caller's rows of which the mean counts; None where one row stands alone."""
+
 
 @dataclass(frozen=True, eq=False)
 class Weights:
@@ -93,7 +96,10 @@ class Weights:
 
     @property
     def indices(self) -> Indices:
-        """The rows of the caller's points, (nnz,); of duplicates the one that counts."""
+        """The rows of the caller's points, (nnz,); of duplicates the one that counts.
+
+        Of points of which the mean, the least or the greatest value counts it is the first.
+        """
         found: Indices = self.sites.caller_rows()[self.rows]
         return found
 
@@ -152,7 +158,8 @@ class Weights:
         Returns
         -------
         scipy.sparse.csr_array, shape (k, n)
-            The weights; the queries are flat. Rows without an answer hold one NaN.
+            The weights; the queries are flat. Rows without an answer hold one NaN. With
+            ``duplicates="mean"`` points that coincide share their weight.
 
         Raises
         ------
@@ -160,7 +167,8 @@ class Weights:
             SciPy is not installed.
         InputError
             The interpolant needs gradients, which a matrix of values does not give: those of smooth
-            methods, and all with ``extrapolate="linear"``.
+            methods, and all with ``extrapolate="linear"``. Or the least or greatest value of points
+            that coincide counts, which no matrix finds.
 
         Examples
         --------
@@ -178,11 +186,18 @@ class Weights:
                 'a sparse matrix needs SciPy, which is not installed: pip install "delone[learn]"',
                 extra="learn",
             ) from error
+        groups = self.sites.mixed_rows()
         empty = np.flatnonzero(np.diff(self.indptr) == 0)
         ends = self.indptr[empty]
         indptr = self.indptr + np.concatenate(([0], np.cumsum(np.diff(self.indptr) == 0)))
-        parts = (np.insert(self.weights, ends, np.nan), np.insert(self.indices, ends, 0), indptr)
-        return csr_array(parts, shape=(len(self), self.sites.npoints))
+        rows = self.indices if groups is None else self.rows
+        parts = (np.insert(self.weights, ends, np.nan), np.insert(rows, ends, 0), indptr)
+        if groups is None:
+            return csr_array(parts, shape=(len(self), self.sites.npoints))
+        starts, members = groups
+        share = np.repeat(1.0 / np.diff(starts), np.diff(starts))
+        mixing = csr_array((share, members, starts), shape=(len(starts) - 1, self.sites.npoints))
+        return csr_array(parts, shape=(len(self), len(starts) - 1)) @ mixing
 
 
 def rectangular(rows: Indices, weights: Floats) -> Table:
