@@ -9,7 +9,7 @@ import pytest
 
 from delone import datasets
 from delone.errors import InputError
-from delone.interpolate import interpolator
+from delone.interpolate import interpolator, raster
 
 xarray = pytest.importorskip("xarray")
 import delone.interpolate.accessor  # noqa: E402, F401  (it registers the accessors)
@@ -58,6 +58,35 @@ def test_points_and_dask(method: str) -> None:
     )
     assert chunked.chunks[0] == (2, 2, 2) and chunked.attrs == {"units": "m"}
     np.testing.assert_array_equal(chunked.compute().values, plain.values)
+
+
+def test_dask_computes_no_more_than_is_asked_for() -> None:
+    array = pytest.importorskip("dask.array")
+    touched: list[Any] = []
+
+    def met(block: Any) -> Any:
+        touched.append(block.shape)
+        return block
+
+    data = array.ones((6, 150), chunks=(2, 50)).map_blocks(met, meta=np.empty((0, 0)))
+    height = stations().height.copy(data=data)
+    touched.clear()
+    dataset = xarray.Dataset({"height": height, "double": 2 * height})
+    found = dataset.delone.grid(shape=(8, 6))
+    assert not touched and found.height.chunks[1:] == ((6,), (8,))
+    first = found.height.isel(time=0).compute()
+    assert 0 < len(touched) < 9
+    np.testing.assert_allclose(first.values[np.isfinite(first.values)], 1, rtol=1e-12)
+    whole = found.compute(scheduler="synchronous")
+    np.testing.assert_allclose(whole.double.values, 2 * whole.height.values)
+
+
+def test_huge_rasters_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(raster, "_free_memory", lambda: raster._SPARE + (1 << 21))
+    one = stations().height.isel(time=0)
+    assert one.delone.grid(shape=(400, 400)).shape == (400, 400)
+    with pytest.raises(MemoryError, match="400 x 400 cells needs"):
+        stations().delone.grid(shape=(400, 400))
 
 
 def test_regular_and_curvilinear_coordinates() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from delone.errors import InputError, MissingExtraError
 from delone.interpolate.methods import interpolator
-from delone.interpolate.raster import raster_nodes
+from delone.interpolate.raster import raster_nodes, require_memory
 
 try:
     import xarray
@@ -222,6 +222,7 @@ def _interpolated(
     if options.get("nan") == "drop":
         raise InputError("nan='drop' needs other triangles for each field; fill or drop NaN before")
     places = _coordinates(data, coords)
+    _require_memory(data, places[0].dims, target)
     points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
     queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
     table = interpolator(method, points, **({"nan": "propagate"} | options)).weights(queries)
@@ -234,6 +235,19 @@ def _interpolated(
         found = {name: _applied(plain[name], table, dims, target) for name in names}
         return plain.drop_vars(names).assign(found)
     return _applied(plain, table, dims, target)
+
+
+def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -> None:
+    """Refuse more than fits into memory; what Dask holds comes chunk by chunk."""
+    parts = data.data_vars.values() if isinstance(data, xarray.Dataset) else [data]
+    fields = 0
+    for part in parts:
+        if set(dims) <= set(part.dims) and part.chunks is None:
+            size = part.dtype.itemsize // 8 if part.dtype.kind == "c" else 1
+            fields += size * part.size // max(1, np.prod([part.sizes[dim] for dim in dims]))
+    if fields:
+        rows = target[0].shape[0] if target[0].ndim > 1 else 1
+        require_memory(target[0].size // max(1, rows), rows, fields)
 
 
 def _applied(array: Any, table: Weights, dims: tuple[Any, ...], target: tuple[Any, Any]) -> Any:

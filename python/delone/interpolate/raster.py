@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Grid", "grid", "raster_nodes"]
+__all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 
 # Queries at a time: few enough for their coordinates and weights to stay in the cache.
 _BLOCK = 1 << 18
@@ -154,7 +154,7 @@ def grid(
         values = None
     field, columns = made._with(values)[1:]
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
-    _require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
+    require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
     found = np.empty((len(nodes_y), len(nodes_x), *field.trailing), _dtype(field.is_complex))
     rows = max(1, _BLOCK // len(nodes_x))
     for start in range(0, len(nodes_y), rows):
@@ -222,7 +222,7 @@ def raster_nodes(
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r}")
         counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
-    _require_memory(counts[0], counts[1], 1)
+    require_memory(counts[0], counts[1], 1)
     x, y = (low[k] + cells[k] * (np.arange(counts[k], dtype=np.float64) + 0.5) for k in range(2))
     return x, y
 
@@ -251,7 +251,21 @@ def _ascending(nodes: ArrayLike, name: str) -> Floats:
     return array
 
 
-def _require_memory(columns: int, rows: int, values: int) -> None:
+def require_memory(columns: int, rows: int, values: int) -> None:
+    """Refuse a raster that would not fit into the memory that is free.
+
+    Parameters
+    ----------
+    columns, rows : int
+        Numbers of cells.
+    values : int
+        Numbers of eight bytes in each cell.
+
+    Raises
+    ------
+    MemoryError
+        Says how much is needed and how much is free.
+    """
     needed = 8 * columns * rows * max(1, values)
     free = _free_memory()
     if free is not None and needed + _SPARE > free:
