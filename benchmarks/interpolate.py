@@ -1,25 +1,34 @@
-"""Location and interpolation side by side with SciPy: ``python benchmarks/interpolate.py``.
+"""Location and interpolation side by side with SciPy, CGAL, startinpy and MetPy.
 
-One thread for everybody unless a line says more. Sites are uniform in a square, queries as well: in
-random order, and in rows as a raster has them. Times are medians; SciPy's slow ones are run once.
+Sites are uniform in a square, queries as well: in random order, and in rows as a raster has them.
+One thread for everybody unless a line says more; medians of some runs, of one where it is slow. A
+peer that is slow is asked for as many of the queries as it answers in a few seconds, and the line
+says how many. ``python benchmarks/interpolate.py --help`` has options.
 """
 
 import argparse
+import importlib.util
 import statistics
+import subprocess
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy.interpolate
 import scipy.spatial
+from crates import build_cgal, runs_of
 
 from delone import Delaunay
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor
 
-SLOW = 4.0
-# SciPy's walk from the last hit takes 0.2 ms a query in random order: fewer will do.
-FEW = 20_000
+# A call that takes longer is not repeated.
+SLOW = 3.0
+# Queries of the first, short call to a peer, and the seconds that it may take in all.
+FEW, PATIENCE = 20, 10.0
+HEAD = ("", "delone", "a query", "peer", "seconds", "a query", "times delone")
 
 
 def median(call: Callable[[], Any], runs: int) -> float:
@@ -34,11 +43,38 @@ def median(call: Callable[[], Any], runs: int) -> float:
     return statistics.median(times)
 
 
-def line(what: str, ours: float, theirs: float | None, count: int) -> None:
-    """Print a row: seconds, nanoseconds a query, and how many times SciPy's."""
-    each = f"{ours / count * 1e9:9.0f} ns"
-    other = "" if theirs is None else f"{theirs:9.3f} s {theirs / ours:8.1f} x"
-    print(f"{what:52}{ours:9.4f} s {each} {other}", flush=True)
+def patient(call: Callable[[Any], Any], queries: Any, runs: int) -> tuple[float, int]:
+    """Seconds for as many of the queries as there is patience for, and their number."""
+    # The first call may have to make what later ones use.
+    call(queries[:1])
+    each = median(lambda: call(queries[:FEW]), 1) / FEW
+    count = int(min(len(queries), max(FEW, PATIENCE / each)))
+    return median(lambda: call(queries[:count]), runs), count
+
+
+def amount(seconds: float) -> str:
+    """Return a time as text in a fitting unit."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds * 1e9:.0f} ns"
+
+
+def line(
+    what: str,
+    ours: float,
+    count: int,
+    peer: str = "",
+    theirs: tuple[float, int] | None = None,
+) -> None:
+    """Print a row of the table."""
+    cells = [what, amount(ours), amount(ours / count), "", "", "", ""]
+    if theirs is not None:
+        seconds, asked = theirs
+        name = peer if asked == count else f"{peer}, {asked:,} queries"
+        times = seconds / asked * count / ours
+        cells[3:] = [name, amount(seconds), amount(seconds / asked), f"{times:.3g}"]
+    print("| " + " | ".join(cells) + " |", flush=True)
 
 
 def orders(count: int) -> dict[str, Any]:
@@ -50,66 +86,129 @@ def orders(count: int) -> dict[str, Any]:
     return {"random": rng.random((count, 2)), "rows": rows}
 
 
+def cgal(points: Any, queries: Any, runs: int) -> dict[str, float]:
+    """CGAL's seconds for location and for Sibson's weights; nothing where it is not installed."""
+    program = build_cgal("cgal_fields")
+    if program is None:
+        return {}
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / name for name in ("sites", "queries")]
+        for file, array in zip(files, (points, queries), strict=True):
+            array.astype("<f8").tofile(file)
+        command = [str(program), str(runs), *map(str, files)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return {name: statistics.median(times) for name, times in runs_of(done.stdout).items()}
+
+
 def location(sites: int, count: int, runs: int) -> None:
     """find_simplex, many at once, one at a time, and with two threads."""
     points = np.random.default_rng(1).random((sites, 2))
     mesh, twin = Delaunay(points, workers=1), Delaunay(points, workers=2)
-    theirs = scipy.spatial.Delaunay(points)
+    scipys = scipy.spatial.Delaunay(points).find_simplex
+    print(f"\n{sites:,} sites, {count:,} queries:\n")
+    head()
     for order, queries in orders(count).items():
-        few = queries[:FEW] if order == "random" else queries
-        scale = len(queries) / len(few)
+        mesh.find_simplex(queries[:1])
         ours = median(lambda q=queries: mesh.find_simplex(q), runs)
-        other = scale * median(lambda q=few: theirs.find_simplex(q), runs)
-        line(f"find_simplex, {sites:,} sites, {order}", ours, other, len(queries))
+        theirs = patient(scipys, queries, runs)
+        line(f"`find_simplex`, {order}", ours, len(queries), "SciPy", theirs)
+        if order == "random" and (found := cgal(points, queries, min(runs, 3))):
+            line("", ours, len(queries), "CGAL, sorting", (found["locate"], count))
+        twin.find_simplex(queries[:1])
         two = median(lambda q=queries: twin.find_simplex(q), runs)
-        line(f"  two threads ({ours / two:.2f} times one)", two, None, len(queries))
-    singles = np.random.default_rng(3).random((2000, 2))
+        line(f"two threads: {ours / two:.2f} times one", two, len(queries))
+    singles = list(np.random.default_rng(3).random((2000, 2)))
+    few = singles[:FEW]
     line(
-        "find_simplex, one at a time",
+        "`find_simplex`, one at a time",
         median(lambda: [mesh.find_simplex(q) for q in singles], runs),
-        median(lambda: [theirs.find_simplex(q) for q in singles], runs),
         len(singles),
+        "SciPy",
+        (median(lambda: [scipys(q) for q in few], 1), len(few)),
     )
+    empty = np.empty((0, 2))
+    ours = median(lambda: [mesh.find_simplex(empty) for _ in range(2000)], runs)
+    line("the call itself, without a query", ours, 2000)
 
 
 def fields(sites: int, count: int, runs: int) -> None:
-    """From points to values, and the second field."""
+    """From points to values, another field, and natural neighbours."""
     points = np.random.default_rng(1).random((sites, 2))
     values = np.sin(9 * points[:, 0]) * points[:, 1]
-    one: dict[str, Any] = {"workers": 1}
+    print(f"\n{sites:,} sites, {count:,} queries:\n")
+    head()
+    for order, queries in orders(count).items():
+        linear(points, values, queries, order, runs)
+        natural(points, values, queries, order, runs)
+
+
+def linear(points: Any, values: Any, queries: Any, order: str, runs: int) -> None:
+    """The interpolators that SciPy has, and the next field."""
+    count = len(queries)
     pairs: dict[str, tuple[Any, Any]] = {
         "Linear": (Linear, scipy.interpolate.LinearNDInterpolator),
         "CloughTocher": (CloughTocher, scipy.interpolate.CloughTocher2DInterpolator),
     }
-    for order, queries in orders(count).items():
-        for name, (ours, theirs) in pairs.items():
-            line(
-                f"{name}, points to values, {order}",
-                median(lambda q=queries, f=ours: f(points, values, **one)(q), runs),
-                median(lambda q=queries, f=theirs: f(points, values)(q), runs),
-                len(queries),
-            )
-        made = Linear(points, values, **one)
-        table = made.weights(queries)
-        again = median(lambda t=table: t @ values, runs)
-        line(f"Linear, another field by weights, {order}", again, None, len(queries))
-        for kind in ("sibson", "laplace", "farin", "sibson1"):
-            natural = NaturalNeighbor(points, values, kind=kind, **one)
-            natural(queries[:1])
-            seconds = median(lambda q=queries, n=natural: n(q), runs)
-            line(f"NaturalNeighbor {kind}, {order}", seconds, None, len(queries))
+    for name, (own, scipys) in pairs.items():
+        ours = median(lambda f=own: f(points, values, workers=1)(queries), runs)
+        theirs = patient(scipys(points, values), queries, 1)
+        building = median(lambda f=scipys: f(points, values), 1)
+        theirs = (building * theirs[1] / count + theirs[0], theirs[1])
+        line(f"`{name}`, points to values, {order}", ours, count, "SciPy", theirs)
+    made = Linear(points, values, workers=1)
+    made(queries[:1])
+    line("the next field", median(lambda: made(queries, values=values), runs), count)
+    table = made.weights(queries)
+    line("the next field by `weights`", median(lambda: table @ values, runs), count)
+
+
+def natural(points: Any, values: Any, queries: Any, order: str, runs: int) -> None:
+    """Natural neighbours, of which SciPy has none."""
+    count = len(queries)
+    seconds = {}
+    for kind in ("sibson", "laplace", "farin", "sibson1"):
+        made = NaturalNeighbor(points, values, kind=kind, workers=1)
+        made(queries[:1])
+        seconds[kind] = median(lambda n=made: n(queries), runs)
+        rate = count / seconds[kind] / 1e6
+        line(f"`{kind}`, {order}: {rate:.2f} million/s", seconds[kind], count)
+    if order != "random":
+        return
+    ours = seconds["sibson"]
+    if found := cgal(points, queries, min(runs, 3)):
+        line("", ours, count, "CGAL Sibson weights", (found["sibson"], count))
+    if importlib.util.find_spec("startinpy"):
+        import startinpy
+
+        mesh = startinpy.DT()
+        mesh.insert(np.column_stack((points, values)))
+        call = lambda q: mesh.interpolate({"method": "NNI"}, q)  # noqa: E731
+        line("", ours, count, "startinpy NNI", patient(call, queries, 1))
+    if importlib.util.find_spec("metpy"):
+        from metpy.interpolate import natural_neighbor_to_points
+
+        call = lambda q: natural_neighbor_to_points(points, values, q)  # noqa: E731
+        # It triangulates in the call.
+        line("", ours, count, "MetPy natural", (median(lambda: call(queries[:FEW]), 1), FEW))
+
+
+def head() -> None:
+    """Print the head of a table."""
+    print("| " + " | ".join(HEAD) + " |")
+    print("|" + "---|" * len(HEAD), flush=True)
 
 
 def main() -> None:
-    """Print all lines."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sites", type=int, default=100_000)
-    parser.add_argument("--queries", type=int, default=1_000_000)
-    parser.add_argument("--runs", type=int, default=5)
-    given = parser.parse_args()
-    print(f"{'':52}{'delone':>11} {'a query':>12} {'SciPy':>11} {'times':>10}")
-    location(10 * given.sites, given.queries, given.runs)
-    fields(given.sites, given.queries, given.runs)
+    """Print all tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--n", type=int, default=100_000, help="sites; tenfold for location")
+    parser.add_argument("--queries", type=int, help="ten times the sites unless given")
+    parser.add_argument("--runs", type=int, default=5, help="runs for each line (default 5)")
+    # `make bench` gives all programs the same options.
+    given = parser.parse_known_args()[0]
+    count = given.queries or 10 * given.n
+    location(10 * given.n, count, given.runs)
+    fields(given.n, count, given.runs)
 
 
 if __name__ == "__main__":
