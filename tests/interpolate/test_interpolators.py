@@ -250,9 +250,26 @@ def test_nan_among_values(method: str) -> None:
     through = interpolator(method, points, values, nan="propagate")
     near = through(points[4])
     assert np.isnan(near) and through(points[11]) == np.inf
-    far = np.hypot(*(queries - points[4]).T) + np.hypot(*(queries - points[11]).T) > 1.2
-    if method in ("linear", "nearest"):
-        assert np.isfinite(through(queries[far & np.isfinite(plain(queries))])).any()
+
+
+@pytest.mark.parametrize("gradients", ["global", "local", "plane"])
+@pytest.mark.parametrize("method", ["clough-tocher", "farin", "sibson1"])
+def test_gaps_stay_where_they_are(method: str, gradients: str) -> None:
+    points = datasets.uniform(200, seed=9)
+    values = np.column_stack((linear(points), linear(points)))
+    values[50, 1] = np.nan
+    queries = np.random.default_rng(1).random((1000, 2))
+    made = interpolator(method, points, values, nan="propagate", gradients=gradients)
+    found = made(queries)
+    # Gradients come from the values that are there; they reproduce what is linear.
+    weights = made.weights(queries)
+    owner = np.repeat(np.arange(1000), np.diff(weights.indptr))
+    touched = np.isin(np.arange(1000), owner[weights.indices == 50])
+    inside = np.isfinite(found[:, 0])
+    assert 0 < touched.sum() < 50
+    np.testing.assert_array_equal(np.isfinite(found[:, 1]), inside & ~touched)
+    rest = inside & ~touched
+    np.testing.assert_allclose(found[rest, 1], linear(queries[rest]), atol=1e-4)
 
 
 def test_nan_does_not_leave_its_triangles() -> None:

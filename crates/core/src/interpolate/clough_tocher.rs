@@ -117,13 +117,34 @@ impl Ordinates {
         });
         let deep: [f64; 3] =
             std::array::from_fn(|i| (inner[i] + middle[next(i)] + middle[prev(i)]) / 3.0);
+        let centre = (deep[0] + deep[1] + deep[2]) / 3.0;
+        // All others come into the centre; finite sums of it may still pass the range.
+        if !(3.0 * centre).is_finite() && values.iter().all(|v| v.is_finite()) {
+            return Self::linear(values);
+        }
         Self {
             at: values,
             along,
             inner,
             middle,
             deep,
-            centre: (deep[0] + deep[1] + deep[2]) / 3.0,
+            centre,
+        }
+    }
+
+    /// The plane through the values, where doubles do not hold a cubic.
+    #[cold]
+    fn linear(values: [f64; 3]) -> Self {
+        let thirds = values.map(|v| v / 3.0);
+        let centre = thirds[0] + thirds[1] + thirds[2];
+        let inner = thirds.map(|v| 2.0 * v + centre / 3.0);
+        Self {
+            at: values,
+            along: std::array::from_fn(|i| [next(i), prev(i)].map(|j| 2.0 * thirds[i] + thirds[j])),
+            inner,
+            middle: std::array::from_fn(|k| thirds[next(k)] + thirds[prev(k)] + centre / 3.0),
+            deep: thirds.map(|v| v + centre / 1.5),
+            centre,
         }
     }
 

@@ -4,7 +4,7 @@ use delone_predicates::Point2;
 
 use super::field::Field;
 use crate::error::{Error, Result};
-use crate::locate::Output;
+use crate::locate::{Output, in_unit, unit_of};
 use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::watch::Watch;
@@ -73,33 +73,22 @@ pub fn global_gradients(
     workers: usize,
     watch: &Watch,
 ) -> Result<(Vec<f64>, Vec<i64>)> {
-    let mut edges = with_room(adjacency.indices.len())?;
-    let mut inverses = with_room(points.len())?;
-    for (v, p) in points.iter().enumerate() {
-        let mut m = [0.0; 3];
-        for &other in adjacency.neighbours(v) {
-            let q = points[other as usize];
-            let way = [q[0] - p[0], q[1] - p[1]];
-            let length = way[0].hypot(way[1]);
-            let weight = 1.0 / (length * length * length);
-            m[0] += 4.0 * way[0] * way[0] * weight;
-            m[1] += 4.0 * way[0] * way[1] * weight;
-            m[2] += 4.0 * way[1] * way[1] * weight;
-            edges.push(Edge { way, weight });
-        }
-        let det = m[0] * m[2] - m[1] * m[1];
-        inverses.push([m[2] / det, -m[1] / det, m[0] / det]);
-    }
-    let network = Network {
+    let plan = Sweeps {
+        points,
         adjacency,
-        edges,
-        inverses,
+        unit: unit_of(points),
         tol,
         maxiter,
     };
+    // All columns without gaps have the same equations.
+    let common = Network::of(&plan, |_| true)?;
     let columns = (0..field.columns).collect();
     let solved = parallel::map(workers, columns, |column| {
-        network.sweep(&field, column, watch)
+        let known = |v: i32| field.value(v, column).is_finite();
+        if (0..points.len() as i32).all(known) {
+            return common.sweep(&plan, &field, column, watch);
+        }
+        Network::of(&plan, known)?.sweep(&plan, &field, column, watch)
     });
     let mut gradients = filled(2 * points.len() * field.columns, 0.0)?;
     let mut counts = Vec::with_capacity(field.columns);
@@ -107,36 +96,89 @@ pub fn global_gradients(
         let (found, count) = solved?;
         counts.push(count);
         for (v, g) in found.into_iter().enumerate() {
-            let i = 2 * (v * field.columns + column);
-            gradients[i..i + 2].copy_from_slice(&g);
+            if let Some(g) = finite(g.map(|x| x / plan.unit)) {
+                let i = 2 * (v * field.columns + column);
+                gradients[i..i + 2].copy_from_slice(&g);
+            }
         }
     }
     Ok((gradients, counts))
 }
 
-/// The equations of all vertices.
-struct Network<'a> {
+/// A gradient that doubles can hold. Where they cannot, the estimate is that nothing rises.
+fn finite(g: [f64; 2]) -> Option<[f64; 2]> {
+    (g[0].is_finite() && g[1].is_finite()).then_some(g)
+}
+
+/// What all sweeps have in common.
+struct Sweeps<'a> {
+    points: &'a [Point2],
     adjacency: Adjacency<'a>,
-    /// Beside `adjacency.indices`.
-    edges: Vec<Edge>,
-    /// For each vertex the inverse of its matrix: xx, xy, yy.
-    inverses: Vec<[f64; 3]>,
+    unit: f64,
     tol: f64,
     maxiter: usize,
 }
 
-impl Network<'_> {
+/// The equations of all vertices.
+struct Network {
+    /// Beside the indices of the adjacency; of no weight where they lead to an unknown value.
+    edges: Vec<Edge>,
+    /// For each vertex the inverse of its matrix: xx, xy, yy.
+    inverses: Vec<[f64; 3]>,
+}
+
+/// The inverse of a symmetric matrix (xx, xy, yy); that on its line where all edges lie on one.
+fn inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    let det = xx * yy - xy * xy;
+    if det > 0.0 {
+        return [yy / det, -xy / det, xx / det];
+    }
+    let trace = xx + yy;
+    [xx, xy, yy].map(|x| x / trace / trace)
+}
+
+impl Network {
+    /// Sets them up for the vertices whose values are known.
+    fn of(plan: &Sweeps, known: impl Fn(i32) -> bool) -> Result<Self> {
+        let mut edges = with_room(plan.adjacency.indices.len())?;
+        let mut inverses = with_room(plan.points.len())?;
+        for (v, &p) in plan.points.iter().enumerate() {
+            let mut m = [0.0; 3];
+            for &other in plan.adjacency.neighbours(v) {
+                let way = in_unit(p, plan.points[other as usize], plan.unit);
+                let length = way[0].hypot(way[1]);
+                let weight = if known(other) {
+                    1.0 / (length * length * length)
+                } else {
+                    0.0
+                };
+                m[0] += 4.0 * way[0] * way[0] * weight;
+                m[1] += 4.0 * way[0] * way[1] * weight;
+                m[2] += 4.0 * way[1] * way[1] * weight;
+                edges.push(Edge { way, weight });
+            }
+            inverses.push(inverse(m));
+        }
+        Ok(Self { edges, inverses })
+    }
+
     /// Sweeps over one column until its gradients are still.
-    fn sweep(&self, field: &Field, column: usize, watch: &Watch) -> Result<(Vec<[f64; 2]>, i64)> {
+    fn sweep(
+        &self,
+        plan: &Sweeps,
+        field: &Field,
+        column: usize,
+        watch: &Watch,
+    ) -> Result<(Vec<[f64; 2]>, i64)> {
         let n = self.inverses.len();
         let mut gradients = filled(n, [0.0; 2])?;
-        for sweep in 1..=self.maxiter {
+        for sweep in 1..=plan.maxiter {
             let mut worst: f64 = 0.0;
             for v in 0..n {
                 if v % SHARE == 0 {
                     watch.check()?;
                 }
-                let Some(new) = self.solve(field, column, v, &gradients) else {
+                let Some(new) = self.solve(plan, field, column, v, &gradients) else {
                     continue;
                 };
                 let old = std::mem::replace(&mut gradients[v], new);
@@ -144,30 +186,31 @@ impl Network<'_> {
                 let size = new[0].abs().max(new[1].abs()).max(1.0);
                 worst = worst.max(change / size);
             }
-            if worst < self.tol {
+            if worst < plan.tol {
                 return Ok((gradients, sweep as i64));
             }
         }
         Ok((gradients, 0))
     }
 
-    /// The best gradient at one vertex; nothing for one without neighbours.
+    /// The best gradient at one vertex; nothing where there is none, and for a value not known.
     #[inline]
     fn solve(
         &self,
+        plan: &Sweeps,
         field: &Field,
         column: usize,
         v: usize,
         gradients: &[[f64; 2]],
     ) -> Option<[f64; 2]> {
-        let range = self.adjacency.range(v);
-        if range.is_empty() {
-            return None;
-        }
+        let range = plan.adjacency.range(v);
         let value = field.value(v as i32, column);
         let mut s = [0.0; 2];
-        let others = &self.adjacency.indices[range.clone()];
+        let others = &plan.adjacency.indices[range.clone()];
         for (edge, &other) in self.edges[range].iter().zip(others) {
+            if edge.weight == 0.0 {
+                continue;
+            }
             let g = gradients[other as usize];
             let slope = edge.way[0] * g[0] + edge.way[1] * g[1];
             let rise = field.value(other, column) - value;
@@ -176,7 +219,7 @@ impl Network<'_> {
             s[1] += pull * edge.way[1];
         }
         let [xx, xy, yy] = self.inverses[v];
-        Some([xx * s[0] + xy * s[1], xy * s[0] + yy * s[1]])
+        finite([xx * s[0] + xy * s[1], xy * s[0] + yy * s[1]])
     }
 }
 
@@ -194,28 +237,31 @@ pub fn local_gradients(
     watch: &Watch,
 ) -> Result<Vec<f64>> {
     let out = Output::filled(2 * points.len() * field.columns, 0.0)?;
+    let unit = unit_of(points);
     let tasks = (0..points.len()).step_by(SHARE).collect();
     let ends = parallel::map(workers, tasks, |start: usize| {
         watch.check()?;
-        let (mut ring, mut wide) = (Vec::new(), Vec::new());
+        let mut wide = Vec::new();
         for v in start..points.len().min(start + SHARE) {
-            surroundings(adjacency, v, 1, &mut ring);
-            let mut fit = Fit::of(points, v, &ring, 1);
-            if degree > 1 {
-                surroundings(adjacency, v, 2, &mut wide);
-                if let Some(quadric) = Fit::of(points, v, &wide, 2)
-                    && fit
-                        .as_ref()
-                        .is_none_or(|plane| quadric.is_steady_beside(plane))
-                {
-                    std::mem::swap(&mut ring, &mut wide);
-                    fit = Some(quadric);
-                }
-            }
-            let Some(fit) = fit else { continue };
+            let near = adjacency.neighbours(v);
+            surroundings(adjacency, v, degree, &mut wide);
+            let common = Fit::best(points, unit, v, near, &wide, degree);
             for column in 0..field.columns {
-                let g = fit.gradient(&field, v, &ring, column);
-                out.set_all(2 * (v * field.columns + column), &g);
+                let known = |u: &i32| field.value(*u, column).is_finite();
+                let gradient = if wide.iter().all(known) {
+                    common
+                        .as_ref()
+                        .and_then(|fit| fit.gradient(&field, v, column))
+                } else {
+                    let [near, wide] =
+                        [near, &wide].map(|ring| ring.iter().copied().filter(known).collect());
+                    let (near, wide): (Vec<i32>, Vec<i32>) = (near, wide);
+                    Fit::best(points, unit, v, &near, &wide, degree)
+                        .and_then(|fit| fit.gradient(&field, v, column))
+                };
+                if let Some(g) = gradient.and_then(|g| finite(g.map(|x| x / unit))) {
+                    out.set_all(2 * (v * field.columns + column), &g);
+                }
             }
         }
         Ok(())
@@ -245,19 +291,61 @@ fn surroundings(adjacency: Adjacency, v: usize, degree: usize, ring: &mut Vec<i3
 const SWING: f64 = 3.0;
 
 /// The factors by which differences to surrounding values make a gradient.
-struct Fit {
+struct Fit<'a> {
+    ring: &'a [i32],
     factors: Vec<[f64; 2]>,
 }
 
-impl Fit {
+impl<'a> Fit<'a> {
+    /// The fit of the wider ring, where that is of degree 2 and steady; else that of the nearer.
+    fn best(
+        points: &[Point2],
+        unit: f64,
+        v: usize,
+        near: &'a [i32],
+        wide: &'a [i32],
+        degree: usize,
+    ) -> Option<Self> {
+        let plane =
+            Self::of(points, unit, v, near, 1).or_else(|| Self::along(points, unit, v, near));
+        if degree > 1
+            && let Some(quadric) = Self::of(points, unit, v, wide, 2)
+            && plane
+                .as_ref()
+                .is_none_or(|plane| quadric.is_steady_beside(plane))
+        {
+            return Some(quadric);
+        }
+        plane
+    }
+
+    /// The slope along the line on which all of them lie, as far as doubles tell.
+    fn along(points: &[Point2], unit: f64, v: usize, ring: &'a [i32]) -> Option<Self> {
+        let p = points[v];
+        let ways = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
+        let ways: Vec<Point2> = ways.collect();
+        let length = |w: &Point2| w[0].hypot(w[1]);
+        let far = *ways.iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
+        let size = length(&far);
+        let line = far.map(|x| x / size);
+        // Weights by distance make each the sign of its direction.
+        let signs = ways
+            .iter()
+            .map(|w| (w[0] * line[0] + w[1] * line[1]) / length(w));
+        let signs: Vec<f64> = signs.collect();
+        let sum: f64 = signs.iter().map(|s| s * s).sum();
+        let factors = signs.iter().zip(&ways);
+        let factors = factors
+            .map(|(s, w)| line.map(|x| x * s / length(w) / sum))
+            .collect();
+        Some(Self { ring, factors })
+    }
+
     /// Solves the least squares problem by orthogonal columns (modified Gram-Schmidt), for the
     /// gradient alone, which takes the first two unknowns last.
-    fn of(points: &[Point2], v: usize, ring: &[i32], degree: usize) -> Option<Self> {
+    fn of(points: &[Point2], unit: f64, v: usize, ring: &'a [i32], degree: usize) -> Option<Self> {
         let p = points[v];
-        let ways = ring.iter().map(|&u| {
-            let q = points[u as usize];
-            [q[0] - p[0], q[1] - p[1]]
-        });
+        let ways = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
         let ways: Vec<Point2> = ways.collect();
         let size = ways
             .iter()
@@ -281,6 +369,7 @@ impl Fit {
         let (gx, gy) = last_two(&mut basis)?;
         let factors = gx.iter().zip(&gy).zip(&weights);
         Some(Self {
+            ring,
             factors: factors
                 .map(|((x, y), w)| [x * w / size, y * w / size])
                 .collect(),
@@ -298,14 +387,14 @@ impl Fit {
         factors.iter().fold(0.0, |norm: f64, f| norm.hypot(*f))
     }
 
-    fn gradient(&self, field: &Field, v: usize, ring: &[i32], column: usize) -> [f64; 2] {
+    fn gradient(&self, field: &Field, v: usize, column: usize) -> Option<[f64; 2]> {
         let value = field.value(v as i32, column);
         let mut g = [0.0; 2];
-        for (f, &u) in self.factors.iter().zip(ring) {
+        for (f, &u) in self.factors.iter().zip(self.ring) {
             let rise = field.value(u, column) - value;
             g = [g[0] + f[0] * rise, g[1] + f[1] * rise];
         }
-        g
+        finite(g)
     }
 }
 

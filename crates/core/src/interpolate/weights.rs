@@ -256,6 +256,13 @@ impl<T: Number> Weights<T> {
     fn blend(&mut self, unit: f64) {
         let zero = T::constant(0.0);
         let distance = |p: &[T; 2]| dot(*p, *p).sqrt();
+        if let Some(here) = self.seen.iter().position(|p| distance(p).value() == 0.0) {
+            // As near to a site as that, all planes say what it says.
+            self.values.fill(zero);
+            self.values[here] = T::constant(1.0);
+            self.slopes.resize(self.values.len(), [zero; 2]);
+            return;
+        }
         let (mut over, mut times, mut squares) = (zero, zero, zero);
         for (w, p) in self.values.iter().zip(&self.seen) {
             let r = distance(p);

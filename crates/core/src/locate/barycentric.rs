@@ -19,6 +19,13 @@ pub fn barycentric(given: &Given, place: &Place, q: Point2) -> [f64; 3] {
 /// The same for corners by themselves; `on` tells on which edges `q` is exactly.
 #[inline]
 pub fn weights(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
+    // At a corner no arithmetic is asked: beside a tiny edge of a huge triangle it would vanish.
+    match on {
+        [false, true, true] => return [1.0, 0.0, 0.0],
+        [true, false, true] => return [0.0, 1.0, 0.0],
+        [true, true, false] => return [0.0, 0.0, 1.0],
+        _ => {}
+    }
     let (seen, unit) = seen_from(q, corners);
     let mut areas = [0.0; 3];
     for k in 0..3 {
@@ -58,12 +65,14 @@ fn with_care(
     if sum > 0.0 {
         return areas.map(|a| a / sum);
     }
-    along_longest(seen)
+    along_edge(corners, on, q)
 }
 
-/// The weights in a triangle that no arithmetic of doubles tells from its longest edge.
+/// The weights on the edge that has the point, or in a triangle that no arithmetic of doubles tells
+/// from its longest edge.
 #[cold]
-fn along_longest(seen: [Point2; 3]) -> [f64; 3] {
+fn along_edge(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
+    let (mut seen, _) = seen_from(q, corners);
     let length = |k: usize| {
         let (u, v) = (seen[next(k)], seen[prev(k)]);
         (v[0] - u[0]).hypot(v[1] - u[1])
@@ -73,6 +82,12 @@ fn along_longest(seen: [Point2; 3]) -> [f64; 3] {
         if length(i) > length(k) {
             k = i;
         }
+    }
+    // The edge may be so short beside the triangle that it needs a unit of its own.
+    if let Some(edge) = (0..3).find(|&i| on[i]) {
+        k = edge;
+        let (ends, _) = seen_from(q, [corners[next(k)], corners[prev(k)]]);
+        [seen[next(k)], seen[prev(k)]] = ends;
     }
     let [du, dv] = [next(k), prev(k)].map(|i| seen[i][0].hypot(seen[i][1]));
     let mut weights = [0.0; 3];

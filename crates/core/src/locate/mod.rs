@@ -28,7 +28,7 @@ pub use boundary::Boundary;
 pub use coordinates::{Coordinates, coordinates};
 pub use cross::cross;
 pub use nearest::nearest;
-pub use range::{in_unit, seen_from};
+pub use range::{in_unit, seen_from, unit_of};
 pub use segment::along;
 pub use star::{Place, Star};
 pub use start::Start;

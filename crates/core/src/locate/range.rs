@@ -2,6 +2,8 @@
 
 use delone_predicates::Point2;
 
+use crate::points::Extent;
+
 /// Differences within these bounds are left as they are: their fourth powers are doubles.
 const SAFE: std::ops::Range<f64> = 1e-60..1e60;
 
@@ -26,6 +28,16 @@ pub fn in_unit(origin: Point2, p: Point2, unit: f64) -> Point2 {
     } else {
         [0, 1].map(|k| (p[k] / 4.0 - origin[k] / 4.0) / (unit / 4.0))
     }
+}
+
+/// A unit of length in which no power of the distances leaves the range of doubles, unless they
+/// differ by as much among themselves.
+pub fn unit_of(points: &[Point2]) -> f64 {
+    let extent = Extent::of(points.iter().copied());
+    if extent.min[0] > extent.max[0] {
+        return 1.0;
+    }
+    seen_from(extent.min, [extent.max]).1
 }
 
 #[inline]
