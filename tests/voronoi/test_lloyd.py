@@ -9,7 +9,7 @@ import pytest
 
 from delone.datasets import uniform
 from delone.errors import InputError
-from delone.voronoi import lloyd
+from delone.voronoi import Voronoi, centroidal, lloyd
 
 BOX = (0, 0, 1, 1)
 
@@ -73,12 +73,51 @@ def test_the_box_of_the_sites_stays_that_of_the_first_ones() -> None:
     assert result.diagram.clip == (0.0, 0.0, 1.0, 1.0)
 
 
+def test_quasi_newton_steps_come_to_rest_sooner() -> None:
+    sites = uniform(150, seed=5)
+    slow = lloyd(sites, BOX, iterations=3000, tol=1e-6)
+    fast = lloyd(sites, BOX, iterations=3000, tol=1e-6, method="l-bfgs")
+    assert slow.converged and fast.converged
+    assert fast.evaluations < slow.evaluations / 2
+    assert slow.evaluations == slow.iterations + 1 <= 3001
+    assert (np.diff(fast.energies) <= 1e-13 * fast.energies[0]).all()
+    assert np.allclose(fast.points, fast.diagram.cell_centroids, atol=1e-6)
+    assert fast.energies[-1] == pytest.approx(slow.energies[-1], rel=0.02)
+
+
+def test_the_gradient_is_that_of_the_energy() -> None:
+    sites, step = uniform(12, seed=6), 1e-6
+    for density in (None, lambda p: 1 + p[:, 0]):
+        state = centroidal._state(Voronoi(sites, clip=BOX), density)
+        for row, k in [(0, 0), (5, 1), (11, 0)]:
+            moved = [sites.copy(), sites.copy()]
+            moved[0][row, k] -= step
+            moved[1][row, k] += step
+            low, high = (centroidal._state(Voronoi(m, clip=BOX), density).energy for m in moved)
+            assert (high - low) / (2 * step) == pytest.approx(state.gradient[row, k], rel=1e-4)
+
+
+def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
+    shapely = pytest.importorskip("shapely")
+    outline = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 2, 2) - shapely.box(3, 3, 5, 5)
+    sites = np.vstack((uniform(60, seed=7) * 4, [(9.0, 9.0), (0.5, 0.5), (0.5, 0.5)]))
+    result = lloyd(
+        sites, outline, iterations=40, method="l-bfgs", density=lambda p: np.exp(-p[:, 0])
+    )
+    assert (np.diff(result.energies) <= 1e-13 * result.energies[0]).all()
+    assert result.points[-1].tolist() == result.points[-2].tolist()
+    assert 60 in result.empty and result.points[60].tolist() == [9.0, 9.0]
+    one = lloyd([(0.1, 0.5)], BOX, method="l-bfgs", tol=1e-12)
+    assert one.converged and one.points.tolist() == [pytest.approx([0.5, 0.5])]
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"clip": None}, "needs a clip"),
         ({"iterations": -1}, "iterations"),
         ({"tol": -1.0}, "tol"),
+        ({"method": "newton"}, "'lloyd', 'l-bfgs'"),
         ({"tol": float("nan")}, "tol"),
         ({"density": lambda p: p}, "shape"),
         ({"density": lambda p: -p[:, 0]}, "not negative"),
