@@ -60,7 +60,7 @@ class ConstrainedDelaunay(Segmented):
         Seeds of holes: the triangles of the area around each are removed, up to the segments.
     regions : array_like, shape (k, 2) or (k, 3), optional
         Seeds of regions: the triangles of the area around each get its label in `region`, the third
-        column (an integer of at least 0) or else its row.
+        column (an integer of at least 0) or else its row. Without seeds, areas are numbered from 0.
     boundary : {"hull", "outline"}, optional
         What is triangulated: the convex hull, or only what cannot be reached from outside of it
         without crossing a segment.
@@ -169,12 +169,13 @@ class ConstrainedDelaunay(Segmented):
             max_vertices=_budget(max_vertices),
             method=as_choice(method, tuple(_core.methods2()), name="method"),
             workers=workers,
-            labelled=regions is not None,
+            labelled=False,
         )
         own = own_copy(points)
         rows = _own(as_segments(segments, len(own)), segments)
         origin = np.full(len(rows), -1, dtype=np.int32), np.zeros(len(rows), dtype=bool)
         found = _given(rows, origin, holes, regions)
+        options = options._replace(labelled=len(found["regions"]) > 0)
         self._set(found, options, _compute(own, found, options))
 
     @classmethod
@@ -198,8 +199,8 @@ class ConstrainedDelaunay(Segmented):
         as_choice(choices["method"], tuple(_core.methods2()), name="method")
         choices["max_vertices"] = _budget(choices["max_vertices"])
         mesh = cls.__new__(cls)
-        options = Options(labelled=regions is not None, **choices)
         found = _given(segments, origin, holes, regions)
+        options = Options(labelled=len(found["regions"]) > 0, **choices)
         mesh._set(found, options, _compute(points, found, options))
         return mesh
 

@@ -24,11 +24,20 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["EXTERIOR", "INTERIOR", "LINE", "POINTS", "Parts", "frame", "parts_of"]
+__all__ = [
+    "EXTERIOR",
+    "INTERIOR",
+    "LINE",
+    "POINTS",
+    "Parts",
+    "frame",
+    "is_shapely",
+    "parts_of",
+]
 
 POINTS, LINE, EXTERIOR, INTERIOR = range(4)
 # Shapely's numbers of types.
-_POINT, _POLYGON = 0, 3
+_POINT, _POLYGON, _COLLECTION = 0, 3, 7
 
 
 class Parts(NamedTuple):
@@ -64,7 +73,7 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     Raises
     ------
     InputError
-        Something is no geometry.
+        Something is no geometry, is curved, or is nested too deeply.
     ShapeError
         Coordinates of a mapping are not nested as its type says.
 
@@ -80,13 +89,18 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     """
     found: list[Parts] = []
     count = 0
-    for batch in _batches(geometries, name):
-        if isinstance(batch, np.ndarray):
-            parts, length = _taken_apart(batch), len(batch)
-        else:
-            parts, length = _joined(_of_mapping(batch, name)), 1
-        found.append(parts._replace(geometries=parts.geometries + count))
-        count += length
+    try:
+        for batch in _batches(geometries, name):
+            if isinstance(batch, np.ndarray):
+                parts, length = _taken_apart(batch), len(batch)
+            else:
+                parts, length = _joined(_of_mapping(batch, name)), 1
+            found.append(parts._replace(geometries=parts.geometries + count))
+            count += length
+    except RecursionError:
+        raise InputError(f"{name} hold collections in collections, too deep to follow") from None
+    except NotImplementedError:  # shapely's for curves
+        raise InputError(f"{name} hold a curve: only straight lines can be taken") from None
     return _joined(found)
 
 
@@ -94,7 +108,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     """Arrays of shapely's geometries, and mappings, in the order given."""
     if given is None:
         yield np.array([None], dtype=object)
-    elif hasattr(given, "geom_type") and _is_shapely(given):
+    elif hasattr(given, "geom_type") and is_shapely(given):
         yield np.array([given], dtype=object)
     elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
         yield np.asarray(given.geometry.values, dtype=object)
@@ -108,7 +122,19 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         yield from _of_iterable(given, name)
 
 
-def _is_shapely(given: Any) -> bool:
+def is_shapely(given: Any) -> bool:
+    """Tell a geometry of shapely, without importing that.
+
+    Parameters
+    ----------
+    given : object
+        Anything.
+
+    Returns
+    -------
+    bool
+        Whether it is one.
+    """
     shapely = sys.modules.get("shapely")
     return shapely is not None and isinstance(given, shapely.Geometry)
 
@@ -117,7 +143,7 @@ def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
     """Runs of shapely's geometries become arrays, so that they are read in bulk."""
     run: list[Any] = []
     for item in given:
-        if item is None or _is_shapely(item):
+        if item is None or is_shapely(item):
             run.append(item)
             continue
         if run:
@@ -152,6 +178,8 @@ def _taken_apart(geometries: NDArray[Any]) -> Parts:
         return _joined([])
     shapely = sys.modules["shapely"]
     rows = np.arange(len(geometries))
+    if (shapely.get_type_id(geometries) > _COLLECTION).any():
+        raise NotImplementedError("a curve that shapely can hold")
     while (shapely.get_type_id(geometries) > _POLYGON).any():
         geometries, index = shapely.get_parts(geometries, return_index=True)
         rows = rows[index]
@@ -232,6 +260,8 @@ def _run(coordinates: Any, kind: int, what: str) -> Parts:
         rows = np.array([tuple(row)[:2] for row in coordinates if len(row)], dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ShapeError(f"the coordinates of a {what} are no pairs of numbers: {error}") from error
+    except OverflowError as error:
+        raise InputError(f"a {what} has a coordinate that no double holds: {error}") from error
     if rows.size == 0:
         return _joined([])
     if rows.ndim != 2 or rows.shape[1] != 2:

@@ -268,7 +268,12 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
 
 def _rings(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
     """Return the points of all rings, and where each ring begins."""
-    if isinstance(polygon, dict) or hasattr(polygon, "__geo_interface__"):
+    # Asked of the instance, `__geo_interface__` would take a whole geometry of shapely apart.
+    if (
+        isinstance(polygon, dict)
+        or geodata.is_shapely(polygon)
+        or hasattr(polygon, "__geo_interface__")
+    ):
         return _rings_of_geometry(polygon, nonzero)
     rings = [as_points(ring, ndim=2, name="polygon") for ring in _listed(polygon)]
     counts = [len(ring) for ring in rings]
@@ -285,7 +290,7 @@ def _listed(polygon: Any) -> list[Any]:
     items = list(polygon)
     if not items:
         return []
-    flat = hasattr(items[0], "__len__") and len(items[0]) and np.ndim(items[0][0]) == 0
+    flat = hasattr(items[0], "__len__") and len(items[0]) and not hasattr(items[0][0], "__len__")
     return [items] if flat else [ring for ring in items if len(ring)]
 
 

@@ -1,6 +1,7 @@
 """Each exit code, one line for each error, and no output half written."""
 
 import errno
+import json
 import os
 import signal
 import subprocess
@@ -163,6 +164,35 @@ def test_a_reader_that_goes_away(survey):
     assert done.returncode == 5
     assert b"Traceback" not in done.stderr
     assert b"Exception ignored" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["triangulate", "voronoi", "mesh", "interpolate"])
+def test_no_input_is_replaced(tmp_path: Path, command, name: str) -> None:
+    ring = [[0, 0], [4, 0], [4, 3], [0, 3], [0, 0]]
+    square = {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon"}}
+    square["geometry"]["coordinates"] = [ring]
+    source = tmp_path / "a.geojson"
+    source.write_text(json.dumps({"type": "FeatureCollection", "features": [square]}))
+    before = source.read_bytes()
+    link = tmp_path / "link.geojson"
+    link.symlink_to(source)
+    options = ["--value", "z", "--grid", "2x2"] if name == "interpolate" else []
+    code, _, err = command(name, source, *options, "-o", link)
+    assert code == 2 and "would replace the input" in err
+    code, _, err = command(
+        name, source, *options, "-o", tmp_path / "b.gpkg", "-o", tmp_path / "b.gpkg"
+    )
+    assert code == 2 and "one file" in err
+    assert source.read_bytes() == before and not (tmp_path / "b.gpkg").exists()
+
+
+def test_an_outline_is_not_replaced_either(tmp_path: Path, command) -> None:
+    (tmp_path / "sites.csv").write_text("x,y\n0,0\n1,0\n0,1\n")
+    outline = tmp_path / "outline.geojson"
+    outline.write_text("{}")
+    code, _, err = command("voronoi", tmp_path / "sites.csv", "--clip", outline, "-o", outline)
+    assert code == 2 and "would replace the input" in err
+    assert outline.read_text() == "{}"
 
 
 def test_nan_rows_are_named(tmp_path, command):

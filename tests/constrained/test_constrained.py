@@ -161,8 +161,12 @@ class TestRegions:
         assert mesh.areas[mesh.region == 2].sum() == 32
         assert mesh.report.regions_outside.tolist() == [0]
 
-    def test_no_seeds_at_all_label_nothing(self) -> None:
-        assert set(ConstrainedDelaunay(*FRAME, regions=[]).region.tolist()) == {-1}
+    def test_an_empty_list_of_seeds_is_none(self) -> None:
+        mesh = ConstrainedDelaunay(*FRAME, regions=[])
+        assert mesh.region.tolist() == ConstrainedDelaunay(*FRAME).region.tolist()
+        with mesh.edit() as edit:
+            edit.insert_points([(1, 1)])
+        assert set(edit.result.region.tolist()) == {0, 1}
 
     def test_the_first_seed_of_an_area_counts(self) -> None:
         mesh = ConstrainedDelaunay(*FRAME, regions=[(3, 3, 5), (2.5, 3, 6), (1, 1, 7)])

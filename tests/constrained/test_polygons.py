@@ -414,3 +414,49 @@ class TestTables:
         with pytest.raises(errors.MissingExtraError, match=library) as caught:
             delone.triangulate_polygon(RING).to_geopandas()
         assert caught.value.extra == "geo"
+
+
+class TestWhatIsNoGeometry:
+    @staticmethod
+    def nested(item: Any, depth: int = 5000) -> Any:
+        for _ in range(depth):
+            item = {"type": "GeometryCollection", "geometries": [item]}
+        return item
+
+    @pytest.mark.parametrize("take", [from_geometry, triangulate_polygon])
+    def test_collections_too_deep_to_follow(self, take: Any) -> None:
+        deep = self.nested({"type": "Point", "coordinates": (0, 0)})
+        for given_ in (deep, {"type": "FeatureCollection", "features": [deep]}):
+            with pytest.raises(errors.InputError, match="too deep"):
+                take(given_)
+
+    def test_lists_too_deep_to_follow(self) -> None:
+        deep: list[Any] = []
+        for _ in range(5000):
+            deep = [deep]
+        with pytest.raises(errors.InputError, match="too deep"):
+            from_geometry(deep)
+        with pytest.raises(errors.InputError):
+            triangulate_polygon(deep)
+
+    def test_collections_of_shapely_are_followed_all_the_way(self) -> None:
+        geometry = shapely.Polygon(RING)
+        for _ in range(5000):
+            geometry = shapely.GeometryCollection([geometry])
+        assert area(triangulate_polygon(geometry)) == 36
+
+    @pytest.mark.parametrize("take", [from_geometry, triangulate_polygon])
+    def test_numbers_that_no_double_holds(self, take: Any) -> None:
+        line = {"type": "Polygon", "coordinates": [[(0, 0), (10**400, 1), (0, 1)]]}
+        with pytest.raises(errors.InputError, match="no double holds"):
+            take(line)
+
+    @pytest.mark.parametrize("take", [from_geometry, triangulate_polygon])
+    def test_curves(self, take: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+        def refused(*_: Any, **__: Any) -> None:
+            raise NotImplementedError("Nonlinear geometry types are not currently supported")
+
+        # Not every shapely can hold a curve; those that can say this.
+        monkeypatch.setattr(shapely, "get_rings", refused)
+        with pytest.raises(errors.InputError, match="curve: only straight lines"):
+            take(shapely.Polygon(RING))

@@ -288,7 +288,10 @@ def test_no_segments_are_delaunay(drawing: Drawing) -> None:
     assert not mesh.constrained.any() and set(mesh.region.tolist()) == {0}
 
 
-@given(drawings(), st.lists(st.tuples(st.integers(-2, 22), st.integers(-2, 22)), max_size=5))
+@given(
+    drawings(),
+    st.lists(st.tuples(st.integers(-2, 22), st.integers(-2, 22)), min_size=1, max_size=5),
+)
 def test_regions_and_holes_of_seeds(drawing: Drawing, seeds: list[tuple[int, int]]) -> None:
     # Quarters of the lattice: within triangles, on edges, on vertices and outside.
     places = np.array(seeds, dtype=float).reshape(-1, 2) / 4

@@ -18,7 +18,7 @@ from delone.atomic import check_target, replacing
 from delone.cli import cells, field, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
-from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, writing
+from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, spare_inputs, writing
 from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
 from delone.cli.report import Stopwatch, peak_memory, summary
@@ -142,6 +142,7 @@ def triangulate(
     Lines and the sides of polygons become edges of the triangulation.
     """
     with writing():
+        spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:

@@ -10,7 +10,7 @@ import typer
 
 from delone import Voronoi, __version__
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
@@ -66,6 +66,7 @@ def voronoi(
 ) -> None:
     """Cut the Voronoi cells of sites to an outline, and write them with the sites' attributes."""
     with writing():
+        spare_inputs(output or (), source, Path(clip))
         for path in output or ():
             _ready(path)
     watch = Stopwatch()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from contextlib import contextmanager
 from enum import IntEnum
@@ -19,9 +20,10 @@ from delone.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
 
-__all__ = ["MEANINGS", "Exit", "Failure", "code_of", "reading", "writing"]
+__all__ = ["MEANINGS", "Exit", "Failure", "code_of", "reading", "spare_inputs", "writing"]
 
 
 class Exit(IntEnum):
@@ -70,6 +72,32 @@ class Failure(Exception):  # noqa: N818
     def __init__(self, message: str, code: Exit) -> None:
         super().__init__(message)
         self.code = code
+
+
+def spare_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
+    """Refuse outputs that would replace an input, or each other.
+
+    Parameters
+    ----------
+    outputs : iterable of Path
+        Files to be written.
+    *inputs : Path
+        Files to be read, there or not.
+
+    Raises
+    ------
+    Failure
+        Two of the names, links followed, are of one file.
+    """
+    read = {os.path.realpath(path): path for path in inputs}
+    written: set[str] = set()
+    for path in outputs:
+        real = os.path.realpath(path)
+        if real in read:
+            raise Failure(f"{path}: the output would replace the input {read[real]}", Exit.USAGE)
+        if real in written:
+            raise Failure(f"{path}: two outputs are one file", Exit.USAGE)
+        written.add(real)
 
 
 def code_of(error: BaseException) -> Exit:

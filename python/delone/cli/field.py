@@ -11,7 +11,7 @@ import typer
 
 from delone import __version__
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
@@ -97,6 +97,7 @@ def interpolate(
     """Interpolate the values of points to a raster, and write it to files and pictures."""
     where = _raster_options(size, resolution, bounds)
     with writing():
+        spare_inputs(output or (), source)
         writers = {path: (raster_writer(path), check_target(path))[0] for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:

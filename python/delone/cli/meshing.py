@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import memory_text, print_json, print_rows, print_stages
 from delone.errors import CrossingSegmentsError, NonFiniteError
@@ -69,6 +69,7 @@ def make_mesh(
     Pictures show the mesh and the histogram of its angles.
     """
     with writing():
+        spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with reading(), watch.stage("read"):
