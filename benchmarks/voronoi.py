@@ -2,11 +2,14 @@
 
     python benchmarks/voronoi.py [--n 1000000] [--cells 100000] [--outline FILE] [--runs 5]
 
-Whole diagrams: points in, arrays out, for delone and SciPy (vertices, ridges, regions as SciPy
-gives them); shapely's ``voronoi_polygons`` gives geometries. Cut to an outline: delone's polygons
+Whole diagrams: points in, arrays out, for delone, SciPy (vertices, ridges, regions as SciPy gives
+them) and, where its headers are installed, CGAL, in a process of its own, with its Voronoi adaptor
+and straight from its triangulation;
+shapely's ``voronoi_polygons`` gives geometries. Cut to an outline: delone's polygons
 in the order of the sites, against the usual way, ``voronoi_polygons`` and then ``intersection`` of
 each cell; of the latter a sample is timed and scaled, where the whole would take minutes. The
-outline is the largest polygon of a file that geopandas reads, by default a star of 60,000 corners.
+outline is the largest polygon of a file of polygons, such as the land of Natural Earth (of which
+that is Afro-Eurasia), by default a star of 60,000 corners.
 Figures are medians, in seconds; the peers take turns, run by run.
 """
 
@@ -14,9 +17,13 @@ from __future__ import annotations
 
 import argparse
 import statistics
+import subprocess
+import tempfile
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import crates
 import numpy as np
 import shapely
 
@@ -45,7 +52,9 @@ def star(corners: int = 60_000) -> shapely.Polygon:
 def largest(path: str) -> shapely.Polygon:
     import geopandas
 
-    parts = shapely.get_parts(np.asarray(geopandas.read_file(path).geometry.values))
+    # GDAL reads compressed files by another name.
+    frame = geopandas.read_file(f"/vsigzip/{path}" if path.endswith(".gz") else path)
+    parts = shapely.get_parts(np.asarray(frame.geometry.values))
     return parts[np.argmax(shapely.area(parts))]
 
 
@@ -99,12 +108,28 @@ def seconds(call: Callable[[], object]) -> float:
     return found if isinstance(found, float) else time.perf_counter() - start
 
 
-def table(title: str, peers: dict[str, Callable[[], object]], runs: int) -> None:
+def cgal(points: Any, runs: int) -> dict[str, list[float]]:
+    """Seconds of each run of CGAL's two ways; none where CGAL is not installed."""
+    program = crates.build_cgal("cgal_voronoi")
+    if program is None:
+        return {}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "points"
+        points.astype("<f8").tofile(file)
+        command = [str(program), str(runs), str(file)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return crates.runs_of(done.stdout)
+
+
+def table(
+    title: str, peers: dict[str, Callable[[], object]], runs: int, apart: dict[str, list[float]]
+) -> None:
     taken: dict[str, list[float]] = {name: [] for name in peers}
     for run in range(runs):
         for name, call in peers.items():
             if run == 0 or taken[name][0] < SLOW:
                 taken[name].append(seconds(call))
+    taken |= apart
     medians = {name: statistics.median(times) for name, times in taken.items()}
     ours = next(iter(medians.values()))
     print(f"\n{title}\n\n| peer | seconds | times delone | runs |\n|---|---|---|---|")
@@ -118,7 +143,7 @@ def main() -> None:
     options.add_argument("--cells", type=int, default=100_000)
     options.add_argument("--outline")
     options.add_argument("--runs", type=int, default=5)
-    given = options.parse_args()
+    given = options.parse_known_args()[0]
     points = np.random.default_rng(0).random((given.n, 2))
     whole = {
         "delone": lambda: delone_arrays(points, 1),
@@ -126,7 +151,8 @@ def main() -> None:
         "scipy": lambda: scipy_lists(points),
         "shapely voronoi_polygons": lambda: shapely_polygons(points),
     }
-    table(f"{given.n:,} uniform sites, whole diagram", whole, given.runs)
+    apart = cgal(points, given.runs)
+    table(f"{given.n:,} uniform sites, whole diagram", whole, given.runs, apart)
     outline = largest(given.outline) if given.outline else star()
     sites = within(outline, given.cells)
     corners = shapely.get_num_coordinates(outline)
@@ -134,7 +160,7 @@ def main() -> None:
         "delone": lambda: delone_clipped(sites, outline),
         "voronoi_polygons, then intersection (scaled)": lambda: usual_way(sites, outline),
     }
-    table(f"{given.cells:,} sites in an outline of {corners:,} corners", cut, given.runs)
+    table(f"{given.cells:,} sites in an outline of {corners:,} corners", cut, given.runs, {})
 
 
 if __name__ == "__main__":
