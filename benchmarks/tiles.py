@@ -9,7 +9,6 @@ killed. All triangulations are compared with the one in memory, triangle for tri
 
 import argparse
 import os
-import resource
 import signal
 import tempfile
 import time
@@ -21,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from delone import Delaunay, datasets, distributed
+from delone.distributed.usage import peak_memory
 
 LIMIT = "1.5GB"
 
@@ -36,7 +36,7 @@ def measured(work: Callable[..., Any], *arguments: Any) -> tuple[Any, float, flo
     start = time.perf_counter()
     found = work(*arguments)
     seconds = time.perf_counter() - start
-    return found, seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    return found, seconds, peak_memory() / 1e6
 
 
 def in_memory(file: Path, folder: Path) -> int:

@@ -78,8 +78,9 @@ def _joined(
 ) -> tuple[Rows, Indices]:
     """All vertices, own rows first, foreign ones in the order of the source; all triangles."""
     used = np.zeros(len(rows), dtype=bool)
-    used[certain] = True
-    used[:own] = False
+    # Corners of other tiles are few, and own ones stay where they are.
+    other = certain >= own
+    used[certain[other]] = True
     beside = rows[used]
     if late is not None:
         seen = late["seen"]
@@ -89,7 +90,8 @@ def _joined(
     vertices = np.concatenate([rows[:own], beside])
     place = np.arange(len(rows), dtype=np.int32)
     place[used] = own + np.searchsorted(beside["id"], rows["id"][used])
-    triangles = place[certain]
+    triangles = certain.copy()
+    triangles[other] = place[certain[other]]
     if late is not None:
         triangles = np.concatenate([triangles, _numbered(late["kept"], vertices["id"], own)])
     return vertices, triangles

@@ -107,8 +107,11 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     told = np.zeros(len(rows), dtype=bool)
     told[simplices[(needed & ~certain) | (highest >= own)]] = True
     store.save(f"work/told/{key:06}.npy", rows[:own][told[:own]])
-    kept = simplices[certain]
-    store.save(f"work/certain/{key:06}.npy", kept[belongs(kept, owner, key)])
+    # All triangles without foreign corners belong to the tile.
+    shared = certain & (highest >= own)
+    mine = certain & ~shared
+    mine[shared] = belongs(simplices[shared], owner, key)
+    store.save(f"work/certain/{key:06}.npy", simplices[mine])
     summary = {"foreign": len(foreign), "twins": int((twins[:, 0] < own).sum()), "asked": []}
     if asked.any():
         vertices, edges = cut_out(simplices, neighbors, certain)
