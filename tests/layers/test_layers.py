@@ -105,6 +105,7 @@ PYTHON: dict[str, set[str]] = {
     "compat": {
         "_core",
         "delaunay",
+        "hull",
         "interpolate",
         "io",
         "predicates",

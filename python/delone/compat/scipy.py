@@ -1,4 +1,4 @@
-"""The place of ``scipy.spatial``'s Delaunay and Voronoi taken by delone, and of its interpolators.
+"""The place of ``scipy.spatial``'s Delaunay, Voronoi and ConvexHull taken by delone, and more.
 
 >>> from delone.compat.scipy import Delaunay
 >>> tri = Delaunay([(0, 0), (0, 1.1), (1, 0), (1, 1)])
@@ -14,14 +14,15 @@ The signature, attributes, dtypes, errors and the mutability of arrays are SciPy
   delone's order.
 * `find_simplex` is exact: `tol` has no effect, and a point outside by a rounding error is outside.
 * `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
-* Furthest-site triangles are counter-clockwise, too.
+* Triangles are counter-clockwise and tetrahedra positively oriented, furthest-site ones, too.
+* Furthest-site triangulations are of the plane.
 * Complex numbers, masked queries, and integers which float64 does not hold, are refused rather than
   rounded or unmasked.
 * `add_points` triangulates anew, which takes the time of a triangulation, not of an insertion.
 
 `Voronoi` and `voronoi_plot_2d` are here by name; `delone.compat.scipy_voronoi` has them and what
-differs. The interpolators of ``scipy.interpolate`` are here by name; `delone.compat.interpolate`
-has them and what differs.
+differs. So is `ConvexHull`, of `delone.compat.scipy_hull`. The interpolators of
+``scipy.interpolate`` are here by name; `delone.compat.interpolate` has them and what differs.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ from delone.compat.interpolate import (
     griddata,
 )
 from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.compat.scipy_hull import ConvexHull
 from delone.compat.scipy_voronoi import Voronoi, voronoi_plot_2d
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
 
@@ -65,6 +67,7 @@ else:
 
 __all__ = [
     "CloughTocher2DInterpolator",
+    "ConvexHull",
     "Delaunay",
     "DimensionError",
     "LinearNDInterpolator",
@@ -84,7 +87,7 @@ _INFINITE_POINT = 1.1
 
 
 class DimensionError(InputError, NotImplementedError):
-    """The points are not in the plane."""
+    """The points have more coordinates than there is an answer for."""
 
 
 class Delaunay:
@@ -92,11 +95,11 @@ class Delaunay:
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2)
+    points : array_like, shape (npoints, 2) or (npoints, 3)
         Coordinates.
     furthest_site : bool, optional
         Whether to compute the furthest-site triangulation: that of the extreme points, whose
-        circles hold all points.
+        circles hold all points. In the plane only.
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
@@ -106,22 +109,22 @@ class Delaunay:
 
     Attributes
     ----------
-    points : ndarray of float64, shape (npoints, 2)
+    points : ndarray of float64, shape (npoints, ndim)
         Coordinates; the array given where it is of this dtype and layout, as in SciPy.
-    simplices : ndarray of int32, shape (nsimplex, 3)
-        Triangles, counter-clockwise.
-    neighbors : ndarray of int32, shape (nsimplex, 3)
-        The triangle opposite each vertex, -1 outside.
-    equations : ndarray of float64, shape (nsimplex, 4)
-        Normal and offset of the plane through the lifted corners of each triangle.
+    simplices : ndarray of int32, shape (nsimplex, ndim + 1)
+        Triangles, counter-clockwise, or tetrahedra, positively oriented.
+    neighbors : ndarray of int32, shape (nsimplex, ndim + 1)
+        The simplex opposite each vertex, -1 outside.
+    equations : ndarray of float64, shape (nsimplex, ndim + 2)
+        Normal and offset of the plane through the lifted corners of each simplex.
     paraboloid_scale, paraboloid_shift : float
-        Points are lifted to ``scale * (x**2 + y**2) + shift``.
-    transform : ndarray of float64, shape (nsimplex, 3, 2)
-        Affine maps to barycentric coordinates; NaN for nearly flat triangles, as in SciPy.
+        Points are lifted to ``scale * (x**2).sum() + shift``.
+    transform : ndarray of float64, shape (nsimplex, ndim + 1, ndim)
+        Affine maps to barycentric coordinates; NaN for nearly flat simplices, as in SciPy.
     vertex_to_simplex : ndarray of int32, shape (npoints,)
         A triangle of each point, -1 where there is none.
-    convex_hull : ndarray of int32, shape (nfaces, 2)
-        Edges of the convex hull.
+    convex_hull : ndarray of int32, shape (nfaces, ndim)
+        Edges or triangles of the convex hull.
     coplanar : ndarray of int32, shape (ncoplanar, 3)
         Each duplicate, a triangle of its vertex, and its vertex.
     vertex_neighbor_vertices : tuple of two ndarrays of int32
@@ -132,19 +135,20 @@ class Delaunay:
         As given.
     ndim, npoints, nsimplex : int
         Sizes.
-    min_bound, max_bound : ndarray of float64, shape (2,)
+    min_bound, max_bound : ndarray of float64, shape (ndim,)
         The least and the greatest coordinates.
 
     Raises
     ------
     QhullError
-        Fewer than three points are distinct, or all lie on one line; a coordinate is infinite; an
-        option is unknown. ``scipy.spatial.QhullError`` where SciPy is installed.
+        The points span no area, or in space no volume; a coordinate is infinite; an option is
+        unknown. ``scipy.spatial.QhullError`` where SciPy is installed.
     ValueError
         A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for other
         triangles.
     DimensionError
-        The points have more than two coordinates. (A NotImplementedError and a ValueError.)
+        The points have more than three coordinates, or more than two where `furthest_site` is set.
+        (A NotImplementedError and a ValueError.)
 
     Notes
     -----
@@ -175,7 +179,7 @@ class Delaunay:
             self._options = QhullOptions.parse(qhull_options, incremental=self._open)
         except UnknownOptionError as error:
             raise QhullError(str(error)) from error
-        self._set(as_plane_points(points))
+        self._set(as_low_points(points, 2 if self.furthest_site else 3))
 
     def _set(self, points: Floats) -> None:
         """Triangulate; nothing changes where that fails."""
@@ -184,14 +188,14 @@ class Delaunay:
         self._mesh = mesh
         for name in _FOLLOWING:
             self.__dict__.pop(name, None)
-        self.ndim, self.npoints, self.nsimplex = 2, mesh.npoints, mesh.nsimplex
+        self.ndim, self.npoints, self.nsimplex = mesh.ndim, mesh.npoints, mesh.nsimplex
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
         """Add points and triangulate anew.
 
         Parameters
         ----------
-        points : array_like, shape (k, 2)
+        points : array_like, shape (k, ndim)
             What to append to `points`.
         restart : bool, optional
             Accepted as in SciPy. The result is the same.
@@ -213,7 +217,10 @@ class Delaunay:
         """
         if not self._open:
             raise RuntimeError("points can be added with incremental=True only, and before close()")
-        self._set(np.concatenate((self._points, as_plane_points(points))))
+        more = as_low_points(points, 3)
+        if more.shape[1] != self.ndim:
+            raise ShapeError(f"points must have {self.ndim} coordinates, got shape {more.shape}")
+        self._set(np.concatenate((self._points, more)))
 
     def close(self) -> None:
         """End incremental mode; `add_points` is refused from then on."""
@@ -286,8 +293,9 @@ class Delaunay:
         maps = self._mesh.transform.copy()
         corners = self._mesh.points[self._mesh.simplices]
         with np.errstate(all="ignore"):
-            vectors = np.abs(corners[:, :2] - corners[:, 2:]).sum(axis=2).max(axis=1)
-            inverse = np.abs(maps[:, :2]).sum(axis=1).max(axis=1)
+            last = self.ndim
+            vectors = np.abs(corners[:, :last] - corners[:, last:]).sum(axis=2).max(axis=1)
+            inverse = np.abs(maps[:, :last]).sum(axis=1).max(axis=1)
             condition = vectors * inverse
         maps[~(condition <= 1 / _ILL_CONDITIONED)] = np.nan
         return maps
@@ -324,7 +332,10 @@ class Delaunay:
         (2 s c, -1), which points down, as the outside of the lower side of the lifted hull.
         """
         horizontal = 2 * self.paraboloid_scale * self._mesh.circumcenters
-        return horizontal, np.hypot(np.hypot(*horizontal.T), 1.0)
+        length = np.ones(len(horizontal))
+        for k in range(self.ndim):
+            length = np.hypot(length, horizontal[:, k])
+        return horizontal, length
 
     @cached_property
     def equations(self) -> Floats:
@@ -332,7 +343,7 @@ class Delaunay:
         horizontal, length = self._normals
         corner = self._mesh.points[self._mesh.simplices[:, 0]]
         # The offset is what makes the equation 0 at a lifted corner.
-        offset = self.lift_points(corner)[:, 2] - (horizontal * corner).sum(axis=1)
+        offset = self.lift_points(corner)[:, -1] - (horizontal * corner).sum(axis=1)
         down = np.column_stack((horizontal, -np.ones(len(length)), offset)) / length[:, None]
         return -down if self.furthest_site else down
 
@@ -355,7 +366,7 @@ class Delaunay:
         >>> Delaunay([(0, 0), (1, 0), (0, 1)], qhull_options="Qc").lift_points((2, 3))
         array([ 2.,  3., 13.])
         """
-        x = _as_queries(x)
+        x = _as_queries(x, self.ndim)
         height = self.paraboloid_scale * (x * x).sum(axis=-1) + self.paraboloid_shift
         return np.concatenate((x, height[..., None]), axis=-1)
 
@@ -385,7 +396,7 @@ class Delaunay:
         array([[ True],
                [False]])
         """
-        xi = _as_queries(xi)
+        xi = _as_queries(xi, self.ndim)
         _, length = self._normals
         corner = self._mesh.points[self._mesh.simplices[:, 0]]
         center = self._mesh.circumcenters
@@ -425,7 +436,7 @@ class Delaunay:
         >>> Delaunay([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (1, 1)])
         array([ 0, -1], dtype=int32)
         """
-        return self._mesh.find_simplex(_as_queries(xi))
+        return self._mesh.find_simplex(_as_queries(xi, self.ndim))
 
 
 # What is computed from the triangulation on first use.
@@ -508,24 +519,44 @@ def as_plane_points(points: ArrayLike) -> Floats:
     ndarray of float64, shape (n, 2)
         The same.
     """
+    return as_low_points(points, 2)
+
+
+def as_low_points(points: ArrayLike, most: int) -> Floats:
+    """Coerce as `as_plane_points` does, with more coordinates where they are welcome.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+        Points.
+    most : {2, 3}
+        The largest number of coordinates.
+
+    Returns
+    -------
+    ndarray of float64, of the same shape
+        The same.
+    """
+    ndim = 2 if most == 2 else None
     if isinstance(points, np.ma.MaskedArray):
-        return as_points(points, ndim=2)  # which refuses it by name
+        return as_points(points, ndim=ndim)  # which refuses it by name
     try:
         array = np.asarray(points)
     except ValueError:
-        return as_points(points, ndim=2)
+        return as_points(points, ndim=ndim)
     if array.ndim != 2:
         raise ShapeError(f"points must have two dimensions (npoints, ndim), got {array.shape}")
     if array.shape[1] < 2:
         raise ShapeError(f"points must have at least two coordinates, got shape {array.shape}")
-    if array.shape[1] > 2:
+    if array.shape[1] > most:
+        where = "in the plane" if most == 2 else "in the plane and in space"
         raise DimensionError(
-            f"delone.compat.scipy.Delaunay triangulates points in the plane; for "
-            f"{array.shape[1]} coordinates use scipy.spatial.Delaunay"
+            f"this answer of delone.compat.scipy is for points {where}; for "
+            f"{array.shape[1]} coordinates use scipy.spatial"
         )
     if array.dtype.kind in "bO":
         return _unboxed(array)
-    return as_points(points, ndim=2)
+    return as_points(points, ndim=ndim)
 
 
 def _unboxed(array: NDArray[Any]) -> Floats:
@@ -537,10 +568,10 @@ def _unboxed(array: NDArray[Any]) -> Floats:
     return numbers
 
 
-def _as_queries(xi: ArrayLike) -> Floats:
+def _as_queries(xi: ArrayLike, ndim: int) -> Floats:
     array = np.asanyarray(xi)
     if array.ndim == 0:
         raise IndexError("points to locate need a last axis of coordinates, got a single value")
-    if array.shape[-1] != 2:
-        raise ShapeError(f"points must have 2 coordinates, got shape {array.shape}")
-    return _unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, 2, name="xi")
+    if array.shape[-1] != ndim:
+        raise ShapeError(f"points must have {ndim} coordinates, got shape {array.shape}")
+    return _unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, ndim, name="xi")

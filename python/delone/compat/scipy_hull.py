@@ -1,0 +1,267 @@
+"""The place of ``scipy.spatial.ConvexHull`` taken by delone.
+
+>>> from delone.compat.scipy import ConvexHull
+>>> hull = ConvexHull([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+>>> hull.vertices.tolist(), hull.volume, hull.area
+([0, 1, 2, 3], 12.0, 14.0)
+
+The signature, attributes, dtypes, errors and the mutability of arrays are SciPy's. What differs:
+
+* Simplices come in delone's order, and each facet is triangulated by delone's rule.
+* Normals are those of whole facets, so that coplanar triangles have one equation.
+* `coplanar`, with option ``Qc``, lists the rows that repeat a vertex.
+* ``QGn`` is exact: a facet is visible to point n where that is strictly beyond its plane.
+* In space the boundary is oriented: triangles are counter-clockwise seen from outside.
+* Points in more than three dimensions are refused.
+* `add_points` computes the hull anew.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import hull, predicates
+from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.errors import DegenerateInputError, InputError, NonFiniteError, ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["ConvexHull"]
+
+
+class ConvexHull:
+    """Convex hull with the interface of ``scipy.spatial.ConvexHull``.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2) or (npoints, 3)
+        Coordinates.
+    incremental : bool, optional
+        Whether `add_points` may be called.
+    qhull_options : str, optional
+        As in SciPy. Options about rounding have no effect, for nothing is rounded. With ``Qc`` rows
+        that repeat a vertex are listed in `coplanar`; with ``QGn`` or ``QG-n`` point n is left out,
+        and `good` tells which facets are visible to it, or are not. The default is ``"Qt"``.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, ndim)
+        Coordinates; the array given where it is of this dtype and layout, as in SciPy.
+    vertices : ndarray of int32, shape (nvertices,)
+        The extreme points: counter-clockwise in the plane, ascending in space.
+    simplices : ndarray of int32, shape (nfacet, ndim)
+        Edges or triangles.
+    neighbors : ndarray of int32, shape (nfacet, ndim)
+        The facet that shares all vertices but one.
+    equations : ndarray of float64, shape (nfacet, ndim + 1)
+        Outer normals and offsets.
+    coplanar : ndarray of int32, shape (ncoplanar, 3)
+        Rows that repeat a vertex, a facet of it, and the vertex.
+    good : ndarray of bool, shape (nfacet,), or None
+        Which facets are visible, with option ``QGn``.
+    area, volume : float
+        In the plane perimeter and area.
+    ndim, npoints, nsimplex : int
+        Sizes.
+    min_bound, max_bound : ndarray of float64, shape (ndim,)
+        The least and the greatest coordinates.
+
+    Raises
+    ------
+    QhullError
+        The points span no area, or no volume; a coordinate is infinite; an option is unknown.
+    ValueError
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for another
+        hull.
+    DimensionError
+        The points have more than three coordinates. (A NotImplementedError and a ValueError.)
+
+    Notes
+    -----
+    The module's documentation lists what differs from SciPy.
+
+    Examples
+    --------
+    >>> from delone.compat.scipy import ConvexHull
+    >>> cube = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> hull = ConvexHull(cube)
+    >>> hull.simplices.shape, hull.volume, hull.area
+    ((12, 3), 1.0, 6.0)
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        incremental: bool = False,
+        qhull_options: str | None = None,
+    ) -> None:
+        from delone.compat import scipy
+
+        self._open = bool(incremental)
+        options, self._viewer = _viewer("Qt" if qhull_options is None else qhull_options)
+        try:
+            self._options = QhullOptions.parse(options, incremental=self._open)
+        except UnknownOptionError as error:
+            raise scipy.QhullError(str(error)) from error
+        self._set(scipy.as_low_points(points, 3))
+
+    def _set(self, points: Floats) -> None:
+        """Compute the hull; nothing changes where that fails."""
+        from delone.compat import scipy
+
+        if len(points) == 0:
+            raise ShapeError("no points given")
+        rows = np.arange(len(points), dtype=np.int32)
+        if self._viewer is not None:
+            if self._viewer[0] >= len(points):
+                raise scipy.QhullError(f"option QG names point {self._viewer[0]}, beyond the last")
+            rows = np.delete(rows, self._viewer[0])
+        try:
+            found = hull.ConvexHull(points[rows] if self._viewer else points)
+        except DegenerateInputError as error:
+            raise scipy.QhullError(str(error)) from error
+        except NonFiniteError as error:
+            # SciPy looks for NaN itself and leaves infinity to Qhull.
+            if np.isnan(points).any():
+                raise
+            raise scipy.QhullError(str(error)) from error
+        self._points, self._hull, self._rows = points, found, rows
+        for name in _FOLLOWING:
+            self.__dict__.pop(name, None)
+        self.ndim, self.npoints, self.nsimplex = found.ndim, len(points), found.nsimplex
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Add points and compute the hull anew.
+
+        Parameters
+        ----------
+        points : array_like, shape (k, ndim)
+            What to append to `points`.
+        restart : bool, optional
+            Accepted as in SciPy. The result is the same.
+
+        Raises
+        ------
+        RuntimeError
+            `incremental` was not set, or `close` has been called.
+        QhullError, ValueError
+            As in the constructor; then nothing has changed.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import ConvexHull
+        >>> hull = ConvexHull([(0, 0), (1, 0), (0, 1)], incremental=True)
+        >>> hull.add_points([(1, 1)])
+        >>> hull.volume
+        1.0
+        """
+        from delone.compat import scipy
+
+        if not self._open:
+            raise RuntimeError("points can be added with incremental=True only, and before close()")
+        more = scipy.as_low_points(points, 3)
+        if more.shape[1] != self.ndim:
+            raise ShapeError(f"points must have {self.ndim} coordinates, got shape {more.shape}")
+        self._set(np.concatenate((self._points, more)))
+
+    def close(self) -> None:
+        """End incremental mode; `add_points` is refused from then on."""
+        self._open = False
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates."""
+        return self._points
+
+    @cached_property
+    def vertices(self) -> Indices:
+        """The extreme points."""
+        return self._rows[self._hull.vertices]
+
+    @cached_property
+    def simplices(self) -> Indices:
+        """Edges or triangles."""
+        return self._rows[self._hull.simplices]
+
+    @cached_property
+    def neighbors(self) -> Indices:
+        """The facet that shares all vertices but one."""
+        return self._hull.neighbors.copy()
+
+    @cached_property
+    def equations(self) -> Floats:
+        """Outer normals and offsets."""
+        return self._hull.equations.copy()
+
+    @cached_property
+    def coplanar(self) -> Indices:
+        """Rows that repeat a vertex, a facet of it, and the vertex."""
+        if not self._options.coplanar:
+            return np.empty((0, 3), dtype=np.int32)
+        row, simplex, vertex = self._hull.coplanar.T
+        return np.column_stack((self._rows[row], simplex, self._rows[vertex]))
+
+    @cached_property
+    def good(self) -> NDArray[np.bool_] | None:
+        """Which facets are visible to the point of option ``QGn``, or are not."""
+        if self._viewer is None:
+            return None
+        row, visible = self._viewer
+        a, b = (self._points[self.simplices[:, k]] for k in (0, 1))
+        if self.ndim == 2:
+            beyond = predicates.orient2d(a, b, self._points[row]) < 0
+        else:
+            c = self._points[self.simplices[:, 2]]
+            beyond = predicates.orient3d(a, b, c, self._points[row]) > 0
+        found: NDArray[np.bool_] = np.equal(beyond, visible)
+        return found
+
+    @cached_property
+    def volume(self) -> float:
+        """The volume; in the plane the area."""
+        return self._hull.volume
+
+    @cached_property
+    def area(self) -> float:
+        """The area of the surface; in the plane the perimeter."""
+        return self._hull.area
+
+    @cached_property
+    def min_bound(self) -> Floats:
+        """The least coordinates."""
+        bound: Floats = self._points.min(axis=0)
+        return bound
+
+    @cached_property
+    def max_bound(self) -> Floats:
+        """The greatest coordinates."""
+        bound: Floats = self._points.max(axis=0)
+        return bound
+
+
+# What is computed from the hull on first use.
+_FOLLOWING = [name for name, v in vars(ConvexHull).items() if isinstance(v, cached_property)]
+
+
+def _viewer(options: str) -> tuple[str, tuple[int, bool] | None]:
+    """Options without ``QGn``, the point n, and whether visible facets are good."""
+    if not isinstance(options, str):
+        return options, None
+    others, found = [], None
+    for option in options.split():
+        match = re.fullmatch(r"QG(-?)(\d+)", option)
+        if match is None:
+            others.append(option)
+        elif found is not None:
+            raise InputError("only one point can look at the hull: QG is given twice")
+        else:
+            found = (int(match[2]), match[1] == "")
+    return " ".join(others), found
