@@ -6,7 +6,7 @@
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
-RUST_MINOR := 88
+RUST_MINOR := 89
 FUZZ_SECONDS ?= 20
 BENCH ?=
 DEMO_DATA := examples/data/ahn3_crop_100m.laz
@@ -109,6 +109,7 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/crates.py $(BENCH)
 	$(BIN)/python benchmarks/constrained.py $(BENCH)
 	$(BIN)/python benchmarks/refine.py $(BENCH)
+	$(BIN)/python benchmarks/space.py $(BENCH)
 	$(BIN)/python benchmarks/interpolate.py $(BENCH)
 	$(BIN)/python benchmarks/voronoi.py $(BENCH)
 	$(BIN)/python benchmarks/tiles.py

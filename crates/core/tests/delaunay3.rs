@@ -171,7 +171,9 @@ fn many_points_are_valid_for_any_number_of_workers() {
         .zip(0..)
         .map(|(p, i)| [0, 1, 2].map(|k| p[k] * 1e-4 + (hash(i % 7 + 99 * k as u64) % 9) as f64))
         .collect();
-    for points in [scattered(60_000, 1.0), lattice([30, 31, 29]), clusters] {
+    // The largest is more than a block.
+    let sets = [scattered(600_000, 1.0), lattice([30, 31, 29]), clusters];
+    for points in sets {
         let one = made(&points, 1);
         assert_eq!(findings(&points, &one), Findings3::default());
         for workers in [2, 3, 8, 64] {

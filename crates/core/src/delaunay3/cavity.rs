@@ -36,69 +36,83 @@
 
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
-use super::sphere::{RANGE, Ray, Sphere, UNKNOWN, inside, sphere};
+use super::sphere::{LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres};
 use crate::error::{Error, Result};
-use crate::memory::{push, with_room, zeroed};
+use crate::memory::{filled, push, with_room};
 use crate::mesh3::{Code, FACETS, Mesh3, tetrahedron};
 
-/// Stars of more vertices link by sorting their edges.
-const TABLE: usize = 64;
+/// Most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4, rounded up.
+const STAR: usize = 64;
+const RIM: usize = 2 * STAR;
 
-/// No vertex.
+/// No record.
 const NONE: u32 = u32::MAX;
-
-/// A facet of the hole: its corners, from inside, and what lies across.
-#[derive(Clone, Copy)]
-struct Rim {
-    corners: [u32; 3],
-    across: Code,
-}
 
 /// A mesh that grows by one point at a time.
 pub struct Kernel<'a> {
     points: &'a [Point3],
-    mesh: Mesh3,
+    mesh: Mesh3<'a>,
     spheres: Vec<Sphere>,
-    /// The vertex whose insertion has last found the record in conflict.
+    /// The vertex that has last found the record in conflict. Apart from the spheres: a store to
+    /// part of one would hold up the next load of the whole.
     mark: Vec<u32>,
-    /// Where each vertex stands in `star`, if it does.
-    place: Vec<u32>,
-    certain: bool,
-    cavity: Vec<u32>,
-    rim: Vec<Rim>,
-    star: Vec<u32>,
-    rays: Vec<Ray>,
-    table: Vec<Code>,
-    edges: Vec<(u64, Code)>,
+    /// Where each vertex stands in the star of the vertex inserted last, if it does.
+    place: Vec<u8>,
+    /// Added to each radius: NaN where the coordinates are out of the range of spheres, else 0.
+    doubt: f64,
+    /// The records in conflict, each as the facet by which it was reached.
+    cavity: Vec<Code>,
+    /// The facets of the hole, seen from inside.
+    rim: Vec<Code>,
+    star: Box<Star>,
     work: usize,
 }
 
+/// Room for one star.
+struct Star {
+    vertices: [u32; 256],
+    rays: Rays,
+    /// By facet of the hole: its corners, their places, what lies across, and the new record.
+    corners: [[u32; 3]; RIM],
+    places: [[u8; 3]; RIM],
+    across: [Code; RIM],
+    records: [u32; RIM],
+    /// By the places of a directed edge, the facet of the star that has it.
+    table: [Code; STAR * STAR],
+}
+
 impl<'a> Kernel<'a> {
-    /// A kernel over `points`, which end with NaN for infinity, that starts from the positively
-    /// oriented tetrahedron `first`.
-    pub fn start(points: &'a [Point3], first: [u32; 4]) -> Result<Self> {
-        let mut mesh = Mesh3::with_vertices(points.len() - 1)?;
+    /// A kernel in the empty `mesh` over `points`, which end with NaN for infinity, that starts from the
+    /// positively oriented tetrahedron `first`.
+    pub fn start(points: &'a [Point3], mut mesh: Mesh3<'a>, first: [u32; 4]) -> Result<Self> {
         mesh.first(first)?;
         let bound = 2f64.powi(RANGE);
         let coordinates = points[..points.len() - 1].as_flattened();
-        let room = 7 * points.len() + 64;
-        let mut kernel = Self {
+        let certain = coordinates.iter().all(|x| x.abs() < bound);
+        let mut spheres = with_room(mesh.room())?;
+        spheres.resize(mesh.records(), UNKNOWN);
+        let mut mark = with_room(mesh.room())?;
+        mark.resize(mesh.records(), NONE);
+        Ok(Self {
             points,
             mesh,
-            spheres: with_room(room)?,
-            mark: with_room(room)?,
-            place: zeroed(points.len())?,
-            certain: coordinates.iter().all(|x| x.abs() < bound),
-            cavity: Vec::new(),
-            rim: Vec::new(),
-            star: Vec::new(),
-            rays: Vec::new(),
-            table: vec![0; TABLE * TABLE],
-            edges: Vec::new(),
+            spheres,
+            mark,
+            place: filled(points.len(), 0)?,
+            doubt: if certain { 0.0 } else { f64::NAN },
+            cavity: vec![0; RIM],
+            rim: vec![0; RIM],
+            star: Box::new(Star {
+                vertices: [NONE; 256],
+                rays: Rays::default(),
+                corners: [[0; 3]; RIM],
+                places: [[0; 3]; RIM],
+                across: [0; RIM],
+                records: [0; RIM],
+                table: [0; STAR * STAR],
+            }),
             work: 0,
-        };
-        kernel.extend()?;
-        Ok(kernel)
+        })
     }
 
     /// Records met so far, on the way and in cavities.
@@ -106,35 +120,62 @@ impl<'a> Kernel<'a> {
         self.work
     }
 
-    /// The mesh.
-    pub fn into_mesh(self) -> Mesh3 {
-        self.mesh
+    /// The mesh, and the sphere of each record.
+    pub fn finish(self) -> (Mesh3<'a>, Vec<Sphere>) {
+        (self.mesh, self.spheres)
     }
 
+    #[inline]
     fn at(&self, v: u32) -> Point3 {
         self.points[v as usize]
     }
 
-    /// Gives each record a sphere and a mark.
-    fn extend(&mut self) -> Result<()> {
-        while self.spheres.len() < self.mesh.records() {
-            push(&mut self.spheres, UNKNOWN)?;
-            push(&mut self.mark, NONE)?;
-        }
-        Ok(())
-    }
-
     /// Inserts vertex `p`, which is none yet, and looks for its place from `near` on. Returns the new
     /// tetrahedron whose sphere holds `aim` deepest.
+    #[inline(always)]
     pub fn insert(&mut self, p: u32, near: u32, aim: Point3) -> Result<u32> {
         let seed = self.seed(p, near)?;
-        self.carve(p, seed)?;
-        self.gather(p)?;
-        self.fill(p, aim)
+        let (gone, rims) = self.carve(p, seed)?;
+        if rims <= RIM && self.number(p, rims) {
+            self.fill(p, gone, rims, aim)
+        } else {
+            self.fill_large(p, gone, rims)
+        }
     }
 
-    /// A tetrahedron in conflict with p.
+    /// A tetrahedron in conflict with p: from `near` on to the neighbour of least power, and where that
+    /// is not certain by exact steps.
+    #[inline(always)]
     fn seed(&mut self, p: u32, near: u32) -> Result<u32> {
+        let q = self.at(p);
+        let mut t = near;
+        let mut own = power(self.spheres[t as usize], q);
+        loop {
+            self.work += 1;
+            let square = self.spheres[t as usize][3];
+            if own < -SLACK * (own + 2.0 * square) {
+                return Ok(t);
+            }
+            // A step down by less than rounding may lead in a circle.
+            let mut least = own - SLACK * (own + 2.0 * square);
+            let mut next = t;
+            for e in self.mesh.opposites(t) {
+                let power = power(self.spheres[tetrahedron(e) as usize], q);
+                if power < least {
+                    (least, next) = (power, tetrahedron(e));
+                }
+            }
+            if next == t {
+                return self.seed_exactly(p, t);
+            }
+            (t, own) = (next, least);
+        }
+    }
+
+    /// The same across facets that have p beyond them, exactly.
+    #[cold]
+    #[inline(never)]
+    fn seed_exactly(&mut self, p: u32, near: u32) -> Result<u32> {
         let mut t = near;
         if let Some(k) = self.mesh.infinite_corner(t)
             && !self.conflicts(t, p)
@@ -160,138 +201,201 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Collects the tetrahedra in conflict with p, from `seed` outwards, and their border.
-    fn carve(&mut self, p: u32, seed: u32) -> Result<()> {
-        self.cavity.clear();
-        self.rim.clear();
+    /// Collects the tetrahedra in conflict with p, from `seed` outwards, and the facets of their
+    /// border; returns how many.
+    ///
+    /// Whether a neighbour is in conflict cannot be predicted, so no branch hangs on it: each is
+    /// written to both lists, and the ends of the lists move or not.
+    #[inline(always)]
+    fn carve(&mut self, p: u32, seed: u32) -> Result<(usize, usize)> {
+        let q = self.at(p);
         self.mark[seed as usize] = p;
-        self.cavity.push(seed);
+        self.cavity[0] = 4 * seed;
+        let mut ends = (1, 0);
         let mut next = 0;
-        while let Some(&t) = self.cavity.get(next) {
+        self.visit(p, q, 4 * seed, &mut ends);
+        loop {
+            let e = self.cavity[next];
+            for k in 1..4 {
+                self.visit(p, q, e ^ k, &mut ends);
+            }
             next += 1;
-            let corners = self.mesh.corners(t);
-            for (k, across) in self.mesh.opposites(t).into_iter().enumerate() {
-                let other = tetrahedron(across);
-                if self.mark[other as usize] == p {
-                    continue;
-                }
-                if self.conflicts(other, p) {
-                    self.mark[other as usize] = p;
-                    push(&mut self.cavity, other)?;
-                } else {
-                    let corners = FACETS[k].map(|i| corners[i]);
-                    push(&mut self.rim, Rim { corners, across })?;
-                }
+            // Each record adds three facets at most, and the first one four.
+            if ends.0 + 4 > self.cavity.len() || ends.1 + 4 > self.rim.len() {
+                grow(&mut self.cavity)?;
+                grow(&mut self.rim)?;
+            }
+            if next == ends.0 {
+                self.work += next;
+                return Ok(ends);
             }
         }
-        self.work += self.cavity.len();
-        Ok(())
     }
 
-    /// Numbers the vertices of the border and looks at them from p.
-    fn gather(&mut self, p: u32) -> Result<()> {
-        self.star.clear();
-        self.rays.clear();
-        let origin = self.at(p);
-        for rim in &self.rim {
-            for v in rim.corners {
-                let place = self.place[v as usize] as usize;
-                if self.star.get(place) != Some(&v) {
-                    self.place[v as usize] = self.star.len() as u32;
-                    push(&mut self.star, v)?;
-                    push(&mut self.rays, Ray::new(self.points[v as usize], origin))?;
-                }
+    /// Puts what lies across facet `e` into the cavity, or `e` into its border.
+    #[inline(always)]
+    fn visit(&mut self, p: u32, q: Point3, e: Code, (gone, rims): &mut (usize, usize)) {
+        let across = self.mesh.opposite(e);
+        let other = tetrahedron(across) as usize;
+        let [x, y, z, square] = self.spheres[other];
+        let (dx, dy, dz) = (q[0] - x, q[1] - y, q[2] - z);
+        let distance = dx * dx + dy * dy + dz * dz;
+        let power = distance - square;
+        let certain = power.abs() > SLACK * (distance + square);
+        let mut conflict = power < 0.0;
+        let mark = self.mark[other];
+        if !certain {
+            conflict = mark == p || self.conflicts_exactly(other as u32, p);
+        }
+        self.mark[other] = if conflict { p } else { mark };
+        self.cavity[*gone] = across;
+        *gone += usize::from(conflict & (mark != p));
+        self.rim[*rims] = e;
+        *rims += usize::from(!conflict);
+    }
+
+    /// Notes the corners of the hole's facets and numbers them; `false` where there are too many.
+    #[inline(always)]
+    fn number(&mut self, p: u32, rims: usize) -> bool {
+        let star = &mut *self.star;
+        let mut vertices = 0;
+        for (i, &e) in self.rim[..rims].iter().enumerate() {
+            let corners = self.mesh.facet(e);
+            star.across[i & (RIM - 1)] = self.mesh.opposite(e);
+            star.corners[i & (RIM - 1)] = corners;
+            for (k, v) in corners.into_iter().enumerate() {
+                let place = self.place[v as usize];
+                let new = star.vertices[usize::from(place)] != v || usize::from(place) >= vertices;
+                let place = if new { vertices as u8 } else { place };
+                self.place[v as usize] = place;
+                star.vertices[usize::from(place)] = v;
+                star.places[i & (RIM - 1)][k] = place;
+                vertices += usize::from(new);
+            }
+            if vertices > STAR {
+                return false;
             }
         }
-        Ok(())
+        let origin = self.points[p as usize];
+        for (i, &v) in star.vertices[..vertices].iter().enumerate() {
+            star.rays
+                .set(i & (STAR - 1), Ray::new(self.points[v as usize], origin));
+        }
+        true
     }
 
     /// Fills the hole with the star of p.
-    fn fill(&mut self, p: u32, aim: Point3) -> Result<u32> {
-        let infinite = self.mesh.infinite();
-        let rims = std::mem::take(&mut self.rim);
-        let mut best = (f64::INFINITY, NONE);
-        for (i, rim) in rims.iter().enumerate() {
-            let t = match self.cavity.get(i) {
-                Some(&t) => t,
-                None => {
-                    let t = self.mesh.fresh()?;
-                    push(&mut self.cavity, t)?;
-                    self.extend()?;
-                    t
-                }
-            };
-            let [a, b, c] = rim.corners;
-            self.mesh.set(t, [a, b, c, p]);
-            self.mesh.link(4 * t + 3, rim.across);
-            let [x, y, z] = rim
-                .corners
-                .map(|v| self.rays[self.place[v as usize] as usize]);
-            let ghost = a == infinite || b == infinite || c == infinite;
-            self.spheres[t as usize] = if self.certain && !ghost {
-                sphere(self.at(p), x, y, z)
-            } else {
-                UNKNOWN
-            };
-            let [x, y, z, square] = self.spheres[t as usize];
-            let power = Ray::new([x, y, z], aim).lift - square;
-            // A NaN is less than nothing: ghosts and flat tetrahedra are for want of others.
-            if power < best.0 {
-                best = (power, t);
-            } else if best.1 == NONE {
-                best.1 = t;
+    #[inline(always)]
+    fn fill(&mut self, p: u32, gone: usize, rims: usize, aim: Point3) -> Result<u32> {
+        let more = self.records(gone, rims)?;
+        let star = &mut *self.star;
+        let place = |place: u8| usize::from(place) & (STAR - 1);
+        for (record, &e) in star.records.iter_mut().zip(&self.cavity[..gone + more]) {
+            *record = tetrahedron(e);
+        }
+        let facets = star.places[..rims].iter().zip(&star.records);
+        for (&[a, b, c], &t) in facets {
+            let (a, b, c) = (place(a), place(b), place(c));
+            star.table[STAR * b + c] = 4 * t;
+            star.table[STAR * c + a] = 4 * t + 1;
+            star.table[STAR * a + b] = 4 * t + 2;
+        }
+        for i in 0..rims {
+            let i = i & (RIM - 1);
+            let (t, across) = (star.records[i], star.across[i]);
+            let [a, b, c] = star.places[i];
+            let (a, b, c) = (place(a), place(b), place(c));
+            let [u, v, w] = star.corners[i];
+            let opposite = [
+                star.table[STAR * c + b],
+                star.table[STAR * a + c],
+                star.table[STAR * b + a],
+                across,
+            ];
+            self.mesh.put(t, [u, v, w, p], opposite);
+            self.mesh.point(across, 4 * t + 3);
+        }
+        let origin = self.points[p as usize];
+        let (mut best, mut least) = (star.records[0], f64::INFINITY);
+        for from in (0..rims).step_by(LANES) {
+            let lanes = spheres(origin, &star.rays, &star.places[from..], self.doubt, aim);
+            for lane in 0..LANES.min(rims - from) {
+                let t = star.records[(from + lane) & (RIM - 1)];
+                let [x, y, z, square] = &lanes.sphere;
+                self.spheres[t as usize] = [x[lane], y[lane], z[lane], square[lane]];
+                // Ghosts and flat tetrahedra, whose powers are NaN, are for want of others.
+                let better = lanes.power[lane] < least;
+                least = if better { lanes.power[lane] } else { least };
+                best = if better { t } else { best };
             }
         }
-        for t in self.cavity.drain(rims.len().min(self.cavity.len())..) {
-            self.mesh.release(t);
-        }
-        if self.star.len() <= TABLE {
-            self.link_by_table(&rims);
-        } else {
-            self.link_by_sorting(&rims)?;
-        }
-        self.rim = rims;
-        Ok(best.1)
+        Ok(best)
     }
 
-    /// Links the star through a table of its directed edges: each is written before its reverse is read,
-    /// so nothing is cleared.
-    fn link_by_table(&mut self, rims: &[Rim]) {
-        for pass in 0..2 {
-            for (rim, &t) in rims.iter().zip(&self.cavity) {
-                let [a, b, c] = rim.corners.map(|v| self.place[v as usize] as usize);
-                for (k, (u, v)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
-                    let e = 4 * t + k as u32;
-                    if pass == 0 {
-                        self.table[TABLE * u + v] = e;
-                    } else if u < v {
-                        self.mesh.link(e, self.table[TABLE * v + u]);
-                    }
-                }
-            }
+    /// Makes the first `rims` of the cavity's list records to be filled and frees the rest; returns
+    /// how many it added.
+    #[inline(always)]
+    fn records(&mut self, gone: usize, rims: usize) -> Result<usize> {
+        for i in gone..rims {
+            let t = self.mesh.fresh()?;
+            self.cavity[i] = 4 * t;
         }
+        for _ in self.spheres.len()..self.mesh.records() {
+            push(&mut self.spheres, UNKNOWN)?;
+            push(&mut self.mark, NONE)?;
+        }
+        for i in rims..gone {
+            self.mesh.release(tetrahedron(self.cavity[i]));
+        }
+        Ok(rims.saturating_sub(gone))
     }
 
-    /// Links the star by sorting its edges: the two of a pair meet.
-    fn link_by_sorting(&mut self, rims: &[Rim]) -> Result<()> {
-        self.edges.clear();
-        for (rim, &t) in rims.iter().zip(&self.cavity) {
-            let [a, b, c] = rim.corners.map(u64::from);
+    /// As [`Self::fill`], for stars of any size: edges are sorted, and the two of a pair meet.
+    #[cold]
+    #[inline(never)]
+    fn fill_large(&mut self, p: u32, gone: usize, rims: usize) -> Result<u32> {
+        let mut facets = with_room(rims)?;
+        facets.extend(self.rim[..rims].iter().map(|&e| {
+            let corners = self.mesh.corners(tetrahedron(e));
+            (
+                FACETS[(e & 3) as usize].map(|k| corners[k]),
+                self.mesh.opposite(e),
+            )
+        }));
+        while self.cavity.len() < rims {
+            grow(&mut self.cavity)?;
+        }
+        self.records(gone, rims)?;
+        let mut edges = with_room(3 * rims)?;
+        let origin = self.at(p);
+        for (&(corners, across), i) in facets.iter().zip(0..) {
+            let t = tetrahedron(self.cavity[i]);
+            let [a, b, c] = corners;
+            self.mesh.put(t, [a, b, c, p], [0, 0, 0, across]);
+            self.mesh.point(across, 4 * t + 3);
+            let [x, y, z] = corners.map(|v| Ray::new(self.at(v), origin));
+            self.spheres[t as usize] = sphere(origin, x, y, z, self.doubt);
             for (k, (u, v)) in (0..).zip([(b, c), (c, a), (a, b)]) {
-                push(&mut self.edges, (u.min(v) << 32 | u.max(v), 4 * t + k))?;
+                let ends = u64::from(u.min(v)) << 32 | u64::from(u.max(v));
+                edges.push((ends, 4 * t + k));
             }
         }
-        self.edges.sort_unstable();
-        for &[(_, e), (_, f)] in self.edges.as_chunks::<2>().0 {
+        edges.sort_unstable();
+        for &[(_, e), (_, f)] in edges.as_chunks::<2>().0 {
             self.mesh.link(e, f);
         }
-        Ok(())
+        Ok(tetrahedron(self.cavity[0]))
     }
 
     /// Whether t is in conflict with p.
-    #[inline]
     fn conflicts(&self, t: u32, p: u32) -> bool {
-        inside(self.spheres[t as usize], self.at(p)).unwrap_or_else(|| self.conflicts_exactly(t, p))
+        let [x, y, z, square] = self.spheres[t as usize];
+        let power = power([x, y, z, square], self.at(p));
+        if power.abs() > SLACK * (power + 2.0 * square) {
+            power < 0.0
+        } else {
+            self.conflicts_exactly(t, p)
+        }
     }
 
     #[cold]
@@ -310,4 +414,16 @@ impl<'a> Kernel<'a> {
             Sign::Zero => self.conflicts(tetrahedron(self.mesh.opposites(t)[k]), p),
         }
     }
+}
+
+/// Doubles the room of a list that is used as an array.
+#[cold]
+#[inline(never)]
+fn grow(list: &mut Vec<u32>) -> Result<()> {
+    let n = list.len();
+    let bytes = 8 * n;
+    list.try_reserve_exact(n)
+        .map_err(|_| Error::Memory { bytes })?;
+    list.resize(2 * n, 0);
+    Ok(())
 }

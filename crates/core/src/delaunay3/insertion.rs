@@ -7,6 +7,8 @@
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::cavity::Kernel;
+use super::dispatch;
+use super::sphere::Sphere;
 use crate::error::Result;
 use crate::mesh3::Mesh3;
 use crate::points::collinear;
@@ -18,15 +20,31 @@ const STRIDES: [u32; 2] = [16, 1];
 /// Records met between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 16;
 
-/// The triangulation of `points`, which end with NaN for infinity; nothing where they span no
-/// tetrahedron.
-pub fn build(points: &[Point3], watch: &Watch) -> Result<Option<Mesh3>> {
+/// Fills the empty `mesh` with the triangulation of `points`, which end with NaN for infinity, and
+/// returns it with its spheres; nothing where the points span no tetrahedron.
+pub fn build<'a>(
+    points: &'a [Point3],
+    mesh: Mesh3<'a>,
+    watch: &Watch,
+) -> Result<Option<(Mesh3<'a>, Vec<Sphere>)>> {
     let n = points.len() as u32 - 1;
     let Some(first) = first_tetrahedron(&points[..n as usize]) else {
         return Ok(None);
     };
-    let mut kernel = Kernel::start(points, first)?;
-    let mut order = Rounds::over(n).filter(|v| !first.contains(v));
+    let mut kernel = Kernel::start(points, mesh, first)?;
+    dispatch::run(&mut kernel, points, first, watch)?;
+    Ok(Some(kernel.finish()))
+}
+
+/// Inserts all points but `first`; compiled for each processor by `dispatch`.
+#[inline(always)]
+pub(super) fn insert_all(
+    kernel: &mut Kernel,
+    points: &[Point3],
+    first: [u32; 4],
+    watch: &Watch,
+) -> Result<()> {
+    let mut order = Rounds::over(points.len() as u32 - 1).filter(|v| !first.contains(v));
     let mut near = 0;
     let mut look_at = WATCH_EVERY;
     let mut next = order.next();
@@ -38,7 +56,7 @@ pub fn build(points: &[Point3], watch: &Watch) -> Result<Option<Mesh3>> {
             look_at = kernel.work() + WATCH_EVERY;
         }
     }
-    Ok(Some(kernel.into_mesh()))
+    Ok(())
 }
 
 /// Four vertices that span a tetrahedron, positively oriented, the first of each kind in the order of

@@ -5,9 +5,13 @@
 //! the points, and is the same for every order of insertion.
 
 mod cavity;
+mod dispatch;
 mod insertion;
+mod join;
+mod seam;
 mod sphere;
 mod triangulate;
 pub mod validate;
 
+pub use join::Arrays;
 pub use triangulate::{Stage, Triangulation3, triangulate};

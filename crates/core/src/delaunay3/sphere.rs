@@ -45,7 +45,7 @@ pub type Sphere = [f64; 4];
 pub const UNKNOWN: Sphere = [f64::NAN; 4];
 
 /// A corner as seen from the point at the origin.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy)]
 pub struct Ray {
     /// The difference.
     pub d: Point3,
@@ -65,9 +65,9 @@ impl Ray {
     }
 }
 
-/// The sphere through `p` and three corners seen from it.
-#[inline]
-pub fn sphere(p: Point3, b: Ray, c: Ray, d: Ray) -> Sphere {
+/// The sphere through `p` and three corners seen from it; `doubt` is added to the square of its radius.
+#[inline(always)]
+pub fn sphere(p: Point3, b: Ray, c: Ray, d: Ray, doubt: f64) -> Sphere {
     const FLAT: f64 = f64::EPSILON; // 2^-52
     const SMALL: f64 = 1e-180; // above 2^-600
     const FAR: f64 = (1u64 << 60) as f64;
@@ -89,14 +89,88 @@ pub fn sphere(p: Point3, b: Ray, c: Ray, d: Ray) -> Sphere {
     let certain = (det * det > FLAT * volume)
         & (volume > SMALL)
         & (cx * cx + cy * cy + cz * cz < FAR * square);
-    [cx, cy, cz, if certain { square } else { f64::NAN }]
+    [cx, cy, cz, if certain { square + doubt } else { f64::NAN }]
 }
 
-/// The power of `q`: negative inside; `None` where it is not certain.
-#[inline]
-pub fn inside([x, y, z, square]: Sphere, q: Point3) -> Option<bool> {
+/// The power of `q`: negative inside.
+#[inline(always)]
+pub fn power([x, y, z, square]: Sphere, q: Point3) -> f64 {
     let (dx, dy, dz) = (q[0] - x, q[1] - y, q[2] - z);
-    let distance = dx * dx + dy * dy + dz * dz;
-    let power = distance - square;
-    (power.abs() > SLACK * (distance + square)).then_some(power < 0.0)
+    dx * dx + dy * dy + dz * dz - square
+}
+
+/// The square of the distance from the centre beyond which a point is outside for certain.
+#[inline]
+pub fn reach(square: f64) -> f64 {
+    // d^2 (1 - s) > r^2 (1 + s), and more, for s = SLACK.
+    square * (1.0 + 4.0 * SLACK)
+}
+
+/// Spheres that are computed side by side.
+pub const LANES: usize = 8;
+
+/// The corners of a star as seen from its centre, coordinate by coordinate.
+pub struct Rays {
+    d: [[f64; 64]; 3],
+    lift: [f64; 64],
+}
+
+impl Default for Rays {
+    fn default() -> Self {
+        Self {
+            d: [[0.0; 64]; 3],
+            lift: [0.0; 64],
+        }
+    }
+}
+
+impl Rays {
+    /// Puts ray i in place.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, ray: Ray) {
+        for k in 0..3 {
+            self.d[k][i] = ray.d[k];
+        }
+        self.lift[i] = ray.lift;
+    }
+}
+
+/// Spheres side by side, and the powers of one point.
+pub struct Lanes {
+    /// Coordinate by coordinate, the square of the radius last.
+    pub sphere: [[f64; LANES]; 4],
+    /// Powers.
+    pub power: [f64; LANES],
+}
+
+/// The spheres through `p` and the first [`LANES`] of `facets`, and the powers of `aim`.
+#[inline(always)]
+pub fn spheres(p: Point3, rays: &Rays, facets: &[[u8; 3]], doubt: f64, aim: Point3) -> Lanes {
+    let mut corners = [[[0.0; LANES]; 4]; 3];
+    for (lane, places) in facets.iter().take(LANES).enumerate() {
+        for (corner, &place) in corners.iter_mut().zip(places) {
+            let i = usize::from(place) & 63;
+            corner[0][lane] = rays.d[0][i];
+            corner[1][lane] = rays.d[1][i];
+            corner[2][lane] = rays.d[2][i];
+            corner[3][lane] = rays.lift[i];
+        }
+    }
+    let mut out = Lanes {
+        sphere: [[0.0; LANES]; 4],
+        power: [0.0; LANES],
+    };
+    for lane in 0..LANES {
+        let ray = |corner: &[[f64; LANES]; 4]| Ray {
+            d: [corner[0][lane], corner[1][lane], corner[2][lane]],
+            lift: corner[3][lane],
+        };
+        let [b, c, d] = [ray(&corners[0]), ray(&corners[1]), ray(&corners[2])];
+        let s = sphere(p, b, c, d, doubt);
+        for (to, from) in out.sphere.iter_mut().zip(s) {
+            to[lane] = from;
+        }
+        out.power[lane] = power(s, aim);
+    }
+    out
 }

@@ -6,7 +6,6 @@
 //! a ghost; all ghosts share one vertex at infinity, which lies on the positive side of their hull
 //! facet. So each facet joins two records, always.
 
-pub mod export;
 mod storage;
 
-pub use storage::{Code, FACETS, LIMIT, Mesh3, corner, tetrahedron};
+pub use storage::{Code, FACETS, LIMIT, Mesh3, Records, corner, tetrahedron};

@@ -1,7 +1,7 @@
 //! Records of tetrahedra, in two arrays that the export hands out as they are.
 
 use crate::error::{Error, Result};
-use crate::memory::{push, with_room};
+use crate::memory::zeroed;
 
 /// A facet: `4 t + k`.
 pub type Code = u32;
@@ -25,34 +25,71 @@ pub fn corner(e: Code) -> usize {
     (e & 3) as usize
 }
 
-/// A mesh of tetrahedra and ghosts.
+/// Room for records, of one mesh or of several side by side.
 ///
 /// The arrays are of `i32`, bit by bit the `u32` that they hold, since that is what leaves the core.
-#[derive(Debug)]
-pub struct Mesh3 {
-    pub(super) corners: Vec<[i32; 4]>,
-    pub(super) opposite: Vec<[i32; 4]>,
-    /// Records that hold nothing.
-    pub(super) free: Vec<u32>,
-    infinite: u32,
+#[derive(Debug, Default)]
+pub struct Records {
+    /// Four vertices a tetrahedron.
+    pub corners: Vec<[i32; 4]>,
+    /// The codes of its facets as seen from the other sides.
+    pub opposite: Vec<[i32; 4]>,
 }
 
-impl Mesh3 {
-    /// An empty mesh for `vertices` vertices, with room for as many tetrahedra as scattered points have.
-    pub fn with_vertices(vertices: usize) -> Result<Self> {
-        // A uniform point has 6.77 tetrahedra.
-        let room = (7 * vertices + 64).min(LIMIT);
+impl Records {
+    /// Room for `n` records, which touches no page.
+    pub fn with_room(n: usize) -> Result<Self> {
         Ok(Self {
-            corners: with_room(room)?,
-            opposite: with_room(room)?,
-            free: Vec::new(),
-            infinite: vertices as u32,
+            corners: zeroed(n)?,
+            opposite: zeroed(n)?,
         })
     }
 
+    /// The room for records that the points of a mesh want: a uniform point has 6.77 tetrahedra.
+    pub fn room(vertices: usize) -> usize {
+        7 * vertices + 64
+    }
+
+    /// Empty meshes side by side, each with its room and its number of vertices.
+    pub fn meshes(&mut self, rooms: &[(usize, usize)]) -> Vec<Mesh3<'_>> {
+        let (mut corners, mut opposite) = (&mut self.corners[..], &mut self.opposite[..]);
+        let mut meshes = Vec::with_capacity(rooms.len());
+        for &(room, vertices) in rooms {
+            let (own_corners, rest_corners) = corners.split_at_mut(room);
+            let (own_opposite, rest_opposite) = opposite.split_at_mut(room);
+            meshes.push(Mesh3 {
+                corners: own_corners,
+                opposite: own_opposite,
+                used: 0,
+                free: Vec::new(),
+                infinite: vertices as u32,
+            });
+            (corners, opposite) = (rest_corners, rest_opposite);
+        }
+        meshes
+    }
+}
+
+/// A mesh of tetrahedra and ghosts.
+#[derive(Debug)]
+pub struct Mesh3<'a> {
+    corners: &'a mut [[i32; 4]],
+    opposite: &'a mut [[i32; 4]],
+    used: usize,
+    /// Records that hold nothing.
+    free: Vec<u32>,
+    infinite: u32,
+}
+
+impl Mesh3<'_> {
     /// The number of records, of which some may be free.
     #[inline]
     pub fn records(&self) -> usize {
+        self.used
+    }
+
+    /// Records that there is room for.
+    pub fn room(&self) -> usize {
         self.corners.len()
     }
 
@@ -65,13 +102,28 @@ impl Mesh3 {
     /// The corners of tetrahedron t.
     #[inline]
     pub fn corners(&self, t: u32) -> [u32; 4] {
-        self.corners[t as usize].map(|v| v as u32)
+        let [a, b, c, d] = self.corners[t as usize];
+        [a as u32, b as u32, c as u32, d as u32]
+    }
+
+    /// The corners of facet e, from the side of its tetrahedron.
+    #[inline(always)]
+    pub fn facet(&self, e: Code) -> [u32; 3] {
+        let corners = &self.corners[tetrahedron(e) as usize];
+        let [a, b, c] = FACETS[corner(e)];
+        [corners[a] as u32, corners[b] as u32, corners[c] as u32]
+    }
+
+    /// The records that hold nothing.
+    pub fn free(&self) -> &[u32] {
+        &self.free
     }
 
     /// The codes of its facets as seen from the other sides.
     #[inline]
     pub fn opposites(&self, t: u32) -> [Code; 4] {
-        self.opposite[t as usize].map(|e| e as Code)
+        let [a, b, c, d] = self.opposite[t as usize];
+        [a as Code, b as Code, c as Code, d as Code]
     }
 
     /// The facet `e` as seen from the other side.
@@ -92,6 +144,19 @@ impl Mesh3 {
         self.corners[t as usize] = corners.map(|v| v as i32);
     }
 
+    /// Fills record t.
+    #[inline(always)]
+    pub fn put(&mut self, t: u32, [a, b, c, d]: [u32; 4], [e, f, g, h]: [Code; 4]) {
+        self.corners[t as usize] = [a as i32, b as i32, c as i32, d as i32];
+        self.opposite[t as usize] = [e as i32, f as i32, g as i32, h as i32];
+    }
+
+    /// Tells facet `e` that `f` is its other side.
+    #[inline(always)]
+    pub fn point(&mut self, e: Code, f: Code) {
+        self.opposite[tetrahedron(e) as usize][corner(e)] = f as i32;
+    }
+
     /// Makes facets `e` and `f` two sides of one.
     #[inline]
     pub fn link(&mut self, e: Code, f: Code) {
@@ -99,18 +164,17 @@ impl Mesh3 {
         self.opposite[tetrahedron(f) as usize][corner(f)] = e as i32;
     }
 
-    /// A record to be filled.
+    /// A record to be filled; `TooManyTetrahedra` where the room is used up.
     #[inline]
     pub fn fresh(&mut self) -> Result<u32> {
         if let Some(t) = self.free.pop() {
             return Ok(t);
         }
-        let t = self.corners.len();
-        if t == LIMIT {
-            return Err(Error::TooManyTetrahedra { limit: LIMIT });
+        let t = self.used;
+        if t == self.corners.len() {
+            return Err(Error::TooManyTetrahedra { limit: t });
         }
-        push(&mut self.corners, [0; 4])?;
-        push(&mut self.opposite, [0; 4])?;
+        self.used += 1;
         Ok(t as u32)
     }
 
@@ -167,7 +231,8 @@ mod tests {
 
     #[test]
     fn the_first_tetrahedron_is_closed() {
-        let mut mesh = Mesh3::with_vertices(4).unwrap();
+        let mut records = Records::with_room(64).unwrap();
+        let mesh = &mut records.meshes(&[(64, 4)])[0];
         mesh.first([2, 0, 3, 1]).unwrap();
         for e in 0..20 {
             let f = mesh.opposite(e);

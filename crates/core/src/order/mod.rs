@@ -9,6 +9,7 @@ mod hilbert3;
 mod morton;
 mod radix;
 pub mod space;
+pub mod space_blocks;
 
 pub use arrange::{Arranged, arrange};
 pub use morton::morton;

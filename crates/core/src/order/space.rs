@@ -6,7 +6,7 @@ use delone_predicates::{Point3, lexicographic};
 
 use super::{hilbert3, radix};
 use crate::error::Result;
-use crate::memory::with_room;
+use crate::memory::{push, with_room};
 use crate::watch::Watch;
 
 /// Longest run of equal keys that is sorted lexicographically and not keyed again.
@@ -25,6 +25,12 @@ pub struct Extent3 {
 }
 
 impl Extent3 {
+    /// The box of all points.
+    pub const EVERYWHERE: Self = Self {
+        min: [f64::NEG_INFINITY; 3],
+        max: [f64::INFINITY; 3],
+    };
+
     /// The box of some points, which must be finite; inside out where there are none.
     pub fn of(points: impl IntoIterator<Item = Point3>) -> Self {
         let mut e = Self {
@@ -95,6 +101,11 @@ pub struct Arranged3 {
 
 /// Arranges finite `points`; the order hangs on the coordinates alone.
 pub fn arrange(points: &[Point3], watch: &Watch) -> Result<Arranged3> {
+    arrange_rows(points, None, watch)
+}
+
+/// The same where `points` are but some of the rows, which are given and ascend.
+pub fn arrange_rows(points: &[Point3], rows: Option<&[u32]>, watch: &Watch) -> Result<Arranged3> {
     let cells = Cells::of(&Extent3::of(points.iter().copied()));
     let low_bit = 32 - fine_bits(points.len());
     let mask = u64::MAX << (32 + low_bit);
@@ -107,7 +118,7 @@ pub fn arrange(points: &[Point3], watch: &Watch) -> Result<Arranged3> {
     watch.check()?;
     order_runs(points, &mut items);
     watch.check()?;
-    collect(points, &items)
+    collect(points, rows, &items)
 }
 
 /// Bits of a key that are worth sorting by, in whole digits of the sort.
@@ -160,7 +171,7 @@ fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
     }
 }
 
-fn collect(points: &[Point3], items: &[u64]) -> Result<Arranged3> {
+fn collect(points: &[Point3], rows: Option<&[u32]>, items: &[u64]) -> Result<Arranged3> {
     let mut out = Arranged3 {
         points: with_room(points.len() + 1)?,
         rows: with_room(points.len())?,
@@ -170,10 +181,11 @@ fn collect(points: &[Point3], items: &[u64]) -> Result<Arranged3> {
     for &item in items {
         // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
         let p = points[row(item)].map(|x| x + 0.0);
+        let own = rows.map_or(row(item) as u32, |rows| rows[row(item)]);
         if p == last {
-            out.duplicates.push([row(item) as u32, first]);
+            push(&mut out.duplicates, [own, first])?;
         } else {
-            (last, first) = (p, row(item) as u32);
+            (last, first) = (p, own);
             out.points.push(p);
             out.rows.push(first);
         }
