@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DaskExecutor"]
 
-# How often a task may be started again where its worker has died.
-_RETRIES = 5
 # Seconds that a client may be without a scheduler, and between two looks at it.
 _PATIENCE, _GLANCE = 5.0, 0.005
 
@@ -64,7 +62,7 @@ class DaskExecutor:
             yield from self._run(root, stage, tasks)
         except self._distributed.KilledWorker as error:
             raise DeloneError(
-                f"a task of the stage {stage!r} has ended {_RETRIES} workers: is there enough "
+                f"a task of the stage {stage!r} has ended worker after worker: is there enough "
                 "memory for tiles of this size? What is done is kept; run the same again to go on"
             ) from error
         except self._lost() as error:
@@ -113,9 +111,7 @@ class DaskExecutor:
         """Hand a task to the scheduler."""
         if self.client.status != "running":
             raise ConnectionError(f"the client is {self.client.status}")
-        return self.client.submit(
-            perform, root, stage, key, arguments, pure=False, retries=_RETRIES
-        )
+        return self.client.submit(perform, root, stage, key, arguments, pure=False)
 
     def _lost(self) -> tuple[type[BaseException], ...]:
         core = require("distributed.comm", extra="dask", what="a Dask executor")

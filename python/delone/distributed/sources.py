@@ -58,7 +58,7 @@ class Piece:
     def read(self, choice: Choice) -> Rows:
         """Return the rows, with their numbers in the source."""
         found = self._points(choice)
-        if len(found) != self.stop - self.start and choice.classes is None:
+        if len(found) != self.stop - self.start:
             raise FileFormatError(f"{self.path} has changed since it was looked at")
         attributes = {name: _number(found, name) for name in choice.attributes}
         rows = make_rows(self.first + self.start, found.points, found.z, attributes)
