@@ -39,8 +39,9 @@ class CloughTocher(Smooth):
     gradients : {"global", "local", "plane"}, optional
         How gradients at the sites are estimated: so that the curvature along all edges together is
         least, as SciPy does; at each site by the quadric through it that fits its neighbours and
-        theirs best, nearer ones counting more; by the plane that fits its neighbours. Planes know
-        least and are steadiest, where sites lie along lines above all.
+        theirs best, nearer ones counting more, unless it swings; by the plane that fits its
+        neighbours. A quadric swings where it moves with the values more than three times as much as
+        the plane, which then takes its place: between the tracks of soundings.
     tol : float, optional
         Relative change at which the global estimation ends.
     maxiter : int, optional
@@ -65,7 +66,9 @@ class CloughTocher(Smooth):
     -----
     With local gradients linear and quadratic functions are reproduced up to rounding, with global
     ones linear functions up to `tol`. Local gradients take O(n), each sweep of the global
-    estimation as well; sweeps are few where the sites are spread evenly.
+    estimation as well; sweeps are few where the sites are spread evenly. Values that are not known
+    (``nan="propagate"``) take no part in the gradients of others. A slope that is beyond the range
+    of doubles counts as none.
 
     Examples
     --------
