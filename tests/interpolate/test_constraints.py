@@ -102,11 +102,36 @@ def test_holes_are_outside() -> None:
 
 
 def test_what_has_no_meaning_is_refused() -> None:
-    mesh, right = faulted()
+    mesh, _ = faulted()
     with pytest.raises(InputError, match="respect_constraints=True"):
         NaturalNeighbor(mesh)
-    with pytest.raises(InputError, match="vertices out of a constrained"):
-        Linear(mesh, np.where(right, np.nan, 1.0), nan="drop")
+    gaps = np.where(np.arange(mesh.npoints) == mesh.npoints - 2, np.nan, 1.0)
+    with pytest.raises(InputError, match=r"out of a constrained .*need rows 308"):
+        Linear(mesh, gaps, nan="drop")
+    ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    fine = delone.mesh((SQUARE, ring), max_area=0.1)
+    with pytest.raises(InputError, match="out of a constrained"):
+        Linear(fine, np.full(fine.npoints, np.nan), nan="drop")
+
+
+@pytest.mark.parametrize("method", sorted(METHODS))
+def test_sites_without_a_value_are_left_out(method: str) -> None:
+    mesh, right = faulted()
+    values = mesh.points[:, 1] + 10.0 * right
+    gaps = values.copy()
+    gaps[:40:3] = np.nan
+    kept = np.flatnonzero(np.isfinite(gaps))
+    segments = [(int(kept.searchsorted(a)), int(kept.searchsorted(b))) for a, b in mesh.segments]
+    rest = ConstrainedDelaunay(mesh.points[kept], segments)
+    expected = interpolator(method, rest, values[kept], respect_constraints=True)
+    queries = np.random.default_rng(4).random((500, 2))
+    made = interpolator(method, mesh, gaps, nan="drop", respect_constraints=True)
+    np.testing.assert_array_equal(made(queries), expected(queries))
+    table = made.weights(queries)
+    assert np.isin(table.indices, kept).all()
+    np.testing.assert_allclose(table @ gaps, expected(queries), rtol=1e-12)
+    whole = interpolator(method, mesh, values, respect_constraints=True)
+    np.testing.assert_array_equal(made(queries, values=values), whole(queries))
     assert NaturalNeighbor(mesh, respect_constraints=True).kind == "sibson"
 
 

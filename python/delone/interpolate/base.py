@@ -84,10 +84,11 @@ class Interpolator:
         self._sites: Floats = points.points if isinstance(points, Triangulation) else _own(points)
         self._constrained = getattr(given, "constrained", None) is not None
         field = None if values is None else as_field(values, len(self._sites))
+        self._given = given if self._constrained else None
         self._kept = self._kept_rows(field)
-        self._mesh: Triangulation = self._triangulated() if given is None else given
-        if given is not None and self._kept is not None:
-            self._mesh = self._triangulated()
+        self._mesh: Triangulation = (
+            self._triangulated() if given is None or self._kept is not None else given
+        )
         self._field = None if field is None else (field, self.settled(field))
 
     @property
@@ -359,11 +360,11 @@ class Interpolator:
     def _kept_rows(self, field: Field | None) -> Rows | None:
         if self._nan != "drop" or field is None or not (dropped := field.not_finite).size:
             return None
-        if self._constrained:
-            raise InputError("nan='drop' would take vertices out of a constrained triangulation")
         return np.delete(np.arange(len(field)), dropped)
 
-    def _triangulated(self) -> Delaunay:
+    def _triangulated(self) -> Triangulation:
+        if self._given is not None:
+            return self._given if self._kept is None else _with_only(self._given, self._kept)
         sites = self._sites if self._kept is None else self._sites[self._kept]
         return Delaunay(sites, workers=self._workers)
 
@@ -379,6 +380,23 @@ def _own(points: ArrayLike) -> Floats:
     if hasattr(points, "simplices"):
         raise DtypeError(f"{type(points).__name__} is no triangulation of delone; pass its points")
     return own_copy(points)
+
+
+def _with_only(mesh: Any, kept: Rows) -> Triangulation:
+    """A constrained triangulation without some of its points, which no constraint may need."""
+    dropped = np.delete(np.arange(mesh.npoints), kept)
+    needed = np.intersect1d(mesh.duplicate_of[dropped], mesh.segments)
+    if not hasattr(mesh, "edit") or mesh.nadded or needed.size:
+        rows = dropped[np.isin(mesh.duplicate_of[dropped], needed)]
+        first = ", ".join(map(str, rows[:_NAMED].tolist()))
+        which = f"; constraints need rows {first}" if rows.size else ""
+        raise InputError(
+            "nan='drop' would take vertices out of a constrained triangulation" + which
+        )
+    with mesh.edit() as edit:
+        edit.remove_points(dropped)
+    result: Triangulation = edit.result
+    return result
 
 
 def _same(a: Rows | None, b: Rows | None) -> bool:

@@ -36,7 +36,8 @@ class Linear(Interpolator):
         Which value a point has that comes several times with different ones.
     nan : {"error", "drop", "propagate"}, optional
         What becomes of sites whose value is NaN or infinite: an error that names them; the sites
-        are left out of the triangulation; the triangles at them have no value.
+        are left out of the triangulation, unless a constraint needs them, which is an error as
+        well; the triangles at them have no value.
     respect_constraints : bool, optional
         Accepted as by the other interpolators: triangles never cross a constraint.
     workers : int, optional
