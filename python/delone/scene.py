@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
     from delone.hull import ConvexHull
 
-__all__ = ["draw", "plot", "unstructured"]
+__all__ = ["draw", "image", "plot", "unstructured"]
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 # VTK's number for a tetrahedron.
@@ -71,6 +71,7 @@ def plot(
     points: bool = False,
     off_screen: bool | None = None,
     cmap: str = "viridis",
+    bar: bool = True,
 ) -> Any:
     """Draw a triangulation in space, or a convex hull, with its edges.
 
@@ -92,6 +93,8 @@ def plot(
         Whether a new plotter draws without a window.
     cmap : str, optional
         The colours of values.
+    bar : bool, optional
+        Whether a bar tells which colour is which value.
 
     Returns
     -------
@@ -128,8 +131,13 @@ def plot(
     grid = _grid(pyvista, shape.points, shape.simplices[rows], chosen, "values")
     if shrink < 1:
         grid = grid.shrink(shrink)
-    colours = {"color": _FACE} if values is None else {"scalars": "values", "cmap": cmap}
-    plotter.add_mesh(grid, show_edges=True, edge_color=_EDGE, line_width=1, **colours)
+    colours: dict[str, Any] = {"color": _FACE}
+    if values is not None:
+        colours = {"scalars": "values", "cmap": cmap, "show_scalar_bar": bar}
+    # Some light on all sides, so that colours are seen in the shade, too.
+    plotter.add_mesh(
+        grid, show_edges=shrink == 1, edge_color=_EDGE, line_width=1, ambient=0.4, **colours
+    )
     if points:
         plotter.add_points(
             np.array(shape.points), color=_POINT, point_size=6, render_points_as_spheres=True
@@ -156,15 +164,56 @@ def draw(path: str | os.PathLike[str], shape: Delaunay | ConvexHull, **options: 
     MissingExtraError
         pyvista is not installed.
     """
-    plotter = plot(shape, off_screen=True, **options)
+    plotter = _aimed(plot(shape, off_screen=True, **options))
     try:
-        # Not along an axis, so that nothing is seen edge on.
-        plotter.camera_position = "xy"
-        plotter.camera.azimuth, plotter.camera.elevation = 30, 20
-        plotter.reset_camera()
         plotter.screenshot(str(path))
     finally:
         plotter.close()
+
+
+def image(shape: Delaunay | ConvexHull, **options: Any) -> NDArray[np.uint8]:
+    """Draw into an array, off screen.
+
+    Parameters
+    ----------
+    shape : Delaunay or ConvexHull
+        What to draw.
+    **options
+        As in `plot`.
+
+    Returns
+    -------
+    ndarray of uint8, shape (height, width, 3)
+        Red, green and blue, for ``matplotlib`` or whatever shows pictures.
+
+    Raises
+    ------
+    InputError
+        As in `plot`.
+    MissingExtraError
+        pyvista is not installed.
+
+    Examples
+    --------
+    >>> from delone import ConvexHull, datasets, scene
+    >>> scene.image(ConvexHull(datasets.uniform(50, ndim=3))).shape
+    (760, 900, 3)
+    """
+    plotter = _aimed(plot(shape, off_screen=True, **options))
+    try:
+        picture: NDArray[np.uint8] = np.array(plotter.screenshot(return_img=True))
+    finally:
+        plotter.close()
+    return picture
+
+
+def _aimed(plotter: Any) -> Any:
+    """Look not along an axis, so that nothing is seen edge on."""
+    plotter.camera_position = "xz"
+    plotter.camera.azimuth, plotter.camera.elevation = 40, 20
+    plotter.reset_camera()
+    plotter.camera.zoom(1.25)
+    return plotter
 
 
 def _kept(shape: Delaunay | ConvexHull, cut: str) -> NDArray[np.intp]:

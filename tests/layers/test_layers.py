@@ -124,7 +124,7 @@ PYTHON: dict[str, set[str]] = {
     "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     "datasets": {"samples", "space"} | FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"atomic", "plot", "relief", "_arrays"},
+    "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays"},
     "shading": PUBLIC,
     "cartography": PUBLIC | {"io", "shading"},
     "plot": PUBLIC | {"atomic", "cartography", "io", "shading"},
@@ -341,6 +341,7 @@ LAZY = {
     ("space", "scene"),
     ("io", "plot"),
     ("io", "relief"),
+    ("io", "scene"),
     ("constrained", "editing"),
     ("meshed", "adaptivity"),
     ("meshed", "exchange"),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from delone import ConstrainedDelaunay, __version__
+from delone import ConstrainedDelaunay, Delaunay, __version__
 from delone.atomic import check_target, replacing
 from delone.cli import cells, field, tiles
 from delone.cli.check import check_mesh
@@ -31,14 +31,14 @@ from delone.cli.show import (
     spinner,
     triangulation_rows,
 )
+from delone.cli.solid import is_space, space_rows, space_summary, triangulated_space
 from delone.errors import MissingExtraError, NonFiniteError
-from delone.io import GeometrySet, input_suffixes, output_suffixes
+from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
 from delone.io.registry import writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from delone.io import PointSet
     from delone.io.registry import Mesh
 
 __all__ = ["app", "run"]
@@ -134,12 +134,21 @@ def triangulate(
     max_vertices: Annotated[
         int | None, typer.Option(help="How many vertices may be added to lines and polygons.")
     ] = None,
+    space: Annotated[
+        bool | None,
+        typer.Option(
+            "--3d/--2d",
+            help="Triangulate in space, or in the plane below; by default PLY files of points "
+            "alone are taken for clouds in space.",
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Triangulate the points of a file, report, and write meshes and pictures.
 
-    Lines and the sides of polygons become edges of the triangulation.
+    Lines and the sides of polygons become edges of the triangulation. Heights are values over the
+    plane, or with --3d a third coordinate: then tetrahedra go to .vtu, .msh, .npz and .png.
     """
     with writing():
         spare_inputs(output or (), source)
@@ -153,7 +162,15 @@ def triangulate(
             )
         say(f"triangulating {len(survey):,} {_what(survey)}")
         constraints = Constraints(crossing, outline, conforming, max_vertices)
-        mesh, z = triangulated(survey, constraints, method=method, workers=workers)
+        solid = is_space(source, space, survey)
+        if solid and isinstance(survey, PointSet):
+            constraints.require_none(survey.source)
+            with writing():
+                writers = {path: writer(path, space=True) for path in writers}
+            mesh: Mesh = triangulated_space(survey, method=method, workers=workers)
+            z = None
+        else:
+            mesh, z = triangulated(survey, constraints, method=method, workers=workers)
         crs = survey.crs
         watch.seconds |= mesh.stages
         _write(writers, mesh, {"z": z, "crs": crs, "edges": edges}, watch, say)
@@ -162,7 +179,7 @@ def triangulate(
             "delone": __version__,
             "input": str(source),
             "crs": crs,
-            **summary(mesh),
+            **(space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)),
             **_of_constraints(mesh, survey),
             "stages": watch.rows(mesh.npoints),
             "outputs": [str(path) for path in writers],
@@ -171,7 +188,7 @@ def triangulate(
     if as_json:
         print_json(figures)
     elif not quiet:
-        rows = triangulation_rows(figures)
+        rows = space_rows(figures) if solid else triangulation_rows(figures)
         rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
         rows += [("written", str(path)) for path in writers]
         print_rows(str(source), rows)
@@ -197,7 +214,8 @@ def check(
     if as_json:
         print_json(figures)
     elif not quiet:
-        print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in ("points", "triangles")])
+        names = [name for name in ("points", "triangles", "tetrahedra") if name in figures]
+        print_rows(str(mesh), [(name, f"{figures[name]:,}") for name in names])
         print_text("\n".join(lines))
     if not figures["ok"]:
         raise typer.Exit(Exit.NOT_DELAUNAY)

@@ -10,10 +10,11 @@ import numpy as np
 from delone import ConstrainedDelaunay, ConstrainedReport
 from delone.cli.exits import Exit, Failure, reading
 from delone.cli.report import Stopwatch, geometry
+from delone.cli.solid import space_measures
 from delone.errors import InputError
 from delone.io import read_mesh
 from delone.io.arrays import is_constrained
-from delone.validation import ValidationReport, validate
+from delone.validation import SpaceReport, ValidationReport, validate
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,7 +56,8 @@ def check_mesh(
     say(f"reading {path.name}")
     with reading(), watch.stage("read"):
         mesh = read_mesh(path)
-    say(f"checking {len(mesh.simplices):,} triangles")
+    solid = mesh.points.shape[1] == 3
+    say(f"checking {len(mesh.simplices):,} {'tetrahedra' if solid else 'triangles'}")
     with watch.stage("check"):
         report = _checked(mesh, path)
     faults = {each.name: getattr(report, each.name) for each in fields(report)}
@@ -68,7 +70,7 @@ def check_mesh(
         "ok": delaunay and not (canonical and faults),
         "delaunay": delaunay,
         "canonical": not faults,
-        **geometry(mesh.points, mesh.simplices),
+        **(space_measures if solid else geometry)(mesh.points, mesh.simplices),
         "faults": {name: _fault(name, culprits) for name, culprits in faults.items()},
         "stages": watch.rows(len(mesh.points)),
     }
@@ -97,13 +99,20 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
     if delaunay:
         lines = ["a Delaunay triangulation, proven exactly, but not the canonical one:"]
         if ties := len(report.ties):
-            lines.append(f"  {ties:,} pairs of triangles share a circle and are fanned otherwise")
+            what = (
+                "tetrahedra share a sphere"
+                if mesh.points.shape[1] == 3
+                else ("triangles share a circle")
+            )
+            lines.append(f"  {ties:,} pairs of {what} and are fanned otherwise")
         if repeats := len(report.repeats):
             lines.append(f"  {repeats:,} vertices are not the first row with their coordinates")
         return lines
     lines = str(report).replace("a canonical", "a", 1).splitlines()
     if isinstance(report, ConstrainedReport):
         # Its numbers are those of all triangles of the hull.
+        return lines
+    if isinstance(report, SpaceReport):
         return lines
     return lines + _coordinates(report, mesh)
 

@@ -65,8 +65,8 @@ def read_mesh(path: Path) -> MeshFile:
         names = _names(archive)
         if not {"points", "simplices"} <= names:
             raise FileFormatError(f"{source} holds no triangles: arrays points and simplices")
-        points = as_points(_member(archive, "points"), ndim=2, name="points")
-        simplices = as_simplices(_member(archive, "simplices"), len(points), 2)
+        points = as_points(_member(archive, "points"), name="points")
+        simplices = as_simplices(_member(archive, "simplices"), len(points), points.shape[1])
         neighbors = _member(archive, "neighbors") if "neighbors" in names else None
         z = _member(archive, "z") if "z" in names else None
     return MeshFile(points=points, simplices=simplices, neighbors=neighbors, z=z, source=source)

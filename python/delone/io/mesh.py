@@ -58,6 +58,8 @@ def read_points(
 def read_mesh(path: Path) -> MeshFile:
     """Read the triangles of a mesh; see `delone.io.read_mesh`."""
     mesh = _read(path)
+    if any(block.type == "tetra" for block in mesh.cells):
+        return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
     blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "triangle"]
     others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
@@ -71,6 +73,22 @@ def read_mesh(path: Path) -> MeshFile:
     except InputError as error:
         raise FileFormatError(f"{path}: {error}") from error
     return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
+
+
+def _tetrahedra(mesh: Any, path: Path) -> MeshFile:
+    """The tetrahedra of a mesh in space; faces and edges beside them are left out."""
+    plane, z = _coordinates(mesh, path)
+    others = {block.type for block in mesh.cells} - {"tetra", "triangle", "vertex", "line"}
+    if others or z is None:
+        found = ", ".join(sorted(others)) or "flat points"
+        raise FileFormatError(f"{path} holds {found} beside its tetrahedra")
+    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
+    try:
+        simplices = as_simplices(np.concatenate(blocks).astype(np.int64), len(plane), 3)
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error}") from error
+    points = np.ascontiguousarray(np.column_stack((plane, z)))
+    return MeshFile(points=points, simplices=simplices, source=str(path))
 
 
 def _coordinates(mesh: Any, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
@@ -237,6 +255,9 @@ def write_mesh(
     if isinstance(triangulation, QualityMesh) and suffix in (".vtu", ".msh") and not edges:
         _write_with_segments(path, triangulation, z, attributes)
         return
+    if triangulation.ndim == 3:
+        _write_space(path, triangulation, edges, attributes)
+        return
     cells = triangulation.edges if edges else triangulation.simplices
     given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
@@ -254,6 +275,23 @@ def write_mesh(
         cell_data={name: [values] for name, values in of_cells.items()},
     )
     _write(path, suffix, mesh)
+
+
+def _write_space(
+    path: Path, triangulation: Mesh, edges: bool, attributes: Mapping[str, ArrayLike] | None
+) -> None:
+    """Write tetrahedra, or edges as lines."""
+    meshio = require("meshio", extra="mesh", what="writing meshes")
+    cells = triangulation.edges if edges else triangulation.simplices
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
+    mesh = meshio.Mesh(
+        np.array(triangulation.points),
+        [("line" if edges else "tetra", cells)],
+        point_data=of_points,
+        cell_data={name: [values] for name, values in of_cells.items()},
+    )
+    _write(path, path.suffix.lower(), mesh)
 
 
 def _write_with_segments(

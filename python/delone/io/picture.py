@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from delone.errors import FileFormatError
 from delone.io.extras import require
@@ -33,8 +35,28 @@ def write_mesh(
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
     """Draw a triangulation into a file; a picture shows edges and triangles alike."""
+    if triangulation.ndim == 3:
+        _draw_space(path, triangulation, attributes)
+        return
     from delone.plot import draw_picture
 
     if attributes:
         raise FileFormatError("a picture shows one value for each point: give it as z")
     draw_picture(path, triangulation, z=z, crs=crs)
+
+
+def _draw_space(
+    path: Path, triangulation: Mesh, attributes: Mapping[str, ArrayLike] | None
+) -> None:
+    """Draw tetrahedra, those before a cut through the middle, in colours of their volumes."""
+    from delone.scene import draw
+
+    if attributes:
+        raise FileFormatError("a picture of tetrahedra shows their volumes, and no attributes")
+    mesh: Any = triangulation
+    # pyvista tells formats by suffixes, and what replaces a file has one of its own.
+    picture = path.with_name(path.name + ".png")
+    with np.errstate(divide="ignore"):
+        size = np.log10(mesh.volumes)
+    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut="x", bar=False)
+    picture.replace(path)

@@ -60,24 +60,26 @@ _WRITERS = {
     ".npz": "arrays",
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
+# What holds tetrahedra, or draws them.
+_SPACE = (".vtu", ".msh", ".npz", ".png")
 _GEOMETRIES = ("vector", "parquet")
 _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MeshFile:
-    """Triangles as a file holds them, not checked.
+    """Triangles or tetrahedra as a file holds them, not checked.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates.
+        Horizontal coordinates; of tetrahedra all three, (n, 3).
     simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    neighbors : ndarray of int32, shape (m, 3), optional
-        The triangle opposite each vertex; None where the format has no such thing.
+        Triangles; tetrahedra, (m, 4).
+    neighbors : ndarray of int32, of the same shape, optional
+        The simplex opposite each vertex; None where the format has no such thing.
     z : ndarray of float64, shape (n,), optional
-        Heights.
+        Heights over the plane.
     source : str, optional
         The file.
     """
@@ -351,6 +353,7 @@ def write_mesh(
         Write edges in place of triangles, to VTU, MSH, GeoPackage or GeoJSON; pictures show both.
     attributes : mapping of str to array_like, optional
         Values by point (n,) or by triangle (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
+        Triangulations in space go to VTU, MSH, npz and PNG, without `z` and `crs`.
 
     Raises
     ------
@@ -384,18 +387,20 @@ def write_mesh(
     ...     len(read_points(Path(folder) / "mesh.npz"))
     5
     """
-    write = writer(path)
+    write = writer(path, space=triangulation.ndim == 3)
     with replacing(path) as beside:
         write(beside, triangulation, z=z, crs=crs, edges=edges, attributes=attributes)
 
 
-def writer(path: str | os.PathLike[str]) -> Callable[..., None]:
+def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:
     """Return the function that writes files of this suffix, its library at hand.
 
     Parameters
     ----------
     path : str or path-like
         The file to be written.
+    space : bool, optional
+        Whether tetrahedra are to be written.
 
     Returns
     -------
@@ -416,6 +421,10 @@ def writer(path: str | os.PathLike[str]) -> Callable[..., None]:
     'write_mesh'
     """
     file = Path(path)
+    if space and file.suffix.lower() in _WRITERS and file.suffix.lower() not in _SPACE:
+        raise FileFormatError(
+            f"{file}: {file.suffix} files hold no tetrahedra; use {', '.join(_SPACE)}"
+        )
     module = _module(_WRITERS, file.suffix.lower(), file, "write")
     module.require_libraries()
     write: Callable[..., None] = module.write_mesh

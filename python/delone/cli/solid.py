@@ -1,0 +1,186 @@
+"""Points in space: when the command takes them for that, their triangulation and its figures.
+
+Heights are values over the plane unless something says otherwise, for surveys of the ground have
+them, too. A PLY file of points and nothing else is a cloud in space; any other file is taken for
+one by ``--3d``.
+"""
+
+from __future__ import annotations
+
+from math import fsum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import Delaunay
+from delone.cli.exits import Exit, Failure
+from delone.cli.report import finite_or_none
+from delone.errors import FileFormatError
+from delone.io import PointSet, read_mesh
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from delone.cli.show import Row
+    from delone.io import GeometrySet
+
+__all__ = ["is_space", "space_measures", "space_rows", "space_summary", "triangulated_space"]
+
+_FIRST_DUPLICATES = 5
+
+
+def is_space(source: Path, wanted: bool | None, survey: PointSet | GeometrySet) -> bool:
+    """Tell whether the points of a file are to be triangulated in space.
+
+    Parameters
+    ----------
+    source : Path
+        The file.
+    wanted : bool or None
+        What the command line says; None for nothing.
+    survey : PointSet or GeometrySet
+        What was read.
+
+    Returns
+    -------
+    bool
+        As wanted; otherwise whether it is a PLY file of points alone, with three coordinates.
+
+    Raises
+    ------
+    Failure
+        Space is wanted, but there are no heights, or no points.
+    """
+    if wanted is None:
+        return (
+            source.suffix.lower() == ".ply"
+            and isinstance(survey, PointSet)
+            and survey.z is not None
+            and _has_no_faces(source)
+        )
+    if wanted and (not isinstance(survey, PointSet) or survey.z is None):
+        raise Failure(f"{source}: --3d needs points with three coordinates", Exit.USAGE)
+    return wanted
+
+
+def _has_no_faces(source: Path) -> bool:
+    try:
+        read_mesh(source)
+    except FileFormatError:
+        return True
+    return False
+
+
+def triangulated_space(survey: PointSet, **options: Any) -> Delaunay:
+    """Triangulate points with their heights as third coordinate.
+
+    Parameters
+    ----------
+    survey : PointSet
+        Points with heights.
+    **options
+        `method` and `workers`.
+
+    Returns
+    -------
+    Delaunay
+        In space.
+    """
+    assert survey.z is not None
+    return Delaunay(np.column_stack((survey.points, survey.z)), **options)
+
+
+def space_summary(mesh: Delaunay) -> dict[str, Any]:
+    """Return the counts and measures of a triangulation in space.
+
+    Parameters
+    ----------
+    mesh : Delaunay
+        What to report upon.
+
+    Returns
+    -------
+    dict
+        Counts, duplicates, what Euler's formula says, mean degree, volume.
+    """
+    n, m, repeats = mesh.npoints, mesh.nsimplex, mesh.coplanar
+    distinct, edges, faces = n - len(repeats), len(mesh.edges), len(mesh.faces)
+    first = [
+        {"row": row, "same_as": same, "x": x, "y": y, "z": z}
+        for (row, _, same), (x, y, z) in zip(
+            repeats[:_FIRST_DUPLICATES].tolist(),
+            mesh.points[repeats[:_FIRST_DUPLICATES, 0]].tolist(),
+            strict=True,
+        )
+    ]
+    return {
+        "points": n,
+        "distinct": distinct,
+        "duplicates": {"count": len(repeats), "first": first},
+        "hull_vertices": len(mesh.hull),
+        "hull_faces": len(mesh.convex_hull),
+        # Euler: vertices - edges + faces - tetrahedra = 1.
+        "tetrahedra": {"count": m, "expected": distinct - edges + faces - 1},
+        "edges": {"count": edges, "expected": None},
+        "faces": {"count": faces, "expected": None},
+        "mean_degree": 2 * edges / distinct,
+        "volume": finite_or_none(fsum(mesh.volumes.tolist())),
+        "bounds": [*mesh.min_bound.tolist(), *mesh.max_bound.tolist()],
+    }
+
+
+def space_measures(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
+    """Return the measures of any tetrahedra.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 4)
+        Tetrahedra.
+
+    Returns
+    -------
+    dict
+        Counts.
+    """
+    return {"points": len(points), "tetrahedra": len(simplices)}
+
+
+def space_rows(figures: dict[str, Any]) -> list[Row]:
+    """Return the rows of the report of a triangulation in space.
+
+    Parameters
+    ----------
+    figures : dict
+        As `space_summary` returns them.
+
+    Returns
+    -------
+    list of tuple of str
+        Names and values.
+    """
+    duplicates, volume = figures["duplicates"], figures["volume"]
+    lines = [f"{duplicates['count']:,}"]
+    lines += [
+        f"row {d['row']} is row {d['same_as']} at ({d['x']!r}, {d['y']!r}, {d['z']!r})"
+        for d in duplicates["first"]
+    ]
+    if duplicates["count"] > len(duplicates["first"]):
+        lines.append("...")
+    count, expected = figures["tetrahedra"]["count"], figures["tetrahedra"]["expected"]
+    verdict = "=" if count == expected else f"IS NOT {expected:,} ="
+    return [
+        ("points read", f"{figures['points']:,}"),
+        ("distinct", f"{figures['distinct']:,}"),
+        ("duplicates", "\n".join(lines)),
+        ("hull vertices", f"{figures['hull_vertices']:,}"),
+        ("hull faces", f"{figures['hull_faces']:,}"),
+        ("tetrahedra", f"{count:,} {verdict} n - edges + faces - 1"),
+        ("edges", f"{figures['edges']['count']:,}"),
+        ("faces", f"{figures['faces']['count']:,}"),
+        ("mean degree", f"{figures['mean_degree']:.4f}"),
+        ("volume", "beyond range" if volume is None else f"{volume:,.6g}"),
+    ]

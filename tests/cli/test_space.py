@@ -1,0 +1,90 @@
+"""Points in space on the command line."""
+
+import numpy as np
+import pytest
+
+from delone import Delaunay, datasets
+from delone.io import read_mesh, write_mesh
+
+
+def cloud(n=60):
+    return datasets.GENERATORS3["uniform"](n, seed=6)
+
+
+def ply(path, points, faces=""):
+    rows = "\n".join(" ".join(map(repr, row)) for row in points.tolist())
+    head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n"
+    head += "".join(f"property double {axis}\n" for axis in "xyz")
+    if faces:
+        head += f"element face {faces.count(chr(10)) + 1}\n"
+        head += "property list uchar int vertex_indices\n"
+    path.write_text(f"{head}end_header\n{rows}\n{faces}\n")
+    return path
+
+
+def xyz(path, points):
+    np.savetxt(path, points, fmt="%.17g")
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".npz"])
+def test_a_cloud_becomes_tetrahedra(suffix, tmp_path, command, figures):
+    points = cloud()
+    source, target = ply(tmp_path / "cloud.ply", points), tmp_path / f"mesh{suffix}"
+    found = figures("triangulate", source, "-o", target)
+    mesh = Delaunay(points)
+    assert found["tetrahedra"] == {"count": mesh.nsimplex, "expected": mesh.nsimplex}
+    assert found["volume"] == pytest.approx(mesh.volumes.sum())
+    kept = read_mesh(target)
+    assert (kept.points == points).all()
+    assert (kept.simplices == mesh.simplices).all()
+    code, out, err = command("check", "--canonical", target)
+    assert (code, err) == (0, "")
+    assert "tetrahedra" in out
+
+
+def test_heights_stay_heights_unless_space_is_wanted(tmp_path, command, figures):
+    source = xyz(tmp_path / "survey.xyz", cloud())
+    assert "triangles" in figures("triangulate", source)
+    code, out, _ = command("triangulate", source, "--3d")
+    assert code == 0
+    assert "= n - edges + faces - 1" in out
+
+
+def test_ply_files_with_faces_and_wishes_for_the_plane(tmp_path, figures):
+    surface = ply(tmp_path / "surface.ply", cloud(4), faces="3 0 1 2\n3 1 2 3")
+    assert "triangles" in figures("triangulate", surface)
+    assert "tetrahedra" in figures("triangulate", surface, "--3d")
+    assert "triangles" in figures("triangulate", ply(tmp_path / "a.ply", cloud(9)), "--2d")
+
+
+def test_what_space_refuses(tmp_path, command):
+    flat = xyz(tmp_path / "flat.xyz", cloud()[:, :2])
+    code, _, err = command("triangulate", flat, "--3d")
+    assert code == 2
+    assert "three coordinates" in err
+    solid = xyz(tmp_path / "solid.xyz", cloud())
+    code, _, err = command("triangulate", solid, "--3d", "-o", tmp_path / "a.svg")
+    assert code != 0
+    assert "hold no tetrahedra" in err
+    plane = xyz(tmp_path / "plane.xyz", cloud() * (1, 1, 0))
+    code, _, err = command("triangulate", plane, "--3d")
+    assert code != 0
+    assert "in one plane" in err
+    assert command("triangulate", solid, "--3d", "--outline")[0] != 0
+
+
+def test_wrong_tetrahedra_are_named(tmp_path, command):
+    mesh = Delaunay(cloud())
+    path = tmp_path / "mesh.npz"
+    np.savez(path, points=mesh.points, simplices=mesh.simplices[:, [1, 0, 2, 3]])
+    code, out, _ = command("check", path)
+    assert code == 1
+    assert "not positively oriented" in out
+
+
+def test_pictures(tmp_path):
+    pytest.importorskip("pyvista")
+    path = tmp_path / "mesh.png"
+    write_mesh(path, Delaunay(cloud()))
+    assert path.read_bytes().startswith(b"\x89PNG")
