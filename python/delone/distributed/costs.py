@@ -14,8 +14,9 @@ from delone.distributed.tiles import HALO
 
 __all__ = ["Plan", "estimate"]
 
-# Bytes of a worker that imports the package and pyarrow, and beyond that for each point of a tile.
-_BASE, _MEMORY = 150e6, 190.0
+# Bytes of a worker that imports the package and pyarrow, and beyond that for each point of a tile
+# or of a piece.
+_BASE, _MEMORY, _PIECE = 150e6, 190.0, 80.0
 # Bytes on disk for each point: of a row as it waits, of two triangles as they wait, of the output.
 _ROW, _WAITING, _OUTPUT = 32.0, 24.0, 62.0
 # Seconds of one core for each point, without the reading of compressed files.
@@ -75,7 +76,9 @@ def estimate(points: int, tile_points: int, workers: int, attributes: int) -> Pl
         pieces=pieces,
         tasks=2 * pieces + tiles * (2 + 2 * rounds),
         foreign=foreign,
-        worker_memory=round(_BASE + (_MEMORY + 3 * 8 * attributes) * max(size, PIECE)),
+        worker_memory=round(
+            _BASE + max(_MEMORY * size, _PIECE * PIECE) + 24 * attributes * max(size, PIECE)
+        ),
         disk=round((row + _WAITING + _OUTPUT + 8 * attributes) * points),
         output=round((_OUTPUT + 8 * attributes) * points),
         seconds=_SECONDS * points / max(workers, 1),

@@ -10,6 +10,7 @@ import errno
 import hashlib
 import json
 import os
+import secrets
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.atomic import replacing
 from delone.errors import DeloneError
 
 if TYPE_CHECKING:
@@ -77,9 +77,14 @@ class Store:
             step(f"before the folder of {name}")
             target.parent.mkdir(parents=True, exist_ok=True)
             step(f"before {name}")
-            with replacing(target) as beside:
+            # No look at the folder, which may have a million files.
+            beside = target.with_name(f".{target.stem}-{secrets.token_hex(6)}{target.suffix}")
+            try:
                 yield beside
                 step(f"before the renaming of {name}")
+                os.replace(beside, target)
+            finally:
+                beside.unlink(missing_ok=True)
             step(f"after {name}")
 
     def save(self, name: str, array: NDArray[Any]) -> None:
@@ -115,6 +120,12 @@ class Store:
             return None
         except ValueError as error:
             raise DeloneError(f"{self.path(name)} is torn: {error}") from error
+
+    def sweep(self, name: str) -> None:
+        """Remove what killed processes have left beside the files of a folder."""
+        step(f"before the sweep of {name}")
+        for left in self.path(name).glob(".*"):
+            left.unlink(missing_ok=True)
 
     def remove(self, name: str) -> None:
         """Remove a folder with all that is in it, if it is there."""

@@ -126,6 +126,8 @@ class Run:
             "hull": len(layout.hull),
             "memory": self.progress.memory,
         }
+        for folder in ("vertices", "triangles"):
+            self.store.sweep(folder)
         settings = self._settings()
         manifest = assemble(settings, self.source.crs, layout, figures, finished)
         self.store.note("manifest.json", manifest)
