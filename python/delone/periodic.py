@@ -205,8 +205,13 @@ class PeriodicDelaunay:
     @property
     @kept
     def corners(self) -> Floats:
-        """Rounded coordinates of the corners of triangles, (m, 3, 2)."""
-        return sealed(self.points[self.simplices] + self.offsets * _lengths(self._periods))
+        """Rounded coordinates of the corners of triangles, (m, 3, 2).
+
+        Infinite where a copy lies beyond the range of doubles.
+        """
+        with np.errstate(over="ignore"):
+            found: Floats = self.points[self.simplices] + self.offsets * _lengths(self._periods)
+        return sealed(found)
 
     @property
     def edges(self) -> Indices:
@@ -391,8 +396,11 @@ def _with_halo(
     if not 0 < width < lengths.min() / 2:
         return None
     copies = _copies(rows, (1.0, 1.0))
-    at = points[copies[:, 0]] + copies[:, 1:] * lengths
-    near = ((at >= low - width) & (at <= low + lengths + width)).all(axis=1)
+    with np.errstate(over="ignore"):
+        at = points[copies[:, 0]] + copies[:, 1:] * lengths
+        near = ((at >= low - width) & (at <= low + lengths + width)).all(axis=1)
+    if not np.isfinite(at).all():
+        return None
     found = _copied(points, weights, lengths, np.ascontiguousarray(copies[near]))
     simplices, offsets, _ = found
     if len(simplices) != 2 * len(rows if weights is None else np.unique(simplices)):

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from delone import periodic
+from delone import PeriodicDelaunay, periodic
 from delone.errors import InputError, LimitError, NonFiniteError
 from delone.voronoi import Voronoi
 
@@ -229,6 +229,20 @@ def test_of_equal_sites_the_heaviest_has_the_cell() -> None:
     assert diagram.cell_areas[2] == diagram.cell_areas[3] > diagram.cell_areas[1] > 0
     with pytest.raises(NonFiniteError):
         Voronoi(points, weights=[0, 0, 0, np.nan], periodic=(1, 1))
+
+
+def test_periods_as_long_as_the_range() -> None:
+    period = 1.7e308
+    places = [(0.0, 0.0), (period / 2, 0.0), (0.0, period / 2), (period / 4, period / 4)]
+    with np.errstate(all="raise"):
+        assert PeriodicDelaunay(places, (period, period)).nsimplex == 8
+        assert np.isfinite(Voronoi(places, periodic=(period, period)).vertices).all()
+        for periods in ((period, None), (None, period)):
+            with pytest.raises(LimitError, match="beyond the range"):
+                Voronoi(places, periodic=periods)
+        areas = Voronoi(np.array(places) / 8, periodic=(period / 8, None)).cell_areas
+        assert np.isinf(areas).sum() == 3
+        assert np.isfinite(Voronoi(np.array(places) / 8, periodic=(period / 8,) * 2).vertices).all()
 
 
 def test_vertices_beyond_the_range_are_refused() -> None:

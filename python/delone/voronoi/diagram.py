@@ -94,7 +94,8 @@ class Voronoi:
         `clip` has no area, is no polygon, or is invalid; the message says where. Or there are
         periods, and it is no box as above.
     LimitError
-        There are periods, and a vertex lies beyond the range of doubles.
+        There are periods, and a vertex lies beyond the range of doubles, or, with one period, the
+        next copy of a site does.
     MissingExtraError
         `clip` is a geometry, and shapely is not installed.
 
@@ -643,6 +644,7 @@ def _periodic_dual(
     points: Floats, weights: Floats | None, periods: Any, workers: int
 ) -> tuple[PeriodicDelaunay | None, dict[str, NDArray[Any]], tuple[float | None, float | None]]:
     """The same with periods, which come third."""
+    torus.require_room(points, as_periods(periods))
     try:
         mesh = PeriodicDelaunay(points, periods, weights=weights)
     except DegenerateInputError as error:

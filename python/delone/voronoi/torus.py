@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Longs = NDArray[np.int64]
     Dual = dict[str, NDArray[Any]]
 
-__all__ = ["of_line", "of_periodic", "unrolled"]
+__all__ = ["of_line", "of_periodic", "require_room", "unrolled"]
 
 _AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
 # Of an entry that is an end at infinity.
@@ -102,8 +102,12 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
     leads = ridge[t, along]
     of_first = gaps | (partners.reshape(-1)[3 * t + along] == edges[leads])
     of_first &= gaps | (edges[leads] != 3 * t + along)
+    with np.errstate(over="ignore"):
+        places = centers[vertices[:, 0]] + vertices[:, 1:] * lengths
+    if not np.isfinite(places).all():
+        raise LimitError("a vertex lies beyond the range of doubles")
     return {
-        "vertices": centers[vertices[:, 0]] + vertices[:, 1:] * lengths,
+        "vertices": places,
         "triangle_vertex": number[len(entries) + 2 * len(edges) :].copy(),
         "sites": np.column_stack((a, b)),
         "ends": ends,
@@ -118,6 +122,30 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         "beside": np.where(of_first, b[leads], a[leads]),
         "beside_moved": np.where(of_first[:, None], moved[leads], -moved[leads]),
     }
+
+
+def require_room(points: Floats, periods: tuple[float | None, float | None]) -> None:
+    """Refuse sites in a strip whose next copies are no doubles.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        The sites.
+    periods : tuple of two floats or None
+        The periods.
+
+    Raises
+    ------
+    LimitError
+        A copy lies beyond the range of doubles, and rays and cells cannot be told from it.
+    """
+    if None not in periods:
+        return
+    lengths = np.array([length or 0.0 for length in periods])
+    with np.errstate(over="ignore"):
+        furthest = np.abs(points).max(axis=0, initial=0.0) + lengths
+    if np.isinf(furthest[lengths > 0]).any():
+        raise LimitError("the next copy of a site lies beyond the range of doubles")
 
 
 def _centers(

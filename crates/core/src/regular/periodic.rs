@@ -84,10 +84,16 @@ pub fn periodic(
         .collect();
     // Rounded copies serve for the order of insertion alone; two may round to one.
     let mut near = with_room(images.len())?;
-    near.extend(images.iter().map(|&(row, moved)| {
+    let at = |&(row, moved): &(u32, [i8; 2]), share: f64| {
         let p = points[row as usize];
-        [0, 1].map(|k| p[k] + f64::from(moved[k]) * periods[k])
-    }));
+        [0, 1].map(|k| p[k] * share + f64::from(moved[k]) * (periods[k] * share))
+    };
+    near.extend(images.iter().map(|image| at(image, 1.0)));
+    if !near.as_flattened().iter().all(|x| x.is_finite()) {
+        // A copy may lie beyond the range of doubles, but not four times as far.
+        near.clear();
+        near.extend(images.iter().map(|image| at(image, 0.25)));
+    }
     let arranged = arrange(&near, 1, watch)?;
     let rest = arranged.duplicates.iter().map(|&[row, _]| row);
     let order: Vec<u32> = arranged.rows.iter().copied().chain(rest).collect();
