@@ -241,7 +241,7 @@ def test_periods_as_long_as_the_range() -> None:
             with pytest.raises(LimitError, match="beyond the range"):
                 Voronoi(places, periodic=periods)
         areas = Voronoi(np.array(places) / 8, periodic=(period / 8, None)).cell_areas
-        assert np.isinf(areas).sum() == 3
+        assert np.isinf(areas[[0, 1, 2]]).all()
         assert np.isfinite(Voronoi(np.array(places) / 8, periodic=(period / 8,) * 2).vertices).all()
 
 
