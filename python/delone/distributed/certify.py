@@ -8,6 +8,7 @@ proof. Every other disk is put to the tiles whose points it may meet beyond the 
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -61,14 +62,18 @@ class Known:
     tiles: Tiles
     extents: Floats
 
-    def certain(self, points: Floats, simplices: Indices) -> Bools:
+    def certain(self, points: Floats, simplices: Indices, *, threads: int = 1) -> Bools:
         """Return which triangles have their disks in the box."""
         left, bottom, right, top = self.box
         found = np.empty(len(simplices), dtype=bool)
-        for start in range(0, len(simplices), _BLOCK):
+
+        def look(start: int) -> None:
             some = slice(start, start + _BLOCK)
             x, y, r = _core.disks2(points, simplices[some]).T
             found[some] = (x - r >= left) & (x + r <= right) & (y - r >= bottom) & (y + r <= top)
+
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(look, range(0, len(simplices), _BLOCK)))
         return found
 
     def questions(self, points: Floats, simplices: Indices) -> Questions:

@@ -105,7 +105,7 @@ class Run:
             return
         looks = self._look()
         layout = self._lay_out(looks)
-        dealt = self._stage("deal", dict.fromkeys(looks, ()))
+        dealt = self._stage("deal", self._pieces())
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
         # What is dealt is not looked at again.
@@ -177,7 +177,7 @@ class Run:
         pieces = self.source.pieces
         share = min(1.0, _SAMPLE * self._tiles() / max(self.source.count, 1))
         share = min(share, _SAMPLES / max(self.source.count, 1))
-        tasks = {k: (piece, self.choice, share) for k, piece in enumerate(pieces)}
+        tasks = {key: (*task, share) for key, task in self._pieces().items()}
         array = self.source.array
         if array is not None:
             for key, piece in enumerate(pieces):
@@ -196,6 +196,10 @@ class Run:
                 count=bad,
             )
         return looks
+
+    def _pieces(self) -> dict[int, tuple[Any, ...]]:
+        """The tasks of all pieces."""
+        return {key: (piece, self.choice) for key, piece in enumerate(self.source.pieces)}
 
     def _tiles(self) -> int:
         return max(1, -(-self.source.count // self.tile_points))

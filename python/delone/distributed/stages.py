@@ -62,11 +62,9 @@ def look(store: Store, key: int, piece: Piece, choice: Choice, share: float) -> 
     """
     staged = f"work/pieces/{key:06}.npy"
     rows = store.load(staged) if piece.kind == "array" else piece.read(choice)
-    finite = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
-    bad = rows["id"][~finite]
-    rows = rows[finite] if len(bad) else rows
+    rows, bad = _finite(rows)
     points = coordinates(rows)
-    if piece.kind != "array" or len(bad):
+    if piece.kind not in ("array", "npy"):
         store.save(staged, rows)
     dice = np.random.default_rng([5, key])
     chosen = dice.random(len(rows)) < share if share < 1 else np.ones(len(rows), dtype=bool)
@@ -75,10 +73,18 @@ def look(store: Store, key: int, piece: Piece, choice: Choice, share: float) -> 
     return {"rows": len(rows), "bad": bad[:10].tolist(), "bad_count": len(bad)}
 
 
-def deal(store: Store, key: int) -> Summary:
+def _finite(rows: Any) -> tuple[Any, Any]:
+    """Rows with finite coordinates, and the numbers of the others."""
+    finite = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
+    return (rows, rows["id"][:0]) if finite.all() else (rows[finite], rows["id"][~finite])
+
+
+def deal(store: Store, key: int, piece: Piece, choice: Choice) -> Summary:
     """Deal the points of a piece to the tiles; see `scatter`."""
     layout = Layout.load(store)
-    rows = store.load(f"work/pieces/{key:06}.npy")
+    staged = f"work/pieces/{key:06}.npy"
+    rows = piece.read(choice) if piece.kind == "npy" else store.load(staged)
+    rows, _ = _finite(rows)
     dealt, slices = scatter(rows, layout)
     store.save(f"work/parts/{key:06}.npy", dealt)
     return slices
@@ -96,7 +102,7 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     owner[own:] = layout.tiles.locate(points[own:])
     lowest, highest = _ends(simplices)
     needed = lowest < own
-    certain = needed & known.certain(points, simplices)
+    certain = needed & known.certain(points, simplices, threads=threads)
     doubtful = np.flatnonzero(needed & ~certain)
     questions = known.questions(points, simplices[doubtful])
     asked = np.zeros(len(doubtful), dtype=bool)
