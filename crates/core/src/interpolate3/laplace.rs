@@ -10,10 +10,14 @@
 //!
 //! # On the hull
 //!
-//! Where the query comes near a face of the hull, one centre goes to infinity in its direction, and the
-//! weights of all others vanish beside those of the sites of that face. What is left are Laplace weights in
-//! the plane: half the cotangents opposite the way to each neighbour, in the triangles that the hull has in
-//! the cavity there. On an edge between two planes of the hull the interpolant is linear.
+//! Let the query come near a face of the hull, to a height z above its plane. Outside, at depth t / z, its
+//! cell is cut by x . v <= |v|^2 / 2 - t, for each neighbour v of that plane as seen from the query: the
+//! cell in the plane, whose walls move inwards as t grows. The wall towards v has, in all depths together, an
+//! area that goes to infinity as the integral of its length over t. A place x beyond the wall, in what was
+//! the cell of v, is met at t = |v|^2 / 2 - x . v, which is |v| times its distance from the wall: so that
+//! integral, over |v|, is the area that the query takes from v in the plane. Hence the limit on the
+//! hull are Sibson's weights in the plane (see `interpolate::weights` for their formula), and on an
+//! edge between two planes the interpolant is linear.
 
 use delone_predicates::arithmetic::Pair;
 use delone_predicates::{Point3, Sign, orient3d};
@@ -163,6 +167,12 @@ impl Room {
         if !flat.all(in_its_plane) {
             return false;
         }
+        for face in self.cavity.rim.iter().filter(|face| face.flat) {
+            let corners = face.corners.map(|i| self.seen[i as usize]);
+            for (&i, area) in face.corners.iter().zip(parts(corners)) {
+                self.weights[i as usize] += area;
+            }
+        }
         self.pair_edges(|face| face.flat);
         for i in 0..self.edges.len() {
             let (u, v, ..) = self.edges[i];
@@ -175,10 +185,9 @@ impl Room {
                 continue;
             }
             let (p, r) = (self.seen[u as usize], self.seen[v as usize]);
-            let size = length(cross(p, r));
-            let way = minus(r, p);
-            self.weights[v as usize] += dot(p, way) / -size;
-            self.weights[u as usize] += dot(r, way) / size;
+            let [_, at_u, at_v] = parts([[0.0; 3], p, r]);
+            self.weights[u as usize] -= at_u;
+            self.weights[v as usize] -= at_v;
         }
         true
     }
@@ -216,8 +225,17 @@ fn cross(p: Point3, q: Point3) -> Point3 {
     ]
 }
 
-fn length(v: Point3) -> f64 {
-    dot(v, v).sqrt()
+/// The area of a triangle that lies nearest to each corner, counted with its sign, times 8.
+fn parts(corners: [Point3; 3]) -> [f64; 3] {
+    let [a, b, c] = corners;
+    let sides = [minus(c, b), minus(a, c), minus(b, a)];
+    let turn = cross(sides[0], sides[1]);
+    let size = dot(turn, turn).sqrt();
+    let cotangent = |k: usize| -dot(sides[(k + 1) % 3], sides[(k + 2) % 3]) / size;
+    [0, 1, 2].map(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        dot(sides[i], sides[i]) * cotangent(i) + dot(sides[j], sides[j]) * cotangent(j)
+    })
 }
 
 /// The centre of the sphere through the origin and three points; nothing where the four are too nearly
@@ -261,6 +279,14 @@ fn paired(corners: [Point3; 3], q: Point3, scale: f64) -> Option<Point3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_parts_of_a_triangle_are_all_of_it() {
+        let found = parts([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 2.0]]);
+        assert_eq!(found, [16.0, 8.0, 8.0]);
+        let obtuse = parts([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-1.0, 1.0, 0.0]]);
+        assert!((obtuse.iter().sum::<f64>() - 16.0).abs() < 1e-14);
+    }
 
     #[test]
     fn the_center_is_as_far_from_all() {
