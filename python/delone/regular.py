@@ -1,7 +1,7 @@
 """The class RegularTriangulation: triangulations of weighted points, dual to power diagrams.
 
 Sites are lifted by their weights, and the core takes the lower side of their hull. What follows
-from the triangles is in `triangulation`, as for all classes of triangulations.
+from triangles or tetrahedra is in `triangulation` and `space`, as for all such classes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_vectors
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
-from delone.triangulation import Triangulation, counted, kept, own_copy, sealed
+from delone.space.spatial import Spatial
+from delone.triangulation import counted, kept, own_copy, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -23,13 +24,15 @@ if TYPE_CHECKING:
 
 __all__ = ["RegularTriangulation", "as_weights", "triangulated"]
 
+_SPACE = 3
 
-class RegularTriangulation(Triangulation):
-    """The regular (weighted Delaunay) triangulation of points in the plane.
+
+class RegularTriangulation(Spatial):
+    """The regular (weighted Delaunay) triangulation of points in the plane or in space.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
+    points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates, taken as the exact numbers which they denote.
     weights : array_like, shape (n,)
         Finite weights, in the square of the unit of the points: the square of a radius, if points
@@ -37,20 +40,20 @@ class RegularTriangulation(Triangulation):
 
     Attributes
     ----------
-    points : ndarray of float64, shape (n, 2)
+    points : ndarray of float64, shape (n, d)
         The coordinates.
     weights : ndarray of float64, shape (n,)
         The weights.
-    simplices : ndarray of int32, shape (m, 3)
-        The triangles as rows of `points`, counter-clockwise.
-    neighbors : ndarray of int32, shape (m, 3)
-        The triangle opposite each vertex; -1 outside.
+    simplices : ndarray of int32, shape (m, d + 1)
+        The triangles, counter-clockwise, or tetrahedra, positively oriented, as rows of `points`.
+    neighbors : ndarray of int32, shape (m, d + 1)
+        The simplex opposite each vertex; -1 outside.
 
     Raises
     ------
     DegenerateInputError
-        Fewer than three points are distinct, or all lie on one line; ``error.chain`` has those that
-        are not hidden, in order.
+        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has those in
+        the plane that are not hidden, in order, in space all. Or points in space lie in one plane.
     NonFiniteError
         A coordinate or weight is NaN or infinite; ``error.rows`` tells where.
     ShapeError
@@ -62,9 +65,10 @@ class RegularTriangulation(Triangulation):
 
     Notes
     -----
-    The triangles are the lower side of the hull of the points lifted to ``x**2 + y**2 - w``. A
-    point whose lift lies above it is *hidden*: no place of the plane has its least power there, and
-    it is no vertex. With equal weights this is the Delaunay triangulation.
+    The simplices are the lower side of the hull of the points lifted to ``x**2 + y**2 - w``, in
+    space to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is *hidden*: no place has
+    its least power there, and it is no vertex. With equal weights this is the Delaunay
+    triangulation.
 
     The answer is exact, and unique: ties are broken as in `delone.Delaunay`, so that a point whose
     lift lies on the hull without being a corner of it is hidden. Of points with the same
@@ -99,7 +103,7 @@ class RegularTriangulation(Triangulation):
     def __init__(self, points: ArrayLike, weights: ArrayLike) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a RegularTriangulation never changes: make another one")
-        own = own_copy(points)
+        own = own_copy(points, ndim=None)
         own_weights = as_weights(weights, len(own))
         arrays, chain = triangulated(own, own_weights)
         if not len(arrays["simplices"]):
@@ -133,7 +137,10 @@ class RegularTriangulation(Triangulation):
         if hidden := len(self.hidden):
             notes.append(f"{hidden} hidden")
         noted = f" ({', '.join(notes)})" if notes else ""
-        return f"<RegularTriangulation of {points}{noted}: {counted(self.nsimplex, 'triangle')}>"
+        simplices = counted(self.nsimplex, "triangle")
+        if self.ndim == _SPACE:
+            simplices = "1 tetrahedron" if self.nsimplex == 1 else f"{self.nsimplex} tetrahedra"
+        return f"<RegularTriangulation of {points}{noted}: {simplices}>"
 
 
 def as_weights(weights: ArrayLike, npoints: int) -> Floats:
@@ -177,7 +184,7 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
 
     Parameters
     ----------
-    points : ndarray of float64, shape (n, 2)
+    points : ndarray of float64, shape (n, 2) or (n, 3)
         Coordinates.
     weights : ndarray of float64, shape (n,)
         Finite weights.
@@ -187,10 +194,19 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     arrays : dict of ndarray
         What a `RegularTriangulation` holds.
     chain : ndarray of int32
-        Where all points lie on one line, those that are not hidden, in order.
+        Where all points of the plane lie on one line, those that are not hidden, in order.
+
+    Raises
+    ------
+    DegenerateInputError
+        Points in space lie in one plane.
     """
+    chain = np.empty(0, dtype=np.int32)
     try:
-        simplices, neighbors, chain, stands_for = _core.regular2(points, weights)
+        if points.shape[1] == _SPACE:
+            simplices, neighbors, stands_for = _core.regular3(points, weights)
+        else:
+            simplices, neighbors, chain, stands_for = _core.regular2(points, weights)
     except InternalError as error:
         error.points = np.column_stack((points, weights))
         raise

@@ -1,12 +1,25 @@
-"""Voronoi diagrams of points in the plane, whole or cut to an outline.
+"""Voronoi diagrams of points in the plane and in space, whole or cut to an outline or polyhedron.
 
 `diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
 is, `clipping` boxes and outlines, `shapes` geometries, tables and pictures, `centroidal` Lloyd's
-method, `torus` periodic sets.
+method, `torus` periodic sets. Of space, `space` has the class, `bodies` what a cell is, and
+`polyhedra` what cells are cut to.
 """
 
+from delone.voronoi.bodies import SpaceCell, SpaceNeighbors
 from delone.voronoi.cells import Cell, Neighbors, Rays
 from delone.voronoi.centroidal import LloydResult, lloyd
 from delone.voronoi.diagram import Voronoi
+from delone.voronoi.space import SpaceVoronoi
 
-__all__ = ["Cell", "LloydResult", "Neighbors", "Rays", "Voronoi", "lloyd"]
+__all__ = [
+    "Cell",
+    "LloydResult",
+    "Neighbors",
+    "Rays",
+    "SpaceCell",
+    "SpaceNeighbors",
+    "SpaceVoronoi",
+    "Voronoi",
+    "lloyd",
+]

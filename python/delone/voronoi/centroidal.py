@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LloydResult", "lloyd"]
 
+_PLANE = 2
+
 # J. Radon's seven points of degree 5 on a triangle: barycentric coordinates and weights.
 _ROOT = math.sqrt(15)
 _CENTER = [1 / 3] * 3
@@ -165,6 +167,8 @@ def lloyd(
         raise InputError(f"tol must not be negative, got {tol}")
     quasi_newton = as_choice(method, _METHODS, name="method") == "l-bfgs"
     diagram = Voronoi(points, clip=clip, workers=workers)
+    if diagram.ndim != _PLANE:
+        raise InputError("lloyd is for points in the plane; cell_centroids are there in space, too")
     domain = diagram.clip
     at = _state(diagram, density)
     displacements: list[float] = []

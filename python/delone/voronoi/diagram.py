@@ -6,9 +6,10 @@ leaves of the cells, is computed on first use and kept.
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import threading
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
 
@@ -30,17 +31,20 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Voronoi"]
+__all__ = ["Voronoi", "compressed"]
+
+_SPACE = 3
 
 
 class Voronoi:
-    """The Voronoi diagram of points in the plane, whole or clipped.
+    """The Voronoi diagram of points in the plane, whole or clipped; of points in space, likewise.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
         The sites, finite, in any unit. They are copied and taken as the exact numbers which they
-        denote.
+        denote. Of points of shape (n, 3) the diagram of space is made, which is described at
+        `delone.voronoi.SpaceVoronoi`.
     clip : "box", sequence of 4 floats, or geometry, optional
         What to cut the cells to: the box of the sites; the box
         ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without
@@ -175,6 +179,14 @@ class Voronoi:
     _weights: Floats | None
     _workers: int
 
+    def __new__(cls, points: ArrayLike | None = None, **options: Any) -> Voronoi:
+        """Make a `SpaceVoronoi` where points have three coordinates."""
+        if cls is Voronoi and _columns(points) == _SPACE:
+            from delone.voronoi.space import SpaceVoronoi
+
+            return object.__new__(SpaceVoronoi)
+        return object.__new__(cls)
+
     def __init__(
         self,
         points: ArrayLike,
@@ -208,6 +220,11 @@ class Voronoi:
             periods=lengths,
             workers=threads,
         )
+
+    # What the constructor takes is said by __init__, not by __new__.
+    __signature__: ClassVar[inspect.Signature] = inspect.Signature(
+        list(inspect.signature(__init__).parameters.values())[1:]
+    )
 
     def _fill(
         self,
@@ -447,7 +464,7 @@ class Voronoi:
         lengths = self._clipped.ridge_lengths()
         rows = np.flatnonzero(lengths > 0) if self._clip is not None else np.arange(len(lengths))
         sites = self.ridge_points[rows].astype(np.int64)
-        indptr, indices, beside = _compressed(sites, lengths[rows], self.npoints)
+        indptr, indices, beside = compressed(sites, lengths[rows], self.npoints)
         return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
     def cell(self, i: int) -> Cell:
@@ -657,16 +674,40 @@ def _periodic_dual(
     return mesh, torus.of_periodic(mesh, workers), mesh.periods
 
 
+def _columns(points: ArrayLike | None) -> int:
+    """How many coordinates points have; 0 where they are no table."""
+    try:
+        shape = np.shape(points) if points is not None else ()
+    except ValueError:  # rows of different lengths, which the constructor refuses
+        return 0
+    return int(shape[1]) if len(shape) > 1 else 0
+
+
 def _without_repeated_gaps(region: list[int]) -> list[int]:
     """A cell with each run of -1 written once, also where it runs over the end."""
     kept = [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0]
     return kept or region[:1]
 
 
-def _compressed(
+def compressed(
     pairs: NDArray[np.int64], lengths: Floats, npoints: int
 ) -> tuple[Indices, Indices, Floats]:
-    """Symmetric pairs as compressed rows, with what belongs to each pair."""
+    """Return symmetric pairs as compressed rows, with what belongs to each pair.
+
+    Parameters
+    ----------
+    pairs : ndarray of int64, shape (r, 2)
+        Rows that belong together.
+    lengths : ndarray of float64, shape (r,)
+        What belongs to each pair.
+    npoints : int
+        Number of rows.
+
+    Returns
+    -------
+    tuple of ndarray
+        Where each row begins, its partners ascending, and what belongs to them.
+    """
     here = np.concatenate((pairs[:, 0], pairs[:, 1]))
     there = np.concatenate((pairs[:, 1], pairs[:, 0]))
     order = np.argsort(here * npoints + there)

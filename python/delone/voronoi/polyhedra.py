@@ -1,0 +1,195 @@
+"""Convex polyhedra that cells of space are cut to: boxes, half-spaces, hulls of points.
+
+The core takes corners, faces and planes. A box has them as they are; half-spaces are cut out of a
+cube that grows until it is large enough; the faces of a hull are the triangles of its boundary.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_vectors
+from delone.delaunay import Delaunay
+from delone.errors import DegenerateInputError, DeloneError, InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Polyhedron", "as_polyhedron"]
+
+# The corners of a box by the bits of their numbers, and its faces counter-clockwise from outside:
+# x low, x high, y low, and so on.
+_FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+# How often the cube around half-spaces grows, and by which factor: past any that double can tell.
+_ROUNDS, _GROWTH = 12, 2.0**16
+_CHOICES = (
+    "clip must be 'box', a box ((xmin, ymin, zmin), (xmax, ymax, zmax)), half-spaces (k, 4), "
+    "points (k, 3) or a convex hull"
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Polyhedron:
+    """A convex polyhedron with an inside.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (p, 3)
+        Its corners.
+    starts, corners : ndarray of int32
+        Faces as compressed rows of numbers of corners, counter-clockwise from outside.
+    planes : ndarray of float64, shape (f, 4)
+        For each face n and c: inside is ``n @ x <= c``.
+    name : str
+        What it is, in a few words.
+    """
+
+    points: Floats
+    starts: Indices
+    corners: Indices
+    planes: Floats
+    name: str
+
+    @property
+    def bounds(self) -> Floats:
+        """The least and the greatest coordinates, (2, 3)."""
+        return np.stack((self.points.min(axis=0), self.points.max(axis=0)))
+
+
+def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
+    """Return what a caller wants to clip to.
+
+    Parameters
+    ----------
+    clip : None, "box" or array_like
+        As for `delone.Voronoi` of points in space.
+    points : ndarray of float64, shape (n, 3)
+        The sites.
+
+    Returns
+    -------
+    Polyhedron or None
+        None for no clip.
+
+    Raises
+    ------
+    InputError
+        It has no volume, no end, or is none of these.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.polyhedra import as_polyhedron
+    >>> sites = np.array([(0.0, 0, 0), (2, 1, 4)])
+    >>> as_polyhedron("box", sites).bounds.tolist()
+    [[0.0, 0.0, 0.0], [2.0, 1.0, 4.0]]
+    """
+    if clip is None:
+        return None
+    if isinstance(clip, str):
+        if clip != "box":
+            raise InputError(f"{_CHOICES}; got {clip!r}")
+        return _box(np.stack((points.min(axis=0), points.max(axis=0))))
+    if hasattr(clip, "simplices") and hasattr(clip, "points"):
+        clip = np.asarray(clip.points)[np.unique(clip.simplices)]
+    shape = np.shape(clip)
+    try:
+        array = as_vectors(clip, shape[-1] if shape else 0, name="clip")
+    except DeloneError as error:
+        raise InputError(f"{_CHOICES}; {error}") from error
+    if not np.isfinite(array).all():
+        raise InputError("clip must be finite")
+    if shape in ((2, 3), (6,)):
+        return _box(array.reshape(2, 3))
+    if array.ndim == 2 and shape[1] == 4:
+        return _common(array)
+    if array.ndim == 2 and shape[1] == 3:
+        return _hull(array)
+    raise InputError(f"{_CHOICES}; got an array of shape {shape}")
+
+
+def _box(bounds: Floats) -> Polyhedron:
+    low, high = bounds
+    if not (low < high).all():
+        raise InputError(
+            f"the box of clip has no volume: {low.tolist()} must be below {high.tolist()} in each "
+            f"coordinate"
+        )
+    corner = np.arange(8)[:, None] >> np.arange(3) & 1
+    planes = np.zeros((6, 4))
+    planes[np.arange(6), np.arange(6) // 2] = [-1, 1, -1, 1, -1, 1]
+    planes[:, 3] = np.stack((-low, high), axis=1).reshape(-1)
+    return Polyhedron(
+        points=np.where(corner == 1, high, low),
+        starts=np.arange(0, 25, 4, dtype=np.int32),
+        corners=np.array(_FACES, dtype=np.int32).reshape(-1),
+        planes=planes,
+        name="a box",
+    )
+
+
+def _hull(points: Floats) -> Polyhedron:
+    try:
+        mesh = Delaunay(points)
+    except DegenerateInputError as error:
+        raise InputError("the points of clip span no volume") from error
+    faces = np.ascontiguousarray(mesh.convex_hull, dtype=np.int32)
+    used, corners = np.unique(faces, return_inverse=True)
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    # No corner may be outside of a plane by its rounding.
+    offset = (normal @ points[used].T).max(axis=1)
+    return Polyhedron(
+        points=points[used],
+        starts=np.arange(0, 3 * len(faces) + 1, 3, dtype=np.int32),
+        corners=corners.reshape(-1).astype(np.int32),
+        planes=np.column_stack((normal, offset)),
+        name="a convex polyhedron",
+    )
+
+
+def _common(halfspaces: Floats) -> Polyhedron:
+    """The polyhedron where all of n @ x + d <= 0."""
+    length = np.linalg.norm(halfspaces[:, :3], axis=1)
+    if not (length > 0).all():
+        raise InputError(f"row {int(length.argmin())} of clip is no half-space: its normal is zero")
+    planes = halfspaces / length[:, None]
+    planes[:, 3] *= -1
+    size = 2.0 * float(np.abs(planes[:, 3]).max()) or 1.0
+    for _ in range(_ROUNDS):
+        points, starts, corners, labels = _core.halfspaces3(np.ascontiguousarray(planes), size)
+        if not len(labels):
+            raise InputError("the half-spaces of clip have no volume in common")
+        if (labels >= 0).all():
+            points = _corrected(points, starts, corners, planes[labels])
+            return Polyhedron(
+                points=points,
+                starts=starts,
+                corners=corners,
+                planes=np.ascontiguousarray(planes[labels]),
+                name="a convex polyhedron",
+            )
+        size *= _GROWTH
+    raise InputError("the half-spaces of clip have no bounded part in common")
+
+
+def _corrected(points: Floats, starts: Indices, corners: Indices, planes: Floats) -> Floats:
+    """The corners where their planes meet, without the roundings of the cuts."""
+    face = np.repeat(np.arange(len(planes)), np.diff(starts))
+    found = points.copy()
+    for corner in range(len(points)):
+        mine = planes[face[corners == corner]]
+        shift, _, rank, _ = np.linalg.lstsq(
+            mine[:, :3], mine[:, 3] - mine[:, :3] @ points[corner], rcond=None
+        )
+        if rank == 3:
+            found[corner] += shift
+    return found
