@@ -20,6 +20,7 @@ from delone._arrays import as_vectors, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.interpolate.hull import summed
+from delone.interpolate.space import SPACE, place_of
 from delone.interpolate.values import (
     DUPLICATES,
     NAN,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
     from delone.interpolate.hull import Terms
     from delone.interpolate.weights import Table, Weights
-    from delone.location import Location
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
@@ -51,7 +51,7 @@ class Interpolator:
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or a triangulation
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Sites. A triangulation of delone is used as it is.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
@@ -82,6 +82,8 @@ class Interpolator:
         as_workers(workers)
         given = points if isinstance(points, Triangulation) else None
         self._sites: Floats = points.points if isinstance(points, Triangulation) else _own(points)
+        if self._ndim == SPACE:
+            self._check_space(given)
         self._constrained = getattr(given, "constrained", None) is not None
         field = None if values is None else as_field(values, len(self._sites))
         self._given = given if self._constrained else None
@@ -90,6 +92,11 @@ class Interpolator:
             self._triangulated() if given is None or self._kept is not None else given
         )
         self._field = None if field is None else (field, self.settled(field))
+
+    @property
+    def _ndim(self) -> int:
+        """Number of coordinates, 2 or 3."""
+        return self._sites.shape[1]
 
     @property
     def triangulation(self) -> Triangulation:
@@ -106,7 +113,7 @@ class Interpolator:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Where. NaN gives NaN.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default that of the constructor.
@@ -127,8 +134,8 @@ class Interpolator:
             ``extrapolate="error"``.
         """
         interpolator, field, columns = self._with(values)
-        queries = as_vectors(xi, 2, name="xi")
-        found = interpolator._interpolated(queries.reshape(-1, 2), columns)
+        queries = as_vectors(xi, self._ndim, name="xi")
+        found = interpolator._interpolated(queries.reshape(-1, self._ndim), columns)
         return field.shaped(found, queries.shape[:-1])
 
     def gradient(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
@@ -136,7 +143,7 @@ class Interpolator:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Where.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites.
@@ -144,13 +151,13 @@ class Interpolator:
         Returns
         -------
         ndarray of float64 or complex128
-            Of the shape of the queries, that of one value, and 2: the derivatives by x and by y.
-            Outside of the hull NaN, or with ``extrapolate="linear"`` the slope with which the
-            interpolant goes on there.
+            Of the shape of the queries, that of one value, and d: the derivatives by x and by y, in
+            space by z as well. Outside of the hull NaN, or with ``extrapolate="linear"`` the slope
+            with which the interpolant goes on there.
         """
         interpolator, field, columns = self._with(values)
-        queries = as_vectors(xi, 2, name="xi")
-        slopes = interpolator._sloped(queries.reshape(-1, 2), columns)
+        queries = as_vectors(xi, self._ndim, name="xi")
+        slopes = interpolator._sloped(queries.reshape(-1, self._ndim), columns)
         return shaped_derivatives(slopes, field, queries.shape[:-1])
 
     def weights(self, xi: ArrayLike) -> Weights:
@@ -158,7 +165,7 @@ class Interpolator:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Where.
 
         Returns
@@ -173,16 +180,21 @@ class Interpolator:
         InputError
             A query is outside of the hull, and ``extrapolate="error"``.
         """
-        queries = as_vectors(xi, 2, name="xi")
-        return self._table(queries.reshape(-1, 2), queries.shape[:-1])
+        queries = as_vectors(xi, self._ndim, name="xi")
+        return self._table(queries.reshape(-1, self._ndim), queries.shape[:-1])
 
     # What subclasses say.
 
+    def _check_space(self, given: Triangulation | None) -> None:
+        """Refuse what there is in the plane only."""
+        if given is not None and not isinstance(given, Delaunay):
+            raise InputError("in space sites are points, or a Delaunay triangulation of them")
+
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
-        """Values (k, c), derivatives (k, c, 2) or second ones (k, c, 3); NaN outside."""
+        """Values (k, c), derivatives (k, c, d) or second ones (k, c, 3); NaN outside."""
         raise NotImplementedError
 
-    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+    def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
         """What counts a step away from the nearest points of the hull."""
         raise NotImplementedError
 
@@ -301,7 +313,7 @@ class Interpolator:
         found = self._derived(queries, columns, 1)
         if self._extrapolate in ("linear", "error"):
             rows, place = self._outside(queries, found[..., 0])
-            for axis, step in enumerate(np.eye(2)) if rows.size else ():
+            for axis, step in enumerate(np.eye(self._ndim)) if rows.size else ():
                 terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
                 found[rows, :, axis] = summed(terms, columns, self.gradients(columns))
         return found
@@ -313,13 +325,13 @@ class Interpolator:
         rows, place = self._outside(queries, known)
         return joined(table, rows, self._terms_beyond(queries[rows], place))
 
-    def _terms_beyond(self, queries: Floats, place: Location) -> Terms:
+    def _terms_beyond(self, queries: Floats, place: Any) -> Terms:
         step = queries - place.nearest
         if self._extrapolate == "nearest":
             step = np.zeros_like(step)
         return self._terms(place, step, True)
 
-    def _outside(self, queries: Floats, found: Floats | None) -> tuple[Rows, Location]:
+    def _outside(self, queries: Floats, found: Floats | None) -> tuple[Rows, Any]:
         """The finite queries outside of the hull, refused where that is the policy."""
         suspects = np.arange(len(queries))
         if found is not None and found.shape[1]:
@@ -336,7 +348,10 @@ class Interpolator:
             )
         return rows, place.at(outside)
 
-    def _located(self, queries: Floats) -> Location:
+    def _located(self, queries: Floats) -> Any:
+        """Where queries lie: a `Location`, in space a `SpacePlace`."""
+        if self._ndim == SPACE:
+            return place_of(self._mesh, queries, self._workers)
         return location.locate(self._mesh._locator, self._mesh.points, queries, self._workers)
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
@@ -379,7 +394,7 @@ class Interpolator:
 def _own(points: ArrayLike) -> Floats:
     if hasattr(points, "simplices"):
         raise DtypeError(f"{type(points).__name__} is no triangulation of delone; pass its points")
-    return own_copy(points)
+    return own_copy(points, ndim=None)
 
 
 def _with_only(mesh: Any, kept: Rows) -> Triangulation:

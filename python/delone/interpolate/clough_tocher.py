@@ -15,6 +15,7 @@ import numpy as np
 
 from delone._arrays import as_workers
 from delone.interpolate.smooth import Smooth
+from delone.interpolate.space import refuse
 from delone.interpolate.weights import Weights
 
 if TYPE_CHECKING:
@@ -109,6 +110,9 @@ class CloughTocher(Smooth):
             respect_constraints=respect_constraints,
             workers=workers,
         )
+
+    def _check_space(self, given: Triangulation | None) -> None:
+        refuse("CloughTocher", "choose Linear, or NaturalNeighbor with kind='laplace'")
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         sheet = self._sheet

@@ -1,19 +1,19 @@
-"""Linear interpolation: on each triangle the plane through the values at its corners."""
+"""Linear interpolation: on each triangle or tetrahedron by the values at its corners."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from delone._arrays import as_workers
 from delone.interpolate.base import Interpolator
-from delone.interpolate.hull import Terms, edge_terms, plane_gradients
+from delone.interpolate.hull import Terms, edge_terms, plane_gradients, summed
+from delone.interpolate.space import SPACE, face_terms, hull_gradients, slopes
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
-
-    from delone.location import Location
 
     Floats = NDArray[np.float64]
 
@@ -21,11 +21,11 @@ __all__ = ["Linear"]
 
 
 class Linear(Interpolator):
-    """Piecewise linear interpolation on the triangles.
+    """Piecewise linear interpolation on the triangles, in space on the tetrahedra.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or a triangulation
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Sites. A triangulation of delone is used as it is, constrained ones included.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
@@ -80,12 +80,31 @@ class Linear(Interpolator):
     """
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        if self._ndim == SPACE:
+            return self._in_space(queries, columns, order)
         found: Floats = self._mesh._locator.linear(
             columns, queries, order, as_workers(self._workers)
         )
         return found
 
-    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+    def _in_space(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        """Values, or slopes, in the tetrahedra that hold queries."""
+        mesh = self._mesh
+        index: Any = mesh._locator
+        simplex, weights, _ = index.locate(queries, as_workers(self._workers))
+        known = np.flatnonzero(simplex >= 0)
+        corners = mesh.simplices[simplex[known]]
+        shape = (len(queries), columns.shape[1])
+        found = np.full(shape if order == 0 else (*shape, SPACE), np.nan)
+        if order == 0:
+            found[known] = summed(Terms(corners, weights[known], None), columns, None)
+        else:
+            found[known] = slopes(mesh.points, corners, columns)
+        return found
+
+    def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
+        if self._ndim == SPACE:
+            return face_terms(place, step, base=base)
         return edge_terms(self._mesh.points, place, step, cubic=False, base=base)
 
     def gradients(self, columns: Floats) -> Floats | None:
@@ -93,6 +112,8 @@ class Linear(Interpolator):
         if self._extrapolate != "linear":
             return None
         mesh = self._mesh
+        if self._ndim == SPACE:
+            return hull_gradients(mesh, columns)
         around = mesh.vertex_neighbor_vertices
         return plane_gradients(mesh.points, around, columns, as_workers(self._workers))
 

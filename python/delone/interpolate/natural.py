@@ -9,22 +9,23 @@ gradients at the sites.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone import _core
 from delone._arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.interpolate.hull import Terms, edge_terms, plane_gradients
 from delone.interpolate.smooth import Smooth
+from delone.interpolate.space import SPACE, face_terms, hull_gradients, refuse
 from delone.interpolate.values import chosen
 from delone.interpolate.weights import Weights
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.location import Location
     from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -40,8 +41,9 @@ class NaturalNeighbor(Smooth):
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or a triangulation
-        Sites. A constrained triangulation needs ``respect_constraints=True``.
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        Sites; in space the kind is ``"laplace"``. A constrained triangulation needs
+        ``respect_constraints=True``.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
     kind : {"sibson", "laplace", "sibson1", "farin"}, optional
@@ -72,8 +74,9 @@ class NaturalNeighbor(Smooth):
     mean, so that linear functions are reproduced up to rounding; on an edge of the hull the
     interpolant is linear between its ends. ``"farin"`` with local gradients reproduces quadratic
     functions, ``"sibson1"`` those that are round. Each query takes time in the number of its
-    neighbours, about six. At a site the derivatives of ``"sibson"`` and ``"laplace"`` do not exist
-    and are NaN.
+    neighbours, about six. In space, where the weights are areas over distances and neighbours about
+    fifteen, there are values and weights, but no derivatives. At a site the derivatives of
+    ``"sibson"`` and ``"laplace"`` do not exist and are NaN.
 
     Examples
     --------
@@ -123,6 +126,11 @@ class NaturalNeighbor(Smooth):
                 "choose respect_constraints=True, or pass its points"
             )
 
+    def _check_space(self, given: Triangulation | None) -> None:
+        super()._check_space(given)
+        if self._kind != "laplace":
+            refuse(f"kind={self._kind!r}", "choose kind='laplace'")
+
     @property
     def kind(self) -> str:
         """Which weights are used."""
@@ -134,10 +142,14 @@ class NaturalNeighbor(Smooth):
             return super().gradients(columns)
         if self._extrapolate != "linear":
             return None
+        if self._ndim == SPACE:
+            return hull_gradients(self._mesh, columns)
         threads = as_workers(self._workers)
         return plane_gradients(self._sheet.points, self._around(), columns, threads)
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        if self._ndim == SPACE:
+            return self._in_space(queries, columns, order)
         sheet = self._sheet
         return sheet.locator.natural_values(
             self._kind,
@@ -149,15 +161,29 @@ class NaturalNeighbor(Smooth):
             as_workers(self._workers),
         )
 
-    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+    def _in_space(self, queries: Floats, columns: Floats, order: int) -> Floats:
+        """Values from weights."""
+        if order:
+            refuse("the gradient of kind='laplace'", "Linear has one")
+        threads = as_workers(self._workers)
+        indptr, rows, weights, _ = self._sheet.locator.laplace(queries, threads)
+        return _core.combine2(indptr, rows, weights, columns, None, None, threads)
+
+    def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
+        if self._ndim == SPACE:
+            return face_terms(place, step, base=base)
         cubic = self._kind in _WITH_GRADIENTS
         return edge_terms(self._sheet.points, place, step, cubic=cubic, base=base)
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
-        sheet = self._sheet
-        indptr, rows, weights, slopes, triangle = sheet.locator.natural(
-            self._kind, queries, sheet.barrier, as_workers(self._workers)
-        )
+        sheet, threads = self._sheet, as_workers(self._workers)
+        slopes: Floats | None = None
+        if self._ndim == SPACE:
+            indptr, rows, weights, triangle = sheet.locator.laplace(queries, threads)
+        else:
+            indptr, rows, weights, slopes, triangle = sheet.locator.natural(
+                self._kind, queries, sheet.barrier, threads
+            )
         inner = (indptr, rows, weights, slopes)
         known = np.where(triangle >= 0, 0.0, np.nan)[:, None]
         return Weights(*self._completed(inner, queries, known), shape, self)

@@ -9,6 +9,7 @@ import numpy as np
 from delone import location
 from delone._arrays import as_workers
 from delone.interpolate.base import Interpolator
+from delone.interpolate.space import SPACE
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Nearest(Interpolator):
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or a triangulation
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
@@ -89,7 +90,7 @@ class Nearest(Interpolator):
         rows = self._rows(queries)
         known = rows >= 0
         if order:
-            found = np.full((len(rows), columns.shape[1], 2), np.nan)
+            found = np.full((len(rows), columns.shape[1], self._ndim), np.nan)
             found[known] = 0.0
             return found
         return np.where(known[:, None], columns[rows], np.nan)
@@ -109,7 +110,10 @@ class Nearest(Interpolator):
         """The site of each query, -1 where there is none."""
         if self._respect_constraints and self._constrained:
             return self._seen(queries)
-        rows = location.nearest(self._mesh._sites, queries, self._workers)
+        if self._ndim == SPACE:
+            rows: Indices = self._mesh._locator.nearest(queries, as_workers(self._workers))
+        else:
+            rows = location.nearest(self._mesh._sites, queries, self._workers)
         if self._extrapolate == "nearest":
             return rows
         place = self._located(queries)

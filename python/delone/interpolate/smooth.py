@@ -18,13 +18,13 @@ from delone._arrays import as_count, as_vectors, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
+from delone.interpolate.space import SPACE, refuse
 from delone.interpolate.values import chosen
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
-    from delone.location import Location
     from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Sheet(NamedTuple):
         Coordinates.
     simplices : ndarray of int32, shape (m, 3)
         Triangles.
-    locator : Locator2
+    locator : Locator2 or Locator3
         The index over them.
     barrier : ndarray of bool, shape (m, 3), or None
         The edges beyond which nothing counts.
@@ -61,7 +61,7 @@ class Sheet(NamedTuple):
 
     points: Floats
     simplices: Indices
-    locator: _core.Locator2
+    locator: Any
     barrier: Bools | None
     source: Indices | None
 
@@ -101,6 +101,8 @@ class Smooth(Interpolator):
         ndarray of float64 or complex128
             Of the shape of the queries, that of one value, and (2, 2). NaN outside of the hull.
         """
+        if self._ndim == SPACE:
+            refuse("hessian", "there are values alone")
         interpolator, field, columns = self._with(values)
         queries = as_vectors(xi, 2, name="xi")
         found = interpolator._derived(queries.reshape(-1, 2), columns, 2)
@@ -192,10 +194,12 @@ class Smooth(Interpolator):
         around: tuple[Indices, Indices] = self._cache["around"]
         return around
 
-    def _located(self, queries: Floats) -> Location:
+    def _located(self, queries: Floats) -> Any:
+        if self._ndim == SPACE:
+            return super()._located(queries)
         return location.locate(self._sheet.locator, self._sheet.points, queries, self._workers)
 
-    def _terms(self, place: Location, step: Floats, base: bool) -> Terms:
+    def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
         return edge_terms(self._sheet.points, place, step, cubic=True, base=base)
 
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Table: TypeAlias = tuple[NDArray[np.int64], Indices, Floats, Floats | None]
 
+_PLANE = 2
+
 __all__ = ["Sites", "Weights", "joined", "rectangular"]
 
 
@@ -67,7 +69,7 @@ class Weights:
         Sites as the interpolator numbers them; `indices` has the caller's rows.
     weights : ndarray of float64, shape (nnz,)
         Their weights, of sum 1 for each query, up to rounding.
-    slopes : ndarray of float64, shape (nnz, 2), or None
+    slopes : ndarray of float64, shape (nnz, d), or None
         Weights of their gradients, where the interpolant has some.
     shape : tuple of int
         Shape of the queries, without their last axis.
@@ -137,17 +139,28 @@ class Weights:
         """
         field = as_field(values, self.sites.npoints)
         columns = self.sites.settled(field)
-        gradients = None if self.slopes is None else self.sites.gradients(columns)
+        slopes, threads = self.slopes, as_workers(self.sites.workers)
+        gradients = None if slopes is None else self.sites.gradients(columns)
+        plane = slopes if slopes is not None and slopes.shape[1] == _PLANE else None
         found = _core.combine2(
             self.indptr,
             self.rows,
             self.weights,
             columns,
-            self.slopes,
-            gradients,
-            as_workers(self.sites.workers),
+            plane,
+            None if plane is None else gradients,
+            threads,
         )
+        if slopes is not None and plane is None and gradients is not None:
+            self._go_on(found, slopes, gradients)
         return field.shaped(found, self.shape)
+
+    def _go_on(self, found: Floats, slopes: Floats, gradients: Floats) -> None:
+        """Add what gradients say, in space: for queries beyond the hull alone."""
+        entries = np.flatnonzero((slopes != 0).any(axis=1))
+        owner = np.searchsorted(self.indptr, entries, side="right") - 1
+        rise = np.einsum("kcj,kj->kc", gradients[self.rows[entries]], slopes[entries])
+        np.add.at(found, owner, rise)
 
     def __matmul__(self, values: ArrayLike) -> NDArray[Any]:
         return self.apply(values)
@@ -247,7 +260,7 @@ def joined(inner: Table, outside: NDArray[np.int64], terms: Terms) -> Table:
     counts = (terms.weights != 0) & ~np.isnan(terms.weights)
     if terms.slopes is not None:
         counts |= (terms.slopes != 0).any(axis=2)
-        slopes = np.zeros((len(rows), 2)) if slopes is None else slopes
+        slopes = np.zeros((len(rows), terms.slopes.shape[2])) if slopes is None else slopes
     number = counts.sum(axis=1)
     place = np.repeat(indptr[outside], number)
     count = np.diff(indptr)
