@@ -113,6 +113,7 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/interpolate.py $(BENCH)
 	$(BIN)/python benchmarks/voronoi.py $(BENCH)
 	$(BIN)/python benchmarks/tiles.py
+	$(BIN)/python benchmarks/voronoi3.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
 
 fuzz: need
