@@ -98,10 +98,11 @@ PYTHON: dict[str, set[str]] = {
     "improvement": {"plot", "quality3", "triangulation"},
     "tetmesh": {"exchange", "improvement", "quality3", "triangulation"},
     "improve": {"_core", "improvement", "quality3", "tetmesh"} | FOUNDATION,
-    "regular": {"_core", "triangulation"} | FOUNDATION,
+    "regular": {"_core", "space", "triangulation"} | FOUNDATION,
     "periodic": {"_core", "geometry", "regular", "triangulation"} | FOUNDATION,
     "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
-    "interpolate": {"_core", "delaunay", "location", "topology", "triangulation"} | FOUNDATION,
+    "interpolate": {"_core", "delaunay", "location", "space", "topology", "triangulation"}
+    | FOUNDATION,
     "compat": {
         "_core",
         "delaunay",

@@ -1,11 +1,12 @@
-"""The place of SciPy's interpolators of scattered points taken by delone, in the plane.
+"""The place of SciPy's interpolators of scattered points taken by delone, in the plane and space.
 
 `delone.compat.scipy` has these names. Signatures, attributes, shapes and errors are SciPy's. What
 differs:
 
 * At a site the value comes back bit for bit, and on the hull it is never the fill value; a query
   outside by a rounding error is outside, for there is no tolerance.
-* Only points in the plane; other dimensions are refused by a `DimensionError` that names SciPy.
+* Only points in the plane and in space; other dimensions are refused by a `DimensionError` that
+  names SciPy. In space `tri` is a `delone.Delaunay`.
 * Of equally near sites the one of the smallest row is the nearest.
 * Other norms than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
   no effect.
@@ -14,11 +15,13 @@ differs:
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import delaunay
+from delone._arrays import as_points
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
@@ -36,6 +39,7 @@ __all__ = [
     "griddata",
 ]
 
+_SPACE = 3
 # Distances that are compared at a time where points lie on one line.
 _BLOCK = 1 << 22
 
@@ -80,17 +84,34 @@ class _Triangulated:
         else:
             self.points = _coordinates(points)
         self._scale = _Scale(self.points, rescale)
-        own = self.tri if isinstance(self.tri, drop_in.Delaunay) else None
-        if own is None:
-            own = drop_in.Delaunay(self._scale(self.points))
-        if self.tri is None:
-            self.tri = own
-        if own.furthest_site:
-            raise InputError("a furthest-site triangulation is not one to interpolate on")
-        self._mesh: delaunay.Delaunay = own._mesh
+        if self.points.shape[1] == _SPACE:
+            self._mesh: delaunay.Delaunay = self._in_space()
+        else:
+            own = self.tri if isinstance(self.tri, drop_in.Delaunay) else None
+            if own is None:
+                own = drop_in.Delaunay(self._scale(self.points))
+            if self.tri is None:
+                self.tri = own
+            if own.furthest_site:
+                raise InputError("a furthest-site triangulation is not one to interpolate on")
+            self._mesh = own._mesh
         self.values = np.asarray(values)
         self.is_complex = self.values.dtype.kind == "c"
         self.fill_value = (complex if self.is_complex else float)(fill_value)
+
+    def _in_space(self) -> delaunay.Delaunay:
+        """The triangulation of points in space, kept as `tri` unless one was given."""
+        from delone.compat import scipy as drop_in
+
+        if isinstance(self.tri, delaunay.Delaunay):
+            return self.tri
+        try:
+            mesh = delaunay.Delaunay(self._scale(self.points))
+        except DegenerateInputError as error:
+            raise drop_in.QhullError(str(error)) from error
+        if self.tri is None:
+            self.tri = mesh
+        return mesh
 
     def __call__(self, *args: ArrayLike) -> NDArray[Any]:
         """Interpolate at points.
@@ -98,14 +119,14 @@ class _Triangulated:
         Parameters
         ----------
         *args
-            One array of shape (..., 2), a tuple of two arrays, or the two arrays themselves.
+            One array of shape (..., d), a tuple of d arrays, or the d arrays themselves.
 
         Returns
         -------
         ndarray of float64 or complex128
             Values; the fill value outside of the hull.
         """
-        queries = self._scale(_queries(args))
+        queries = self._scale(_queries(args, self.points.shape[1]))
         found = self._interpolator(queries)
         if np.isnan(self.fill_value):
             # Both parts of complex values, as SciPy has them.
@@ -121,19 +142,19 @@ class LinearNDInterpolator(_Triangulated):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2), tuple of two arrays, or Delaunay
-        Sites, or a triangulation of them.
+    points : array_like, shape (npoints, d), tuple of d arrays, or Delaunay
+        Sites in the plane or in space, or a triangulation of them.
     values : array_like, shape (npoints, ...)
         Real or complex values.
     fill_value : float, optional
         What there is outside of the hull.
     rescale : bool, optional
-        Triangulate the points scaled to the unit square.
+        Triangulate the points scaled to the unit square or cube.
 
     Raises
     ------
     QhullError
-        The points span no area.
+        The points span no area, in space no volume.
     ValueError
         Arrays do not fit; a triangulation is to be rescaled.
 
@@ -246,8 +267,8 @@ class NearestNDInterpolator:
 
     Parameters
     ----------
-    x : array_like, shape (npoints, 2), or tuple of two arrays
-        Sites.
+    x : array_like, shape (npoints, d), or tuple of d arrays
+        Sites in the plane or in space.
     y : array_like, shape (npoints, ...)
         Real or complex values.
     rescale : bool, optional
@@ -301,7 +322,7 @@ class NearestNDInterpolator:
         Parameters
         ----------
         *args
-            One array of shape (..., 2), a tuple of two arrays, or the two arrays themselves.
+            One array of shape (..., d), a tuple of d arrays, or the d arrays themselves.
         eps, workers
             Accepted as in SciPy, without effect.
         p : float, optional
@@ -314,8 +335,9 @@ class NearestNDInterpolator:
         ndarray of float64 or complex128
             Values; NaN where no site counts.
         """
-        queries = self._scale(_queries(args))
-        flat = queries.reshape(-1, 2)
+        ndim = self.points.shape[1]
+        queries = self._scale(_queries(args, ndim))
+        flat = queries.reshape(-1, ndim)
         rows = self._nearest(flat, p)
         offset = self._scaled[rows] - flat
         distance = np.linalg.norm(offset, ord=p, axis=1)
@@ -336,7 +358,8 @@ class NearestNDInterpolator:
         for start in range(0, len(finite), share):
             some = finite[start : start + share]
             offset = queries[some, None] - sites
-            found[some] = self._chain[np.hypot(offset[..., 0], offset[..., 1]).argmin(axis=1)]
+            distance = functools.reduce(np.hypot, np.moveaxis(offset, -1, 0))
+            found[some] = self._chain[distance.argmin(axis=1)]
         return found
 
     def _nearest_by_tree(self, queries: Floats, p: float) -> NDArray[np.integer]:
@@ -359,18 +382,19 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     fill_value: Any = np.nan,
     rescale: bool = False,
 ) -> NDArray[Any]:
-    """Interpolate scattered values in the plane, with the interface of SciPy.
+    """Interpolate scattered values in the plane or in space, with the interface of SciPy.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or tuple of two arrays
+    points : array_like, shape (n, d), or tuple of d arrays
         Sites.
     values : array_like, shape (n, ...)
         Real or complex values.
-    xi : array_like, shape (..., 2), or tuple of two arrays
+    xi : array_like, shape (..., d), or tuple of d arrays
         Where to interpolate.
     method : {"linear", "nearest", "cubic"}, optional
-        `LinearNDInterpolator`, `NearestNDInterpolator` or `CloughTocher2DInterpolator`.
+        `LinearNDInterpolator`, `NearestNDInterpolator` or, in the plane,
+        `CloughTocher2DInterpolator`.
     fill_value : float, optional
         What there is outside of the hull; without effect for ``"nearest"``.
     rescale : bool, optional
@@ -386,7 +410,7 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     ValueError
         The method is unknown; arrays do not fit.
     DimensionError
-        The points are not in the plane.
+        The points are neither in the plane nor in space.
 
     Examples
     --------
@@ -449,22 +473,23 @@ def _coordinates(points: Any) -> Floats:
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
         raise drop_in.DimensionError(
-            "delone interpolates in the plane; on a line use scipy.interpolate"
+            "delone interpolates in the plane and in space; on a line use scipy.interpolate"
         )
+    if len(shape) == 2 and shape[1] == _SPACE:
+        return as_points(np.asarray(points), ndim=_SPACE)
     return drop_in.as_plane_points(points)
 
 
-def _queries(args: tuple[Any, ...]) -> Floats:
+def _queries(args: tuple[Any, ...], ndim: int) -> Floats:
     """Queries from an array, a tuple of arrays, or several arguments, as SciPy takes them."""
     parts = args[0] if len(args) == 1 else args
     if isinstance(parts, tuple):
-        if len(parts) != 2:
-            raise ShapeError(f"queries need 2 coordinates, got {len(parts)}")
-        x, y = np.broadcast_arrays(*parts)
-        return np.stack((x, y), axis=-1).astype(np.float64)
+        if len(parts) != ndim:
+            raise ShapeError(f"queries need {ndim} coordinates, got {len(parts)}")
+        return np.stack(np.broadcast_arrays(*parts), axis=-1).astype(np.float64)
     xi = np.asarray(parts, dtype=np.float64)
-    if xi.ndim == 1 and xi.size % 2 == 0:
-        return xi.reshape(-1, 2)
-    if xi.ndim == 0 or xi.shape[-1] != 2:
-        raise ShapeError(f"queries must have shape (..., 2), got {xi.shape}")
+    if xi.ndim == 1 and xi.size % ndim == 0:
+        return xi.reshape(-1, ndim)
+    if xi.ndim == 0 or xi.shape[-1] != ndim:
+        raise ShapeError(f"queries must have shape (..., {ndim}), got {xi.shape}")
     return np.ascontiguousarray(xi)

@@ -96,7 +96,7 @@ class Interpolator:
     @property
     def _ndim(self) -> int:
         """Number of coordinates, 2 or 3."""
-        return self._sites.shape[1]
+        return int(self._sites.shape[1])
 
     @property
     def triangulation(self) -> Triangulation:

@@ -116,7 +116,7 @@ class CloughTocher(Smooth):
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         sheet = self._sheet
-        return sheet.locator.clough_tocher(
+        found: Floats = sheet.locator.clough_tocher(
             columns,
             self.gradients(columns),
             queries,
@@ -124,6 +124,7 @@ class CloughTocher(Smooth):
             order,
             as_workers(self._workers),
         )
+        return found
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         sheet = self._sheet

@@ -151,7 +151,7 @@ class NaturalNeighbor(Smooth):
         if self._ndim == SPACE:
             return self._in_space(queries, columns, order)
         sheet = self._sheet
-        return sheet.locator.natural_values(
+        found: Floats = sheet.locator.natural_values(
             self._kind,
             columns,
             self.gradients(columns) if self._kind in _WITH_GRADIENTS else None,
@@ -160,6 +160,7 @@ class NaturalNeighbor(Smooth):
             order,
             as_workers(self._workers),
         )
+        return found
 
     def _in_space(self, queries: Floats, columns: Floats, order: int) -> Floats:
         """Values from weights."""

@@ -235,15 +235,16 @@ impl Polyhedron {
                     let (x, y) = ((k + 1) % 3, (k + 2) % 3);
                     b[x] * c[y] - b[y] * c[x]
                 });
-                let part = dot(a, cross) / 6.0;
+                let part = dot(a, cross);
                 volume += part;
                 for k in 0..3 {
-                    moment[k] += part * (a[k] + b[k] + c[k]) / 4.0;
+                    moment[k] += part * (a[k] + b[k] + c[k]);
                 }
             }
         }
         if volume > 0.0 {
-            return (volume, [0, 1, 2].map(|k| o[k] + moment[k] / volume));
+            let center = [0, 1, 2].map(|k| o[k] + moment[k] / volume / 4.0);
+            return (volume / 6.0, center);
         }
         (0.0, o)
     }
