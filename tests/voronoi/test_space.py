@@ -405,6 +405,17 @@ def test_duplicates_share_a_cell() -> None:
     assert diagram.cell(30).site == 0
 
 
+def test_polyhedra_of_pyvista() -> None:
+    pytest.importorskip("pyvista")
+    diagram = Voronoi(uniform(40, 14), clip="box")
+    grid = diagram.to_pyvista()
+    assert grid.n_cells == 40
+    assert grid.cell_data["site"].tolist() == list(range(40))
+    assert np.array_equal(grid.cell_data["volume"], diagram.cell_volumes)
+    assert grid.n_points == sum(len(diagram.cell(i).vertices) for i in range(40))
+    assert np.array_equal(grid.points[: len(diagram.cell(0).vertices)], diagram.cell(0).vertices)
+
+
 def test_answers_hang_neither_on_rows_nor_on_workers() -> None:
     points = np.concatenate((uniform(200, 13), GRID / 7))
     one, two = Voronoi(points, workers=1), Voronoi(points, workers=2)
