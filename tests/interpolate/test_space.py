@@ -171,7 +171,8 @@ def test_slopes_of_linear() -> None:
     queries = inside(points, 15, 300)
     found = height.gradient(queries)
     assert found.shape == (len(queries), 2, 3)
-    assert np.abs(found[:, 0] - [1, -2, 3]).max() < 1e-6
+    # Values are rounded, which over the height of the thinnest tetrahedra is this much.
+    assert np.abs(found[:, 0] - [1, -2, 3]).max() < 1e-4
     beyond = Linear(points, plane(points), extrapolate="linear")
     assert beyond.gradient((5, 5, 5)) == pytest.approx([1, -2, 3], abs=1e-9)
     assert np.isnan(height.gradient((5, 5, 5))).all()
