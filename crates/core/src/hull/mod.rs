@@ -10,8 +10,6 @@ mod insertion;
 mod plane;
 mod polygon;
 
-use std::collections::HashMap;
-
 use delone_predicates::{Point3, lexicographic};
 
 pub use plane::hull2;
@@ -46,8 +44,7 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
     };
     watch.check()?;
     let mut found = faces::polygons(points, &surface.facets)?;
-    let duplicates = first_rows(points, &mut found.vertices);
-    let rank = ranks(points, &found.vertices)?;
+    let (rank, duplicates) = first_rows(points, &mut found.vertices)?;
     let Polygons {
         vertices: polygons,
         starts,
@@ -71,21 +68,39 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
     }))
 }
 
-/// The place of each vertex in lexicographic order; of other rows nothing.
-fn ranks(points: &[Point3], vertices: &[u32]) -> Result<Vec<u32>> {
+/// Names each vertex by the first row with its coordinates; returns the place of each vertex in
+/// lexicographic order, of other rows nothing, and the rows that repeat a vertex with it.
+fn first_rows(points: &[Point3], vertices: &mut [u32]) -> Result<(Vec<u32>, Vec<[u32; 2]>)> {
     let mut rank = filled(points.len(), u32::MAX)?;
     let mut order = with_room(vertices.len())?;
-    for &v in vertices {
+    for &v in &*vertices {
         if std::mem::replace(&mut rank[v as usize], 0) == u32::MAX {
             order.push(v);
         }
     }
     let at = |v: u32| points[v as usize];
     order.sort_unstable_by(|&u, &v| lexicographic(at(u), at(v)));
-    for (i, v) in (0u32..).zip(order) {
+    for (i, &v) in (0u32..).zip(&order) {
         rank[v as usize] = i;
     }
-    Ok(rank)
+    let mut first = filled(order.len(), u32::MAX)?;
+    let mut duplicates = Vec::new();
+    for (row, &p) in (0u32..).zip(points) {
+        if let Ok(i) = order.binary_search_by(|&v| lexicographic(at(v), p)) {
+            if first[i] == u32::MAX {
+                first[i] = row;
+            } else {
+                duplicates.push([row, first[i]]);
+            }
+        }
+    }
+    for v in vertices {
+        *v = first[rank[*v as usize] as usize];
+    }
+    for (i, &row) in (0u32..).zip(&first) {
+        rank[row as usize] = i;
+    }
+    Ok((rank, duplicates))
 }
 
 /// Polygons from their smallest vertex on, in the order of their vertices.
@@ -113,34 +128,6 @@ fn in_order(mut found: Polygons, rank: &[u32]) -> Polygons {
 fn turned(t: [u32; 3], rank: &[u32]) -> [u32; 3] {
     let least = (0..3).min_by_key(|&k| rank[t[k] as usize]).unwrap_or(0);
     [0, 1, 2].map(|k| t[(least + k) % 3])
-}
-
-/// Names each vertex by the first row with its coordinates; the rows that repeat one, with it.
-fn first_rows(points: &[Point3], vertices: &mut [u32]) -> Vec<[u32; 2]> {
-    // Adding 0 makes -0 the 0 that it is.
-    let key = |p: Point3| p.map(|x| (x + 0.0).to_bits());
-    let at = |v: u32| key(points[v as usize]);
-    let mut first: HashMap<_, u32> = vertices.iter().map(|&v| (at(v), u32::MAX)).collect();
-    let mut duplicates = Vec::new();
-    // A look at the table for each row would cost more than the hull of many sets.
-    let mut abscissas: Vec<u64> = first.keys().map(|k| k[0]).collect();
-    abscissas.sort_unstable();
-    abscissas.dedup();
-    for (row, &p) in (0u32..).zip(points) {
-        let k = key(p);
-        if abscissas.binary_search(&k[0]).is_err() {
-            continue;
-        }
-        match first.get_mut(&k) {
-            Some(vertex) if *vertex == u32::MAX => *vertex = row,
-            Some(vertex) => duplicates.push([row, *vertex]),
-            None => {}
-        }
-    }
-    for v in vertices {
-        *v = first[&at(*v)];
-    }
-    duplicates
 }
 
 /// The triangle across each edge of a closed surface.
