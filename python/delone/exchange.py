@@ -134,7 +134,9 @@ def draw_tetrahedra(mesh: TetMesh, plotter: Any, bound: float) -> Any:
     pyvista = require("pyvista", extra="pyvista", what="drawing")
     grid = tetrahedra_to_pyvista(mesh)
     plotter = pyvista.Plotter() if plotter is None else plotter
-    plotter.add_mesh(grid.extract_surface(), color="#2f6f9f", opacity=0.15, show_edges=True)
+    faces = np.column_stack((np.full(len(mesh.boundary), 3), mesh.boundary)).ravel()
+    surface = pyvista.PolyData(mesh.points, faces)
+    plotter.add_mesh(surface, color="#2f6f9f", opacity=0.15, show_edges=True)
     below = np.flatnonzero(mesh.quality().smallest_dihedral < bound)
     if len(below):
         bad = grid.extract_cells(below)

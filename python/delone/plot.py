@@ -327,9 +327,11 @@ def draw_histograms(
     if bound is not None:
         ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"goal {bound:g}°")
     ax.set(xlabel="smallest dihedral angle in degrees", ylabel="tetrahedra", yscale="log")
-    ax.set(xlim=(bounds[0], bounds[-1]), ylim=(0.7, None))
+    # Room above the bars for the legend.
+    most = max(int(np.max(each, initial=1)) for each in counts.values())
+    ax.set(xlim=(bounds[0], bounds[-1]), ylim=(0.7, 5 * most))
     ax.spines[["top", "right"]].set_visible(False)
-    ax.legend(frameon=False)
+    ax.legend(frameon=False, ncols=len(counts) + 1, fontsize="small", loc="upper right")
     return ax
 
 

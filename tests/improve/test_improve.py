@@ -6,6 +6,7 @@ import copy
 import itertools
 import pickle
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -413,3 +414,43 @@ def test_points_that_nothing_uses_stay() -> None:
     points = np.concatenate((OCTAHEDRON[0], [(9, 9, 9), (0, 0, 0)]))
     mesh = delone.improve((points, OCTAHEDRON[1]))
     assert np.array_equal(mesh.points, points)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh"])
+def test_files_hold_the_mesh(suffix: str, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    mesh = delone.improve(uniform(50))
+    path = tmp_path / f"mesh{suffix}"
+    delone.io.write_mesh(path, mesh, attributes={"weight": np.arange(50.0)})
+    read = meshio.read(path)
+    assert np.array_equal(read.points, mesh.points)
+    assert np.array_equal(read.cells_dict["tetra"], mesh.simplices)
+    angles = read.cell_data["smallest_dihedral"][0]
+    assert np.array_equal(np.ravel(angles), mesh.quality().smallest_dihedral)
+    assert np.array_equal(np.ravel(read.point_data["weight"]), np.arange(50.0))
+
+
+def test_files_of_the_plane_refuse_it(tmp_path: Path) -> None:
+    mesh = delone.improve(uniform(50))
+    for name in ("mesh.geojson", "mesh.png", "mesh.stl", "mesh.npz"):
+        with pytest.raises(delone.FileFormatError, match="tetrahedra"):
+            delone.io.write_mesh(tmp_path / name, mesh)
+    with pytest.raises(delone.FileFormatError, match="heights"):
+        delone.io.write_mesh(tmp_path / "mesh.vtu", mesh, z=np.zeros(50))
+    assert not list(tmp_path.iterdir())
+
+
+def test_pyvista_takes_it() -> None:
+    pytest.importorskip("pyvista")
+    mesh = delone.improve(uniform(50))
+    grid = mesh.to_pyvista()
+    assert (grid.n_cells, grid.n_points) == (mesh.nsimplex, 50)
+    assert mesh.plot() is not None
+
+
+def test_the_report_draws_itself() -> None:
+    pytest.importorskip("matplotlib").use("Agg")
+    report = delone.improve(uniform(50)).report
+    ax = report.plot()
+    assert len(ax.patches) == 2 * len(report.before)
+    assert ax.get_yscale() == "log"

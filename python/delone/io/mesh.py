@@ -24,6 +24,7 @@ from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
 from delone.meshed import Mesh as QualityMesh
+from delone.tetmesh import TetMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -240,7 +241,7 @@ def require_libraries() -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: Mesh | TetMesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -252,10 +253,13 @@ def write_mesh(
     suffix = path.suffix.lower()
     if edges and suffix in (".stl", ".ply", ".obj"):
         raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
+    if isinstance(triangulation, TetMesh) and not edges:
+        _write_tetrahedra(path, triangulation, z, attributes)
+        return
     if isinstance(triangulation, QualityMesh) and suffix in (".vtu", ".msh") and not edges:
         _write_with_segments(path, triangulation, z, attributes)
         return
-    if triangulation.ndim == 3:
+    if isinstance(triangulation, TetMesh) or triangulation.ndim == 3:
         _write_space(path, triangulation, edges, attributes)
         return
     cells = triangulation.edges if edges else triangulation.simplices
@@ -278,7 +282,10 @@ def write_mesh(
 
 
 def _write_space(
-    path: Path, triangulation: Mesh, edges: bool, attributes: Mapping[str, ArrayLike] | None
+    path: Path,
+    triangulation: Mesh | TetMesh,
+    edges: bool,
+    attributes: Mapping[str, ArrayLike] | None,
 ) -> None:
     """Write tetrahedra, or edges as lines."""
     meshio = require("meshio", extra="mesh", what="writing meshes")
@@ -292,6 +299,23 @@ def _write_space(
         cell_data={name: [values] for name, values in of_cells.items()},
     )
     _write(path, path.suffix.lower(), mesh)
+
+
+def _write_tetrahedra(
+    path: Path,
+    mesh: TetMesh,
+    z: ArrayLike | None,
+    attributes: Mapping[str, ArrayLike] | None,
+) -> None:
+    """Write tetrahedra with their regions and smallest dihedral angles."""
+    if z is not None:
+        raise FileFormatError("points in space have their heights already: z must be None")
+    made = mesh.to_meshio()
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    of_points, of_cells = split_attributes(given, mesh.npoints, mesh.nsimplex)
+    made.point_data |= of_points
+    made.cell_data |= {name: [values] for name, values in of_cells.items()}
+    _write(path, path.suffix.lower(), made)
 
 
 def _write_with_segments(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from delone.atomic import replacing
 from delone.errors import FileFormatError
 from delone.io.compressed import SUFFIXES
+from delone.tetmesh import TetMesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -329,7 +330,7 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
 
 def write_mesh(
     path: str | os.PathLike[str],
-    triangulation: Mesh,
+    triangulation: Mesh | TetMesh,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -343,8 +344,8 @@ def write_mesh(
     path : str or path-like
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
         GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
-    triangulation : Delaunay, ConstrainedDelaunay or Mesh
-        What to write.
+    triangulation : Delaunay, ConstrainedDelaunay, Mesh or TetMesh
+        What to write. Tetrahedra go to VTU and MSH.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.
     crs : str, optional
@@ -388,6 +389,9 @@ def write_mesh(
     5
     """
     write = writer(path, space=triangulation.ndim == 3)
+    suffix = Path(path).suffix.lower()
+    if isinstance(triangulation, TetMesh) and suffix in (".npz", ".png"):
+        raise FileFormatError(f"{path}: {suffix} files hold no tetrahedra of a TetMesh; use .vtu")
     with replacing(path) as beside:
         write(beside, triangulation, z=z, crs=crs, edges=edges, attributes=attributes)
 
