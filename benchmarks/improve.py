@@ -11,7 +11,6 @@ import time
 import numpy as np
 
 import delone
-from delone import _core
 from delone.quality3 import measured
 
 GOALS = (15, 20, 25)
@@ -54,7 +53,7 @@ def inside(points: np.ndarray, simplices: np.ndarray) -> np.ndarray:
 
 def row(name: str, points: np.ndarray, goal: float) -> None:
     """Improve once, and print a line of the table."""
-    simplices = _core.triangulate3(points, 1)[0]
+    simplices = delone.Delaunay(points).simplices
     before = measured(points, simplices).smallest_dihedral
     within = before[inside(points, simplices)].min()
     start = time.process_time()

@@ -4,7 +4,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import delone
-from delone import _core
 
 
 def histogram() -> None:
@@ -27,8 +26,7 @@ def histogram() -> None:
     }
     _, row = plt.subplots(1, 3, figsize=(12, 3.8), layout="constrained")
     for ax, (name, points) in zip(row, sets.items(), strict=True):
-        simplices = _core.triangulate3(points, 1)[0]
-        report = delone.improve((points, simplices), min_angle=20).report
+        report = delone.improve(delone.Delaunay(points), min_angle=20).report
         report.plot(ax)
         ends = f"{report.smallest_before:.2g}° to {report.smallest_after:.2g}°"
         ax.set_title(f"{name}: smallest angle {ends}", fontsize="medium")

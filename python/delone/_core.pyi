@@ -206,6 +206,7 @@ def improve3(
     min_angle: float,
     flips: bool,
     smooth: bool,
+    exude: bool,
     turn: bool,
     passes: int,
     progress: Callable[[int, int], object] | None = None,

@@ -38,6 +38,7 @@ def improve(
     min_angle: float = 20.0,
     flips: bool = True,
     smooth: bool = True,
+    exude: bool = False,
     boundary: str = "faces",
     region: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
@@ -58,6 +59,9 @@ def improve(
         Whether edges and faces are removed.
     smooth : bool, optional
         Whether vertices inside move.
+    exude : bool, optional
+        Whether, before all else, vertices inside get weights with which the tetrahedra around them
+        in the regular triangulation are better: sliver exudation.
     boundary : {"faces", "surface"}, optional
         What of the boundary stays: its triangles; or the surface, so that triangles in exactly one
         plane may be flipped. Its vertices never move.
@@ -94,7 +98,10 @@ def improve(
     it (G. T. Klincsek 1980; J. R. Shewchuk 2002), of which the flips 3-2, 4-4 and 2-2 are special
     cases; its inverse, the removal of faces between two vertices, as in the flip 2-3; and the move
     of a vertex to where the worst tetrahedron around it is best (L. A. Freitag and C. Ollivier-
-    Gooch 1997). The quality is the smallest sine of the dihedral angles, where obtuse ones count
+    Gooch 1997). Exudation (S.-W. Cheng et al. 2000) lets the star of a vertex grow as its weight
+    does, up to a fifth of the squared distance to the nearest vertex; on a Delaunay triangulation,
+    and without the other kinds, the result is the regular triangulation with the weights of the
+    report. The quality is the smallest sine of the dihedral angles, where obtuse ones count
     twice, so that large angles become smaller too.
 
     Each change raises the worst quality of the tetrahedra that it touches, and does not lower the
@@ -125,14 +132,13 @@ def improve(
     labels = _labels(region, own, len(simplices))
     held = _mask(fixed, len(points))
     goal = _angle(min_angle)
+    kinds = bool(flips), bool(smooth), bool(exude)
     turn = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
     passes = as_count(max_passes, name="max_passes")
     if progress is not None and not callable(progress):
         raise DtypeError(f"progress must be callable, got {progress!r}")
     try:
-        made = _core.improve3(
-            points, simplices, labels, held, goal, bool(flips), bool(smooth), turn, passes, progress
-        )
+        made = _core.improve3(points, simplices, labels, held, goal, *kinds, turn, passes, progress)
     except ShapeError as error:
         raise InputError(*error.args) from None
     before = quality3.measured(points, simplices)

@@ -42,6 +42,10 @@ class ImproveReport:
     edge_removals, boundary_flips, face_removals, moves : int
         How often an edge inside was removed (3-2, 4-4 and so on), an edge of the boundary (2-2 and
         so on), faces between two vertices (2-3 and so on), and how often a vertex was moved.
+    exudations : int
+        How many vertices were given a weight.
+    weights : ndarray of float64, shape (n,)
+        These weights, in the square of the unit of the points, and nought elsewhere.
     refused : int
         How many changes were refused although the worst quality would have risen: a smallest angle
         would have fallen, or rounding did not allow to tell.
@@ -82,6 +86,8 @@ class ImproveReport:
     boundary_flips: int
     face_removals: int
     moves: int
+    exudations: int
+    weights: Floats
     refused: int
     passes: int
     exhausted: bool
@@ -89,7 +95,7 @@ class ImproveReport:
     cause: NDArray[np.str_]
 
     def __post_init__(self) -> None:
-        for array in (self.bounds, self.before, self.after, self.below, self.cause):
+        for array in (self.bounds, self.before, self.after, self.below, self.cause, self.weights):
             array.flags.writeable = False
 
     @property
@@ -109,6 +115,8 @@ class ImproveReport:
             f"{counted(self.moves, 'move')} of vertices in {self.passes} "
             f"{'pass' if self.passes == 1 else 'passes'}",
         ]
+        if self.exudations:
+            lines.append(f"{counted(self.exudations, 'weight')} given to vertices")
         lines += self._histogram()
         for cause, what in _SENTENCES.items():
             rows = self.below[self.cause == cause]
@@ -219,6 +227,8 @@ def report(
         boundary_flips=counts["boundary"],
         face_removals=counts["faces"],
         moves=counts["moves"],
+        exudations=counts["weights"],
+        weights=made["weights"],
         refused=counts["refused"],
         passes=counts["passes"],
         exhausted=exhausted,

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone import DtypeError, InputError, NonFiniteError, ShapeError, TetMesh, _core
+from delone import DtypeError, InputError, NonFiniteError, ShapeError, TetMesh
 
 FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 Tetrahedra = tuple[np.ndarray, np.ndarray]
@@ -110,7 +110,7 @@ def checked(given: Tetrahedra, **options: Any) -> TetMesh:
 
 def delaunay(points: np.ndarray) -> Tetrahedra:
     """Delaunay tetrahedra; none of them is flat."""
-    return points, _core.triangulate3(np.ascontiguousarray(points), 1)[0]
+    return points, delone.Delaunay(points).simplices
 
 
 def uniform(count: int, seed: int = 0) -> Tetrahedra:
@@ -183,6 +183,19 @@ def test_a_lattice_all_but_cospherical(jitter: float) -> None:
     assert mesh.report.ok
 
 
+def test_a_delaunay_triangulation_is_taken_as_it_is() -> None:
+    points, simplices = uniform(100)
+    rows = np.concatenate((points, points[:3]))
+    tri = delone.Delaunay(rows)
+    mesh = delone.improve(tri)
+    assert np.array_equal(mesh.simplices, delone.improve((points, simplices)).simplices)
+    assert np.array_equal(mesh.points[100:], rows[100:])
+    quality = tri.quality()
+    assert isinstance(quality, delone.TetQuality)
+    assert quality.smallest_dihedral.min() == mesh.report.smallest_before
+    assert isinstance(delone.Delaunay(points[:, :2]).quality(), delone.Quality)
+
+
 def test_flips_alone_move_nothing() -> None:
     given = uniform(300)
     mesh = checked(given, smooth=False)
@@ -199,6 +212,35 @@ def test_moves_alone_keep_tetrahedra() -> None:
     }
     assert mesh.report.moves > 0 == mesh.report.edge_removals + mesh.report.face_removals
     assert mesh.report.after[:2].sum() < mesh.report.before[:2].sum()
+
+
+def lifted(a: Any, weight: Fraction, b: Any) -> list[Fraction]:
+    e = minus(a, b)
+    return [*e, dot(e, e) - weight]
+
+
+def test_exudation_alone_makes_a_regular_triangulation() -> None:
+    """Across each face the far vertex is above the plane of the lifted corners, exactly."""
+    given = uniform(300)
+    mesh = checked(given, flips=False, smooth=False, exude=True)
+    report = mesh.report
+    assert np.array_equal(mesh.points, given[0])
+    assert report.exudations == np.count_nonzero(report.weights) > 20
+    assert report.after[:2].sum() < report.before[:2].sum()
+    p, w = exact(mesh.points), [Fraction(x) for x in report.weights.tolist()]
+    for t, row in enumerate(mesh.neighbors.tolist()):
+        for u in (u for u in row if u > t):
+            far = (set(mesh.simplices[u].tolist()) - set(mesh.simplices[t].tolist())).pop()
+            rows = [lifted(p[v], w[v] - w[far], p[far]) for v in mesh.simplices[t].tolist()]
+            # The determinant of order four, by its last column.
+            value = sum(
+                (-1) ** (i + 1) * rows[i][3]
+                * determinant(*(rows[j][:3] for j in range(4) if j != i))
+                for i in range(4)
+            )  # fmt: skip
+            assert value >= 0
+    both = checked(given, exude=True)
+    assert both.report.exudations == report.exudations
 
 
 def test_nothing_is_done_without_leave() -> None:

@@ -40,7 +40,17 @@ PYTHON: dict[str, set[str]] = {
     "_arrays": {"errors"},
     "_core": set(),
     "topology": set(),
-    "space": {"_core", "location", "scene", "predicates", "topology", "triangulation"} | FOUNDATION,
+    "space": {
+        "_core",
+        "location",
+        "scene",
+        "predicates",
+        "quality",
+        "quality3",
+        "topology",
+        "triangulation",
+    }
+    | FOUNDATION,
     "hull": {"_core", "delaunay", "geometry", "predicates", "space", "triangulation"} | FOUNDATION,
     "validation": {"_core", "space", "topology"} | FOUNDATION,
     "geometry": set(),

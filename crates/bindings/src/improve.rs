@@ -13,7 +13,7 @@ use crate::triangulation::watched;
 /// Better tetrahedra, by name. `progress` is called after each pass with its number and how many
 /// tetrahedra are below the bound.
 #[pyfunction]
-#[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, turn, passes,
+#[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, exude, turn, passes,
                     progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one option each")]
 pub fn improve3<'py>(
@@ -25,6 +25,7 @@ pub fn improve3<'py>(
     min_angle: f64,
     flips: bool,
     smooth: bool,
+    exude: bool,
     turn: bool,
     passes: usize,
     progress: Option<Py<PyAny>>,
@@ -41,6 +42,7 @@ pub fn improve3<'py>(
             min_angle,
             flips,
             smooth,
+            exude,
             turn,
             passes,
         })
@@ -70,6 +72,7 @@ fn dictionary(py: Python<'_>, made: Improved) -> PyResult<Bound<'_, PyDict>> {
     out.set_item("points", table(py, made.points)?)?;
     out.set_item("simplices", table(py, made.simplices)?)?;
     out.set_item("neighbors", table(py, made.neighbors)?)?;
+    out.set_item("weights", column(py, made.weights))?;
     out.set_item("labels", column(py, made.labels))?;
     let counts = PyDict::new(py);
     for (name, count) in [
@@ -77,6 +80,7 @@ fn dictionary(py: Python<'_>, made: Improved) -> PyResult<Bound<'_, PyDict>> {
         ("boundary", made.counts.boundary),
         ("faces", made.counts.faces),
         ("moves", made.counts.moves),
+        ("weights", made.counts.weights),
         ("passes", made.counts.passes),
         ("refused", made.counts.refused),
     ] {

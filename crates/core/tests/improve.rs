@@ -60,6 +60,7 @@ fn task<'a>(points: &'a [Point3], simplices: &'a [[i32; 4]]) -> Task<'a> {
         min_angle: 30.0,
         flips: true,
         smooth: true,
+        exude: false,
         turn: false,
         passes: 10,
     }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, location
+from delone import _core, location, quality, quality3
 from delone._arrays import as_vectors, as_workers
 from delone.space import geometry, topology
 from delone.space import location as places
@@ -292,6 +292,28 @@ class Spatial(Triangulation):
         """
         self._only(2, "walk", "`find_simplex` takes points of a segment")
         return super().walk(a, b)
+
+    @kept
+    def quality(self) -> Any:
+        """Measure the simplices.
+
+        Returns
+        -------
+        Quality or TetQuality
+            In the plane angles, areas and ratios of radii and edges; in space dihedral angles,
+            volumes and the same ratios.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).quality().largest_angle
+        array([90.])
+        >>> Delaunay([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]).quality().largest_dihedral
+        array([90.])
+        """
+        if self.ndim == 2:
+            return quality.measured(self._points, self._simplices)
+        return quality3.measured(self._points, self._simplices)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the triangulation.

@@ -27,6 +27,7 @@
 //! that order on one thread: the result does not hang on the order of the rows.
 
 mod edge;
+mod exude;
 mod face;
 mod measure;
 mod order;
@@ -57,6 +58,8 @@ pub struct Task<'a> {
     pub flips: bool,
     /// Whether vertices move.
     pub smooth: bool,
+    /// Whether vertices inside get weights, before all else.
+    pub exude: bool,
     /// Whether faces of the boundary in one plane may be flipped.
     pub turn: bool,
     /// Most passes.
@@ -74,6 +77,8 @@ pub struct Counts {
     pub faces: usize,
     /// Moves of vertices.
     pub moves: usize,
+    /// Weights given.
+    pub weights: usize,
     /// Passes.
     pub passes: usize,
     /// Changes that would have raised the worst quality and were not made: a smallest angle would
@@ -92,6 +97,8 @@ pub struct Improved {
     pub neighbors: Vec<[i32; 4]>,
     /// The label of each.
     pub labels: Vec<i32>,
+    /// The weight of each row, nought for most.
+    pub weights: Vec<f64>,
     /// What was done.
     pub counts: Counts,
     /// Whether the limit on passes ended it while it still gained.

@@ -135,6 +135,11 @@ pub fn export(
     for (&row, p) in rows.iter().zip(&store.points) {
         points[row as usize] = p.map(|x| x / scale);
     }
+    let mut weights = filled(task.points.len(), 0.0)?;
+    for (&row, w) in rows.iter().zip(&work.weights) {
+        // Twice, as the square of the scale may be beyond the range.
+        weights[row as usize] = w / scale / scale;
+    }
     let mut order: Vec<(Corners, u32)> = with_room(store.corners.len())?;
     let there = (0..store.places()).filter(|&t| store.is_there(t));
     order.extend(there.map(|t| (rotated(store.corners[t as usize]), t)));
@@ -148,6 +153,7 @@ pub fn export(
         simplices: with_room(order.len())?,
         neighbors: with_room(order.len())?,
         labels: with_room(order.len())?,
+        weights,
         counts: work.counts,
         exhausted,
     };

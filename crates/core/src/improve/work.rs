@@ -4,7 +4,7 @@ use super::edge::{self, Plan, Ring};
 use super::measure::{Bounds, are_positive, bounds, quality};
 use super::smooth::Star;
 use super::store::{FACES, NONE, Store};
-use super::{Counts, Task, Tell, face};
+use super::{Counts, Task, Tell, exude, face};
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
 use crate::watch::Watch;
@@ -24,6 +24,8 @@ const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 
 pub struct Work<'a> {
     pub store: Store,
     pub counts: Counts,
+    /// The weight of each vertex.
+    pub weights: Vec<f64>,
     task: Task<'a>,
     /// Quality below which a tetrahedron is worked on.
     bound: f64,
@@ -52,6 +54,7 @@ impl<'a> Work<'a> {
         let (n, m) = (store.points.len(), store.corners.len());
         Ok(Self {
             clock: 1,
+            weights: filled(n, 0.0)?,
             touched: filled(n, 1)?,
             moved: filled(n, 0)?,
             tried: filled(m, 0)?,
@@ -68,6 +71,9 @@ impl<'a> Work<'a> {
 
     /// Passes until all is done (true), nothing more is gained (true), or there were enough (false).
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
+        if self.task.exude {
+            self.weigh_all(watch)?;
+        }
         let mut standing = self.standing();
         let mut stalled = 0;
         while standing.0 > 0 {
@@ -216,6 +222,48 @@ impl<'a> Work<'a> {
             }
         }
         Ok(true)
+    }
+
+    /// Gives weights to free vertices of tetrahedra below the bound, each at most once.
+    fn weigh_all(&mut self, watch: &Watch) -> Result<()> {
+        let mut met = filled(self.store.points.len(), false)?;
+        let mut steps = 0;
+        for t in self.below()? {
+            // Those whose place another tetrahedron has taken have other corners now.
+            if !self.is_below(t) {
+                continue;
+            }
+            for v in self.store.corners[t as usize] {
+                let fixed = self.store.fixed[v as usize];
+                if fixed || std::mem::replace(&mut met[v as usize], true) {
+                    continue;
+                }
+                self.weigh_one(v)?;
+                steps += 1;
+                if steps % WATCH_EVERY == 0 {
+                    watch.check()?;
+                }
+                if !self.is_below(t) || self.store.corner(t, v).is_none() {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives a vertex a weight where that is better for certain.
+    fn weigh_one(&mut self, v: u32) -> Result<()> {
+        self.store.star(v, &mut self.around)?;
+        let found = exude::pump(&self.store, &self.weights, v, &self.around, 0.0)?;
+        if let Some((plan, weight)) = found {
+            if self.carry_out(&plan)? {
+                self.weights[v as usize] = weight;
+                self.counts.weights += 1;
+            } else {
+                self.counts.refused += 1;
+            }
+        }
+        Ok(())
     }
 
     /// Moves each free vertex of a tetrahedron below the bound.
