@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from delone import Delaunay, datasets
+from delone import Delaunay, datasets, improve
 from delone.io import read_mesh, write_mesh
 
 
@@ -88,3 +88,32 @@ def test_pictures(tmp_path):
     path = tmp_path / "mesh.png"
     write_mesh(path, Delaunay(cloud()))
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_slivers_are_removed_on_request(tmp_path, command, figures):
+    points = cloud(300)
+    source, target = ply(tmp_path / "cloud.ply", points), tmp_path / "mesh.vtu"
+    found = figures("triangulate", source, "--improve", "--min-angle", "15", "-o", target)
+    better = improve(Delaunay(points), min_angle=15)
+    kept = read_mesh(target)
+    assert (kept.points == better.points).all()
+    assert (kept.simplices == better.simplices).all()
+    gained = found["improvement"]
+    assert gained["goal"] == 15
+    assert gained["smallest_dihedral"]["before"] == better.report.smallest_before
+    assert gained["smallest_dihedral"]["after"] == better.report.smallest_after
+    assert sum(gained["below"].values()) == len(better.report.below)
+    code, out, _ = command("triangulate", source, "--improve")
+    assert code == 0
+    assert "smallest dihedral" in out
+
+
+def test_only_tetrahedra_are_improved(tmp_path, command):
+    source = xyz(tmp_path / "survey.xyz", cloud())
+    code, _, err = command("triangulate", source, "--improve")
+    assert (code, "--3d" in err) == (2, True)
+    target = tmp_path / "mesh.npz"
+    code, _, err = command("triangulate", source, "--3d", "--improve", "-o", target)
+    assert (code, ".vtu" in err) == (2, True)
+    assert not target.exists()
+    assert command("triangulate", source, "--3d", "--improve", "--min-angle", "90")[0] != 0

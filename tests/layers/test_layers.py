@@ -142,7 +142,18 @@ PYTHON: dict[str, set[str]] = {
     "scene": PUBLIC | {"io", "_arrays"},
     "relief": PUBLIC | {"io", "plot", "shading"},
     "report": PUBLIC | {"io"},
-    "cli": PUBLIC | {"atomic", "distributed", "interpolate", "io", "plot", "report", "voronoi"},
+    "cli": PUBLIC
+    | {
+        "atomic",
+        "distributed",
+        "improve",
+        "improvement",
+        "interpolate",
+        "io",
+        "plot",
+        "report",
+        "voronoi",
+    },
     "__main__": PUBLIC | {"cli"},
     # The package itself re-exports.
     "delone": {

@@ -31,7 +31,15 @@ from delone.cli.show import (
     spinner,
     triangulation_rows,
 )
-from delone.cli.solid import is_space, space_rows, space_summary, triangulated_space
+from delone.cli.solid import (
+    improved,
+    improvement_figures,
+    improvement_rows,
+    is_space,
+    space_rows,
+    space_summary,
+    triangulated_space,
+)
 from delone.errors import MissingExtraError, NonFiniteError
 from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
 from delone.io.registry import writer
@@ -39,6 +47,7 @@ from delone.io.registry import writer
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from delone import TetMesh
     from delone.io.registry import Mesh
 
 __all__ = ["app", "run"]
@@ -142,6 +151,14 @@ def triangulate(
             "alone are taken for clouds in space.",
         ),
     ] = None,
+    better: Annotated[
+        bool,
+        typer.Option("--improve", help="In space: remove slivers; points inside may move."),
+    ] = False,
+    min_angle: Annotated[
+        float,
+        typer.Option(metavar="DEGREES", help="The goal of --improve for dihedral angles."),
+    ] = 20.0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -173,7 +190,16 @@ def triangulate(
             mesh, z = triangulated(survey, constraints, method=method, workers=workers)
         crs = survey.crs
         watch.seconds |= mesh.stages
-        _write(writers, mesh, {"z": z, "crs": crs, "edges": edges}, watch, say)
+        written: Mesh | TetMesh = mesh
+        gained: dict[str, Any] = {}
+        if better:
+            if not (solid and isinstance(mesh, Delaunay)):
+                raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
+            say("improving")
+            with watch.stage("improve"):
+                tetrahedra = improved(mesh, writers, min_angle)
+            written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
+        _write(writers, written, {"z": z, "crs": crs, "edges": edges}, watch, say)
         say("reporting")
         figures: dict[str, Any] = {
             "delone": __version__,
@@ -181,6 +207,7 @@ def triangulate(
             "crs": crs,
             **(space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)),
             **_of_constraints(mesh, survey),
+            **gained,
             "stages": watch.rows(mesh.npoints),
             "outputs": [str(path) for path in writers],
             "peak_memory_bytes": peak_memory(),
@@ -189,6 +216,7 @@ def triangulate(
         print_json(figures)
     elif not quiet:
         rows = space_rows(figures) if solid else triangulation_rows(figures)
+        rows += improvement_rows(figures["improvement"]) if better else []
         rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
         rows += [("written", str(path)) for path in writers]
         print_rows(str(source), rows)
@@ -271,7 +299,7 @@ def _of_constraints(mesh: Mesh, survey: PointSet | GeometrySet) -> dict[str, Any
 
 def _write(
     writers: Mapping[Path, Callable[..., None]],
-    mesh: Mesh,
+    mesh: Mesh | TetMesh,
     what: Mapping[str, Any],
     watch: Stopwatch,
     say: Callable[[str], None],

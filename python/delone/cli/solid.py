@@ -12,23 +12,36 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import Delaunay
+from delone import Delaunay, improve
 from delone.cli.exits import Exit, Failure
 from delone.cli.report import finite_or_none
 from delone.errors import FileFormatError
 from delone.io import PointSet, read_mesh
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from delone import ImproveReport, TetMesh
     from delone.cli.show import Row
     from delone.io import GeometrySet
 
-__all__ = ["is_space", "space_measures", "space_rows", "space_summary", "triangulated_space"]
+__all__ = [
+    "improved",
+    "improvement_figures",
+    "improvement_rows",
+    "is_space",
+    "space_measures",
+    "space_rows",
+    "space_summary",
+    "triangulated_space",
+]
 
 _FIRST_DUPLICATES = 5
+# What holds or draws a Delaunay triangulation of space, but no other tetrahedra.
+_DELAUNAY_ONLY = (".npz", ".png")
 
 
 def is_space(source: Path, wanted: bool | None, survey: PointSet | GeometrySet) -> bool:
@@ -90,6 +103,85 @@ def triangulated_space(survey: PointSet, **options: Any) -> Delaunay:
     """
     assert survey.z is not None
     return Delaunay(np.column_stack((survey.points, survey.z)), **options)
+
+
+def improved(mesh: Delaunay, outputs: Iterable[Path], min_angle: float) -> TetMesh:
+    """Make tetrahedra better before they are written.
+
+    Parameters
+    ----------
+    mesh : Delaunay
+        In space.
+    outputs : iterable of Path
+        The files to be written.
+    min_angle : float
+        The goal for dihedral angles, in degrees.
+
+    Returns
+    -------
+    TetMesh
+        What `delone.improve` makes of them.
+
+    Raises
+    ------
+    Failure
+        A file is of a format for Delaunay triangulations only.
+    """
+    for path in outputs:
+        if path.suffix.lower() in _DELAUNAY_ONLY:
+            raise Failure(f"{path}: --improve writes .vtu and .msh files", Exit.USAGE)
+    return improve(mesh, min_angle=min_angle)
+
+
+def improvement_figures(report: ImproveReport) -> dict[str, Any]:
+    """Return what an improvement did.
+
+    Parameters
+    ----------
+    report : ImproveReport
+        Its report.
+
+    Returns
+    -------
+    dict
+        Angles before and after, tetrahedra below the goal by cause.
+    """
+    causes, counts = np.unique(report.cause, return_counts=True)
+    return {
+        "goal": report.min_angle,
+        "smallest_dihedral": {"before": report.smallest_before, "after": report.smallest_after},
+        "largest_dihedral": {"before": report.largest_before, "after": report.largest_after},
+        "below": dict(zip(causes.tolist(), counts.tolist(), strict=True)),
+        "edge_removals": report.edge_removals,
+        "face_removals": report.face_removals,
+        "moves": report.moves,
+        "passes": report.passes,
+    }
+
+
+def improvement_rows(figures: dict[str, Any]) -> list[Row]:
+    """Return the rows of the report of an improvement.
+
+    Parameters
+    ----------
+    figures : dict
+        As `improvement_figures` returns them.
+
+    Returns
+    -------
+    list of tuple of str
+        Names and values.
+    """
+    small, large = figures["smallest_dihedral"], figures["largest_dihedral"]
+    below = ", ".join(f"{count:,} ({cause})" for cause, count in figures["below"].items())
+    return [
+        ("smallest dihedral", f"{small['before']:.4g} before, {small['after']:.4g} after"),
+        ("largest dihedral", f"{large['before']:.4g} before, {large['after']:.4g} after"),
+        (f"below {figures['goal']:g} degrees", below or "none"),
+        ("edges removed", f"{figures['edge_removals']:,}"),
+        ("faces removed", f"{figures['face_removals']:,}"),
+        ("vertices moved", f"{figures['moves']:,} times in {figures['passes']} passes"),
+    ]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:
