@@ -47,6 +47,17 @@ pub fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>> {
     Ok(v)
 }
 
+/// Whether `bytes` more seem to be there: a system may promise memory that it does not have, and end
+/// the process that takes it. Known on Linux; elsewhere the allocator has the word.
+pub fn is_plausible(bytes: usize) -> bool {
+    let Ok(text) = std::fs::read_to_string("/proc/meminfo") else {
+        return true;
+    };
+    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"));
+    let kilobytes = line.and_then(|l| l.split_whitespace().next()?.parse::<usize>().ok());
+    kilobytes.is_none_or(|available| bytes / 1024 <= available)
+}
+
 /// Types of which all bytes zero are a value, namely zero.
 ///
 /// # Safety
@@ -136,6 +147,12 @@ mod tests {
                 .all(|&x: &u32| x == 0)
         );
         assert!(zeroed::<u64>(0).unwrap().is_empty());
+    }
+
+    #[test]
+    fn no_machine_has_all_memory() {
+        assert!(is_plausible(1 << 20));
+        assert!(!is_plausible(usize::MAX) || cfg!(not(target_os = "linux")));
     }
 
     #[test]

@@ -186,6 +186,24 @@ fn many_points_are_valid_for_any_number_of_workers() {
 }
 
 #[test]
+fn quadratic_triangulations_get_their_room() {
+    // Each pair of successive points on one line makes a tetrahedron with each on the other.
+    let line = |i: u32| {
+        let x = f64::from(i / 2) / 64.0;
+        if i.is_multiple_of(2) {
+            [x, 0.0, 0.0]
+        } else {
+            [0.5, x - 0.75, 1.0]
+        }
+    };
+    let points: Vec<Point3> = (0..240).map(line).collect();
+    let one = made(&points, 1);
+    assert_eq!(findings(&points, &one), Findings3::default());
+    assert_eq!(one.arrays.simplices.len(), 119 * 119);
+    agreed(&points);
+}
+
+#[test]
 fn degenerate_input_is_told_apart() {
     let error = |points: &[Point3]| triangulate(points, 1, &Watch::idle()).expect_err("none");
     let line = [[2.0; 3], [0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];

@@ -138,9 +138,43 @@ pub fn insphere_canonical(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3)
     }
 }
 
+/// The smallest point decides, where the others span space: to bring it to the front from place i takes
+/// i exchanges of neighbours, which leave the others in their order.
 #[cold]
 #[inline(never)]
-fn insphere_tie(mut points: [Point3; 5]) -> Sign {
+fn insphere_tie(points: [Point3; 5]) -> Sign {
+    let (mut smallest, mut twice) = (0, false);
+    for (i, p) in points.iter().enumerate().skip(1) {
+        // On lattices nothing here can be predicted, so nothing is branched on.
+        let q = points[smallest];
+        let equal = (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
+        let last = (p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]));
+        let less = (p[0] < q[0]) | ((p[0] == q[0]) & last);
+        smallest = if less { i } else { smallest };
+        twice = !less & (twice | equal);
+    }
+    if twice {
+        return Sign::Zero;
+    }
+    let [a, b, c, d, e] = points;
+    let others = [
+        [b, c, d, e],
+        [a, c, d, e],
+        [a, b, d, e],
+        [a, b, c, e],
+        [a, b, c, d],
+    ];
+    let [p, q, r, s] = others[smallest];
+    match orient3d(p, q, r, s) {
+        Sign::Zero => insphere_tie_sorted(points),
+        sign => sign.flip_if(smallest % 2 == 1),
+    }
+}
+
+/// The same by all points in order.
+#[cold]
+#[inline(never)]
+fn insphere_tie_sorted(mut points: [Point3; 5]) -> Sign {
     let Some(odd) = sort(&mut points) else {
         return Sign::Zero;
     };

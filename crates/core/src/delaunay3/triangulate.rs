@@ -11,7 +11,7 @@ use super::insertion;
 use super::join::{Arrays, Fitted, join};
 use super::seam::{Block, Seam, Surroundings, joints, rest};
 use crate::error::{Error, Result};
-use crate::memory::with_room;
+use crate::memory::{is_plausible, with_room};
 use crate::mesh3::{LIMIT, Mesh3, Records};
 use crate::order::space::{Arranged3, Extent3, arrange, arrange_rows};
 use crate::order::space_blocks::Cuts3;
@@ -174,7 +174,9 @@ fn attempt(
         .iter()
         .map(|part| Extent3::of(part.points[..vertices(part)].iter().copied()))
         .collect();
-    let mut records = Records::with_room(rooms.iter().map(|&(room, _)| room).sum())?;
+    let room = rooms.iter().map(|&(room, _)| room).sum();
+    check_memory(times, room)?;
+    let mut records = Records::with_room(room)?;
     let meshes = records.meshes(&rooms);
     let tasks = parts.iter().zip(meshes).enumerate().collect();
     let made = parallel::map(
@@ -194,6 +196,18 @@ fn attempt(
     let blocks: Result<Option<Vec<Block>>> = made.into_iter().collect();
     let rooms = rooms.into_iter().map(|(room, _)| room).collect();
     Ok(blocks?.map(|blocks| (records, rooms, blocks)))
+}
+
+/// Refuses a further attempt that would want more memory than there is. (A quadratic triangulation would
+/// else grow until the system ends the process.)
+fn check_memory(times: usize, room: usize) -> Result<()> {
+    /// Corners, facets, sphere and mark of a record.
+    const RECORD: usize = 16 + 16 + 32 + 4;
+    let bytes = room * RECORD;
+    if times > 1 && !is_plausible(bytes) {
+        return Err(Error::Memory { bytes });
+    }
+    Ok(())
 }
 
 /// Triangulates the seam and makes arrays of all; nothing where the seam is degenerate.
@@ -225,6 +239,7 @@ fn sewn(
             Ok(Some((mesh, _))) => break mesh,
             Err(other) => return Err(other),
         }
+        check_memory(times, room(times))?;
         own = Records::with_room(room(times))?;
     };
     let vertices = arranged.rows.iter().map(|&i| names[i as usize]).collect();
