@@ -138,6 +138,9 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
     ):
         return values
     array = _as_plain_array(values, name)
+    if array.shape == (0,):
+        # An empty list says of nothing how many numbers it would have.
+        return np.empty((0, d))
     if array.ndim == 0 or array.shape[-1] != d:
         _refuse_kind(array, name)
         raise ShapeError(f"{name} must have shape (..., {d}), got {array.shape}")

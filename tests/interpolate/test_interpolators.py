@@ -136,7 +136,8 @@ def test_shapes_and_kinds(method: str) -> None:
             one = made(queries, values=array[:, 1, 2].imag)
             np.testing.assert_allclose(found[..., 1, 2].imag, one, rtol=1e-12, atol=1e-14)
     assert made((0.5, 0.5), values=np.ones(40)).shape == ()
-    assert made(np.empty((0, 2)), values=np.ones((40, 3))).shape == (0, 3)
+    for nothing in (np.empty((0, 2)), []):
+        assert made(nothing, values=np.ones((40, 3))).shape == (0, 3)
 
 
 @pytest.mark.parametrize("method", ALL)

@@ -2,10 +2,12 @@
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
+use super::boxes::Boxes;
 use super::range::seen_from;
 use super::tiling::{Side, next, prev};
 use crate::delaunay2::validate::Given;
 use crate::error::{Error, Result};
+use crate::points::Extent;
 
 /// The boundary edges of a tiling.
 #[derive(Debug)]
@@ -16,6 +18,8 @@ pub struct Boundary {
     pub convex: bool,
     /// Where each edge is in `sides`, by edge.
     places: Vec<(Side, usize)>,
+    /// The edges by place, where the boundary is not convex.
+    boxes: Option<Boxes>,
 }
 
 impl Boundary {
@@ -35,7 +39,10 @@ impl Boundary {
         };
         let mut places: Vec<_> = sides.iter().copied().zip(0..).collect();
         places.sort_unstable();
+        let box_of = |i: usize| Extent::of(ends(given, sides[i]));
+        let boxes = (!convex).then(|| Boxes::over(sides.len(), box_of));
         Ok(Self {
+            boxes: boxes.transpose()?,
             sides,
             convex,
             places,
@@ -45,10 +52,12 @@ impl Boundary {
     /// The boundary edge with the nearest point to `q`, which is outside, and how far along that is.
     ///
     /// On a convex boundary in as many steps as there are edges between `from`, which has `q` beyond
-    /// it, and the answer; elsewhere each edge is looked at.
+    /// it, and the answer; elsewhere by boxes.
     pub fn nearest(&self, given: &Given, from: Side, q: Point2) -> (Side, f64) {
-        if !self.convex {
-            return self.nearest_of_all(given, q).unwrap_or((from, 0.0));
+        if let Some(boxes) = &self.boxes {
+            let found = boxes.nearest(q, |i| project(given, self.sides[i], q).1);
+            let side = found.map_or(from, |(i, _)| self.sides[i]);
+            return (side, clamp(project(given, side, q).0));
         }
         let count = self.sides.len();
         let start = self
@@ -69,16 +78,6 @@ impl Boundary {
         }
         (self.sides[i], clamp(project(given, self.sides[i], q).0))
     }
-
-    fn nearest_of_all(&self, given: &Given, q: Point2) -> Option<(Side, f64)> {
-        let measured = self.sides.iter().map(|&side| {
-            let (along, distance) = project(given, side, q);
-            (side, clamp(along), distance)
-        });
-        measured
-            .min_by(|a, b| a.2.total_cmp(&b.2))
-            .map(|(side, along, _)| (side, along))
-    }
 }
 
 fn clamp(along: f64) -> f64 {
@@ -86,10 +85,15 @@ fn clamp(along: f64) -> f64 {
     if along > 0.0 { along.min(1.0) } else { 0.0 }
 }
 
-/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end, and its squared distance.
+/// The ends of an edge.
+fn ends(given: &Given, side: Side) -> [Point2; 2] {
+    [next(side.corner), prev(side.corner)]
+        .map(|corner| given.point(given.vertex(Side { corner, ..side })))
+}
+
+/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end, and its distance.
 fn project(given: &Given, side: Side, q: Point2) -> (f64, f64) {
-    let [u, v] = [next(side.corner), prev(side.corner)]
-        .map(|corner| given.point(given.vertex(Side { corner, ..side })));
+    let [u, v] = ends(given, side);
     // Each in a unit of its own: the edge may be very short beside the distance.
     let ([d], short) = seen_from(u, [v]);
     let ([w], long) = seen_from(u, [q]);
