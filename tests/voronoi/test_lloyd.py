@@ -68,6 +68,27 @@ def test_a_site_without_a_cell_stays_where_it_is() -> None:
     assert result.empty.tolist() == [1, 2]
 
 
+@pytest.mark.parametrize("method", ["lloyd", "l-bfgs"])
+@pytest.mark.parametrize("scale", [2.0**-600, 2.0**600])
+def test_domains_of_any_size(scale: float, method: str) -> None:
+    sites, told = uniform(30, seed=8), []
+    plain = lloyd(sites, BOX, iterations=5, method=method, density=lambda p: 1 + p[:, 0])
+    with np.errstate(all="raise"):
+        scaled = lloyd(
+            sites * scale,
+            (0, 0, scale, scale),
+            iterations=5,
+            method=method,
+            density=lambda p: 1 + p[:, 0] / scale,
+            progress=lambda *step: told.append(step),
+        )
+    assert scaled.points == pytest.approx(plain.points * scale, rel=1e-12)
+    assert scaled.displacements == pytest.approx(plain.displacements * scale, rel=1e-9)
+    assert scaled.diagram.clip == (0.0, 0.0, scale, scale)
+    assert len(told) == 5 and len(scaled.empty) == 0
+    assert all(type(energy) is float for _, _, energy in told)
+
+
 def test_the_box_of_the_sites_stays_that_of_the_first_ones() -> None:
     result = lloyd([(0, 0), (1, 1), (0.3, 0.6)], "box", iterations=5)
     assert result.diagram.clip == (0.0, 0.0, 1.0, 1.0)

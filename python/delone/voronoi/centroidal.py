@@ -15,13 +15,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._arrays import as_choice
 from delone.errors import InputError
+from delone.voronoi import clipping
 from delone.voronoi.diagram import Voronoi
 
 if TYPE_CHECKING:
@@ -170,6 +171,22 @@ def lloyd(
     if diagram.ndim != _PLANE:
         raise InputError("lloyd is for points in the plane; cell_centroids are there in space, too")
     domain = diagram.clip
+    unit = clipping.unit_of(np.array(diagram._clip.bounds))  # type: ignore[union-attr]
+    if unit != 1:
+        scaled = clipping.as_scaled(domain, unit)
+        found_in_units = lloyd(
+            diagram.points * unit,
+            scaled,
+            iterations=iterations,
+            tol=None if tol is None else tol * unit,
+            density=None if density is None else lambda places: density(places / unit),
+            method=method,
+            progress=None
+            if progress is None
+            else lambda step, away, energy: progress(step, away / unit, float(_back(energy, unit))),
+            workers=workers,
+        )
+        return _scaled_back(found_in_units, domain, unit, workers)
     at = _state(diagram, density)
     displacements: list[float] = []
     energies = [at.energy]
@@ -203,6 +220,24 @@ def lloyd(
         energies=np.array(energies),
         empty=np.flatnonzero(at.diagram.cell_areas == 0),
         evaluations=evaluations,
+    )
+
+
+def _back(energy: Any, unit: float) -> Any:
+    """An energy, a fourth power of lengths, that was computed in units."""
+    with np.errstate(over="ignore", under="ignore"):
+        return np.multiply(energy, 1 / unit) / unit / unit / unit
+
+
+def _scaled_back(result: LloydResult, domain: Any, unit: float, workers: int | None) -> LloydResult:
+    """What was computed in units of a power of two, so that no product exceeds the range."""
+    diagram = Voronoi(result.points / unit, clip=domain, workers=workers)
+    return replace(
+        result,
+        points=diagram.points,
+        diagram=diagram,
+        displacements=result.displacements / unit,
+        energies=_back(result.energies, unit),
     )
 
 

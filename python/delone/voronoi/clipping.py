@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Dual = dict[str, NDArray[Any]]
 
-__all__ = ["Clip", "Clipped", "as_clip", "cells"]
+__all__ = ["Clip", "Clipped", "as_clip", "as_scaled", "cells", "unit_of"]
 
 # Outlines with fewer corners than this are not halved, nor are fewer cells than this.
 _FEW_CORNERS, _FEW_CELLS = 256, 8
@@ -210,7 +210,7 @@ def _outline(geometry: Any, fix: bool) -> Clip:
     geometry = shapely.force_2d(geometry)
     if not np.isfinite(shapely.get_coordinates(geometry)).all():
         raise InputError("the outline of clip has a coordinate that is NaN or infinite")
-    unit = _unit(shapely.get_coordinates(geometry))
+    unit = unit_of(shapely.get_coordinates(geometry))
     in_units = _times(geometry, unit)
     if not shapely.is_valid(in_units):
         if not fix:
@@ -232,13 +232,44 @@ def _outline(geometry: Any, fix: bool) -> Clip:
     return Clip(bounds=tuple(bounds), outline=geometry)
 
 
-def _unit(coordinates: Floats) -> float:
-    """A power of two by which GEOS can compute with coordinates."""
+def unit_of(coordinates: Floats) -> float:
+    """Return a power of two by which products of coordinates stay in range.
+
+    Parameters
+    ----------
+    coordinates : ndarray of float64
+        Finite numbers.
+
+    Returns
+    -------
+    float
+        1 unless they are very large or very small.
+    """
     largest = float(np.abs(coordinates).max(initial=0.0))
     if largest == 0 or _SMALL < largest < _LARGE:
         return 1.0
     # Both it and its inverse are doubles.
     return math.ldexp(1.0, int(np.clip(-math.frexp(largest)[1], -1022, 1022)))
+
+
+def as_scaled(clip: Any, factor: float) -> Any:
+    """Return a box or an outline multiplied by a power of two.
+
+    Parameters
+    ----------
+    clip : tuple of 4 floats, or geometry
+        As `delone.Voronoi.clip` gives it.
+    factor : float
+        The power of two.
+
+    Returns
+    -------
+    tuple of 4 floats, or geometry
+        Of the same kind.
+    """
+    if isinstance(clip, tuple):
+        return tuple(x * factor for x in clip)
+    return _times(clip, factor)
 
 
 def _times(geometry: Any, factor: float) -> Any:
@@ -350,7 +381,7 @@ class _InOutline(Clipped):
     def __init__(self, whole: Clipped, outline: Any, workers: int) -> None:
         super().__init__(whole.starts, whole.corners, whole.ridges, whole.ridge_count, workers)
         # What shapely sees is in these units; all else is in those of the points.
-        self._scale = _unit(shapely_or_say().get_coordinates(outline))
+        self._scale = unit_of(shapely_or_say().get_coordinates(outline))
         self._outline = _times(outline, self._scale)
         self._side = _sides(whole, self._outline, self._scale)
         self._rows = np.flatnonzero(self._side == _CUT)
@@ -524,7 +555,7 @@ def _make_sound(polygons: NDArray[Any], starts: Indices, corners: Floats) -> Non
         left, right = px * qy, py * qx
         doubtful = ~(left - right > 2.0**-50 * (np.abs(left) + np.abs(right)))
     rows = np.unique(np.repeat(np.arange(len(polygons)), np.diff(starts))[doubtful])
-    unit = _unit(corners)
+    unit = unit_of(corners)
     rows = rows[~shapely.is_valid(_times(polygons[rows], unit))]
     if len(rows):
         hulls = shapely.convex_hull(_times(polygons[rows], unit))
