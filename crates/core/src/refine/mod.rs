@@ -16,6 +16,7 @@ mod insert;
 mod place;
 mod queue;
 mod shape;
+mod twofold;
 mod work;
 
 use delone_predicates::Point2;

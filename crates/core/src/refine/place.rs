@@ -55,6 +55,11 @@ impl Places {
         Self { sin, cos, off }
     }
 
+    /// The squared length of edges that a front aims at under a cap.
+    pub fn longest2(cap2: f64) -> f64 {
+        EDGE2 * SHARE * cap2
+    }
+
     /// The centre of the circle of a triangle.
     pub fn centre(corners: [Point2; 3], seen: &Seen) -> Point2 {
         let [p, _, c] = from_shortest(corners, seen);
@@ -65,7 +70,7 @@ impl Places {
     pub fn cure(&self, corners: [Point2; 3], seen: &Seen, cap2: f64) -> Point2 {
         let [p, u, centre] = from_shortest(corners, seen);
         // The height above the shortest edge, in lengths of it.
-        let wanted = (EDGE2 * SHARE * cap2 / seen.shortest - 0.25).max(HEIGHT2);
+        let wanted = (Self::longest2(cap2) / seen.shortest - 0.25).max(HEIGHT2);
         let height = self.off.min(wanted.sqrt());
         let middle = [0.5 * u[0], 0.5 * u[1]];
         let off = [middle[0] - height * u[1], middle[1] + height * u[0]];
@@ -99,7 +104,7 @@ impl Places {
         }
         let far = PAIR * (cos_phi + self.cos * sin_phi / self.sin);
         let distance2 = far * far * a * a;
-        if distance2 > EDGE2 * SHARE * cap2 {
+        if distance2 > Self::longest2(cap2) {
             return None;
         }
         let x = bend.middle[0] + far * (cos_phi * u[0] - sin_phi * u[1]);

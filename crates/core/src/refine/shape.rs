@@ -4,10 +4,14 @@
 use delone_predicates::Point2;
 use num_bigint::BigInt;
 
+use super::twofold::{ERROR, Twofold};
 use crate::wide::{lowest, scaled};
 
 /// Squares of cosines that differ by a smaller part are compared exactly: four roundings each.
 const UNSURE: f64 = 1e-14;
+
+/// And again by twofold numbers: a dozen of their roundings, each a hundredth of this.
+const SURE: f64 = 100.0 * ERROR;
 
 /// The bounds.
 #[derive(Debug, Clone, Copy)]
@@ -107,9 +111,27 @@ impl Shape {
         }
     }
 
-    /// Whether the angle at `a` is too small, exactly.
-    #[cold]
+    /// Whether the angle at `a` is too small, which is less than a right one.
     fn is_skinny(&self, [a, b, c]: [Point2; 3]) -> bool {
+        let between = |p: Point2| [0, 1].map(|k| Twofold::difference(p[k], a[k]));
+        let (u, v) = (between(b), between(c));
+        let dot = |u: [Twofold; 2], v: [Twofold; 2]| u[0].times(v[0]).plus(u[1].times(v[1]));
+        // Terms of opposite signs cancel in the dot product, but not below a twentieth of them: then
+        // the angle is near to a right one, and nobody asks.
+        let cosine = dot(u, v);
+        let bound = dot(u, u).times(dot(v, v)).times(Twofold::of(self.cos2));
+        let over = cosine.times(cosine).minus(bound);
+        // Elsewhere lower parts may have left the range.
+        let within = (1e-200..1e200).contains(&bound.rounded());
+        if within && over.abs() > SURE * bound.rounded() {
+            over > 0.0
+        } else {
+            self.is_skinny_exactly([a, b, c])
+        }
+    }
+
+    #[cold]
+    fn is_skinny_exactly(&self, [a, b, c]: [Point2; 3]) -> bool {
         let low = lowest(&[a, b, c], &[]);
         let [a, b, c] = [a, b, c].map(|p| p.map(|x| scaled(x, low)));
         let [u, v] = [b, c].map(|p| [&p[0] - &a[0], &p[1] - &a[1]]);

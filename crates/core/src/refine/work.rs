@@ -383,7 +383,10 @@ impl<'a> Work<'a> {
             }
             Places::centre(points, &seen)
         } else {
-            if let Some(p) = self.above(t, points, &seen)
+            // Where edges have their size already, what is apart would be too far.
+            let short = APART * seen.shortest < Places::longest2(cap);
+            if short
+                && let Some(p) = self.above(t, points, &seen)
                 && self.fits(t, p, seen.shortest)
             {
                 return self.insert(p, reason);
