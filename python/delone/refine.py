@@ -149,7 +149,7 @@ def mesh(
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centres (A. Ungor 2004), cuts at powers of two around sharp corners, and the rule of Miller,
     Pav and Walkington (2005) for triangles there, so that it ends on every input for angles up to
-    26 degrees, in practice up to 33. Time is about 0.4 microseconds a triangle, memory linear.
+    26 degrees, in practice up to 33. Time is about a microsecond a triangle, memory linear.
 
     Points on segments are rounded to doubles, so that pieces of a segment may bend by that much.
 
