@@ -23,7 +23,10 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # Files that may hold `unsafe`, each with what it is for.
-UNSAFE = {"crates/core/src/memory.rs": "prefetching, zeroed pages, large pages"}
+UNSAFE = {
+    "crates/core/src/memory.rs": "prefetching, zeroed pages, large pages",
+    "crates/core/src/delaunay3/dispatch.rs": "code for features that the processor was found to have",
+}
 
 LONGEST = 800
 FORBIDDEN_NAMES = re.compile(r"^(utils?|helpers?|misc|common|new_.*|.*_v\d)$")
