@@ -293,6 +293,7 @@ mod tests {
         let corners = [[2.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 6.0]];
         assert_eq!(plain(corners), Some([1.0, 2.0, 3.0]));
         assert_eq!(paired(corners, [0.0; 3], 1.0), Some([1.0, 2.0, 3.0]));
-        assert_eq!(plain([corners[0], corners[1], [2.0, 4.0, 1e-9]]), None);
+        let flat = [[1.0, 1.0, 1.0], [1.0, 2.0, 3.0], [2.0, 3.0, 4.0 + 1e-9]];
+        assert_eq!(plain(flat), None);
     }
 }
