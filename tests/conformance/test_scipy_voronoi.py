@@ -1,7 +1,7 @@
 """SciPy's own tests of Voronoi and voronoi_plot_2d, as installed, run against the drop-ins.
 
 As in ``test_scipy``: SciPy's test modules are loaded a second time, the names through which they
-reach SciPy's classes are replaced, and each test that uses Voronoi in the plane is run.
+reach SciPy's classes are replaced, and each test that uses Voronoi in the plane or in space is run.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ CANNOT_HOLD = {
 
 
 class NotReachedError(Exception):
-    """Raised when a test ends without a diagram in the plane."""
+    """Raised when a test ends without a diagram of delone."""
 
 
 def load(name: str) -> ModuleType | None:
@@ -83,9 +83,9 @@ def runs(function: Callable[..., Any]) -> list[dict[str, Any]]:
     return found
 
 
-def is_planar(arguments: dict[str, Any]) -> bool:
-    return arguments.get("ndim", 2) == 2 and not any(
-        f"{d}d" in str(value) for d in range(3, 10) for value in arguments.values()
+def is_low(arguments: dict[str, Any]) -> bool:
+    return arguments.get("ndim", 2) <= 3 and not any(
+        f"{d}d" in str(value) for d in range(4, 10) for value in arguments.values()
     )
 
 
@@ -117,7 +117,7 @@ def cases() -> Iterator[Any]:
         for name, function, bind in functions(module):
             for arguments in runs(function):
                 by_parameter = any(value is spatial.Voronoi for value in arguments.values())
-                if not is_planar(arguments) or not (uses_voronoi(function) or by_parameter):
+                if not is_low(arguments) or not (uses_voronoi(function) or by_parameter):
                     continue
                 words = "-".join(str(getattr(v, "__name__", v)) for v in arguments.values())
                 identifier = f"{name}[{words}]" if words else name
@@ -135,7 +135,7 @@ def replacement(calls: list[int]) -> type:
     class Voronoi(drop_in.Voronoi):
         def __new__(cls, points: Any, *args: Any, **options: Any) -> Any:
             shape = np.shape(points)
-            if len(shape) == 2 and shape[1] > 2:
+            if len(shape) == 2 and shape[1] > 3:
                 return spatial.Voronoi(points, *args, **options)
             calls.append(len(shape))
             return super().__new__(cls)
@@ -193,17 +193,69 @@ def test_but_for_the_order_the_diagram_is_that_of_scipy(
     ours = drop_in.Voronoi(points, furthest_site=furthest_site)
     theirs = spatial.Voronoi(points, furthest_site=furthest_site)
 
-    def ridges(vor: Any) -> set[Any]:
-        corners = [tuple(np.round(v, 9).tolist()) for v in vor.vertices] + ["open"]
-        return {
-            (frozenset(pair), frozenset(corners[v] for v in ends))
-            for pair, ends in zip(vor.ridge_points.tolist(), vor.ridge_vertices, strict=True)
-        }
-
-    def cells(vor: Any) -> list[Any]:
-        corners = [tuple(np.round(v, 9).tolist()) for v in vor.vertices] + ["open"]
-        return [{corners[v] for v in vor.regions[r]} for r in vor.point_region]
-
     assert ridges(ours) == ridges(theirs)
     assert cells(ours) == cells(theirs)
     assert sorted(map(len, ours.regions)) == sorted(map(len, theirs.regions))
+
+
+SPACE = {
+    "random": np.random.default_rng(1).random((60, 3)),
+    "grid": np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3),
+    "duplicates": np.random.default_rng(2).random((30, 3))[np.arange(40) % 30],
+}
+
+
+@pytest.mark.parametrize("incremental", [False, True])
+@pytest.mark.parametrize("points", SPACE.values(), ids=SPACE)
+def test_in_space_scipy_leaves_out_open_ridges_of_one_vertex(
+    points: Any, incremental: bool
+) -> None:
+    ours = drop_in.Voronoi(points, incremental=incremental)
+    theirs = spatial.Voronoi(points, incremental=incremental)
+    # Vertices and sites by delone's numbers: each of SciPy's vertices is one of delone's.
+    distance, same = spatial.KDTree(ours.vertices).query(theirs.vertices)
+    assert distance.max() < 1e-9
+    assert len(set(same.tolist())) == len(ours.vertices)
+    own = np.arange(len(ours.vertices))
+    first = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    sites = first[1][first[2]]
+    found, expected = ridges(ours, own, sites), ridges(theirs, same, sites)
+    assert expected < found
+    assert all(len(vertices) == 2 and -1 in vertices for _, vertices in found - expected)
+    assert cells(ours, own) == cells(theirs, same)
+    for name in ("ridge_points", "point_region", "vertices"):
+        assert getattr(ours, name).dtype == getattr(theirs, name).dtype
+    assert ours.ndim == theirs.ndim == 3
+
+
+def test_space_and_plane_do_not_mix() -> None:
+    diagram = drop_in.Voronoi(SPACE["random"], incremental=True)
+    with pytest.raises(ValueError, match="3 coordinates"):
+        diagram.add_points([(1, 2)])
+    diagram.add_points([(2, 2, 2), (2, 2, 2)])
+    assert diagram.npoints == 62
+    assert diagram.point_region[60] == diagram.point_region[61]
+    with pytest.raises(drop_in.DimensionError):
+        drop_in.Voronoi(SPACE["random"], furthest_site=True)
+    with pytest.raises(drop_in.QhullError):
+        drop_in.Voronoi(SPACE["random"] * [1, 1, 0])
+
+
+def ridges(vor: Any, number: Any = None, site: Any = None) -> set[Any]:
+    """Sites and vertices of each ridge: vertices by coordinates, or by other numbers."""
+    name, row = names(vor, number), np.arange(vor.npoints) if site is None else site
+    return {
+        (frozenset(row[[*pair]].tolist()), frozenset(name[v] for v in ends))
+        for pair, ends in zip(vor.ridge_points.tolist(), vor.ridge_vertices, strict=True)
+    }
+
+
+def cells(vor: Any, number: Any = None) -> list[Any]:
+    name = names(vor, number)
+    return [{name[v] for v in vor.regions[r]} for r in vor.point_region]
+
+
+def names(vor: Any, number: Any) -> list[Any]:
+    if number is None:
+        return [*(tuple(np.round(v, 9).tolist()) for v in vor.vertices), "open"]
+    return [*number.tolist(), -1]

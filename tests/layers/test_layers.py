@@ -127,6 +127,7 @@ PYTHON: dict[str, set[str]] = {
         "location",
         "meshed",
         "refine",
+        "voronoi",
     }
     | FOUNDATION,
     "reference": FOUNDATION,

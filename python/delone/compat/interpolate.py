@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone._arrays import as_points
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
@@ -475,9 +474,7 @@ def _coordinates(points: Any) -> Floats:
         raise drop_in.DimensionError(
             "delone interpolates in the plane and in space; on a line use scipy.interpolate"
         )
-    if len(shape) == 2 and shape[1] == _SPACE:
-        return as_points(np.asarray(points), ndim=_SPACE)
-    return drop_in.as_plane_points(points)
+    return drop_in.as_low_points(points, _SPACE)
 
 
 def _queries(args: tuple[Any, ...], ndim: int) -> Floats:

@@ -217,10 +217,7 @@ class Delaunay:
         """
         if not self._open:
             raise RuntimeError("points can be added with incremental=True only, and before close()")
-        more = as_low_points(points, 3)
-        if more.shape[1] != self.ndim:
-            raise ShapeError(f"points must have {self.ndim} coordinates, got shape {more.shape}")
-        self._set(np.concatenate((self._points, more)))
+        self._set(joined(self._points, points))
 
     def close(self) -> None:
         """End incremental mode; `add_points` is refused from then on."""
@@ -506,24 +503,8 @@ def triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
     return delaunay.Delaunay._from_arrays(arrays, {}, None)
 
 
-def as_plane_points(points: ArrayLike) -> Floats:
-    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors.
-
-    Parameters
-    ----------
-    points : array_like, shape (n, 2)
-        Points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 2)
-        The same.
-    """
-    return as_low_points(points, 2)
-
-
 def as_low_points(points: ArrayLike, most: int) -> Floats:
-    """Coerce as `as_plane_points` does, with more coordinates where they are welcome.
+    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors.
 
     Parameters
     ----------
@@ -557,6 +538,27 @@ def as_low_points(points: ArrayLike, most: int) -> Floats:
     if array.dtype.kind in "bO":
         return _unboxed(array)
     return as_points(points, ndim=ndim)
+
+
+def joined(points: Floats, more: ArrayLike) -> Floats:
+    """Return points and some more, which have as many coordinates.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, d)
+        Points.
+    more : array_like, shape (k, d)
+        What comes behind them.
+
+    Returns
+    -------
+    ndarray of float64, shape (n + k, d)
+        Both.
+    """
+    found, ndim = as_low_points(more, 3), points.shape[1]
+    if found.shape[1] != ndim:
+        raise ShapeError(f"points must have {ndim} coordinates, got shape {found.shape}")
+    return np.concatenate((points, found))
 
 
 def _unboxed(array: NDArray[Any]) -> Floats:

@@ -1,9 +1,11 @@
-"""The place of ``scipy.spatial.Voronoi`` and ``voronoi_plot_2d`` taken by delone, in the plane.
+"""The place of ``scipy.spatial.Voronoi`` and ``voronoi_plot_2d`` taken by delone.
 
 `delone.compat.scipy` has both by name. What differs from SciPy:
 
-* Sites on one circle share one vertex whatever their coordinates, so that no ridge has length 0,
-  and vertices, ridges and regions come in delone's order.
+* Sites on one circle or sphere share one vertex whatever their coordinates, so that no ridge is
+  without length or area, and vertices, ridges and regions come in delone's order.
+* In space every ridge is listed; Qhull leaves out those that go on for ever and have one vertex.
+* Furthest-site diagrams are of the plane.
 * Every distinct point has a region; duplicates share that of their first row, as in SciPy.
 * `add_points` computes the diagram anew.
 """
@@ -20,6 +22,7 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.compat.qhull_options import QhullOptions, UnknownOptionError
 from delone.errors import ShapeError
+from delone.voronoi.space import ridge_lists
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -35,11 +38,11 @@ class Voronoi:
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2)
+    points : array_like, shape (npoints, 2) or (npoints, 3)
         The sites.
     furthest_site : bool, optional
         Whether to compute the furthest-site diagram, in which each cell is nearer to all other
-        sites.
+        sites. In the plane only.
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
@@ -49,37 +52,38 @@ class Voronoi:
 
     Attributes
     ----------
-    points : ndarray of float64, shape (npoints, 2)
+    points : ndarray of float64, shape (npoints, ndim)
         The sites; the array given where it is of this dtype and layout, as in SciPy.
-    vertices : ndarray of float64, shape (nvertices, 2)
+    vertices : ndarray of float64, shape (nvertices, ndim)
         Vertices, accurate to a few units in the last place.
     ridge_points : ndarray of int32, shape (nridges, 2)
         The two sites of each ridge.
     ridge_vertices : list of list of int
-        The two vertices of each ridge; -1, which comes first, where it is unbounded.
+        The vertices of each ridge, two in the plane and in space all in order around it; -1, which
+        comes first, where it is unbounded.
     ridge_dict : dict
         The vertices of each ridge by the pair of its sites.
     regions : list of list of int
-        For each region its vertices, in order around it; -1 where it is unbounded.
+        For each region its vertices, in the plane in order around it; -1 where it is unbounded.
     point_region : ndarray of int64, shape (npoints,)
         The region of each site.
     furthest_site : bool
         As given.
     ndim, npoints : int
         Sizes.
-    min_bound, max_bound : ndarray of float64, shape (2,)
+    min_bound, max_bound : ndarray of float64, shape (ndim,)
         The least and the greatest coordinates.
 
     Raises
     ------
     QhullError
-        Fewer than three points are distinct, or all lie on one line; a coordinate is infinite; an
-        option is unknown. (`delone.Voronoi` has diagrams of any number of sites.)
+        The points span no area, or in space no volume; a coordinate is infinite; an option is
+        unknown. (`delone.Voronoi` has diagrams of any number of sites in the plane.)
     ValueError
         A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for another
         diagram.
     DimensionError
-        The points have more than two coordinates.
+        The points have more than three coordinates, or more than two where `furthest_site` is set.
 
     Notes
     -----
@@ -113,25 +117,26 @@ class Voronoi:
             self._options = QhullOptions.parse(qhull_options, incremental=self._open)
         except UnknownOptionError as error:
             raise scipy.QhullError(str(error)) from error
-        self._set(_plane_points(points))
+        self._set(scipy.as_low_points(points, 2 if self.furthest_site else 3))
 
     def _set(self, points: Floats) -> None:
         """Compute the diagram; nothing changes where that fails."""
         from delone.compat import scipy
 
         mesh = scipy.triangulate(points, self.furthest_site)
-        dual = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
-        self._points, self._mesh, self._dual = points, mesh, dual
+        dual = _core.voronoi2 if mesh.ndim == 2 else _core.voronoi3
+        arrays = dual(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
+        self._points, self._mesh, self._dual = points, mesh, arrays
         for name in _FOLLOWING:
             self.__dict__.pop(name, None)
-        self.ndim, self.npoints = 2, len(points)
+        self.ndim, self.npoints = mesh.ndim, mesh.npoints
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
         """Add points and compute the diagram anew.
 
         Parameters
         ----------
-        points : array_like, shape (k, 2)
+        points : array_like, shape (k, ndim)
             What to append to `points`.
         restart : bool, optional
             Accepted as in SciPy. The result is the same.
@@ -151,9 +156,11 @@ class Voronoi:
         >>> vor.vertices
         array([[1., 1.]])
         """
+        from delone.compat import scipy
+
         if not self._open:
             raise RuntimeError("points can be added with incremental=True only, and before close()")
-        self._set(np.concatenate((self._points, _plane_points(points))))
+        self._set(scipy.joined(self._points, points))
 
     def close(self) -> None:
         """End incremental mode; `add_points` is refused from then on."""
@@ -178,7 +185,9 @@ class Voronoi:
 
     @cached_property
     def ridge_vertices(self) -> list[list[int]]:
-        """The two vertices of each ridge; -1 where it is unbounded."""
+        """The vertices of each ridge; -1, which comes first, where it is unbounded."""
+        if self.ndim == 3:
+            return ridge_lists(self._dual)
         found: list[list[int]] = np.maximum(self._dual["ends"], -1).tolist()
         return found
 
@@ -190,8 +199,8 @@ class Voronoi:
 
     @cached_property
     def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
-        starts = self._dual["starts"].tolist()
         entries = self._dual["region_vertices"].tolist()
+        starts = self._dual["starts" if self.ndim == 2 else "region_starts"].tolist()
         cells = [_gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
         of_point = self._dual["region"].astype(np.int64)
         infinite = self._options.infinite_point and not self.furthest_site
@@ -240,12 +249,6 @@ _FOLLOWING = [name for name, value in vars(Voronoi).items() if isinstance(value,
 def _gaps_once(region: list[int]) -> list[int]:
     """A cell with each run of -1 written once, also where it runs over the end."""
     return [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0] or region[:1]
-
-
-def _plane_points(points: ArrayLike) -> Floats:
-    from delone.compat import scipy
-
-    return scipy.as_plane_points(points)
 
 
 def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["SpaceVoronoi"]
+__all__ = ["SpaceVoronoi", "ridge_lists"]
 
 
 class SpaceVoronoi(Voronoi):
@@ -176,8 +176,7 @@ class SpaceVoronoi(Voronoi):
     @kept
     def ridge_vertices(self) -> list[list[int]]:  # type: ignore[override]
         """The vertices of each ridge in their order around it; -1, which comes first, if open."""
-        starts, entries = self._dual["starts"].tolist(), self._dual["entries"].tolist()
-        return [_from_the_gap(entries[a:b]) for a, b in itertools.pairwise(starts)]
+        return ridge_lists(self._dual)
 
     @property
     @kept
@@ -436,6 +435,23 @@ def _dual(
     duplicate, first = mesh._duplicates.T
     arrays["region"][duplicate] = arrays["region"][first]
     return mesh, arrays
+
+
+def ridge_lists(dual: dict[str, NDArray[Any]]) -> list[list[int]]:
+    """Return the vertices of each ridge in their order around it; -1, which comes first, if open.
+
+    Parameters
+    ----------
+    dual : dict of ndarray
+        The arrays of the core.
+
+    Returns
+    -------
+    list of list of int
+        Vertices, ridge by ridge.
+    """
+    starts, entries = dual["starts"].tolist(), dual["entries"].tolist()
+    return [_from_the_gap(entries[a:b]) for a, b in itertools.pairwise(starts)]
 
 
 def _from_the_gap(entries: list[int]) -> list[int]:
