@@ -53,6 +53,7 @@ impl<const D: usize> Start<D> {
         let (mut best, mut least) = (0, f64::INFINITY);
         let mut i = 0;
         while let Some(node) = self.nodes.get(i) {
+            self.touch(8 * i + 7);
             let seen: [f64; D] = std::array::from_fn(|k| node.at[k] - q[k]);
             let distance = seen.iter().map(|x| x * x).sum();
             if distance < least {
@@ -62,6 +63,18 @@ impl<const D: usize> Start<D> {
             i = 2 * i + 1 + usize::from(right);
         }
         best
+    }
+
+    /// Loads the eight nodes from `i` on, the ones three levels further down of which the way takes
+    /// one: a cold query waits for memory a third as often.
+    #[inline]
+    fn touch(&self, i: usize) {
+        // One load in each line of the cache.
+        if let Some(nodes) = self.nodes.get(i..i + 8) {
+            for k in [0, 3, 5, 7] {
+                std::hint::black_box(nodes[k].simplex);
+            }
+        }
     }
 }
 
