@@ -42,6 +42,7 @@ def build_cgal(name: str = "cgal") -> Path | None:
     program = CRATE / "target" / name
     if shutil.which("g++") is None or not Path("/usr/include/CGAL").exists():
         return None
+    program.parent.mkdir(exist_ok=True)
     command = ["g++", "-O3", "-DNDEBUG", "-std=c++17", f"{name}.cpp"]
     command += ["-o", str(program), "-lgmp"]
     subprocess.run(command, cwd=CRATE, check=True)
