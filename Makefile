@@ -111,6 +111,7 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/refine.py $(BENCH)
 	$(BIN)/python benchmarks/space.py $(BENCH)
 	$(BIN)/python benchmarks/hull.py $(BENCH)
+	$(BIN)/python benchmarks/threads.py $(BENCH)
 	$(BIN)/python benchmarks/interpolate.py $(BENCH)
 	$(BIN)/python benchmarks/voronoi.py $(BENCH)
 	$(BIN)/python benchmarks/tiles.py
