@@ -83,6 +83,8 @@ mod zero {
     unsafe impl super::Zero for f64 {}
     // SAFETY: doubles, whose zero bytes are 0.0, without padding.
     unsafe impl super::Zero for [f64; 2] {}
+    // SAFETY: doubles, whose zero bytes are 0.0, without padding.
+    unsafe impl super::Zero for [f64; 3] {}
 }
 
 /// A vector of `n` zeros that touches no page: each is touched first by the thread that fills it.

@@ -38,7 +38,7 @@ use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
 use super::sphere::{LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres};
 use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room};
+use crate::memory::{push, with_room};
 use crate::mesh3::{Code, FACETS, Mesh3, tetrahedron};
 
 /// Most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4, rounded up.
@@ -48,15 +48,36 @@ const RIM: usize = 2 * STAR;
 /// No record.
 const NONE: u32 = u32::MAX;
 
+/// Beside a mesh, what grows with it. To be made by the thread that starts others, see
+/// [`crate::order::space::Room3`].
+#[derive(Debug)]
+pub struct Room {
+    /// The sphere of each record.
+    pub spheres: Vec<Sphere>,
+    /// The vertex that has last found the record in conflict. Apart from the spheres: a store to
+    /// part of one would hold up the next load of the whole.
+    mark: Vec<u32>,
+    /// Where each vertex stands in the star of the vertex inserted last, if it does.
+    place: Vec<u8>,
+}
+
+impl Room {
+    /// Room for so many records and vertices, which touches no page.
+    pub fn of(records: usize, vertices: usize) -> Result<Self> {
+        Ok(Self {
+            spheres: with_room(records)?,
+            mark: with_room(records)?,
+            place: with_room(vertices + 1)?,
+        })
+    }
+}
+
 /// A mesh that grows by one point at a time.
 pub struct Kernel<'a> {
     points: &'a [Point3],
     mesh: Mesh3<'a>,
     spheres: Vec<Sphere>,
-    /// The vertex that has last found the record in conflict. Apart from the spheres: a store to
-    /// part of one would hold up the next load of the whole.
     mark: Vec<u32>,
-    /// Where each vertex stands in the star of the vertex inserted last, if it does.
     place: Vec<u8>,
     /// Added to each radius: NaN where the coordinates are out of the range of spheres, else 0.
     doubt: f64,
@@ -84,21 +105,30 @@ struct Star {
 impl<'a> Kernel<'a> {
     /// A kernel in the empty `mesh` over `points`, which end with NaN for infinity, that starts from the
     /// positively oriented tetrahedron `first`.
-    pub fn start(points: &'a [Point3], mut mesh: Mesh3<'a>, first: [u32; 4]) -> Result<Self> {
+    pub fn start(
+        points: &'a [Point3],
+        mut mesh: Mesh3<'a>,
+        room: Room,
+        first: [u32; 4],
+    ) -> Result<Self> {
         mesh.first(first)?;
         let bound = 2f64.powi(RANGE);
         let coordinates = points[..points.len() - 1].as_flattened();
         let certain = coordinates.iter().all(|x| x.abs() < bound);
-        let mut spheres = with_room(mesh.room())?;
+        let Room {
+            mut spheres,
+            mut mark,
+            mut place,
+        } = room;
         spheres.resize(mesh.records(), UNKNOWN);
-        let mut mark = with_room(mesh.room())?;
         mark.resize(mesh.records(), NONE);
+        place.resize(points.len(), 0);
         Ok(Self {
             points,
             mesh,
             spheres,
             mark,
-            place: filled(points.len(), 0)?,
+            place,
             doubt: if certain { 0.0 } else { f64::NAN },
             cavity: vec![0; RIM],
             rim: vec![0; RIM],
@@ -121,8 +151,22 @@ impl<'a> Kernel<'a> {
     }
 
     /// The mesh, and the sphere of each record.
-    pub fn finish(self) -> (Mesh3<'a>, Vec<Sphere>) {
-        (self.mesh, self.spheres)
+    pub fn finish(self) -> (Mesh3<'a>, Room) {
+        let Self {
+            mesh,
+            spheres,
+            mark,
+            place,
+            ..
+        } = self;
+        (
+            mesh,
+            Room {
+                spheres,
+                mark,
+                place,
+            },
+        )
     }
 
     #[inline]

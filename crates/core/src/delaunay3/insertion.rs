@@ -6,9 +6,8 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
-use super::cavity::Kernel;
+use super::cavity::{Kernel, Room};
 use super::dispatch;
-use super::sphere::Sphere;
 use crate::error::Result;
 use crate::mesh3::Mesh3;
 use crate::points::collinear;
@@ -21,17 +20,18 @@ const STRIDES: [u32; 2] = [16, 1];
 const WATCH_EVERY: usize = 1 << 16;
 
 /// Fills the empty `mesh` with the triangulation of `points`, which end with NaN for infinity, and
-/// returns it with its spheres; nothing where the points span no tetrahedron.
+/// returns it with its spheres in `room`; nothing where the points span no tetrahedron.
 pub fn build<'a>(
     points: &'a [Point3],
     mesh: Mesh3<'a>,
+    room: Room,
     watch: &Watch,
-) -> Result<Option<(Mesh3<'a>, Vec<Sphere>)>> {
+) -> Result<Option<(Mesh3<'a>, Room)>> {
     let n = points.len() as u32 - 1;
     let Some(first) = first_tetrahedron(&points[..n as usize]) else {
         return Ok(None);
     };
-    let mut kernel = Kernel::start(points, mesh, first)?;
+    let mut kernel = Kernel::start(points, mesh, room, first)?;
     dispatch::run(&mut kernel, points, first, watch)?;
     Ok(Some(kernel.finish()))
 }

@@ -4,8 +4,8 @@
 
 use super::seam::{Block, Joint, SOUND, Seam};
 use crate::error::{Error, Result};
-use crate::memory::filled;
-use crate::mesh3::{Code, Records, tetrahedron};
+use crate::memory::{filled, push, with_room};
+use crate::mesh3::{Code, Records, corner, tetrahedron};
 use crate::parallel;
 
 /// Records that one task renumbers.
@@ -24,10 +24,10 @@ pub struct Arrays {
 }
 
 /// A seam with what of it belongs to the whole, and its joints with the blocks.
-pub struct Fitted<'a> {
+pub struct Fitted {
     /// The seam.
-    pub seam: Seam<'a>,
-    /// For each of its records whether it belongs.
+    pub seam: Seam,
+    /// For each of its tetrahedra whether it belongs.
     pub belongs: Vec<bool>,
     /// Where it meets the blocks.
     pub joints: Vec<Joint>,
@@ -36,10 +36,16 @@ pub struct Fitted<'a> {
 /// Where the tetrahedra go.
 struct Plan {
     total: usize,
+    /// Records below `total` that are to be filled, ascending: by what is `added`, then by what moves.
+    holes: Vec<u32>,
+    /// Tetrahedra of the seam that belong, ascending.
+    added: Vec<u32>,
     /// For records from `total` on, their new number.
     moved: Vec<u32>,
-    /// For records of the seam, their number.
+    /// For tetrahedra of the seam, their number.
     placed: Vec<u32>,
+    /// Records that move, ascending.
+    movers: Vec<u32>,
 }
 
 impl Plan {
@@ -49,6 +55,23 @@ impl Plan {
             None => record as u32,
             Some(beyond) => self.moved[beyond],
         }
+    }
+
+    /// Tetrahedron t of the seam in the numbers of the whole. Where its neighbour is none of the whole, a
+    /// joint follows or the outside.
+    #[inline]
+    fn addition(&self, t: usize, blocks: &[Block], fitted: &Fitted) -> ([i32; 4], [i32; 4]) {
+        let Seam { vertices, arrays } = &fitted.seam;
+        let row = |v: i32| {
+            let [block, v] = vertices[v as usize];
+            blocks[block as usize].rows[v as usize] as i32
+        };
+        let number = |t: i32| match usize::try_from(t) {
+            Ok(t) => self.placed[t] as i32,
+            Err(_) => -1,
+        };
+        let (corners, neighbors) = (arrays.simplices[t], arrays.neighbors[t]);
+        (corners.map(row), neighbors.map(number))
     }
 }
 
@@ -74,20 +97,9 @@ pub fn join(
         array.resize(array.len() + more, [0; 4]);
     }
     renumber(&mut records, &starts, rooms, blocks, &plan, workers);
-    for (&start, block) in starts.iter().zip(blocks) {
-        for (t, _) in (start..)
-            .zip(&block.kinds)
-            .filter(|&(_, &kind)| kind == SOUND)
-        {
-            if t >= plan.total {
-                let to = plan.number(t) as usize;
-                records.corners[to] = records.corners[t];
-                records.opposite[to] = records.opposite[t];
-            }
-        }
-    }
+    fill(&mut records, blocks, fitted, &plan, workers);
     if let Some(fitted) = fitted {
-        place(&mut records, &starts, blocks, fitted, &plan);
+        tie(&mut records, &starts, fitted, &plan);
     }
     records.corners.truncate(plan.total);
     records.opposite.truncate(plan.total);
@@ -97,7 +109,7 @@ pub fn join(
     })
 }
 
-/// Gives each tetrahedron that must move a hole, in the order of both.
+/// Gives each tetrahedron that is added or must move a hole, in the order of both.
 fn plan(
     starts: &[usize],
     rooms: &[usize],
@@ -105,37 +117,44 @@ fn plan(
     fitted: Option<&Fitted>,
 ) -> Result<Plan> {
     let belongs = fitted.map_or(&[][..], |fitted| &fitted.belongs);
-    let added = belongs.iter().filter(|&&b| b).count();
-    let total = blocks.iter().map(|b| b.sound).sum::<usize>() + added;
+    let mut added = Vec::new();
+    for (t, _) in (0..).zip(belongs).filter(|&(_, &b)| b) {
+        push(&mut added, t)?;
+    }
+    let total = blocks.iter().map(Block::sound).sum::<usize>() + added.len();
     let end = starts.last().zip(rooms.last()).map_or(0, |(s, r)| s + r);
+    let mut movers = Vec::new();
+    for (&start, block) in starts.iter().zip(blocks) {
+        for t in total.max(start)..total.max(start + block.kinds.len()) {
+            if block.kinds[t - start] == SOUND {
+                push(&mut movers, t as u32)?;
+            }
+        }
+    }
+    // The first so many holes are those below `total`. Where the blocks use up their room, the seam may
+    // add to it.
+    let mut holes = with_room(added.len() + movers.len())?;
+    let inner = starts.iter().zip(rooms).zip(blocks);
+    let inner = inner.flat_map(|((&s, &room), b)| {
+        let own = b.holes.iter().map(move |&t| s + t as usize);
+        own.chain(s + b.kinds.len()..s + room)
+    });
+    let all = inner.chain(end..total).map(|t| t as u32);
+    holes.extend(all.take(added.len() + movers.len()));
     let mut plan = Plan {
         total,
         moved: filled(end.saturating_sub(total), NONE)?,
         placed: filled(belongs.len(), NONE)?,
+        holes,
+        added,
+        movers,
     };
-    let is_hole = |block: &Block, t: usize| block.kinds.get(t).is_none_or(|&k| k != SOUND);
-    let inner = starts
-        .iter()
-        .zip(rooms)
-        .zip(blocks)
-        .flat_map(|((&s, &room), b)| {
-            let holes = (0..room).filter(move |&t| is_hole(b, t));
-            holes.map(move |t| (s + t) as u32)
-        });
-    // Where the blocks use up their room, the seam may add to it.
-    let mut holes = inner.chain(end as u32..total as u32);
-    for (placed, _) in plan.placed.iter_mut().zip(belongs).filter(|&(_, &b)| b) {
-        *placed = holes.next().unwrap_or(NONE);
+    let (for_added, for_movers) = plan.holes.split_at(plan.added.len());
+    for (&t, &to) in plan.added.iter().zip(for_added) {
+        plan.placed[t as usize] = to;
     }
-    for (&start, block) in starts.iter().zip(blocks) {
-        for (t, _) in (start..)
-            .zip(&block.kinds)
-            .filter(|&(_, &kind)| kind == SOUND)
-        {
-            if t >= total {
-                plan.moved[t - total] = holes.next().unwrap_or(NONE);
-            }
-        }
+    for (&t, &to) in plan.movers.iter().zip(for_movers) {
+        plan.moved[t as usize - total] = to;
     }
     Ok(plan)
 }
@@ -187,26 +206,48 @@ fn renumber(
     );
 }
 
-/// Puts the tetrahedra of the seam in their holes and joins them to the blocks.
-fn place(records: &mut Records, starts: &[usize], blocks: &[Block], fitted: &Fitted, plan: &Plan) {
-    let Fitted { seam, joints, .. } = fitted;
-    let row = |v: u32| {
-        let [block, v] = seam.vertices[v as usize];
-        blocks[block as usize].rows[v as usize] as i32
-    };
-    for (t, &to) in (0u32..).zip(&plan.placed).filter(|&(_, &to)| to != NONE) {
-        records.corners[to as usize] = seam.mesh.corners(t).map(row);
-        // Where it is none of the whole, a joint follows or the outside.
-        let number = |e: Code| plan.placed[tetrahedron(e) as usize] as i32;
-        records.opposite[to as usize] = seam.mesh.opposites(t).map(number);
-    }
-    for joint in joints {
+/// Fills the holes with what the seam adds and with what moves.
+fn fill(
+    records: &mut Records,
+    blocks: &[Block],
+    fitted: Option<&Fitted>,
+    plan: &Plan,
+    workers: usize,
+) {
+    let (corners, last_corners) = records.corners.split_at_mut(plan.total);
+    let (opposite, last_opposite) = records.opposite.split_at_mut(plan.total);
+    let (last_corners, last_opposite) = (&*last_corners, &*last_opposite);
+    let chunks = corners.chunks_mut(SHARE).zip(opposite.chunks_mut(SHARE));
+    let tasks = chunks.zip((0..).step_by(SHARE)).collect();
+    parallel::map(
+        workers,
+        tasks,
+        |((corners, opposite), start): ((&mut [_], &mut [_]), u32)| {
+            let before = |end: usize| plan.holes.partition_point(|&to| (to as usize) < end);
+            let here = before(start as usize)..before(start as usize + corners.len());
+            for i in here {
+                let to = (plan.holes[i] - start) as usize;
+                let filling = match (i.checked_sub(plan.added.len()), fitted) {
+                    (None, Some(fitted)) => plan.addition(plan.added[i] as usize, blocks, fitted),
+                    (Some(i), _) => {
+                        let from = plan.movers[i] as usize - plan.total;
+                        (last_corners[from], last_opposite[from])
+                    }
+                    (None, None) => continue, // Without a seam nothing is added.
+                };
+                (corners[to], opposite[to]) = filling;
+            }
+        },
+    );
+}
+
+/// Joins the tetrahedra of the seam to the blocks.
+fn tie(records: &mut Records, starts: &[usize], fitted: &Fitted, plan: &Plan) {
+    for joint in &fitted.joints {
         let record = starts[joint.block as usize] + tetrahedron(joint.inner) as usize;
         let own = plan.number(record);
         let other = plan.placed[tetrahedron(joint.outer) as usize];
-        records.opposite[own as usize][(joint.inner & 3) as usize] = other as i32;
-        if other != NONE {
-            records.opposite[other as usize][(joint.outer & 3) as usize] = own as i32;
-        }
+        records.opposite[own as usize][corner(joint.inner)] = other as i32;
+        records.opposite[other as usize][corner(joint.outer)] = own as i32;
     }
 }

@@ -22,11 +22,13 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
+use super::join::Arrays;
 use super::sphere::{Sphere, reach};
 use crate::error::{Error, Result};
-use crate::memory::{filled, push, with_room, zeroed};
-use crate::mesh3::{Code, Mesh3, tetrahedron};
+use crate::memory::{filled, push, with_room};
+use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
 use crate::order::space::Extent3;
+use crate::parallel;
 
 /// What a record is: nothing of the result, as ghosts and free ones;
 const NOTHING: u8 = 0;
@@ -86,8 +88,8 @@ pub struct Block {
     pub rows: Vec<u32>,
     /// For each record what it is.
     pub kinds: Vec<u8>,
-    /// The number of sound tetrahedra.
-    pub sound: usize,
+    /// The records that are not sound, ascending.
+    pub holes: Vec<u32>,
     /// Vertices in the seam, ascending, and their points.
     pub seam: Vec<(u32, Point3)>,
     /// Facets of sound tetrahedra towards what is not, with their corners.
@@ -95,6 +97,11 @@ pub struct Block {
 }
 
 impl Block {
+    /// The number of sound tetrahedra.
+    pub fn sound(&self) -> usize {
+        self.kinds.len() - self.holes.len()
+    }
+
     /// Finds what is sound in a triangulated block; everything is where there are no others.
     pub fn sift(
         points: &[Point3],
@@ -107,9 +114,10 @@ impl Block {
         for &t in mesh.free() {
             kinds[t as usize] = NOTHING;
         }
-        let (mut sound, mut loose) = (0, Vec::new());
+        let (mut holes, mut loose) = (Vec::new(), Vec::new());
         for (t, (kind, &sphere)) in (0u32..).zip(kinds.iter_mut().zip(spheres)) {
             if *kind == NOTHING {
+                push(&mut holes, t)?;
                 continue;
             }
             // Ghosts have no sphere.
@@ -128,10 +136,10 @@ impl Block {
             if disturbed {
                 *kind = LOOSE;
                 push(&mut loose, t)?;
+                push(&mut holes, t)?;
             } else if ghost.is_some() {
                 *kind = NOTHING;
-            } else {
-                sound += 1;
+                push(&mut holes, t)?;
             }
         }
         let mut seam = Vec::new();
@@ -153,7 +161,7 @@ impl Block {
         Ok(Self {
             rows,
             kinds,
-            sound,
+            holes,
             seam,
             border,
         })
@@ -161,11 +169,24 @@ impl Block {
 }
 
 /// The triangulation of a seam.
-pub struct Seam<'a> {
+pub struct Seam {
     /// For each of its vertices, the block and the vertex there.
     pub vertices: Vec<[u32; 2]>,
-    /// Its mesh.
-    pub mesh: Mesh3<'a>,
+    /// Its tetrahedra.
+    pub arrays: Arrays,
+}
+
+impl Seam {
+    /// The vertices of the seam of all blocks, and their points.
+    pub fn gather(blocks: &[Block]) -> Result<(Vec<[u32; 2]>, Vec<Point3>)> {
+        let count = blocks.iter().map(|b| b.seam.len()).sum();
+        let (mut vertices, mut points) = (with_room(count)?, with_room(count)?);
+        for (block, i) in blocks.iter().zip(0u32..) {
+            vertices.extend(block.seam.iter().map(|&(v, _)| [i, v]));
+            points.extend(block.seam.iter().map(|&(_, p)| p));
+        }
+        Ok((vertices, points))
+    }
 }
 
 /// A facet between what is sound and the rest.
@@ -178,74 +199,102 @@ pub struct Joint {
     pub outer: Code,
 }
 
-/// Finds each border facet of the blocks in the seam, with the rest of the triangulation beyond.
-pub fn joints(blocks: &[Block], seam: &Seam) -> Result<Vec<Joint>> {
-    // Vertices of blocks to those of the seam.
-    let mut numbers = Vec::with_capacity(blocks.len());
-    for block in blocks {
-        numbers.push(zeroed::<u32>(block.rows.len())?);
-    }
-    for (&[block, v], s) in seam.vertices.iter().zip(0..) {
-        numbers[block as usize][v as usize] = s;
-    }
-    // Border facets by their smallest vertex, each from its own side.
-    let facets = || {
-        blocks
-            .iter()
-            .zip(&numbers)
-            .zip(0..)
-            .flat_map(|((b, n), i)| {
-                b.border.iter().map(move |&(corners, e)| {
-                    let corners = corners.map(|v| n[v as usize]);
-                    (smallest_first(corners), i, e)
-                })
-            })
-    };
-    let mut first = filled(seam.vertices.len() + 2, 0u32)?;
-    for ([a, ..], ..) in facets() {
-        first[a as usize + 2] += 1;
-    }
-    for v in 2..first.len() {
-        first[v] += first[v - 1];
-    }
-    let mut sorted = filled(facets().count(), ([0u32; 2], 0u32, 0 as Code))?;
-    for ([a, b, c], block, e) in facets() {
-        let at = &mut first[a as usize + 1];
-        // The other side has it the other way round.
-        sorted[*at as usize] = ([c, b], block, e);
-        *at += 1;
-    }
-    let mut joints = with_room(sorted.len())?;
-    for t in 0..seam.mesh.records() as u32 {
-        for k in 0..4 {
-            let e = 4 * t + k;
-            let corners = seam.mesh.facet(e);
-            if corners.contains(&seam.mesh.infinite()) {
-                continue;
+/// Border facets of all blocks by the smallest of their corners, as vertices of the seam.
+struct Borders {
+    /// Where the facets of each vertex begin.
+    first: Vec<u32>,
+    /// The other two corners as seen from the seam, the block, and the facet there.
+    facets: Vec<([u32; 2], u32, Code)>,
+}
+
+impl Borders {
+    fn of(blocks: &[Block], seam: &Seam) -> Result<Self> {
+        // Vertices of blocks to those of the seam, which come block by block and ascend.
+        let mut start = 0;
+        let mut all = Vec::new();
+        for (block, i) in blocks.iter().zip(0..) {
+            let own = &seam.vertices[start..start + block.seam.len()];
+            for &(corners, e) in &block.border {
+                let place = |v: u32| own.partition_point(|&[_, w]| w < v) + start;
+                let [a, b, c] = smallest_first(corners.map(|v| place(v) as u32));
+                // The other side has it the other way round.
+                push(&mut all, (a, ([c, b], i, e)))?;
             }
-            let [a, b, c] = smallest_first(corners);
-            let bucket = first[a as usize] as usize..first[a as usize + 1] as usize;
-            for &(ends, block, inner) in &sorted[bucket] {
-                if ends == [b, c] && !seam.mesh.free().contains(&t) {
-                    joints.push(Joint {
-                        block,
-                        inner,
-                        outer: e,
-                    });
+            start += block.seam.len();
+        }
+        let mut first = filled(seam.vertices.len() + 2, 0u32)?;
+        for &(a, _) in &all {
+            first[a as usize + 2] += 1;
+        }
+        for v in 2..first.len() {
+            first[v] += first[v - 1];
+        }
+        let mut facets = filled(all.len(), ([0u32; 2], 0u32, 0 as Code))?;
+        for (a, facet) in all {
+            let at = &mut first[a as usize + 1];
+            facets[*at as usize] = facet;
+            *at += 1;
+        }
+        Ok(Self { first, facets })
+    }
+
+    /// The joint at a facet of the seam, if there is one.
+    #[inline]
+    fn joint(&self, corners: [u32; 3], outer: Code) -> Option<Joint> {
+        let [a, b, c] = smallest_first(corners);
+        let bucket = self.first[a as usize] as usize..self.first[a as usize + 1] as usize;
+        let &(_, block, inner) = self.facets[bucket].iter().find(|f| f.0 == [b, c])?;
+        Some(Joint {
+            block,
+            inner,
+            outer,
+        })
+    }
+}
+
+/// Finds each border facet of the blocks in the seam, with the rest of the triangulation beyond. One that has
+/// the outside beyond it is no joint.
+pub fn joints(blocks: &[Block], seam: &Seam, workers: usize) -> Result<Vec<Joint>> {
+    /// Tetrahedra that one task looks at.
+    const SHARE: usize = 1 << 14;
+    let borders = Borders::of(blocks, seam)?;
+    let Arrays {
+        simplices,
+        neighbors,
+    } = &seam.arrays;
+    let shares = simplices.chunks(SHARE).zip(neighbors.chunks(SHARE));
+    let tasks = (0u32..).step_by(SHARE).zip(shares).collect();
+    let found = parallel::map(workers, tasks, |(start, (simplices, neighbors))| {
+        let (mut joints, mut outside) = (Vec::new(), 0);
+        for (t, (corners, around)) in (start..).zip(simplices.iter().zip(neighbors)) {
+            for k in 0..4 {
+                let [a, b, c] = FACETS[k].map(|i| corners[i] as u32);
+                let e = 4 * t + k as u32;
+                if let Some(joint) = borders.joint([a, b, c], e) {
+                    push(&mut joints, joint)?;
                 }
+                outside += usize::from(around[k] < 0 && borders.joint([a, c, b], e).is_some());
             }
         }
+        Ok((joints, outside))
+    });
+    let (mut joints, mut outside) = (with_room(borders.facets.len())?, 0);
+    for share in found {
+        let (mut found, more) = share?;
+        joints.append(&mut found);
+        outside += more;
     }
-    if joints.len() == sorted.len() {
+    let (found, all) = (joints.len() + outside, borders.facets.len());
+    if found == all {
         Ok(joints)
     } else {
-        let (found, all) = (joints.len(), sorted.len());
         Err(Error::Internal(format!(
             "{found} of {all} facets of blocks are in the seam"
         )))
     }
 }
 
+#[inline]
 fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
@@ -256,30 +305,31 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// For each record of the seam whether it belongs to the whole.
+/// For each tetrahedron of the seam whether it belongs to the whole.
 pub fn rest(seam: &Seam, joints: &[Joint]) -> Result<Vec<bool>> {
-    let mesh = &seam.mesh;
-    let mut belongs = filled(mesh.records(), false)?;
-    let mut closed = filled(mesh.records(), 0u8)?;
-    let mut stack = Vec::new();
+    let neighbors = &seam.arrays.neighbors;
+    let mut belongs = filled(neighbors.len(), false)?;
+    // Bits of facets towards what is sound.
+    let mut closed = filled(neighbors.len(), 0u8)?;
     for joint in joints {
-        let t = tetrahedron(joint.outer);
-        closed[t as usize] |= 1 << (joint.outer & 3);
-        push(&mut stack, t)?;
+        closed[tetrahedron(joint.outer) as usize] |= 1 << corner(joint.outer);
     }
-    if joints.is_empty() {
-        // Nothing is sound: from any tetrahedron on.
-        let finite = |t: &u32| mesh.infinite_corner(*t).is_none() && !mesh.free().contains(t);
-        stack.extend((0..mesh.records() as u32).find(finite));
-    }
-    while let Some(t) = stack.pop() {
-        if belongs[t as usize] || mesh.infinite_corner(t).is_some() {
+    // Where nothing is sound: from any tetrahedron on.
+    let any = joints.is_empty().then_some(0);
+    let mut stack = Vec::new();
+    for t in joints.iter().map(|j| tetrahedron(j.outer)).chain(any) {
+        if std::mem::replace(&mut belongs[t as usize], true) {
             continue;
         }
-        belongs[t as usize] = true;
-        for (k, e) in mesh.opposites(t).into_iter().enumerate() {
-            if closed[t as usize] >> k & 1 == 0 {
-                push(&mut stack, tetrahedron(e))?;
+        push(&mut stack, t)?;
+        while let Some(t) = stack.pop() {
+            for (k, &next) in neighbors[t as usize].iter().enumerate() {
+                if next >= 0
+                    && closed[t as usize] >> k & 1 == 0
+                    && !std::mem::replace(&mut belongs[next as usize], true)
+                {
+                    push(&mut stack, next as u32)?;
+                }
             }
         }
     }

@@ -7,23 +7,36 @@ use std::time::{Duration, Instant};
 
 use delone_predicates::Point3;
 
+use super::cavity::Room;
 use super::insertion;
 use super::join::{Arrays, Fitted, join};
 use super::seam::{Block, Seam, Surroundings, joints, rest};
 use crate::error::{Error, Result};
 use crate::memory::{is_plausible, with_room};
 use crate::mesh3::{LIMIT, Mesh3, Records};
-use crate::order::space::{Arranged3, Extent3, arrange, arrange_rows};
-use crate::order::space_blocks::Cuts3;
+use crate::order::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
+use crate::order::space_blocks::{Cuts3, split};
 use crate::watch::Watch;
 use crate::{parallel, points};
 
-/// Most points that a block should hold. The seam of two halves of a million uniform points has 5 % of
-/// them, which are triangulated twice; smaller blocks have more.
-const BLOCK: usize = 1 << 19;
+/// Sizes of blocks.
+#[derive(Debug, Clone, Copy)]
+struct Sizes {
+    /// Most points that a block should hold.
+    block: usize,
+    /// Fewest points of a seam that a block should hold.
+    seam: usize,
+    /// Points a block in the sample on which it is tried whether blocks are worth it.
+    sample: usize,
+}
 
-/// Points of which one stands for so many, where it is tried whether blocks are worth it.
-const SAMPLE: usize = 64;
+/// The seam of two halves of a million uniform points has 5 % of them, which are triangulated twice; smaller
+/// blocks have more.
+const SIZES: Sizes = Sizes {
+    block: 1 << 19,
+    seam: 1 << 13,
+    sample: 1 << 11,
+};
 
 /// A part of the work and the time it took.
 pub type Stage = (&'static str, Duration);
@@ -41,220 +54,256 @@ pub struct Triangulation3 {
 
 /// The canonical Delaunay triangulation of `input`; the same arrays for any number of workers.
 pub fn triangulate(input: &[Point3], workers: usize, watch: &Watch) -> Result<Triangulation3> {
-    in_blocks(input, BLOCK, workers, watch)
+    in_blocks(input, SIZES, workers, watch)
 }
 
 fn in_blocks(
     input: &[Point3],
-    block: usize,
+    sizes: Sizes,
     workers: usize,
     watch: &Watch,
 ) -> Result<Triangulation3> {
     let mut clock = Clock::start();
     points::scan(input)?;
     clock.lap("scan");
-    if input.len() > block {
-        let cuts = Cuts3::of(input, block);
-        if pays(input, &cuts, workers, watch)? {
-            clock.lap("sample");
-            if let Some(made) = joined(input, &cuts, workers, watch, &mut clock)? {
-                return Ok(made);
-            }
+    let task = Task {
+        sizes,
+        workers,
+        watch,
+    };
+    if input.len() > sizes.block {
+        let blocks = input.len().div_ceil(sizes.block).next_power_of_two();
+        let cuts = Cuts3::of(input, blocks)?;
+        let pays = task.pays(input, &cuts)?;
+        clock.lap("sample");
+        if pays && let Some((arrays, duplicates)) = task.joined(input, &cuts, &mut clock)? {
+            return Ok(Triangulation3 {
+                arrays,
+                duplicates,
+                stages: clock.stages,
+            });
         }
     }
-    let mut arranged = arrange(input, watch)?;
-    clock.lap("order");
-    // The vertex at infinity.
-    arranged.points.push([f64::NAN; 3]);
-    let Some((records, rooms, blocks)) = built(std::slice::from_ref(&arranged), None, 1, watch)?
-    else {
-        arranged.points.pop();
-        let Arranged3 { points, rows, .. } = arranged;
-        return Err(points::degenerate_in_space(&points, &rows));
-    };
-    clock.lap("build");
-    drop(std::mem::take(&mut arranged.points));
-    let arrays = join(records, &rooms, &blocks, None, workers)?;
-    clock.lap("join");
-    Ok(Triangulation3 {
-        arrays,
-        duplicates: arranged.duplicates,
-        stages: clock.stages,
-    })
-}
-
-/// Whether blocks are worth it: not where most points would be in the seam, as for points on a
-/// sphere, whose tetrahedra all have the one sphere.
-fn pays(input: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<bool> {
-    let mut sample = with_room(input.len() / SAMPLE + 1)?;
-    sample.extend(input.iter().copied().step_by(SAMPLE));
-    let parts = parts(&sample, cuts, workers, watch)?;
-    let Some((_, _, blocks)) = built(&parts, Some(cuts), workers, watch)? else {
-        return Ok(false);
-    };
-    let in_seam = blocks.iter().map(|b| b.seam.len()).sum::<usize>();
-    Ok(4 * in_seam <= 3 * sample.len())
-}
-
-/// The triangulation by blocks; nothing where a block or the seam is degenerate.
-fn joined(
-    input: &[Point3],
-    cuts: &Cuts3,
-    workers: usize,
-    watch: &Watch,
-    clock: &mut Clock,
-) -> Result<Option<Triangulation3>> {
-    let mut parts = parts(input, cuts, workers, watch)?;
-    clock.lap("order");
-    let Some((records, rooms, blocks)) = built(&parts, Some(cuts), workers, watch)? else {
-        return Ok(None);
-    };
-    clock.lap("build");
-    let mut duplicates = Vec::new();
-    for part in &mut parts {
-        duplicates.append(&mut part.duplicates);
+    match task.single(input, 1, &mut clock)? {
+        Ok((arrays, duplicates)) => Ok(Triangulation3 {
+            arrays,
+            duplicates,
+            stages: clock.stages,
+        }),
+        Err(Arranged3 { points, rows, .. }) => Err(points::degenerate_in_space(&points, &rows)),
     }
-    duplicates.sort_unstable();
-    drop(parts);
-    let arrays = sewn(records, &rooms, &blocks, workers, watch, clock)?;
-    Ok(arrays.map(|arrays| Triangulation3 {
-        arrays,
-        duplicates,
-        stages: std::mem::take(&mut clock.stages),
-    }))
 }
 
-/// The points of each block along the curve, and one of NaN.
-fn parts(input: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<Vec<Arranged3>> {
-    let parts = parallel::map(workers, cuts.split(input)?, |(points, rows)| {
-        let mut arranged = arrange_rows(&points, Some(&rows), watch)?;
-        arranged.points.push([f64::NAN; 3]);
-        Ok(arranged)
-    });
-    parts.into_iter().collect()
-}
+/// Tetrahedra, and rows of points that others have, too.
+type Made = (Arrays, Vec<[u32; 2]>);
 
 /// Records of all blocks, the room of each, and what is sound in it.
 type Built = (Records, Vec<usize>, Vec<Block>);
 
-/// Triangulates each block and finds what is sound in it; nothing where one is degenerate. Where the
-/// room for records does not suffice, which is for sets that are far from scattered, it begins again with
-/// twice as much: all attempts together cost less than twice the last.
-fn built(
-    parts: &[Arranged3],
-    cuts: Option<&Cuts3>,
+/// What goes for all parts of one triangulation.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    sizes: Sizes,
     workers: usize,
-    watch: &Watch,
-) -> Result<Option<Built>> {
-    let mut times = 1;
-    loop {
-        match attempt(parts, cuts, times, workers, watch) {
-            Err(Error::TooManyTetrahedra { limit }) if limit < LIMIT => times *= 2,
-            outcome => return outcome,
-        }
-    }
+    watch: &'a Watch<'a>,
 }
 
-fn attempt(
-    parts: &[Arranged3],
-    cuts: Option<&Cuts3>,
-    times: usize,
-    workers: usize,
-    watch: &Watch,
-) -> Result<Option<Built>> {
-    let vertices = |part: &Arranged3| part.points.len() - 1;
-    let rooms: Vec<(usize, usize)> = parts
-        .iter()
-        .map(|part| {
-            let room = times.saturating_mul(Records::room(vertices(part)));
-            (room.min(LIMIT / parts.len()), vertices(part))
-        })
-        .collect();
-    let boxes: Vec<Extent3> = parts
-        .iter()
-        .map(|part| Extent3::of(part.points[..vertices(part)].iter().copied()))
-        .collect();
-    let room = rooms.iter().map(|&(room, _)| room).sum();
-    check_memory(times, room)?;
-    let mut records = Records::with_room(room)?;
-    let meshes = records.meshes(&rooms);
-    let tasks = parts.iter().zip(meshes).enumerate().collect();
-    let made = parallel::map(
-        workers,
-        tasks,
-        |(i, (part, mesh)): (usize, (&Arranged3, Mesh3))| {
-            let around = Surroundings {
-                cell: cuts.map_or(Extent3::EVERYWHERE, |cuts| cuts.cell(i)),
-                others: [&boxes[..i], &boxes[i + 1..]].concat(),
-            };
-            let Some((mesh, spheres)) = insertion::build(&part.points, mesh, watch)? else {
-                return Ok(None);
-            };
-            Block::sift(&part.points, part.rows.clone(), &mesh, &spheres, &around).map(Some)
-        },
-    );
-    let blocks: Result<Option<Vec<Block>>> = made.into_iter().collect();
-    let rooms = rooms.into_iter().map(|(room, _)| room).collect();
-    Ok(blocks?.map(|blocks| (records, rooms, blocks)))
+impl Task<'_> {
+    /// The triangulation in one block with room for `times` as many records as usual; the points in order
+    /// where they are degenerate.
+    fn single(
+        self,
+        input: &[Point3],
+        times: usize,
+        clock: &mut Clock,
+    ) -> Result<std::result::Result<Made, Arranged3>> {
+        let mut arranged = arrange(input, self.watch)?;
+        clock.lap("order");
+        // The vertex at infinity.
+        arranged.points.push([f64::NAN; 3]);
+        let parts = std::slice::from_ref(&arranged);
+        let Some((records, rooms, blocks)) = self.built(parts, None, times)? else {
+            arranged.points.pop();
+            return Ok(Err(arranged));
+        };
+        clock.lap("build");
+        drop(std::mem::take(&mut arranged.points));
+        let arrays = join(records, &rooms, &blocks, None, self.workers)?;
+        clock.lap("join");
+        Ok(Ok((arrays, arranged.duplicates)))
+    }
+
+    /// Whether blocks are worth it: not where most points would be in the seam, as for points on a
+    /// sphere, whose tetrahedra all have the one sphere.
+    fn pays(self, input: &[Point3], cuts: &Cuts3) -> Result<bool> {
+        // Odd, as rows of a grid come in periods.
+        let step = (input.len() / (self.sizes.sample * cuts.blocks())) | 1;
+        let mut sample = with_room(input.len() / step + 1)?;
+        sample.extend(input.iter().step_by(step));
+        let parts = self.parts(&sample, cuts)?;
+        let Some((_, _, blocks)) = self.built(&parts, Some(cuts), 1)? else {
+            return Ok(false);
+        };
+        let in_seam = blocks.iter().map(|b| b.seam.len()).sum::<usize>();
+        Ok(4 * in_seam <= 3 * sample.len())
+    }
+
+    /// The triangulation by blocks; nothing where a block or the seam is degenerate.
+    fn joined(self, input: &[Point3], cuts: &Cuts3, clock: &mut Clock) -> Result<Option<Made>> {
+        let mut parts = self.parts(input, cuts)?;
+        clock.lap("order");
+        let Some((records, rooms, blocks)) = self.built(&parts, Some(cuts), 1)? else {
+            return Ok(None);
+        };
+        clock.lap("build");
+        let mut duplicates = Vec::new();
+        for part in &mut parts {
+            duplicates.append(&mut part.duplicates);
+        }
+        duplicates.sort_unstable();
+        drop(parts);
+        let Some(fitted) = self.fitted(input.len(), &blocks)? else {
+            return Ok(None);
+        };
+        clock.lap("seam");
+        let arrays = join(records, &rooms, &blocks, Some(&fitted), self.workers)?;
+        clock.lap("join");
+        Ok(Some((arrays, duplicates)))
+    }
+
+    /// The points of each block along the curve, and one of NaN.
+    fn parts(self, input: &[Point3], cuts: &Cuts3) -> Result<Vec<Arranged3>> {
+        let blocks = split(input, cuts, self.workers)?;
+        let mut tasks = Vec::with_capacity(cuts.blocks());
+        for (points, rows) in blocks.each() {
+            tasks.push((points, rows, Room3::of(points.len())?));
+        }
+        let parts = parallel::map(self.workers, tasks, |(points, rows, room)| {
+            let mut arranged = arrange_rows(points, Some(rows), room, self.watch)?;
+            arranged.points.push([f64::NAN; 3]);
+            Ok(arranged)
+        });
+        parts.into_iter().collect()
+    }
+
+    /// Triangulates each block and finds what is sound in it; nothing where one is degenerate. Where the
+    /// room for records does not suffice, which is for sets that are far from scattered, it begins again
+    /// with twice as much: all attempts together cost less than twice the last.
+    fn built(
+        self,
+        parts: &[Arranged3],
+        cuts: Option<&Cuts3>,
+        mut times: usize,
+    ) -> Result<Option<Built>> {
+        let mut first = true;
+        loop {
+            match self.attempt(parts, cuts, times, first) {
+                Err(Error::TooManyTetrahedra { limit }) if limit < LIMIT => times *= 2,
+                outcome => return outcome,
+            }
+            first = false;
+        }
+    }
+
+    fn attempt(
+        self,
+        parts: &[Arranged3],
+        cuts: Option<&Cuts3>,
+        times: usize,
+        first: bool,
+    ) -> Result<Option<Built>> {
+        let vertices = |part: &Arranged3| part.points.len() - 1;
+        let rooms: Vec<(usize, usize)> = parts
+            .iter()
+            .map(|part| {
+                let room = times.saturating_mul(Records::room(vertices(part)));
+                (room.min(LIMIT / parts.len()), vertices(part))
+            })
+            .collect();
+        let boxes: Vec<Extent3> = parts
+            .iter()
+            .map(|part| Extent3::of(part.points[..vertices(part)].iter().copied()))
+            .collect();
+        let room = rooms.iter().map(|&(room, _)| room).sum();
+        if !first {
+            check_memory(room)?;
+        }
+        let mut records = Records::with_room(room)?;
+        let meshes = records.meshes(&rooms);
+        let mut tasks = Vec::with_capacity(parts.len());
+        for (((i, part), mesh), &(room, vertices)) in
+            parts.iter().enumerate().zip(meshes).zip(&rooms)
+        {
+            tasks.push((i, part, mesh, Room::of(room, vertices)?));
+        }
+        let made = parallel::map(
+            self.workers,
+            tasks,
+            |(i, part, mesh, room): (usize, &Arranged3, Mesh3, Room)| {
+                let around = Surroundings {
+                    cell: cuts.map_or(Extent3::EVERYWHERE, |cuts| cuts.cell(i)),
+                    others: [&boxes[..i], &boxes[i + 1..]].concat(),
+                };
+                let Some((mesh, room)) = insertion::build(&part.points, mesh, room, self.watch)?
+                else {
+                    return Ok(None);
+                };
+                let rows = part.rows.clone();
+                Block::sift(&part.points, rows, &mesh, &room.spheres, &around).map(Some)
+            },
+        );
+        let blocks: Result<Option<Vec<Block>>> = made.into_iter().collect();
+        let rooms = rooms.into_iter().map(|(room, _)| room).collect();
+        Ok(blocks?.map(|blocks| (records, rooms, blocks)))
+    }
+
+    /// Triangulates the seam of the blocks of `whole` points and finds where it meets them; nothing where it
+    /// is degenerate.
+    fn fitted(self, whole: usize, blocks: &[Block]) -> Result<Option<Fitted>> {
+        let (vertices, points) = Seam::gather(blocks)?;
+        let Some(arrays) = self.seam(&points, whole, blocks.len())? else {
+            return Ok(None);
+        };
+        let seam = Seam { vertices, arrays };
+        let joints = joints(blocks, &seam, self.workers)?;
+        let belongs = rest(&seam, &joints)?;
+        Ok(Some(Fitted {
+            seam,
+            belongs,
+            joints,
+        }))
+    }
+
+    /// The tetrahedra of a seam: in as many blocks as made it, where it is large enough for them, and has at
+    /// most half of the points, so that a seam of seams ends.
+    fn seam(self, points: &[Point3], whole: usize, blocks: usize) -> Result<Option<Arrays>> {
+        let mut clock = Clock::start();
+        let blocks = blocks.min(1 << (points.len() / self.sizes.seam).max(1).ilog2());
+        if blocks > 1 && points.len() <= whole / 2 {
+            let cuts = Cuts3::of(points, blocks)?;
+            if let Some((arrays, _)) = self.joined(points, &cuts, &mut clock)? {
+                return Ok(Some(arrays));
+            }
+        }
+        // Twice the room, as the points are all but scattered.
+        Ok(self
+            .single(points, 2, &mut clock)?
+            .ok()
+            .map(|(arrays, _)| arrays))
+    }
 }
 
 /// Refuses a further attempt that would want more memory than there is. (A quadratic triangulation would
 /// else grow until the system ends the process.)
-fn check_memory(times: usize, room: usize) -> Result<()> {
+fn check_memory(room: usize) -> Result<()> {
     /// Corners, facets, sphere and mark of a record.
     const RECORD: usize = 16 + 16 + 32 + 4;
     let bytes = room * RECORD;
-    if times > 1 && !is_plausible(bytes) {
-        return Err(Error::Memory { bytes });
+    if is_plausible(bytes) {
+        Ok(())
+    } else {
+        Err(Error::Memory { bytes })
     }
-    Ok(())
-}
-
-/// Triangulates the seam and makes arrays of all; nothing where the seam is degenerate.
-fn sewn(
-    records: Records,
-    rooms: &[usize],
-    blocks: &[Block],
-    workers: usize,
-    watch: &Watch,
-    clock: &mut Clock,
-) -> Result<Option<Arrays>> {
-    let count = blocks.iter().map(|b| b.seam.len()).sum();
-    let mut points: Vec<Point3> = with_room(count)?;
-    let mut names = with_room(count)?;
-    for (block, i) in blocks.iter().zip(0u32..) {
-        points.extend(block.seam.iter().map(|&(_, p)| p));
-        names.extend(block.seam.iter().map(|&(v, _)| [i, v]));
-    }
-    let mut arranged = arrange(&points, watch)?;
-    arranged.points.push([f64::NAN; 3]);
-    let mut times = 2;
-    let room = |times: usize| (times * Records::room(count)).min(LIMIT);
-    let mut own = Records::with_room(room(times))?;
-    let mesh = loop {
-        let mesh = own.meshes(&[(room(times), arranged.rows.len())]).remove(0);
-        match insertion::build(&arranged.points, mesh, watch) {
-            Err(Error::TooManyTetrahedra { limit }) if limit < LIMIT => times *= 2,
-            Ok(None) => return Ok(None),
-            Ok(Some((mesh, _))) => break mesh,
-            Err(other) => return Err(other),
-        }
-        check_memory(times, room(times))?;
-        own = Records::with_room(room(times))?;
-    };
-    let vertices = arranged.rows.iter().map(|&i| names[i as usize]).collect();
-    let seam = Seam { vertices, mesh };
-    let joints = joints(blocks, &seam)?;
-    let belongs = rest(&seam, &joints)?;
-    clock.lap("seam");
-    let fitted = Fitted {
-        seam,
-        belongs,
-        joints,
-    };
-    let arrays = join(records, rooms, blocks, Some(&fitted), workers)?;
-    clock.lap("join");
-    Ok(Some(arrays))
 }
 
 /// Times the stages one after the other.
@@ -287,8 +336,14 @@ mod tests {
 
     /// The tetrahedra in blocks of some sizes, valid and all the same.
     fn same_in_blocks(points: &[Point3]) {
-        let sets = [usize::MAX, points.len() / 2 + 1, points.len() / 7 + 1].map(|block| {
-            let made = in_blocks(points, block, 2, &Watch::idle()).unwrap();
+        let n = points.len();
+        let sets = [usize::MAX, n / 2 + 1, n / 7 + 1, n / 30 + 1].map(|block| {
+            let sizes = Sizes {
+                block,
+                seam: 60,
+                sample: 500,
+            };
+            let made = in_blocks(points, sizes, 2, &Watch::idle()).unwrap();
             let given = Given3 {
                 points,
                 simplices: &made.arrays.simplices,
@@ -296,7 +351,7 @@ mod tests {
             };
             let found = validate(given, &Watch::idle()).unwrap();
             assert_eq!(found, Findings3::default());
-            let one = in_blocks(points, block, 1, &Watch::idle()).unwrap();
+            let one = in_blocks(points, sizes, 1, &Watch::idle()).unwrap();
             assert_eq!(one.arrays.simplices, made.arrays.simplices);
             assert_eq!(one.arrays.neighbors, made.arrays.neighbors);
             let sorted = |t: &[i32; 4]| {
@@ -353,5 +408,57 @@ mod tests {
         let mut far = random(2000);
         far.extend(random(2000).into_iter().map(|p| p.map(|x| 1e9 + x)));
         same_in_blocks(&far);
+    }
+
+    /// The tetrahedra by blocks whether that pays or not, and in one, as sets of rows.
+    fn same_when_joined(points: &[Point3], blocks: usize) {
+        let watch = Watch::idle();
+        let task = |seam: usize| Task {
+            sizes: Sizes { seam, ..SIZES },
+            workers: 3,
+            watch: &watch,
+        };
+        let set = |(arrays, duplicates): Made| {
+            let sorted = arrays.simplices.into_iter().map(|mut t| {
+                t.sort_unstable();
+                t
+            });
+            (sorted.collect::<BTreeSet<[i32; 4]>>(), duplicates)
+        };
+        let clock = &mut Clock::start();
+        let single = set(task(0).single(points, 1, clock).unwrap().unwrap());
+        let cuts = Cuts3::of(points, blocks).unwrap();
+        for seam in [20, usize::MAX / 4] {
+            let joined = task(seam).joined(points, &cuts, clock).unwrap();
+            assert_eq!(joined.map(set).as_ref(), Some(&single));
+        }
+    }
+
+    #[test]
+    fn seams_of_seams_make_the_same_tetrahedra() {
+        for blocks in [2, 4, 32] {
+            same_when_joined(&random(6000), blocks);
+            let twice = random(6000)
+                .into_iter()
+                .map(|p| p.map(|x| (x * 9.0).floor()));
+            same_when_joined(&twice.collect::<Vec<_>>(), blocks);
+        }
+    }
+
+    #[test]
+    fn seams_of_spheres_and_of_far_clusters_make_the_same_tetrahedra() {
+        let unit = |q: Point3| {
+            let r = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+            q.map(|x| x / r)
+        };
+        let sphere = random(3000).into_iter().map(|p| unit(p.map(|x| x - 0.5)));
+        let sphere: Vec<Point3> = sphere.collect();
+        let mut scales = random(1500);
+        scales.extend(random(1500).into_iter().map(|p| p.map(|x| 1e12 + 1e9 * x)));
+        scales.extend(random(1500).into_iter().map(|p| p.map(|x| -1e-9 * x)));
+        for blocks in [2, 8] {
+            same_when_joined(&sphere, blocks);
+            same_when_joined(&scales, blocks);
+        }
     }
 }

@@ -99,26 +99,58 @@ pub struct Arranged3 {
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// Arranges finite `points`; the order hangs on the coordinates alone.
-pub fn arrange(points: &[Point3], watch: &Watch) -> Result<Arranged3> {
-    arrange_rows(points, None, watch)
+/// Room for the arrangement of some points. To be made by the thread that starts others: what they ask for
+/// themselves the allocator may give back to the system each time, and fresh pages cost more than the sort.
+#[derive(Debug)]
+pub struct Room3 {
+    items: Vec<u64>,
+    other: Vec<u64>,
+    out: Arranged3,
 }
 
-/// The same where `points` are but some of the rows, which are given and ascend.
-pub fn arrange_rows(points: &[Point3], rows: Option<&[u32]>, watch: &Watch) -> Result<Arranged3> {
+impl Room3 {
+    /// Room for `n` points.
+    pub fn of(n: usize) -> Result<Self> {
+        let out = Arranged3 {
+            points: with_room(n + 1)?,
+            rows: with_room(n)?,
+            duplicates: Vec::new(),
+        };
+        Ok(Self {
+            items: with_room(n)?,
+            other: with_room(n)?,
+            out,
+        })
+    }
+}
+
+/// Arranges finite `points`; the order hangs on the coordinates alone.
+pub fn arrange(points: &[Point3], watch: &Watch) -> Result<Arranged3> {
+    arrange_rows(points, None, Room3::of(points.len())?, watch)
+}
+
+/// The same in `room` where `points` are but some of the rows, which are given and ascend.
+pub fn arrange_rows(
+    points: &[Point3],
+    rows: Option<&[u32]>,
+    room: Room3,
+    watch: &Watch,
+) -> Result<Arranged3> {
     let cells = Cells::of(&Extent3::of(points.iter().copied()));
     let low_bit = 32 - fine_bits(points.len());
     let mask = u64::MAX << (32 + low_bit);
-    let mut items = with_room(points.len())?;
+    let Room3 {
+        mut items,
+        mut other,
+        out,
+    } = room;
     items.extend((0u64..).zip(points).map(|(i, &p)| cells.key(p) & mask | i));
     watch.check()?;
-    let mut other = Vec::new();
     radix::sort(&mut items, &mut other, low_bit)?;
-    drop(other);
     watch.check()?;
     order_runs(points, &mut items);
     watch.check()?;
-    collect(points, rows, &items)
+    collect(points, rows, &items, out)
 }
 
 /// Bits of a key that are worth sorting by, in whole digits of the sort.
@@ -171,12 +203,12 @@ fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
     }
 }
 
-fn collect(points: &[Point3], rows: Option<&[u32]>, items: &[u64]) -> Result<Arranged3> {
-    let mut out = Arranged3 {
-        points: with_room(points.len() + 1)?,
-        rows: with_room(points.len())?,
-        duplicates: Vec::new(),
-    };
+fn collect(
+    points: &[Point3],
+    rows: Option<&[u32]>,
+    items: &[u64],
+    mut out: Arranged3,
+) -> Result<Arranged3> {
     let (mut last, mut first) = ([f64::NAN; 3], 0);
     for &item in items {
         // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
