@@ -180,7 +180,7 @@ impl<'a> Kernel<'a> {
     pub fn insert(&mut self, p: u32, near: u32, aim: Point3) -> Result<u32> {
         let seed = self.seed(p, near)?;
         let (gone, rims) = self.carve(p, seed)?;
-        if rims <= RIM && self.number(p, rims) {
+        if rims <= RIM && self.number(p, gone, rims) {
             self.fill(p, gone, rims, aim)
         } else {
             self.fill_large(p, gone, rims)
@@ -300,25 +300,32 @@ impl<'a> Kernel<'a> {
 
     /// Notes the corners of the hole's facets and numbers them; `false` where there are too many.
     #[inline(always)]
-    fn number(&mut self, p: u32, rims: usize) -> bool {
+    fn number(&mut self, p: u32, gone: usize, rims: usize) -> bool {
         let star = &mut *self.star;
         let mut vertices = 0;
+        // All corners of the cavity are on its border. Each record but the first brings one, at most.
+        for v in self.mesh.corners(tetrahedron(self.cavity[0])) {
+            self.place[v as usize] = vertices as u8;
+            star.vertices[vertices] = v;
+            vertices += 1;
+        }
+        for &e in &self.cavity[1..gone] {
+            let v = self.mesh.apex(e);
+            let place = self.place[v as usize];
+            let new = star.vertices[usize::from(place)] != v || usize::from(place) >= vertices;
+            let place = if new { vertices as u8 } else { place };
+            self.place[v as usize] = place;
+            star.vertices[usize::from(place)] = v;
+            vertices += usize::from(new);
+            if vertices > STAR {
+                return false;
+            }
+        }
         for (i, &e) in self.rim[..rims].iter().enumerate() {
             let corners = self.mesh.facet(e);
             star.across[i & (RIM - 1)] = self.mesh.opposite(e);
             star.corners[i & (RIM - 1)] = corners;
-            for (k, v) in corners.into_iter().enumerate() {
-                let place = self.place[v as usize];
-                let new = star.vertices[usize::from(place)] != v || usize::from(place) >= vertices;
-                let place = if new { vertices as u8 } else { place };
-                self.place[v as usize] = place;
-                star.vertices[usize::from(place)] = v;
-                star.places[i & (RIM - 1)][k] = place;
-                vertices += usize::from(new);
-            }
-            if vertices > STAR {
-                return false;
-            }
+            star.places[i & (RIM - 1)] = corners.map(|v| self.place[v as usize]);
         }
         let origin = self.points[p as usize];
         for (i, &v) in star.vertices[..vertices].iter().enumerate() {

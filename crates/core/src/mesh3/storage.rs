@@ -114,6 +114,12 @@ impl Mesh3<'_> {
         [corners[a] as u32, corners[b] as u32, corners[c] as u32]
     }
 
+    /// The corner that facet e is opposite to.
+    #[inline(always)]
+    pub fn apex(&self, e: Code) -> u32 {
+        self.corners[tetrahedron(e) as usize][corner(e)] as u32
+    }
+
     /// The records that hold nothing.
     pub fn free(&self) -> &[u32] {
         &self.free
