@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone import ConstrainedDelaunay
-    from delone.cli.show import Row
     from delone.io import PointSet
     from delone.io.registry import Mesh
 
@@ -195,7 +194,7 @@ def _first(mesh: ConstrainedDelaunay, crossings: NDArray[np.int32]) -> list[dict
     ]
 
 
-def constraint_rows(figures: dict[str, Any]) -> list[Row]:
+def constraint_rows(figures: dict[str, Any]) -> list[tuple[str, str]]:
     """Return the rows of the report that speak of lines and polygons.
 
     Parameters
