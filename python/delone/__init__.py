@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from delone import predicates
 from delone._core import __version__
-from delone.constrained import ConstrainedDelaunay
-from delone.constrained_validation import ConstrainedReport
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.editing import Editing
+from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
+from delone.constrained.segments import SegmentReport
+from delone.constrained.validation import ConstrainedReport
 from delone.delaunay import Delaunay
-from delone.editing import Editing
 from delone.errors import (
     BudgetExceededError,
     CrossingSegmentsError,
@@ -34,15 +36,13 @@ from delone.hull import ConvexHull
 from delone.improve import improve
 from delone.improvement import ImproveReport
 from delone.lawson import LawsonResult, lawson
-from delone.meshed import Mesh
 from delone.periodic import PeriodicDelaunay
-from delone.polygons import PolygonTriangles, from_geometry, triangulate_polygon
 from delone.quality import Quality
 from delone.quality3 import TetQuality
-from delone.refine import mesh
-from delone.refinement import MeshReport
+from delone.refine.meshed import Mesh
+from delone.refine.refine import mesh
+from delone.refine.report import MeshReport
 from delone.regular import RegularTriangulation
-from delone.segments import SegmentReport
 from delone.tetmesh import TetMesh
 from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd

@@ -18,8 +18,8 @@ from delone.shading import facet_values
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.constrained import ConstrainedDelaunay
-    from delone.meshed import Mesh
+    from delone.constrained.delaunay import ConstrainedDelaunay
+    from delone.refine.meshed import Mesh
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]

@@ -11,7 +11,7 @@ from delone.io.extras import require
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.meshed import Mesh
+    from delone.refine.meshed import Mesh
     from delone.tetmesh import TetMesh
 
 __all__ = [

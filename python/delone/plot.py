@@ -14,11 +14,11 @@ import numpy as np
 
 from delone import cartography
 from delone.atomic import replacing
-from delone.constrained import ConstrainedDelaunay
+from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
-from delone.meshed import Mesh as QualityMesh
+from delone.refine.meshed import Mesh as QualityMesh
 from delone.shading import Raster, facet_light, point_density, rasterize, relief
 
 if TYPE_CHECKING:

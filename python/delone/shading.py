@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from delone.constrained import ConstrainedDelaunay
+from delone.constrained.delaunay import ConstrainedDelaunay
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from delone.delaunay import Delaunay
 
     Floats = NDArray[np.float64]
-    from delone.meshed import Mesh as QualityMesh
+    from delone.refine.meshed import Mesh as QualityMesh
 
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 

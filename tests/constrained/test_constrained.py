@@ -14,7 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import delone
-from delone import ConstrainedDelaunay, Delaunay, constrained_validation, topology
+from delone import ConstrainedDelaunay, Delaunay, topology
+from delone.constrained import validation
 
 OUTER = [(0, 0), (6, 0), (6, 6), (0, 6)]
 INNER = [(2, 2), (4, 2), (4, 4), (2, 4)]
@@ -499,7 +500,7 @@ class TestValidation:
             found["source"] = np.append(found["source"], 0).astype(np.int32)
             found["forward"] = np.append(found["forward"], True)
             found["source_start"] = np.append(found["source_start"], len(found["source"]))
-        report = constrained_validation.validate(found, frame.duplicate_of)
+        report = validation.validate(found, frame.duplicate_of)
         assert not report
         assert len(getattr(report, culprit))
         assert culprit in str(report)
@@ -517,7 +518,7 @@ class TestValidation:
             "source_start": np.zeros(1, dtype=np.int64),
             "input": np.empty((0, 2), dtype=np.int32),
         }
-        report = constrained_validation.validate(found, mesh.duplicate_of)
+        report = validation.validate(found, mesh.duplicate_of)
         assert report.delaunay.tolist() == [[0, 1]]
         assert mesh.validate()
 
@@ -526,6 +527,6 @@ class TestValidation:
         found = dict(mesh._found)
         found["input"] = np.array([[0, 1], [2, 2]], dtype=np.int32)
         found["source"] = np.zeros(2, dtype=np.int32)
-        report = constrained_validation.validate(found, mesh.duplicate_of)
+        report = validation.validate(found, mesh.duplicate_of)
         assert report.bent.tolist() == [[0, 2]]
         assert report.uncovered.size == 0

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import delone
 from delone import ConstrainedDelaunay, PolygonTriangles, errors, from_geometry, triangulate_polygon
-from delone.geodata import parts_of
+from delone.constrained.geodata import parts_of
 
 RING = [(0, 0), (6, 0), (6, 6), (0, 6)]
 HOLE = [(2, 2), (4, 2), (4, 4), (2, 4)]

@@ -30,8 +30,8 @@ PUBLIC = {
     "datasets",
     "hull",
     "lawson",
-    "meshed",
     "predicates",
+    "refine",
     "tetmesh",
     "validation",
 }
@@ -62,49 +62,22 @@ PYTHON: dict[str, set[str]] = {
     "triangulation": {"_core", "geometry", "location", "plot", "topology"} | FOUNDATION,
     "delaunay": {"_core", "archive", "periodic", "space", "triangulation", "validation"}
     | FOUNDATION,
-    "segments": {"topology"},
-    "regions": {"_core"},
-    "coverage": {"topology"},
-    "geodata": {"errors"},
-    "constrained_validation": {"_core", "topology", "validation"},
-    "segmented": {"_core", "coverage", "regions", "segments", "topology", "triangulation"}
+    "constrained": {"_core", "archive", "location", "topology", "triangulation", "validation"}
     | FOUNDATION,
-    "constrained": {
+    "quality": {"geometry", "plot", "triangulation"},
+    "quality3": {"plot"},
+    "refine": {
         "_core",
         "archive",
-        "constrained_validation",
-        "editing",
-        "geodata",
-        "location",
-        "regions",
-        "segmented",
+        "constrained",
+        "exchange",
+        "geometry",
+        "quality",
         "topology",
         "triangulation",
     }
     | FOUNDATION,
-    "editing": {"constrained", "topology", "triangulation"} | FOUNDATION,
-    "polygons": {"_core", "constrained", "geodata", "triangulation"} | FOUNDATION,
-    "domains": {"_core", "constrained", "topology"} | FOUNDATION,
-    "quality": {"geometry", "plot", "triangulation"},
-    "quality3": {"plot"},
-    "refinement": {"domains", "quality", "triangulation"},
-    "meshed": {
-        "adaptivity",
-        "archive",
-        "domains",
-        "exchange",
-        "quality",
-        "refinement",
-        "smoothing",
-        "topology",
-        "triangulation",
-    },
-    "sizing": {"_core", "domains", "geometry", "triangulation"} | FOUNDATION,
-    "refine": {"constrained", "domains", "meshed", "polygons", "sizing"} | FOUNDATION,
-    "smoothing": {"domains", "geometry", "meshed", "quality"} | FOUNDATION,
-    "adaptivity": {"domains", "geometry", "meshed", "refine", "sizing", "smoothing", "topology"}
-    | FOUNDATION,
-    "exchange": {"io", "meshed", "tetmesh"},
+    "exchange": {"io", "refine", "tetmesh"},
     "improvement": {"plot", "quality3", "triangulation"},
     "tetmesh": {"exchange", "improvement", "quality3", "triangulation"},
     "improve": {"_core", "improvement", "quality3", "tetmesh"} | FOUNDATION,
@@ -123,9 +96,7 @@ PYTHON: dict[str, set[str]] = {
         "topology",
         "triangulation",
         "constrained",
-        "domains",
         "location",
-        "meshed",
         "refine",
         "voronoi",
     }
@@ -161,11 +132,9 @@ PYTHON: dict[str, set[str]] = {
         "_core",
         "compat",
         "constrained",
-        "constrained_validation",
         "datasets",
         "delaunay",
         "distributed",
-        "editing",
         "errors",
         "improve",
         "improvement",
@@ -173,19 +142,15 @@ PYTHON: dict[str, set[str]] = {
         "interpolate",
         "io",
         "lawson",
-        "meshed",
         "periodic",
         "plot",
-        "polygons",
         "predicates",
         "quality",
         "quality3",
         "reference",
         "refine",
-        "refinement",
         "regular",
         "scene",
-        "segments",
         "testing",
         "tetmesh",
         "validation",
@@ -365,10 +330,7 @@ LAZY = {
     ("io", "plot"),
     ("io", "relief"),
     ("io", "scene"),
-    ("constrained", "editing"),
-    ("meshed", "adaptivity"),
-    ("meshed", "exchange"),
-    ("meshed", "smoothing"),
+    ("refine", "exchange"),
     ("quality", "plot"),
     ("quality3", "plot"),
     ("improvement", "plot"),
@@ -396,6 +358,28 @@ def test_arrows_up_are_inside_functions() -> None:
             if isinstance(statement, ast.ImportFrom) and statement.module:
                 up = {to for to in LAZY if to[0] == part}
                 assert not any(statement.module == f"delone.{to}" for _, to in up), path
+
+
+def imported_at_once(path: Path, modules: set[str]) -> set[str]:
+    """The modules that a module needs while it is being imported."""
+    found = set()
+    for statement in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(statement, ast.ImportFrom) and statement.module:
+            names = [f"{statement.module}.{alias.name}" for alias in statement.names]
+            found |= {name if name in modules else statement.module for name in names}
+    return found & modules
+
+
+def test_no_module_waits_for_itself() -> None:
+    def name(path: Path) -> str:
+        return ".".join(("delone", *path.relative_to(PACKAGE).with_suffix("").parts))
+
+    paths = {name(path): path for path in PACKAGE.rglob("*.py") if path.stem != "__init__"}
+    left = {module: imported_at_once(path, set(paths)) for module, path in paths.items()}
+    while left:
+        free = {module for module, to in left.items() if not to}
+        assert free, f"a cycle among {sorted(left)}"
+        left = {module: to - free for module, to in left.items() if module not in free}
 
 
 @pytest.mark.parametrize(

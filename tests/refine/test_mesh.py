@@ -16,7 +16,7 @@ import pytest
 
 import delone
 from delone import BudgetExceededError, ConstrainedDelaunay, CrossingSegmentsError, InputError
-from delone.refine import MOST_ADDED
+from delone.refine.refine import MOST_ADDED
 from delone.testing import assert_mesh
 
 SQUARE = np.array([(0.0, 0), (1, 0), (1, 1), (0, 1)])

@@ -15,11 +15,11 @@ import numpy as np
 from delone import topology
 from delone._arrays import as_points, as_segments
 from delone.compat.triangle_input import again, interpolated, rows_of
-from delone.constrained import ConstrainedDelaunay
+from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import InputError
-from delone.meshed import Mesh
-from delone.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
+from delone.refine.meshed import Mesh
+from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import domains, location, topology
+from delone import location, topology
 from delone._arrays import as_segments, as_simplices
-from delone.domains import Domain, Lines
 from delone.errors import InputError, ShapeError
-from delone.meshed import Mesh
-from delone.refine import MOST_ADDED, as_min_angle, as_rows
+from delone.refine import domains
+from delone.refine.domains import Domain, Lines
+from delone.refine.meshed import Mesh
+from delone.refine.refine import MOST_ADDED, as_min_angle, as_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

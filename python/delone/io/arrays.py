@@ -16,7 +16,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points, as_simplices
-from delone.constrained import ConstrainedDelaunay
+from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column

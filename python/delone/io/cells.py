@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.constrained import ConstrainedDelaunay
-from delone.meshed import Mesh as QualityMesh
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,7 @@ import numpy as np
 from delone.errors import FileFormatError
 from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
-from delone.meshed import Mesh as QualityMesh
+from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

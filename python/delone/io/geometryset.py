@@ -15,7 +15,7 @@ from delone.io.pointset import PointSet
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.constrained import ConstrainedDelaunay
+    from delone.constrained.delaunay import ConstrainedDelaunay
 
     Floats = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
-from delone.meshed import Mesh as QualityMesh
+from delone.refine.meshed import Mesh as QualityMesh
 from delone.tetmesh import TetMesh
 
 if TYPE_CHECKING:

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.constrained import ConstrainedDelaunay
+    from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.delaunay import Delaunay
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
-    from delone.meshed import Mesh as QualityMesh
+    from delone.refine.meshed import Mesh as QualityMesh
 
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 

@@ -15,7 +15,7 @@ from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
-from delone.meshed import Mesh as QualityMesh
+from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     import os

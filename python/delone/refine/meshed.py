@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import domains, quality, refinement, topology
-from delone.domains import Counts, Domain, Lines
+from delone import quality, topology
+from delone.refine import domains
+from delone.refine.domains import Counts, Domain, Lines
+from delone.refine.report import reported
 from delone.triangulation import Triangulation, counted, kept, sealed
 
 if TYPE_CHECKING:
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.refinement import MeshReport
+    from delone.refine.report import MeshReport
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -284,7 +286,7 @@ class Mesh(Triangulation):
     @kept
     def report(self) -> MeshReport:
         """Points by cause, angles reached, and the triangles that the input spoils."""
-        return refinement.report(
+        return reported(
             self._points,
             self._simplices,
             self._sides,
@@ -360,7 +362,7 @@ class Mesh(Triangulation):
         >>> finer.nsimplex > mesh.nsimplex, bool(finer.report)
         (True, True)
         """
-        from delone.adaptivity import finer
+        from delone.refine.adaptivity import finer
 
         return finer(
             self,
@@ -406,7 +408,7 @@ class Mesh(Triangulation):
         >>> coarser.npoints < mesh.npoints, bool(coarser.report)
         (True, True)
         """
-        from delone.adaptivity import coarsened
+        from delone.refine.adaptivity import coarsened
 
         return coarsened(self, marked)
 
@@ -447,7 +449,7 @@ class Mesh(Triangulation):
         >>> bool(better.quality().radius_ratio.mean() > mesh.quality().radius_ratio.mean())
         True
         """
-        from delone.smoothing import smoothed
+        from delone.refine.smoothing import smoothed
 
         return smoothed(self, iterations, method)
 

@@ -138,7 +138,7 @@ def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.regions import numbered
+    >>> from delone.constrained.regions import numbered
     >>> square = np.array([(1.0, 0), (1, 1), (0, 1), (0, 0)])
     >>> numbered(square, np.array([(1, 3, 0), (1, 2, 3)]), np.array([0, 1])).tolist()
     [1, 0]
@@ -180,7 +180,7 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.regions import labels
+    >>> from delone.constrained.regions import labels
     >>> label, repeated = labels(np.array([0, 1, 0]), np.array([0, -1, 0]), np.array([7, 8, 9]))
     >>> label.tolist(), repeated.tolist()
     ([7, -1, 7], [[2, 0]])

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import _core, geodata
+from delone import _core
 from delone._arrays import as_choice, as_points, require_finite
-from delone.constrained import ConstrainedDelaunay
+from delone.constrained import geodata
+from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError, NonFiniteError
 from delone.triangulation import first_rows
 

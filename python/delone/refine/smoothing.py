@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import domains, geometry, quality
+from delone import geometry, quality
 from delone._arrays import as_choice, as_count
-from delone.domains import Counts
+from delone.refine import domains
+from delone.refine.domains import Counts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.domains import Domain
-    from delone.meshed import Mesh
+    from delone.refine.domains import Domain
+    from delone.refine.meshed import Mesh
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

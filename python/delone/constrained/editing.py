@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.constrained import ConstrainedDelaunay
+    from delone.constrained.delaunay import ConstrainedDelaunay
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]

@@ -23,7 +23,7 @@ from delone.triangulation import Triangulation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.domains import Domain
+    from delone.refine.domains import Domain
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

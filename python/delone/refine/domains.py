@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.constrained import ConstrainedDelaunay
+    from delone.constrained.delaunay import ConstrainedDelaunay
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

@@ -48,7 +48,7 @@ def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.coverage import closed_rings
+    >>> from delone.constrained.coverage import closed_rings
     >>> ends = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (3, 4)])
     >>> closed_rings(ends, np.array([0, 0, 0, 1, 1]), np.ones(5, dtype=bool)).tolist()
     [True, True, True, False, False]

@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import domains
 from delone._arrays import as_choice, as_count, as_workers
-from delone.constrained import ConstrainedDelaunay
-from delone.domains import Counts, Domain
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.meshed import Mesh
-from delone.polygons import from_geometry
-from delone.sizing import Sizing
+from delone.refine import domains
+from delone.refine.domains import Counts, Domain
+from delone.refine.meshed import Mesh
+from delone.refine.sizing import Sizing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.domains import Progress
+    from delone.refine.domains import Progress
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -317,7 +317,7 @@ def as_min_angle(min_angle: float) -> float:
 
     Examples
     --------
-    >>> from delone.refine import as_min_angle
+    >>> from delone.refine.refine import as_min_angle
     >>> as_min_angle(20)
     20.0
     """
@@ -361,7 +361,7 @@ def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
 
     Examples
     --------
-    >>> from delone.refine import as_rows
+    >>> from delone.refine.refine import as_rows
     >>> as_rows(None, 2, "markers"), as_rows([[3], [4]], 2, "markers")
     (array([0, 0], dtype=int32), array([3, 4], dtype=int32))
     """

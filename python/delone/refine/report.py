@@ -21,12 +21,12 @@ from delone.triangulation import counted
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.domains import Lines
+    from delone.refine.domains import Lines
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["CAUSES", "MeshReport", "report"]
+__all__ = ["CAUSES", "MeshReport", "reported"]
 
 CAUSES = ("corner", "frozen", "budget", "other")
 _CORNER, _FROZEN, _BUDGET, _OTHER = range(4)
@@ -135,7 +135,7 @@ _SENTENCES = {
 }
 
 
-def report(
+def reported(
     points: Floats,
     simplices: Indices,
     sides: Indices,

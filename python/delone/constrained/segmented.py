@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from delone import _core, coverage, regions, segments, topology
+from delone import _core, topology
 from delone._arrays import as_workers
+from delone.constrained import coverage, regions, segments
 from delone.triangulation import Triangulation, kept, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.segments import SegmentReport
+    from delone.constrained.segments import SegmentReport
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

@@ -182,7 +182,7 @@ def repeated_rows(ends: Indices) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.segments import repeated_rows
+    >>> from delone.constrained.segments import repeated_rows
     >>> repeated_rows(np.array([(0, 1), (2, 1), (1, 0), (3, 3), (3, 3)])).tolist()
     [[2, 0]]
     """
@@ -218,7 +218,7 @@ def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indice
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.segments import overlapping_rows
+    >>> from delone.constrained.segments import overlapping_rows
     >>> start, source = np.array([0, 2, 3]), np.array([0, 1, 1])
     >>> overlapping_rows(start, source, np.empty((0, 2), dtype=np.int32)).tolist()
     [[1, 0]]
@@ -263,7 +263,7 @@ def steiner_rows(
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.segments import steiner_rows
+    >>> from delone.constrained.segments import steiner_rows
     >>> segments, start = np.array([(0, 5), (5, 6), (6, 1)]), np.array([0, 1, 2, 3])
     >>> rows, known = np.array([0, 0, 0]), np.array([(0, 6)])
     >>> steiner_rows(segments, start, rows, known, np.array([(0, 1)])).tolist()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, location, regions, topology
+from delone import _core, location, topology
 from delone._arrays import (
     as_choice,
     as_count,
@@ -21,9 +21,10 @@ from delone._arrays import (
     as_segments,
     as_workers,
 )
-from delone.constrained_validation import ConstrainedReport, validate
+from delone.constrained import regions
+from delone.constrained.segmented import Options, Segmented
+from delone.constrained.validation import ConstrainedReport, validate
 from delone.errors import InputError, InternalError
-from delone.segmented import Options, Segmented
 from delone.triangulation import counted, kept, own_copy
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.editing import Editing
+    from delone.constrained.editing import Editing
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -309,7 +310,7 @@ class ConstrainedDelaunay(Segmented):
         >>> edit.result.segments
         array([[1, 3]], dtype=int32)
         """
-        from delone.editing import Editing
+        from delone.constrained.editing import Editing
 
         return Editing(self)
 
@@ -370,7 +371,7 @@ class ConstrainedDelaunay(Segmented):
         >>> frame.region.tolist(), frame.area.tolist()
         ([0], [0.5])
         """
-        from delone.geodata import frame
+        from delone.constrained.geodata import frame
 
         columns = {"region": self.region, "polygon": self.polygon}
         if not self._found["rings"].any():

@@ -12,20 +12,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import domains, topology
+from delone import topology
 from delone._arrays import as_count
-from delone.domains import Counts
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
-from delone.refine import MOST_ADDED, Limits, as_min_angle, rounds
-from delone.sizing import EQUILATERAL, Sizing
-from delone.smoothing import rebuilt, worse
+from delone.refine import domains
+from delone.refine.domains import Counts
+from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, rounds
+from delone.refine.sizing import EQUILATERAL, Sizing
+from delone.refine.smoothing import rebuilt, worse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.meshed import Mesh
+    from delone.refine.meshed import Mesh
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

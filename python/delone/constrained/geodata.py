@@ -79,7 +79,7 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
 
     Examples
     --------
-    >>> from delone.geodata import parts_of
+    >>> from delone.constrained.geodata import parts_of
     >>> square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
     >>> parts_of([square, {"type": "Point", "coordinates": (5, 5)}])
     Parts(coordinates=array([[0., 0.],

@@ -1,0 +1,22 @@
+"""Triangulations that have given segments among their edges, and triangles of geometries.
+
+`delaunay` has the class, `segmented` its state, `segments` the report, `regions` and `coverage`
+areas and holes, `editing` changes, `validation` the proof; `polygons` and `geodata` take
+geometries.
+"""
+
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.editing import Editing
+from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
+from delone.constrained.segments import SegmentReport
+from delone.constrained.validation import ConstrainedReport
+
+__all__ = [
+    "ConstrainedDelaunay",
+    "ConstrainedReport",
+    "Editing",
+    "PolygonTriangles",
+    "SegmentReport",
+    "from_geometry",
+    "triangulate_polygon",
+]
