@@ -28,7 +28,6 @@ __all__ = [
     "measures2",
     "measures3",
     "methods2",
-    "nearest_on_faces3",
     "neighbors2",
     "orient2d",
     "orient3d",
@@ -179,7 +178,13 @@ class Locator3:
     def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
     def locate(
         self, xi: NDArray[np.float64], workers: int
-    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+    ) -> tuple[
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.int32],
+        NDArray[np.float64],
+    ]: ...
     def laplace(
         self, xi: NDArray[np.float64], workers: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
@@ -305,12 +310,6 @@ def measures3(
 def regular3(
     points: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
-def nearest_on_faces3(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    xi: NDArray[np.float64],
-    workers: int,
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
 def halfspaces3(
     planes: NDArray[np.float64], size: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...

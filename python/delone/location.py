@@ -8,7 +8,7 @@ results of them.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -22,11 +22,40 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Location", "across_line", "along", "locate", "locator", "nearest", "segment_ends"]
+__all__ = [
+    "Location",
+    "Places",
+    "across_line",
+    "along",
+    "locate",
+    "locator",
+    "nearest",
+    "segment_ends",
+]
+
+
+class Places:
+    """Rows of arrays, one for each point; the base of `Location` and of its like in space."""
+
+    def at(self, rows: NDArray[np.integer]) -> Self:
+        """Return some of the places.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Which, along the first axis.
+
+        Returns
+        -------
+        Self
+            Those.
+        """
+        own: Any = self
+        return type(self)(*(getattr(self, each.name)[rows] for each in fields(own)))
 
 
 @dataclass(frozen=True, eq=False)
-class Location:
+class Location(Places):
     """Where points lie.
 
     Parameters
@@ -53,21 +82,6 @@ class Location:
     beside: Indices
     edge: Indices
     along: Floats
-
-    def at(self, rows: NDArray[np.integer]) -> Location:
-        """Return some of the places.
-
-        Parameters
-        ----------
-        rows : ndarray of int
-            Which, along the first axis.
-
-        Returns
-        -------
-        Location
-            Those.
-        """
-        return Location(*(getattr(self, each.name)[rows] for each in fields(self)))
 
 
 def locator(points: Floats, simplices: Indices, neighbors: Indices) -> _core.Locator2:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
-from delone import quality3
+from delone import _core, quality3
 from delone.quality3 import EDGES, FACES, counted_tetrahedra
+from delone.space import location as places
 from delone.triangulation import counted, kept, sealed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from delone.improvement import ImproveReport
 
@@ -163,6 +164,72 @@ class TetMesh:
         array([90.])
         """
         return quality3.measured(self._points, self._simplices)
+
+    @property
+    @kept
+    def _locator(self) -> _core.Locator3:
+        return _core.Locator3(self._points, self._simplices, self._neighbors)
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """Tell which tetrahedra hold points, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 3)
+            Points to locate. NaN and infinity are outside.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The tetrahedron that has the point inside or on its boundary, the first one where there
+            are several, or -1 where there is none: outside, or in a hole.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in space.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).find_simplex([(0.25, 0.25, 0.25), (1, 1, 1)])
+        array([ 0, -1], dtype=int32)
+        """
+        return places.find(self._locator, xi, None)
+
+    def locate(self, xi: ArrayLike) -> places.SpaceLocation:
+        """Tell where points lie: tetrahedron, weights of its corners, nearest boundary point.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 3)
+            Points to locate.
+
+        Returns
+        -------
+        SpaceLocation
+            With fields `simplex`, `barycentric`, `nearest`, `beside`, `face`, `shares`.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in space.
+
+        Notes
+        -----
+        As `Delaunay.locate`, with any boundary: a tree of boxes says what a walk cannot where that
+        is not convex, and what is nearest.
+
+        Examples
+        --------
+        >>> import delone
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> place = delone.improve(corner).locate((0.25, 0.25, -3))
+        >>> place.nearest, place.face.tolist()
+        (array([0.25, 0.25, 0.  ]), [0, 2, 1])
+        """
+        return places.locate(self._locator, self._points, xi, None)
 
     def to_meshio(self) -> Any:
         """Return the mesh as a mesh of meshio.

@@ -58,7 +58,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(voronoi3::halfspaces3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::measures3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::regular3, m)?)?;
-    m.add_function(wrap_pyfunction!(locate3::nearest_on_faces3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::regular2, m)?)?;

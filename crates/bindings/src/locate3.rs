@@ -2,13 +2,13 @@
 
 use delone_core::Point3;
 use delone_core::error::{Error, Result};
-use delone_core::interpolate3::{natural, nearest_on_faces};
+use delone_core::interpolate3::natural;
 use delone_core::locate3::{Batch, Kept, Locator, Tetrahedra, coordinates, find, nearest};
 use delone_core::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{column, in_range, rows, shaped, table};
+use crate::arrays::{column, in_range, rows, shaped};
 use crate::errors::{detached, raise};
 use crate::triangulation::watched;
 
@@ -24,8 +24,8 @@ pub struct Locator3 {
     kept: Kept,
 }
 
-/// `(simplex, weights, beyond)`.
-type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+/// `(simplex, weights, beside, face, shares)`.
+type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
 /// `(indptr, indices, weights, simplex)`.
 type Neighbours3 = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
@@ -128,7 +128,7 @@ impl Locator3 {
         Ok(column(py, found))
     }
 
-    /// Tetrahedra with barycentric coordinates, and outside a face that the query is beyond.
+    /// Tetrahedra with barycentric coordinates, and outside the nearest boundary point.
     fn locate(
         &self,
         py: Python<'_>,
@@ -141,7 +141,9 @@ impl Locator3 {
         Ok((
             column(py, found.simplex),
             shaped(py, found.weights, [n, 4])?,
-            shaped(py, found.beyond, [n, 2])?,
+            column(py, found.beside),
+            shaped(py, found.face, [n, 3])?,
+            shaped(py, found.shares, [n, 3])?,
         ))
     }
 
@@ -173,24 +175,4 @@ impl Locator3 {
         let found = self.batch(py, queries, workers, nearest)?;
         Ok(column(py, found))
     }
-}
-
-/// For each query the nearest of some faces, and the shares of its corners in the nearest point.
-#[pyfunction]
-pub fn nearest_on_faces3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    faces: PyReadonlyArray2<'_, i32>,
-    xi: PyReadonlyArray2<'_, f64>,
-    workers: usize,
-) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-    let (points, faces, queries) = (|| {
-        let (points, faces) = (rows(&points, "points")?, rows(&faces, "faces")?);
-        in_range(faces, 0, points.len(), "faces")?;
-        Ok((points, faces, rows(&xi, "xi")?))
-    })()
-    .map_err(|e| raise(py, &e))?;
-    let found = detached(py, || nearest_on_faces(points, faces, queries, workers))?;
-    let (which, shares): (Vec<i32>, Vec<[f64; 3]>) = found.into_iter().unzip();
-    Ok((column(py, which), table(py, shares)?))
 }

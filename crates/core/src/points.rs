@@ -18,33 +18,35 @@ const NAMED_ROWS: usize = 10;
 
 /// The box of a finite point set.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub struct Extent<const D: usize = 2> {
     /// Smallest coordinate of each axis.
-    pub min: Point2,
+    pub min: [f64; D],
     /// Largest coordinate of each axis.
-    pub max: Point2,
+    pub max: [f64; D],
 }
 
-impl Extent {
+impl<const D: usize> Extent<D> {
     /// The box of some points, which must be finite; inside out where there are none.
-    pub fn of(points: impl IntoIterator<Item = Point2>) -> Self {
+    pub fn of(points: impl IntoIterator<Item = [f64; D]>) -> Self {
         let mut e = Self {
-            min: [f64::INFINITY; 2],
-            max: [f64::NEG_INFINITY; 2],
+            min: [f64::INFINITY; D],
+            max: [f64::NEG_INFINITY; D],
         };
         for p in points {
-            // Selections, which are one instruction where `f64::min` has to mind NaN.
-            let least = |a: f64, b: f64| if b < a { b } else { a };
-            let most = |a: f64, b: f64| if b > a { b } else { a };
-            e.min = [least(e.min[0], p[0]), least(e.min[1], p[1])];
-            e.max = [most(e.max[0], p[0]), most(e.max[1], p[1])];
+            for (k, x) in p.into_iter().enumerate() {
+                // Selections, which are one instruction where `f64::min` has to mind NaN.
+                e.min[k] = if x < e.min[k] { x } else { e.min[k] };
+                e.max[k] = if x > e.max[k] { x } else { e.max[k] };
+            }
         }
         e
     }
 
-    /// The longer side, rounded; infinite where it passes the range of doubles.
+    /// The longest side, rounded; infinite where it passes the range of doubles.
     pub fn side(&self) -> f64 {
-        (self.max[0] - self.min[0]).max(self.max[1] - self.min[1])
+        (0..D).fold(f64::NEG_INFINITY, |side, k| {
+            side.max(self.max[k] - self.min[k])
+        })
     }
 }
 

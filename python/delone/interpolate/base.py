@@ -20,7 +20,7 @@ from delone._arrays import as_vectors, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.interpolate.hull import summed
-from delone.interpolate.space import SPACE, place_of
+from delone.interpolate.space import SPACE
 from delone.interpolate.values import (
     DUPLICATES,
     NAN,
@@ -30,6 +30,7 @@ from delone.interpolate.values import (
     require_finite_values,
 )
 from delone.interpolate.weights import joined
+from delone.space import location as places
 from delone.triangulation import Triangulation, own_copy
 
 if TYPE_CHECKING:
@@ -349,10 +350,10 @@ class Interpolator:
         return rows, place.at(outside)
 
     def _located(self, queries: Floats) -> Any:
-        """Where queries lie: a `Location`, in space a `SpacePlace`."""
-        if self._ndim == SPACE:
-            return place_of(self._mesh, queries, self._workers)
-        return location.locate(self._mesh._locator, self._mesh.points, queries, self._workers)
+        """Where queries lie: a `Location`, in space a `SpaceLocation`."""
+        mesh: Any = self._mesh
+        locate: Any = places.locate if self._ndim == SPACE else location.locate
+        return locate(mesh._locator, mesh.points, queries, self._workers)
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
         """The interpolator, the field, its settled columns; those of the constructor for None."""

@@ -1,4 +1,4 @@
-"""Interpolation in space: where queries lie, what counts beyond the hull, slopes in tetrahedra.
+"""Interpolation in space: what counts beyond the hull, slopes in tetrahedra.
 
 These are the parts of interpolators that tell the plane from space; everything else is the same. On
 a face of the hull the interpolants here depend on its three corners alone, or nearly so, and are
@@ -7,13 +7,10 @@ taken as linear there for what lies beyond.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core
-from delone._arrays import as_workers
 from delone.errors import InputError
 from delone.interpolate.hull import Terms
 from delone.space import geometry
@@ -21,12 +18,13 @@ from delone.space import geometry
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone.space.location import SpaceLocation
     from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["SPACE", "SpacePlace", "face_terms", "hull_gradients", "place_of", "refuse", "slopes"]
+__all__ = ["SPACE", "face_terms", "hull_gradients", "refuse", "slopes"]
 
 SPACE = 3
 
@@ -49,91 +47,12 @@ def refuse(what: str, instead: str) -> None:
     raise InputError(f"{what} is for points in the plane; in space {instead}")
 
 
-@dataclass(frozen=True, eq=False)
-class SpacePlace:
-    """Where queries in space lie, and what of the hull is nearest.
-
-    Parameters
-    ----------
-    simplex : ndarray of int32, shape (k,)
-        The tetrahedron that holds the query, the first one where there are several; -1 outside.
-    barycentric : ndarray of float64, shape (k, 4)
-        Weights of its corners; NaN outside.
-    nearest : ndarray of float64, shape (k, 3)
-        The query itself inside; outside the nearest point of the hull; NaN where it is not finite.
-    beside : ndarray of int32, shape (k,)
-        Outside, the number of the face with that point; else -1.
-    face : ndarray of int32, shape (k, 3)
-        Outside, the corners of that face; else -1.
-    shares : ndarray of float64, shape (k, 3)
-        Outside, how they share in that point; else NaN.
-    """
-
-    simplex: Indices
-    barycentric: Floats
-    nearest: Floats
-    beside: Indices
-    face: Indices
-    shares: Floats
-
-    def at(self, rows: NDArray[np.integer]) -> SpacePlace:
-        """Return some of the places.
-
-        Parameters
-        ----------
-        rows : ndarray of int
-            Which, along the first axis.
-
-        Returns
-        -------
-        SpacePlace
-            Those.
-        """
-        return SpacePlace(*(getattr(self, each.name)[rows] for each in fields(self)))
-
-
-def place_of(mesh: Triangulation, queries: Floats, workers: int | None) -> SpacePlace:
-    """Tell where queries lie.
-
-    Parameters
-    ----------
-    mesh : Triangulation
-        Of points in space.
-    queries : ndarray of float64, shape (k, 3)
-        Where.
-    workers : int or None
-        Number of threads.
-
-    Returns
-    -------
-    SpacePlace
-        One for each.
-    """
-    threads = as_workers(workers)
-    index: Any = mesh._locator
-    simplex, barycentric, _ = index.locate(queries, threads)
-    count = len(queries)
-    nearest = np.where((simplex >= 0)[:, None], queries, np.nan)
-    beside = np.full(count, -1, dtype=np.int32)
-    face = np.full((count, 3), -1, dtype=np.int32)
-    shares = np.full((count, 3), np.nan)
-    rows = np.flatnonzero((simplex < 0) & np.isfinite(queries).all(axis=1))
-    if rows.size:
-        hull = np.ascontiguousarray(mesh.convex_hull)
-        which, share = _core.nearest_on_faces3(mesh.points, hull, queries[rows], threads)
-        beside[rows], face[rows], shares[rows] = which, hull[which], share
-        # The corner itself, exactly, where it alone counts.
-        terms = np.where(share[..., None] == 0, 0.0, share[..., None] * mesh.points[face[rows]])
-        nearest[rows] = terms.sum(axis=1)
-    return SpacePlace(simplex, barycentric, nearest, beside, face, shares)
-
-
-def face_terms(place: SpacePlace, step: Floats, *, base: bool = True) -> Terms:
+def face_terms(place: SpaceLocation, step: Floats, *, base: bool = True) -> Terms:
     """Return the terms of a linear interpolant on the hull, and of how it goes on from there.
 
     Parameters
     ----------
-    place : SpacePlace
+    place : SpaceLocation
         Queries outside.
     step : ndarray of float64, shape (k, 3)
         How far to go from the nearest points of the hull.

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, location, quality, quality3
-from delone._arrays import as_vectors, as_workers
 from delone.space import geometry, topology
 from delone.space import location as places
 from delone.triangulation import Triangulation, kept, sealed
@@ -138,6 +137,11 @@ class Spatial(Triangulation):
         index: Any = _core.Locator3(self._points, self._simplices, self._neighbors)
         return index  # type: ignore[no-any-return]
 
+    @property
+    def _solid_locator(self) -> _core.Locator3:
+        index: Any = self._locator
+        return index  # type: ignore[no-any-return]
+
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
     ) -> Indices:
@@ -179,9 +183,7 @@ class Spatial(Triangulation):
         """
         if self.ndim == 2:
             return super().find_simplex(xi, bruteforce, tol)
-        queries = as_vectors(xi, 3, name="xi")
-        found = self._locator.find(queries.reshape(-1, 3), as_workers(self._workers))
-        return found.reshape(queries.shape[:-1])
+        return places.find(self._solid_locator, xi, self._workers)
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """Return the vertices that are nearest to points.
@@ -215,12 +217,10 @@ class Spatial(Triangulation):
         """
         if self.ndim == 2:
             return super().nearest(xi)
-        queries = as_vectors(xi, 3, name="xi")
-        found = self._locator.nearest(queries.reshape(-1, 3), as_workers(self._workers))
-        return found.reshape(queries.shape[:-1])
+        return places.nearest(self._solid_locator, xi, self._workers)
 
     def locate(self, xi: ArrayLike) -> Any:
-        """Tell where points lie: the simplex, the weights of its corners.
+        """Tell where points lie: simplex, weights of its corners, nearest point of the boundary.
 
         Parameters
         ----------
@@ -230,8 +230,9 @@ class Spatial(Triangulation):
         Returns
         -------
         Location or SpaceLocation
-            In both cases with fields `simplex` and `barycentric`; in the plane also with `nearest`,
-            `beside`, `edge` and `along`, which tell where on the boundary outer points come to lie.
+            With fields `simplex`, `barycentric`, `nearest` and `beside`; in the plane `edge` and
+            `along`, in space `face` and `shares` tell where on the boundary outer points come to
+            lie.
 
         Raises
         ------
@@ -260,36 +261,10 @@ class Spatial(Triangulation):
         """
         if self.ndim == 2:
             return location.locate(self._locator, self._points, xi, self._workers)
-        index: Any = self._locator
-        return places.locate(index, xi, self._workers)
+        return places.locate(self._solid_locator, self._points, xi, self._workers)
 
     def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """Return the triangles along a segment; in the plane only.
-
-        Parameters
-        ----------
-        a, b : array_like, shape (2,)
-            Ends of the segment.
-
-        Returns
-        -------
-        ndarray of int32, shape (k,)
-            The triangles that have more than a point of the segment, in order from a to b. Where it
-            runs along an edge, the triangle to the left of it, or the only one there is. Parts
-            outside are skipped; a segment of length zero is a point to be found.
-
-        Raises
-        ------
-        ShapeError, DtypeError
-            An end is no finite point.
-
-        Examples
-        --------
-        >>> from delone import Delaunay
-        >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
-        >>> len(mesh.walk((-1, 0.5), (5, 1)))
-        3
-        """
+        """Return the triangles along a segment, as `Triangulation.walk` does; plane only."""
         self._only(2, "walk", "`find_simplex` takes points of a segment")
         return super().walk(a, b)
 

@@ -33,7 +33,7 @@ use delone_predicates::{Point3, Sign, orient2d, orient3d};
 
 use crate::error::{Error, Result};
 use crate::memory::filled;
-use crate::order::morton;
+use crate::order::order_of;
 use crate::watch::Watch;
 
 /// Insertions between two looks at the watch.
@@ -154,7 +154,8 @@ fn outside_of_box(points: &[Point3], hull: &Hull) -> Vec<u32> {
 /// Choi and G. Rote, "Incremental constructions con BRIO", 2003).
 fn rounds(points: &[Point3], rows: Vec<u32>) -> Result<Vec<u32>> {
     let at: Vec<Point3> = rows.iter().map(|&row| points[row as usize]).collect();
-    let mut rows: Vec<u32> = morton(&at)?.into_iter().map(|i| rows[i as usize]).collect();
+    let order = order_of(&at, 1)?.concat();
+    let mut rows: Vec<u32> = order.into_iter().map(|i| rows[i as usize]).collect();
     // Trailing zeros of a random number: 0 for one half, the last round, 1 for a quarter, ...
     rows.sort_by_key(|&row| std::cmp::Reverse(random(row).trailing_zeros()));
     Ok(rows)

@@ -8,7 +8,7 @@ use super::tiling::Side;
 use super::{Located, Locator, Star, is_finite};
 use crate::error::Result;
 use crate::memory::with_room;
-use crate::order::curve;
+use crate::order::order_of;
 use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
@@ -68,7 +68,7 @@ impl Batch<'_> {
             });
             return ends.into_iter().collect();
         }
-        let parts = curve::order_of(queries, workers)?;
+        let parts = order_of(queries, workers)?;
         watch.check()?;
         let ends = parallel::map(workers, parts, |rows| {
             // Loads that do not wait for each other: gathering ahead hides that they miss the cache.

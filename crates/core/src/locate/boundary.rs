@@ -2,7 +2,7 @@
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
-use super::boxes::Boxes;
+use super::boxes::{Boxes, length};
 use super::range::seen_from;
 use super::tiling::{Side, next, prev};
 use crate::delaunay2::validate::Given;
@@ -19,7 +19,7 @@ pub struct Boundary {
     /// Where each edge is in `sides`, by edge.
     places: Vec<(Side, usize)>,
     /// The edges by place, where the boundary is not convex.
-    boxes: Option<Boxes>,
+    boxes: Option<Boxes<2>>,
 }
 
 impl Boundary {
@@ -55,9 +55,8 @@ impl Boundary {
     /// it, and the answer; elsewhere by boxes.
     pub fn nearest(&self, given: &Given, from: Side, q: Point2) -> (Side, f64) {
         if let Some(boxes) = &self.boxes {
-            let found = boxes.nearest(q, |i| project(given, self.sides[i], q).1);
-            let side = found.map_or(from, |(i, _)| self.sides[i]);
-            return (side, clamp(project(given, side, q).0));
+            let found = boxes.nearest(q, None, |i, unit| measure(given, self.sides[i], q, unit));
+            return found.map_or((from, 0.0), |(i, along)| (self.sides[i], along));
         }
         let count = self.sides.len();
         let start = self
@@ -68,7 +67,7 @@ impl Boundary {
         let mut forward = None;
         // One way round at most: a change of direction ends at the vertex between.
         for _ in 0..count {
-            let (along, _) = project(given, self.sides[i], q);
+            let along = project(given, self.sides[i], q);
             let ahead = along > 1.0;
             if (0.0..=1.0).contains(&along) || along.is_nan() || forward == Some(!ahead) {
                 return (self.sides[i], clamp(along));
@@ -76,7 +75,7 @@ impl Boundary {
             forward = Some(ahead);
             i = (i + if ahead { 1 } else { count - 1 }) % count;
         }
-        (self.sides[i], clamp(project(given, self.sides[i], q).0))
+        (self.sides[i], clamp(project(given, self.sides[i], q)))
     }
 }
 
@@ -91,16 +90,21 @@ fn ends(given: &Given, side: Side) -> [Point2; 2] {
         .map(|corner| given.point(given.vertex(Side { corner, ..side })))
 }
 
-/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end, and its distance.
-fn project(given: &Given, side: Side, q: Point2) -> (f64, f64) {
+/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end.
+fn project(given: &Given, side: Side, q: Point2) -> f64 {
     let [u, v] = ends(given, side);
     // Each in a unit of its own: the edge may be very short beside the distance.
     let ([d], short) = seen_from(u, [v]);
     let ([w], long) = seen_from(u, [q]);
-    let along = (w[0] * d[0] + w[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]) * (long / short);
-    let t = clamp(along);
-    let near = [0, 1].map(|k| u[k] + t * (v[k] - u[k]));
-    (along, (near[0] - q[0]).hypot(near[1] - q[1]))
+    (w[0] * d[0] + w[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]) * (long / short)
+}
+
+/// The distance of `q` from a boundary edge, of coordinates times `unit`, and how far along that is.
+fn measure(given: &Given, side: Side, q: Point2, unit: f64) -> (f64, f64) {
+    let t = clamp(project(given, side, q));
+    let [u, v] = ends(given, side).map(|p| p.map(|x| x * unit));
+    let away = [0, 1].map(|k| u[k] + t * (v[k] - u[k]) - q[k] * unit);
+    (length(away), t)
 }
 
 /// The boundary edges in order, where they are one cycle.

@@ -1,16 +1,12 @@
-//! The first of any triangles that holds a point, and the nearest of any edges, by a tree of boxes:
-//! for arrays with holes or a concave boundary, where a walk that leaves proves nothing.
+//! Items by their boxes: those whose boxes hold a point, and the nearest one. For arrays with holes or
+//! a concave boundary, where a walk that leaves proves nothing, and for faces of a boundary.
 //!
 //! Items are taken along the curve, eight to a box, eight boxes to the next, and so on (as in an
 //! R-tree packed along the Hilbert curve: I. Kamel and C. Faloutsos, 1993).
 
-use delone_predicates::{Point2, Sign, orient2d};
-
-use super::star::Place;
-use crate::delaunay2::validate::Given;
 use crate::error::Result;
 use crate::memory::with_room;
-use crate::order::curve;
+use crate::order::order_of;
 use crate::points::Extent;
 
 /// Boxes, or items, in a box.
@@ -18,86 +14,119 @@ const WIDTH: usize = 8;
 
 /// The tree.
 #[derive(Debug)]
-pub struct Boxes {
+pub struct Boxes<const D: usize> {
     /// Items along the curve.
     order: Vec<u32>,
     /// The boxes of each level, from the items up to one.
-    levels: Vec<Vec<Extent>>,
+    levels: Vec<Vec<Extent<D>>>,
 }
 
-impl Boxes {
-    /// A tree of all triangles.
-    pub fn of(given: &Given) -> Result<Self> {
-        Self::over(given.simplices.len(), |t| Extent::of(given.corners(t)))
-    }
-
+impl<const D: usize> Boxes<D> {
     /// A tree of items, by the box of each.
-    pub fn over(count: usize, box_of: impl Fn(usize) -> Extent) -> Result<Self> {
+    pub fn over(count: usize, box_of: impl Fn(usize) -> Extent<D>) -> Result<Self> {
         let mut middles = with_room(count)?;
         middles.extend((0..count).map(|i| {
             let Extent { min, max } = box_of(i);
-            [0, 1].map(|k| min[k] / 2.0 + max[k] / 2.0)
+            std::array::from_fn(|k| min[k] / 2.0 + max[k] / 2.0)
         }));
-        let order = curve::order_of(&middles, 1)?.concat();
-        let ends = |e: Extent| [e.min, e.max];
+        Ok(Self::packed(order_of::<D>(&middles, 1)?.concat(), box_of))
+    }
+
+    /// The same of items that are in order.
+    pub fn packed(order: Vec<u32>, box_of: impl Fn(usize) -> Extent<D>) -> Self {
+        let ends = |e: Extent<D>| [e.min, e.max];
         let join_items =
             |run: &[u32]| Extent::of(run.iter().flat_map(|&i| ends(box_of(i as usize))));
-        let mut level: Vec<Extent> = order.chunks(WIDTH).map(join_items).collect();
+        let mut level: Vec<Extent<D>> = order.chunks(WIDTH).map(join_items).collect();
         let mut levels = Vec::new();
         while level.len() > 1 {
-            let join = |run: &[Extent]| Extent::of(run.iter().flat_map(|e| [e.min, e.max]));
+            let join = |run: &[Extent<D>]| Extent::of(run.iter().flat_map(|e| [e.min, e.max]));
             let above = level.chunks(WIDTH).map(join).collect();
             levels.push(std::mem::replace(&mut level, above));
         }
         levels.push(level);
-        Ok(Self { order, levels })
+        Self { order, levels }
     }
 
-    /// The item of least distance from `q`, of several the first, with that distance. No item may be
-    /// nearer than its box, but for rounding.
-    pub fn nearest(&self, q: Point2, distance: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
-        let mut best: Option<(usize, f64)> = None;
-        let mut open = vec![(0.0, self.levels.len() - 1, 0)];
-        while let Some((bound, level, i)) = open.pop() {
-            if best.is_some_and(|(_, least)| bound > least) || i >= self.levels[level].len() {
+    /// The item of least distance from `q`, of several the first, and what came with the distance; on
+    /// the way from `hint`. Distances are asked for as in [`Self::toward`].
+    pub fn nearest<T: Copy>(
+        &self,
+        q: [f64; D],
+        hint: Option<usize>,
+        distance: impl Fn(usize, f64) -> (f64, T),
+    ) -> Option<(usize, T)> {
+        let mut best: Option<(usize, f64, T)> = None;
+        self.toward(q, hint, |item, unit| {
+            let (away, with) = distance(item, unit);
+            let before = |(other, least, _): (usize, f64, T)| {
+                away.total_cmp(&least).then(item.cmp(&other)).is_lt()
+            };
+            if best.is_none_or(before) {
+                best = Some((item, away, with));
+            }
+            best.map_or(f64::INFINITY, |(_, least, _)| least)
+        });
+        best.map(|(item, _, with)| (item, with))
+    }
+
+    /// Calls `visit` on items, nearer boxes first, `hint` before all; no more on those whose boxes are
+    /// farther from `q` than it has answered last. It gets the factor of coordinates by which distances
+    /// are doubles: 1 but for the largest. No item may be nearer than its box, but for rounding.
+    pub fn toward(
+        &self,
+        q: [f64; D],
+        hint: Option<usize>,
+        mut visit: impl FnMut(usize, f64) -> f64,
+    ) {
+        let far = |p: [f64; D]| p.iter().any(|x| x.abs() > 1e300);
+        let Some(root) = self.levels[self.levels.len() - 1].first() else {
+            return;
+        };
+        let unit = if far(q) || far(root.min) || far(root.max) {
+            0.25
+        } else {
+            1.0
+        };
+        let mut within = hint.map_or(f64::INFINITY, |item| visit(item, unit));
+        let mut open = Vec::with_capacity(WIDTH * self.levels.len());
+        open.push((0.0, self.levels.len() - 1, 0));
+        while let Some((away, level, i)) = open.pop() {
+            if away > within {
                 continue;
             }
-            let children = i * WIDTH..(i + 1) * WIDTH;
-            if level > 0 {
-                let end = children.end.min(self.levels[level - 1].len());
-                let from = open.len();
-                open.extend((children.start..end).map(|child| {
-                    let away = bound_from(&self.levels[level - 1][child], q);
-                    (away, level - 1, child)
-                }));
-                // The nearest box comes last, that is, next.
-                open[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
+            let first = i * WIDTH;
+            if level == 0 {
+                let end = (first + WIDTH).min(self.order.len());
+                for &item in &self.order[first..end] {
+                    within = visit(item as usize, unit);
+                }
                 continue;
             }
-            let end = children.end.min(self.order.len());
-            for &item in &self.order[children.start..end] {
-                let here = (item as usize, distance(item as usize));
-                let before = |(item, least): (usize, f64)| {
-                    here.1.total_cmp(&least).then(here.0.cmp(&item)).is_lt()
-                };
-                if best.is_none_or(before) {
-                    best = Some(here);
+            let from = open.len();
+            let below = &self.levels[level - 1];
+            let end = (first + WIDTH).min(below.len());
+            for (child, extent) in (first..end).zip(&below[first..end]) {
+                let away = bound_from(extent, q, unit);
+                if away <= within {
+                    open.push((away, level - 1, child));
+                    // The nearest box comes last, that is, next.
+                    let mut at = open.len() - 1;
+                    while at > from && open[at - 1].0 < away {
+                        open.swap(at - 1, at);
+                        at -= 1;
+                    }
                 }
             }
         }
-        best
     }
 
-    /// The first triangle whose closed area has `q`.
-    pub fn first(&self, given: &Given, q: Point2) -> Option<Place> {
-        let mut best: Option<Place> = None;
+    /// Calls `visit` on each item that is in one box with `q`.
+    pub fn around(&self, q: [f64; D], mut visit: impl FnMut(usize)) {
+        let holds = |e: &Extent<D>| (0..D).all(|k| e.min[k] <= q[k] && q[k] <= e.max[k]);
         let mut open = vec![(self.levels.len() - 1, 0)];
         while let Some((level, i)) = open.pop() {
-            let Some(extent) = self.levels[level].get(i) else {
-                continue;
-            };
-            let within = |k: usize| extent.min[k] <= q[k] && q[k] <= extent.max[k];
-            if !(within(0) && within(1)) {
+            if !self.levels[level].get(i).is_some_and(holds) {
                 continue;
             }
             let children = i * WIDTH..(i + 1) * WIDTH;
@@ -106,28 +135,31 @@ impl Boxes {
                 continue;
             }
             let end = children.end.min(self.order.len());
-            for &t in &self.order[children.start..end] {
-                let triangle = t as usize;
-                if best.is_none_or(|b| triangle < b.triangle)
-                    && let Some(on) = holds(given, triangle, q)
-                {
-                    best = Some(Place { triangle, on });
-                }
+            for &item in &self.order[children.start..end] {
+                visit(item as usize);
             }
         }
-        best
     }
 }
 
-/// A distance that nothing in the box falls short of, roundings of both allowed for.
-fn bound_from(extent: &Extent, q: Point2) -> f64 {
-    let gap = |k: usize| (extent.min[k] - q[k]).max(q[k] - extent.max[k]).max(0.0);
-    gap(0).hypot(gap(1)) * (1.0 - 1e-14)
+/// Sums of squares within these bounds have lost nothing to speak of by underflow, and not overflowed.
+const SAFE: std::ops::Range<f64> = 1e-290..1e300;
+
+/// The length of a vector, whatever its exponents.
+pub fn length<const D: usize>(v: [f64; D]) -> f64 {
+    let squares: f64 = v.iter().map(|x| x * x).sum();
+    if SAFE.contains(&squares) {
+        return squares.sqrt();
+    }
+    v.iter().fold(0.0, |sum: f64, x| sum.hypot(*x))
 }
 
-/// On which edges `q` is, where the closed triangle has it.
-fn holds(given: &Given, t: usize, q: Point2) -> Option<[bool; 3]> {
-    let [a, b, c] = given.corners(t);
-    let signs = [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)];
-    (!signs.contains(&Sign::Negative)).then(|| signs.map(|s| s == Sign::Zero))
+/// A distance that nothing in the box falls short of, roundings of both allowed for.
+#[inline]
+fn bound_from<const D: usize>(extent: &Extent<D>, q: [f64; D], unit: f64) -> f64 {
+    let gaps: [f64; D] = std::array::from_fn(|k| {
+        let (min, max, x) = (extent.min[k] * unit, extent.max[k] * unit, q[k] * unit);
+        (min - x).max(x - max).max(0.0)
+    });
+    length(gaps) * (1.0 - 1e-14) - 1e-320
 }

@@ -20,11 +20,12 @@ mod walk;
 
 use std::sync::OnceLock;
 
-use delone_predicates::Point2;
+use delone_predicates::{Point2, Sign, orient2d};
 
 pub use barycentric::{barycentric, weights as barycentric_weights};
 pub use batch::{Batch, Output};
 pub use boundary::Boundary;
+pub use boxes::{Boxes, length};
 pub use coordinates::{Coordinates, coordinates};
 pub use cross::cross;
 pub use nearest::nearest;
@@ -36,7 +37,7 @@ pub use tiling::{Side, next, prev};
 
 use crate::delaunay2::validate::Given;
 use crate::error::Result;
-use boxes::Boxes;
+use crate::points::Extent;
 use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.
@@ -44,7 +45,7 @@ use walk::{Found, walk};
 pub struct Kept {
     start: Start<2>,
     boundary: OnceLock<Boundary>,
-    boxes: OnceLock<Boxes>,
+    boxes: OnceLock<Boxes<2>>,
 }
 
 impl Kept {
@@ -100,7 +101,7 @@ impl<'a> Locator<'a> {
             Found::Inside(triangle, on) => {
                 let first = star.first(&self.given, Place { triangle, on });
                 if first.open && !self.boundary()?.convex {
-                    let place = self.boxes()?.first(&self.given, q);
+                    let place = self.first_of_all(q)?;
                     return Ok(Located::Inside(place.unwrap_or(first.place)));
                 }
                 Ok(Located::Inside(first.place))
@@ -123,19 +124,39 @@ impl<'a> Locator<'a> {
         if self.boundary()?.convex {
             return Ok(Located::Outside(side));
         }
-        Ok(match self.boxes()?.first(&self.given, q) {
+        Ok(match self.first_of_all(q)? {
             Some(place) => Located::Inside(place),
             None => Located::Outside(side),
         })
     }
 
-    fn boxes(&self) -> Result<&'a Boxes> {
-        kept(&self.kept.boxes, || Boxes::of(&self.given))
+    /// The first triangle that holds `q`, of all.
+    fn first_of_all(&self, q: Point2) -> Result<Option<Place>> {
+        let given = &self.given;
+        let boxes = kept(&self.kept.boxes, || {
+            Boxes::over(given.simplices.len(), |t| Extent::of(given.corners(t)))
+        })?;
+        let mut best: Option<Place> = None;
+        boxes.around(q, |triangle| {
+            if best.is_none_or(|b| triangle < b.triangle)
+                && let Some(on) = holds(given, triangle, q)
+            {
+                best = Some(Place { triangle, on });
+            }
+        });
+        Ok(best)
     }
 }
 
+/// On which edges `q` is, where the closed triangle has it.
+fn holds(given: &Given, t: usize, q: Point2) -> Option<[bool; 3]> {
+    let [a, b, c] = given.corners(t);
+    let signs = [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)];
+    (!signs.contains(&Sign::Negative)).then(|| signs.map(|s| s == Sign::Zero))
+}
+
 /// What is in the cell, or is made now; where two threads make it, one of the two equal values.
-fn kept<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
+pub fn kept<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
     match cell.get() {
         Some(value) => Ok(value),
         None => {

@@ -5,7 +5,7 @@ use delone_predicates::Point3;
 use super::tiling::Side;
 use super::{Located, Locator, Star, is_finite};
 use crate::error::Result;
-use crate::order::morton;
+use crate::order::order_of;
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -42,59 +42,93 @@ impl Batch<'_> {
         state: impl Fn() -> S + Sync,
         visit: impl Fn(&mut S, usize, Point3, Located) -> Result<()> + Sync,
     ) -> Result<Vec<S>> {
-        let queries = self.queries;
         if self.locator.given.simplices.is_empty() {
             return Ok(Vec::new());
         }
-        let share = queries.len().div_ceil(4 * self.workers.max(1)).max(SHARE);
+        let walker = || (Walker::new(&self.locator), state());
+        let ends = self.along(walker, |(walker, state), row, q| {
+            visit(state, row, q, walker.go(q)?)
+        })?;
+        Ok(ends.into_iter().map(|(_, state)| state).collect())
+    }
+
+    /// The same without going anywhere.
+    pub fn along<S: Send>(
+        &self,
+        state: impl Fn() -> S + Sync,
+        visit: impl Fn(&mut S, usize, Point3) -> Result<()> + Sync,
+    ) -> Result<Vec<S>> {
+        let queries = self.queries;
         if queries.len() <= FEW || comes_in_order(queries) {
+            let share = queries.len().div_ceil(4 * self.workers.max(1)).max(SHARE);
             let tasks = (0..).step_by(share).zip(queries.chunks(share)).collect();
             let ends = parallel::map(self.workers, tasks, |(first, part)| {
                 self.part((first..).zip(part.iter().copied()), state(), &visit)
             });
             return ends.into_iter().collect();
         }
-        let order = morton(queries)?;
+        let parts = order_of(queries, self.workers)?;
         self.watch.check()?;
-        let ends = parallel::map(self.workers, order.chunks(share).collect(), |rows| {
+        let ends = parallel::map(self.workers, parts, |rows| {
             let rows = rows.iter().map(|&row| row as usize);
             self.part(rows.map(|row| (row, queries[row])), state(), &visit)
         });
         ends.into_iter().collect()
     }
 
-    /// Walks from query to query; where the next one is far, from the tree of starts.
     fn part<S>(
         &self,
         queries: impl Iterator<Item = (usize, Point3)>,
         mut state: S,
-        visit: &impl Fn(&mut S, usize, Point3, Located) -> Result<()>,
+        visit: &impl Fn(&mut S, usize, Point3) -> Result<()>,
     ) -> Result<S> {
-        let locator = &self.locator;
-        let mut star = Star::default();
-        let (mut near, mut last, mut reach) = (0, [f64::NAN; 3], 0.0);
         for (i, (row, q)) in queries.enumerate() {
             if i % WATCH_EVERY == 0 {
                 self.watch.check()?;
             }
-            if !is_finite(q) {
-                continue;
+            if is_finite(q) {
+                visit(&mut state, row, q)?;
             }
-            // False for NaN, at first and where squares overflow: then the tree knows the start.
-            let close = squared(q, last) <= reach;
-            if !close {
-                near = locator.near(q);
-            }
-            let at = locator.locate_from(near, q, &mut star);
-            near = match at {
-                Located::Inside(place) => place.simplex,
-                Located::Outside(Side { simplex, .. }) => simplex,
-            };
-            let [a, b, ..] = locator.given.corners(near);
-            (last, reach) = (q, REACH * squared(a, b));
-            visit(&mut state, row, q, at)?;
         }
         Ok(state)
+    }
+}
+
+/// Walks from query to query; where the next one is far, from the tree of starts.
+struct Walker<'a> {
+    locator: &'a Locator<'a>,
+    star: Star,
+    near: usize,
+    last: Point3,
+    reach: f64,
+}
+
+impl<'a> Walker<'a> {
+    fn new(locator: &'a Locator<'a>) -> Self {
+        Self {
+            locator,
+            star: Star::default(),
+            near: 0,
+            last: [f64::NAN; 3],
+            reach: 0.0,
+        }
+    }
+
+    #[inline]
+    fn go(&mut self, q: Point3) -> Result<Located> {
+        // False for NaN, at first and where squares overflow: then the tree knows the start.
+        let close = squared(q, self.last) <= self.reach;
+        if !close {
+            self.near = self.locator.near(q);
+        }
+        let at = self.locator.locate_from(self.near, q, &mut self.star)?;
+        self.near = match at {
+            Located::Inside(place) => place.simplex,
+            Located::Outside(Side { simplex, .. }) => simplex,
+        };
+        let [a, b, ..] = self.locator.given.corners(self.near);
+        (self.last, self.reach) = (q, REACH * squared(a, b));
+        Ok(at)
     }
 }
 

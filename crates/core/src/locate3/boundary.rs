@@ -1,16 +1,59 @@
-//! Whether the boundary of a tiling is convex, so that nothing lies beyond what is strictly outside.
+//! The boundary of a tiling: whether it is convex, and its nearest point.
 
-use delone_predicates::{Sign, orient3d};
+use std::sync::OnceLock;
 
+use delone_predicates::{Point3, Sign, orient3d};
+
+use super::face::on_face;
 use super::tiling::{FACES, Side, Tetrahedra};
+use crate::error::Result;
+use crate::locate::{Boxes, kept};
+use crate::points::Extent;
+
+/// The boundary faces of a tiling.
+#[derive(Debug)]
+pub struct Boundary {
+    /// Each boundary face, ascending.
+    sides: Vec<Side>,
+    /// Whether the tetrahedra fill one convex body, so that nothing lies beyond what is strictly
+    /// outside.
+    pub convex: bool,
+    /// The faces by place, for the nearest one.
+    boxes: OnceLock<Boxes<3>>,
+}
+
+impl Boundary {
+    /// Reads the boundary off the arrays.
+    pub fn of(given: &Tetrahedra) -> Self {
+        let sides: Vec<Side> = given.boundary().collect();
+        Self {
+            convex: is_convex(given, &sides),
+            sides,
+            boxes: OnceLock::new(),
+        }
+    }
+
+    /// The boundary face with the nearest point to `q`, and how its corners share in that; `last` is the
+    /// one before, of a query near by.
+    pub fn nearest(
+        &self,
+        given: &Tetrahedra,
+        q: Point3,
+        last: &mut Option<usize>,
+    ) -> Result<Option<(Side, [f64; 3])>> {
+        let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
+        let boxes = kept(&self.boxes, || {
+            Boxes::over(self.sides.len(), |i| Extent::of(corners(i)))
+        })?;
+        let found = boxes.nearest(q, *last, |i, unit| on_face(corners(i), q, unit));
+        *last = found.map(|(i, _)| i);
+        Ok(found.map(|(i, shares)| (self.sides[i], shares)))
+    }
+}
 
 /// Whether the boundary faces are one surface that is convex at each edge: then it is the convex hull
 /// (Tietze's theorem), and all other tetrahedra are inside of it.
-pub fn is_convex(given: &Tetrahedra) -> bool {
-    let sides: Vec<Side> = (0..given.simplices.len())
-        .flat_map(|simplex| (0..4).map(move |corner| Side { simplex, corner }))
-        .filter(|side| given.neighbors[side.simplex][side.corner] < 0)
-        .collect();
+fn is_convex(given: &Tetrahedra, sides: &[Side]) -> bool {
     let Some(&first) = sides.first() else {
         return false;
     };

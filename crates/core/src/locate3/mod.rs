@@ -1,11 +1,14 @@
 //! Which tetrahedron holds a point: exact, boundary included, for any tiling in exported arrays.
 //!
 //! The rooms are those of `locate`: `Locator` keeps a tree of starts, `batch` takes queries along a
-//! curve and walks from each to the next, `star` finds the first of several that hold a point.
+//! curve and walks from each to the next, `star` finds the first of several that hold a point, `boundary`
+//! what is nearest outside.
 
 mod barycentric;
 mod batch;
 mod boundary;
+mod coordinates;
+mod face;
 mod nearest;
 mod star;
 mod tiling;
@@ -13,23 +16,29 @@ mod walk;
 
 use std::sync::OnceLock;
 
-use delone_predicates::Point3;
+use delone_predicates::{Point3, Sign};
 
 pub use barycentric::barycentric;
 pub use batch::Batch;
+pub use coordinates::{Coordinates, coordinates};
 pub use nearest::nearest;
 pub use star::{Place, Star};
 pub use tiling::{FACES, Side, Tetrahedra};
 
 use crate::error::Result;
-use crate::locate::{Output, Start};
-use walk::{Found, scan, walk};
+use crate::locate::{Boxes, Output, Start, kept};
+use crate::points::Extent;
+use boundary::Boundary;
+use nearest::Sites;
+use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.
 #[derive(Debug)]
 pub struct Kept {
     start: Start<3>,
-    convex: OnceLock<bool>,
+    boundary: OnceLock<Boundary>,
+    boxes: OnceLock<Boxes<3>>,
+    sites: OnceLock<Sites>,
 }
 
 impl Kept {
@@ -38,7 +47,9 @@ impl Kept {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
             start: Start::of(given.simplices.len(), first)?,
-            convex: OnceLock::new(),
+            boundary: OnceLock::new(),
+            boxes: OnceLock::new(),
+            sites: OnceLock::new(),
         })
     }
 }
@@ -74,40 +85,66 @@ impl<'a> Locator<'a> {
 
     /// Where `q` is, on the way from tetrahedron `from`.
     #[inline]
-    pub fn locate_from(&self, from: usize, q: Point3, star: &mut Star) -> Located {
+    pub fn locate_from(&self, from: usize, q: Point3, star: &mut Star) -> Result<Located> {
         match walk(&self.given, from, q) {
             Some(Found::Inside(place)) => {
                 let first = star.first(&self.given, place);
-                if first.open && !self.is_convex() {
-                    return Located::Inside(scan(&self.given, q).unwrap_or(first.place));
+                if first.open && !self.boundary().convex {
+                    let place = self.first_of_all(q)?;
+                    return Ok(Located::Inside(place.unwrap_or(first.place)));
                 }
-                Located::Inside(first.place)
+                Ok(Located::Inside(first.place))
             }
-            Some(Found::Beyond(side)) if self.is_convex() => Located::Outside(side),
+            Some(Found::Beyond(side)) if self.boundary().convex => Ok(Located::Outside(side)),
             Some(Found::Beyond(side)) => {
-                scan(&self.given, q).map_or(Located::Outside(side), Located::Inside)
+                let found = self.first_of_all(q)?;
+                Ok(found.map_or(Located::Outside(side), Located::Inside))
             }
-            None => match scan(&self.given, q) {
+            None => Ok(match self.first_of_all(q)? {
                 Some(place) => Located::Inside(place),
                 None => Located::Outside(self.given.beyond_which(q)),
-            },
+            }),
         }
     }
 
     /// Where `q` is; nothing for what is not finite, or where there is no tetrahedron.
-    pub fn locate(&self, q: Point3) -> Option<Located> {
+    pub fn locate(&self, q: Point3) -> Result<Option<Located>> {
         if !is_finite(q) || self.given.simplices.is_empty() {
-            return None;
+            return Ok(None);
         }
-        Some(self.locate_from(self.near(q), q, &mut Star::default()))
+        let located = self.locate_from(self.near(q), q, &mut Star::default())?;
+        Ok(Some(located))
     }
 
-    /// Whether no more tetrahedra lie beyond the boundary.
-    fn is_convex(&self) -> bool {
-        *self
-            .kept
-            .convex
-            .get_or_init(|| boundary::is_convex(&self.given))
+    /// The boundary.
+    pub fn boundary(&self) -> &'a Boundary {
+        let boundary = &self.kept.boundary;
+        boundary.get_or_init(|| Boundary::of(&self.given))
+    }
+
+    /// The vertices, for the nearest of them.
+    fn sites(&self) -> Result<&'a Sites> {
+        kept(&self.kept.sites, || Sites::of(&self.given))
+    }
+
+    /// The first tetrahedron that holds `q`, of all.
+    #[cold]
+    #[inline(never)]
+    fn first_of_all(&self, q: Point3) -> Result<Option<Place>> {
+        let given = &self.given;
+        let boxes = kept(&self.kept.boxes, || {
+            Boxes::over(given.simplices.len(), |t| Extent::of(given.corners(t)))
+        })?;
+        let mut best: Option<Place> = None;
+        boxes.around(q, |t| {
+            if best.is_none_or(|b| t < b.simplex) {
+                let signs = given.sides(t, q);
+                if !signs.contains(&Sign::Negative) {
+                    best = Some(Place::of(t, signs));
+                }
+            }
+        });
+        Ok(best)
     }
 }
 
@@ -129,44 +166,4 @@ pub fn find(batch: &Batch) -> Result<Vec<i32>> {
         },
     )?;
     Ok(found.into_vec())
-}
-
-/// Where queries are, row by row.
-#[derive(Debug)]
-pub struct Coordinates {
-    /// The first tetrahedron that holds the query, or -1.
-    pub simplex: Vec<i32>,
-    /// The weights of its corners, four a row; NaN outside.
-    pub weights: Vec<f64>,
-    /// Outside: a boundary tetrahedron and the corner opposite a face that the query is beyond;
-    /// else -1.
-    pub beyond: Vec<i32>,
-}
-
-/// Locates queries; those that are not finite are nowhere.
-pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
-    let n = batch.queries.len();
-    let simplex = Output::filled(n, -1)?;
-    let weights = Output::filled(4 * n, f64::NAN)?;
-    let beyond = Output::filled(2 * n, -1)?;
-    batch.each(
-        || (),
-        |(), row, q, at| {
-            match at {
-                Located::Inside(place) => {
-                    simplex.set(row, place.simplex as i32);
-                    weights.set_all(4 * row, &barycentric(&batch.locator.given, &place, q));
-                }
-                Located::Outside(side) => {
-                    beyond.set_all(2 * row, &[side.simplex as i32, side.corner as i32]);
-                }
-            }
-            Ok(())
-        },
-    )?;
-    Ok(Coordinates {
-        simplex: simplex.into_vec(),
-        weights: weights.into_vec(),
-        beyond: beyond.into_vec(),
-    })
 }

@@ -73,14 +73,24 @@ impl Tetrahedra<'_> {
         ]
     }
 
-    /// Some boundary face that `q` is strictly beyond; any face where there is none.
-    pub fn beyond_which(&self, q: Point3) -> Side {
-        let boundary = (0..self.simplices.len()).flat_map(|simplex| {
+    /// The vertices of the face opposite a corner, counter-clockwise seen from outside.
+    #[inline]
+    pub fn face(&self, side: Side) -> [i32; 3] {
+        FACES[side.corner].map(|corner| self.vertex(Side { corner, ..side }))
+    }
+
+    /// The faces with nothing beyond.
+    pub fn boundary(&self) -> impl Iterator<Item = Side> {
+        (0..self.simplices.len()).flat_map(move |simplex| {
             let outer = (0..4).filter(move |&corner| self.neighbors[simplex][corner] < 0);
             outer.map(move |corner| Side { simplex, corner })
-        });
+        })
+    }
+
+    /// Some boundary face that `q` is strictly beyond; any face where there is none.
+    pub fn beyond_which(&self, q: Point3) -> Side {
         let beyond = |side: &Side| self.sides(side.simplex, q)[side.corner] == Sign::Negative;
-        boundary.into_iter().find(beyond).unwrap_or(Side {
+        self.boundary().find(beyond).unwrap_or(Side {
             simplex: 0,
             corner: 0,
         })

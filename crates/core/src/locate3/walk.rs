@@ -3,7 +3,7 @@
 //! The remembering visibility walk (O. Devillers, S. Pion and M. Teillaud, "Walking in a
 //! triangulation", 2002) goes across a face that has the point on its other side. On Delaunay
 //! triangulations the power of the point to the spheres falls at each step, so it ends; on others it
-//! may turn in circles, so it has a budget, and then every tetrahedron is asked.
+//! may turn in circles, so it has a budget, and then a tree of boxes is asked.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -19,7 +19,7 @@ pub enum Found {
     Beyond(Side),
 }
 
-/// Steps before every tetrahedron is asked: several times what a walk across a whole mesh of
+/// Steps before the walk gives up: several times what a walk across a whole mesh of
 /// uniform points takes, which is a multiple of the third root.
 fn budget(simplices: usize) -> usize {
     256 + 16 * (simplices as f64).cbrt() as usize
@@ -57,15 +57,4 @@ pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
         return Some(Found::Inside(Place::of(side.simplex, signs)));
     }
     None
-}
-
-/// The first tetrahedron that holds `q`, of all.
-#[cold]
-#[inline(never)]
-pub fn scan(given: &Tetrahedra, q: Point3) -> Option<Place> {
-    (0..given.simplices.len()).find_map(|t| {
-        let signs = given.sides(t, q);
-        let inside = signs.iter().all(|&s| s != Sign::Negative);
-        inside.then(|| Place::of(t, signs))
-    })
 }

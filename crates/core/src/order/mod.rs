@@ -3,13 +3,14 @@
 
 mod arrange;
 pub mod blocks;
+mod cells;
 pub mod curve;
 mod hilbert;
 mod hilbert3;
-mod morton;
 mod radix;
+mod rows;
 pub mod space;
 pub mod space_blocks;
 
 pub use arrange::{Arranged, arrange};
-pub use morton::morton;
+pub use rows::order_of;

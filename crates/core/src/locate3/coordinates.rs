@@ -1,0 +1,53 @@
+//! Tetrahedra with barycentric coordinates, and outside the nearest point of the boundary.
+
+use super::{Batch, Located, barycentric};
+use crate::error::Result;
+use crate::locate::Output;
+
+/// Where queries are, row by row.
+#[derive(Debug)]
+pub struct Coordinates {
+    /// The first tetrahedron that holds the query, or -1.
+    pub simplex: Vec<i32>,
+    /// The weights of its corners, four a row; NaN outside.
+    pub weights: Vec<f64>,
+    /// Outside: the tetrahedron at the boundary face with the nearest point; else -1.
+    pub beside: Vec<i32>,
+    /// The corners of that face, three a row, counter-clockwise seen from outside; else -1.
+    pub face: Vec<i32>,
+    /// How they share in the nearest point; else NaN.
+    pub shares: Vec<f64>,
+}
+
+/// Locates queries; those that are not finite are nowhere.
+pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
+    let n = batch.queries.len();
+    let locator = &batch.locator;
+    let given = &locator.given;
+    let simplex = Output::filled(n, -1)?;
+    let weights = Output::filled(4 * n, f64::NAN)?;
+    let beside = Output::filled(n, -1)?;
+    let face = Output::filled(3 * n, -1)?;
+    let shares = Output::filled(3 * n, f64::NAN)?;
+    batch.each(
+        || None,
+        |last, row, q, at| {
+            if let Located::Inside(place) = at {
+                simplex.set(row, place.simplex as i32);
+                weights.set_all(4 * row, &barycentric(given, &place, q));
+            } else if let Some((side, share)) = locator.boundary().nearest(given, q, last)? {
+                beside.set(row, side.simplex as i32);
+                face.set_all(3 * row, &given.face(side));
+                shares.set_all(3 * row, &share);
+            }
+            Ok(())
+        },
+    )?;
+    Ok(Coordinates {
+        simplex: simplex.into_vec(),
+        weights: weights.into_vec(),
+        beside: beside.into_vec(),
+        face: face.into_vec(),
+        shares: shares.into_vec(),
+    })
+}

@@ -1,0 +1,116 @@
+//! Cells along the Hilbert curve: the key of a point, and the order of all that fall into one.
+//!
+//! Cells come from the box of the points. Cells that hold many points are keyed again in the box of
+//! their own points, so that clusters of any depth are in curve order, too; few points in one cell
+//! go lexicographically.
+
+use delone_predicates::lexicographic;
+
+use super::{hilbert, hilbert3};
+use crate::points::Extent;
+
+/// Longest run of equal keys that is sorted lexicographically and not keyed again.
+pub const CROWD: usize = 16;
+
+/// Cells of a box: in the plane 65536 to the longer side, in space 1024 to the longest.
+pub struct Cells<const D: usize> {
+    min: [f64; D],
+    before: f64,
+    scale: f64,
+}
+
+impl<const D: usize> Cells<D> {
+    const BITS: u32 = if D == 2 {
+        hilbert::BITS
+    } else {
+        hilbert3::BITS
+    };
+
+    /// The cells of a box.
+    pub fn of(extent: &Extent<D>) -> Self {
+        let side = extent.side();
+        // A power of two keeps the differences and the scale inside the range of doubles. Only
+        // the order of the points hangs on the rounding here, never a simplex.
+        let before = if side > 1e300 {
+            2f64.powi(-30)
+        } else if side < 1e-280 {
+            2f64.powi(200)
+        } else {
+            1.0
+        };
+        let min = extent.min.map(|x| x * before);
+        let far = (0..D).map(|k| extent.max[k] * before - min[k]);
+        Self {
+            min,
+            before,
+            scale: f64::from(1u32 << Self::BITS) / far.fold(0.0, f64::max),
+        }
+    }
+
+    /// The key of the cell of `p`, in the upper half.
+    #[inline]
+    pub fn key(&self, p: [f64; D]) -> u64 {
+        // Conversions saturate and make NaN zero: the far corner is in the last cell.
+        let cell = |k: usize| {
+            (((p[k] * self.before - self.min[k]) * self.scale) as u32).min((1 << Self::BITS) - 1)
+        };
+        if D == 2 {
+            u64::from(hilbert::key(cell(0) as u16, cell(1) as u16)) << 32
+        } else {
+            let key = hilbert3::key([cell(0), cell(1), cell(2)]);
+            u64::from(key) << (64 - 3 * hilbert3::BITS)
+        }
+    }
+}
+
+/// Bits of a key that are worth sorting by: keys finer than about 16 cells a point cost passes and
+/// gain nothing, as runs are few.
+pub fn fine_bits(points: usize) -> u32 {
+    (usize::BITS - points.leading_zeros() + 4)
+        .next_multiple_of(8)
+        .min(32)
+}
+
+/// The row of an item, which is its lower half.
+pub fn row(item: u64) -> usize {
+    (item & u64::from(u32::MAX)) as usize
+}
+
+/// Puts the items of each run of equal keys in order. A run that is keyed again splits, since the
+/// two ends of its box get different keys; so the stack of runs empties.
+pub fn order_runs<const D: usize>(points: &[[f64; D]], items: &mut [u64]) {
+    let mut runs = Vec::new();
+    push_runs(items, 0, &mut runs);
+    while let Some((start, end)) = runs.pop() {
+        let run = &mut items[start..end];
+        if run.len() <= CROWD {
+            run.sort_unstable_by(|&i, &j| {
+                lexicographic(points[row(i)], points[row(j)]).then(row(i).cmp(&row(j)))
+            });
+            continue;
+        }
+        let extent = Extent::of(run.iter().map(|&i| points[row(i)]));
+        if extent.min == extent.max {
+            continue; // One point many times; the stable sort has left its rows ascending.
+        }
+        let cells = Cells::of(&extent);
+        for item in run.iter_mut() {
+            *item = cells.key(points[row(*item)]) | row(*item) as u64;
+        }
+        run.sort_unstable();
+        push_runs(run, start, &mut runs);
+    }
+}
+
+/// Lists the runs of two and more equal keys of `items`, whose first is item `offset` of all.
+fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
+    let mut start = 0;
+    for i in 1..=items.len() {
+        if i == items.len() || items[i] >> 32 != items[start] >> 32 {
+            if i - start > 1 {
+                runs.push((offset + start, offset + i));
+            }
+            start = i;
+        }
+    }
+}

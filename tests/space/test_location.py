@@ -1,0 +1,137 @@
+"""locate of tetrahedra against its definition: in exact numbers, with holes, at every scale."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import delone
+from delone import Delaunay, datasets
+from delone.predicates import orient3d
+
+Vector = list[Fraction]
+SCALES = [1.0, 2.0**1019, 2.0**-1030, 5e-324]
+
+
+def less(p: Vector, q: Vector) -> Vector:
+    return [a - b for a, b in zip(p, q, strict=True)]
+
+
+def dot(p: Vector, q: Vector) -> Fraction:
+    return sum((a * b for a, b in zip(p, q, strict=True)), Fraction(0))
+
+
+def squared_distance(q: Vector, face: list[Vector]) -> Fraction:
+    """From a closed triangle: from its plane where the foot is inside, else from its edges."""
+    a, b, c = face
+    u, v, w = less(b, a), less(c, a), less(q, a)
+    uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    area = uu * vv - uv * uv
+    s, t = (vv * uw - uv * vw) / area, (uu * vw - uv * uw) / area
+    if s >= 0 and t >= 0 and s + t <= 1:
+        away = [x - s * y - t * z for x, y, z in zip(w, u, v, strict=True)]
+        return dot(away, away)
+    found = []
+    for start, end in ((a, b), (b, c), (c, a)):
+        way, seen = less(end, start), less(q, start)
+        along = min(max(dot(way, seen) / dot(way, way), Fraction(0)), Fraction(1))
+        away = [x - along * y for x, y in zip(seen, way, strict=True)]
+        found.append(dot(away, away))
+    return min(found)
+
+
+def exact(points: Any) -> list[Vector]:
+    return [[Fraction(x) for x in point] for point in np.asarray(points).tolist()]
+
+
+def check_outside(mesh: Any, queries: Any) -> int:
+    """The nearest points of the boundary; returns how many queries are outside."""
+    place = mesh.locate(queries)
+    assert np.array_equal(place.simplex, mesh.find_simplex(queries))
+    points = exact(mesh.points)
+    open_faces = np.argwhere(mesh.neighbors < 0)
+    corners = [np.delete(mesh.simplices[t], k).tolist() for t, k in open_faces]
+    faces = [[points[v] for v in face] for face in corners]
+    rows = np.flatnonzero(place.simplex < 0)
+    for i in rows:
+        query = exact([queries[i]])[0]
+        best = min(squared_distance(query, face) for face in faces)
+        away = less(query, exact([place.nearest[i]])[0])
+        # The point is rounded: to about a unit in the last place of its coordinates.
+        size = max(map(abs, [*query, *exact([place.nearest[i]])[0]]))
+        slack = size / 2**46 + Fraction(5e-324) * 8
+        found, least = dot(away, away), best
+        assert abs(found - least) <= slack * (slack + 2 * max(map(abs, away)))
+        assert set(place.face[i].tolist()) <= set(mesh.simplices[place.beside[i]].tolist())
+        assert sorted(place.face[i].tolist()) in [sorted(face) for face in corners]
+        inner = np.setdiff1d(mesh.simplices[place.beside[i]], place.face[i])[0]
+        assert orient3d(*mesh.points[place.face[i]], mesh.points[inner]) < 0
+        assert (place.shares[i] >= 0).all()
+        assert place.shares[i].sum() == pytest.approx(1, rel=1e-15)
+    inside = place.simplex >= 0
+    assert np.array_equal(place.nearest[inside], queries[inside])
+    assert (place.beside[inside] == -1).all() and (place.face[inside] == -1).all()
+    assert np.isnan(place.shares[inside]).all()
+    return len(rows)
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_outside_the_nearest_point_of_the_hull(scale: float) -> None:
+    rng = np.random.default_rng(5)
+    points = rng.integers(-12, 13, (30, 3)) * 1.0
+    queries = rng.integers(-15, 16, (60, 3)) * 1.0
+    mesh = Delaunay(points * scale)
+    assert check_outside(mesh, queries * scale) > 20
+
+
+def test_uniform_points() -> None:
+    mesh = Delaunay(datasets.uniform(40, ndim=3, seed=4))
+    assert check_outside(mesh, np.random.default_rng(5).random((60, 3)) * 4 - 1.5) > 40
+
+
+def with_a_hole(seed: int) -> Any:
+    """Tetrahedra of a cube without those around some vertices, made a TetMesh."""
+    whole = Delaunay(datasets.uniform(60, ndim=3, seed=seed))
+    middle = np.abs(whole.points - 0.5).max(axis=1) < 0.2
+    left = whole.simplices[~middle[whole.simplices].any(axis=1)]
+    return delone.improve((whole.points, left), min_angle=0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_tetrahedra_with_a_hole(seed: int) -> None:
+    mesh = with_a_hole(seed)
+    rng = np.random.default_rng(seed)
+    queries = np.concatenate((rng.random((40, 3)) * 1.4 - 0.2, 0.5 + 0.2 * rng.random((20, 3))))
+    queries = np.concatenate((queries, mesh.points[:20]))
+    corners = mesh.points[mesh.simplices]
+    found = mesh.find_simplex(queries)
+    for query, simplex in zip(queries, found.tolist(), strict=True):
+        signs = []
+        for k in range(4):
+            moved = corners.copy()
+            moved[:, k] = query
+            signs.append(orient3d(*np.moveaxis(moved, 1, 0)) >= 0)
+        holders = np.flatnonzero(np.logical_and.reduce(signs))
+        assert simplex == (holders[0] if len(holders) else -1)
+    assert check_outside(mesh, queries) > 10
+
+
+def test_what_is_no_number_is_nowhere() -> None:
+    for mesh in (Delaunay(datasets.uniform(50, ndim=3)), with_a_hole(0)):
+        place = mesh.locate([(np.nan, 0.5, 0.5), (0.5, np.inf, 0.5)])
+        assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
+        assert np.isnan(place.nearest).all() and np.isnan(place.shares).all()
+
+
+@pytest.mark.parametrize("shape", [(3,), (0, 3), (3, 4, 3), (2, 0, 3)])
+def test_any_leading_shape(shape: tuple[int, ...]) -> None:
+    queries = np.random.default_rng(0).random(shape) * 2
+    for mesh in (Delaunay(datasets.uniform(50, ndim=3)), with_a_hole(0)):
+        place = mesh.locate(queries)
+        assert place.simplex.shape == place.beside.shape == shape[:-1]
+        assert place.barycentric.shape == (*shape[:-1], 4)
+        assert place.nearest.shape == place.face.shape == place.shares.shape == shape
+        assert place.at(np.array([], dtype=int)).face.size == 0 if shape[:-1] else True
