@@ -22,7 +22,7 @@ fn main() {
     let workers = workers.and_then(|w| w.parse().ok()).unwrap_or(1);
     let mut points = random(n, 1);
     if std::env::var("SORTED").is_ok() {
-        let rows = delone_core::order::curve::order_of(&points, 1)
+        let rows = delone_core::order::order_of(&points, 1)
             .expect("an order")
             .concat();
         points = rows.into_iter().map(|row| points[row as usize]).collect();
@@ -55,7 +55,7 @@ fn main() {
             watch: &Watch::idle(),
         };
         tell("order", &|| {
-            delone_core::order::curve::order_of(queries, workers).expect("an order");
+            delone_core::order::order_of(queries, workers).expect("an order");
         });
         tell("find", &|| {
             find(&batch).expect("triangles");
