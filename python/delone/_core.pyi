@@ -46,6 +46,7 @@ __all__ = [
     "voronoi3",
     "voronoi_clip2",
     "voronoi_clip3",
+    "within2",
 ]
 
 __version__: Final[str]
@@ -86,6 +87,13 @@ def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
 def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]: ...
+def within2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    own: int,
+    bounds: tuple[float, float, float, float],
+    workers: int,
+) -> NDArray[np.bool_]: ...
 def deepest2(
     points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from delone import _core, datasets
+from delone import Delaunay, _core, datasets
 from delone.distributed.hull import extreme_rows
 from delone.distributed.rows import make_rows
 from delone.distributed.tiles import plant, strips
@@ -108,6 +108,22 @@ def holds(corners: list[list[float]], disk: list[float]) -> bool:
     p, q, r = x * x + y * y, dx * dx + dy * dy, Fraction(disk[2])
     left = r * r - p - q
     return left >= 0 and 4 * p * q <= left * left
+
+
+def test_triangles_are_certain_where_their_disks_are_known() -> None:
+    points = datasets.integer_lattice(400, side=30)
+    simplices = np.array(Delaunay(points).simplices)
+    disks = _core.disks2(points, simplices)
+    low, high = disks[:, :2] - disks[:, 2:], disks[:, :2] + disks[:, 2:]
+    box = (3.0, 4.0, 25.0, 27.0)
+    inside = (low >= box[:2]).all(axis=1) & (high <= box[2:]).all(axis=1)
+    for own in (0, 200, 400):
+        right = inside & (simplices < own).all(axis=1)
+        for workers in (1, 2):
+            assert np.array_equal(_core.within2(points, simplices, own, box, workers), right)
+    assert right.any() and not right.all()
+    with pytest.raises(ValueError, match="outside"):
+        _core.within2(points[:9], simplices, 9, box, 1)
 
 
 def test_answers_are_exact() -> None:

@@ -1,6 +1,6 @@
 //! Disks of triangles and the points deepest in circles, for triangulations in tiles.
 
-use delone_core::distributed::{deepest, disk};
+use delone_core::distributed::{deepest, disk, within};
 use delone_core::error::Error;
 use delone_core::memory::with_room;
 use numpy::PyReadonlyArray2;
@@ -30,6 +30,25 @@ pub fn disks2(
         Ok(disks)
     })?;
     table(py, disks)
+}
+
+/// Which triangles have their corners among the first `own` points and their disks in a box.
+#[pyfunction]
+pub fn within2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    own: usize,
+    bounds: [f64; 4],
+    workers: usize,
+) -> PyResult<Py<PyAny>> {
+    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
+    in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        within(points, simplices, own, bounds, workers, watch)
+    })?;
+    Ok(column(py, found))
 }
 
 /// `(starts, rows, all)`.

@@ -39,6 +39,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;
+    m.add_function(wrap_pyfunction!(distributed::within2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::deepest2, m)?)?;
     m.add_class::<locate::Locator2>()?;
     m.add_class::<locate3::Locator3>()?;

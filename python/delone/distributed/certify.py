@@ -8,7 +8,6 @@ proof. Every other disk is put to the tiles whose points it may meet beyond the 
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,8 @@ import numpy as np
 from delone import _core
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from delone.distributed.tiles import Tiles
@@ -26,18 +27,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Numbers = NDArray[np.int64]
 
-__all__ = ["Known", "Questions", "corners_of"]
-
-# Triangles at a time: their disks stay in the cache.
-_BLOCK = 1 << 16
-
-
-@dataclass(frozen=True, eq=False)
-class Questions:
-    """Triangles that other tiles must be asked about: pairs of a triangle and a tile."""
-
-    triangle: Numbers
-    tile: Numbers
+__all__ = ["Known", "corners_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,29 +52,26 @@ class Known:
     tiles: Tiles
     extents: Floats
 
-    def certain(self, points: Floats, simplices: Indices, *, threads: int = 1) -> Bools:
-        """Return which triangles have their disks in the box."""
-        left, bottom, right, top = self.box
-        found = np.empty(len(simplices), dtype=bool)
+    def certain(self, points: Floats, simplices: Indices, own: int, *, threads: int = 1) -> Bools:
+        """Return which triangles have their corners among the first `own` points, and certainty.
 
-        def look(start: int) -> None:
-            some = slice(start, start + _BLOCK)
-            x, y, r = _core.disks2(points, simplices[some]).T
-            found[some] = (x - r >= left) & (x + r <= right) & (y - r >= bottom) & (y + r <= top)
-
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(look, range(0, len(simplices), _BLOCK)))
-        return found
-
-    def questions(self, points: Floats, simplices: Indices) -> Questions:
-        """Return all pairs of a triangle and another tile whose points its disk may meet.
-
-        What lies in the box is left out: there all points are known.
+        That is, their disks lie in the box.
         """
-        disks = _core.disks2(points, simplices)
+        left, bottom, right, top = self.box.tolist()
+        return _core.within2(points, simplices, own, (left, bottom, right, top), threads)
+
+    def questions(
+        self, points: Floats, simplices: Indices, rows: Numbers, among: Sequence[int] | None = None
+    ) -> tuple[Numbers, Numbers]:
+        """Return all pairs of a row of `simplices` and another tile that it must be put to.
+
+        These are the tiles, if need be among some, whose points its disk may meet. What lies in the
+        box is left out: there all points are known.
+        """
+        disks = _core.disks2(points, simplices.take(rows, axis=0))
         low, high = disks[:, :2] - disks[:, 2:], disks[:, :2] + disks[:, 2:]
         triangle, tile = self.tiles.overlaps(low, high)
-        other = tile != self.tile
+        other = tile != self.tile if among is None else np.isin(tile, among)
         triangle, tile = triangle[other], tile[other]
         extent = self.extents[tile]
         # What a disk and a tile have in common lies in the box that their boxes have in common.
@@ -93,7 +80,7 @@ class Known:
         meets = (left <= right).all(axis=1) & self._reaches(disks[triangle], extent)
         known = (left >= self.box[:2]).all(axis=1) & (right <= self.box[2:]).all(axis=1)
         asked = meets & ~known
-        return Questions(triangle[asked], tile[asked])
+        return rows[triangle[asked]], tile[asked]
 
     @staticmethod
     def _reaches(disks: Floats, extent: Floats) -> Bools:

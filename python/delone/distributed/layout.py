@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from delone.distributed.certify import Known
-from delone.distributed.rows import first_of_each
+from delone.distributed.rows import coordinates, first_of_each
 from delone.distributed.tiles import Tiles
 
 if TYPE_CHECKING:
@@ -99,21 +99,27 @@ def collect(
     return slices, counts
 
 
-def gather(store: Store, slices: Slices, hull: Rows) -> tuple[Rows, int]:
+def gather(store: Store, slices: Slices, layout: Layout, tile: int) -> tuple[Rows, int]:
     """Return what a tile knows at first, its own rows in front, and how many these are.
 
     Own rows come in the order of the source, then halo and hull in theirs: whichever row of equal
     coordinates comes first is the first of the source.
     """
-    own, halo = ([_run(store, *run) for run in runs] for runs in slices)
-    count = sum(map(len, own))
-    beside = first_of_each(np.concatenate([*halo, hull]))
-    inside = np.concatenate([*own, hull[:0]])
-    # Corners of the hull that are the tile's own.
-    beside = beside[~np.isin(beside["id"], inside["id"][np.isin(inside["id"], hull["id"])])]
-    return np.concatenate([inside, beside]), count
+    own, halo = slices
+    hull = layout.hull
+    other = layout.tiles.locate(coordinates(hull)) != tile
+    beside = first_of_each(np.concatenate([*(_run(store, *run) for run in halo), hull[other]]))
+    count = sum(stop - start for _, start, stop in own)
+    rows = np.empty(count + len(beside), dtype=layout.type)
+    end = 0
+    # One file at a time is mapped: its pages count as memory.
+    for run in own:
+        some = _run(store, *run)
+        rows[end : end + len(some)] = some
+        end += len(some)
+    rows[count:] = beside
+    return rows, count
 
 
 def _run(store: Store, piece: int, start: int, stop: int) -> Rows:
-    found: Rows = np.array(store.load(f"work/parts/{piece:06}.npy", mapped=True)[start:stop])
-    return found
+    return store.load(f"work/parts/{piece:06}.npy", mapped=True)[start:stop]

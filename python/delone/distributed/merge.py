@@ -15,13 +15,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone.distributed.rows import coordinates, first_of_each
+from delone.distributed.certify import corners_of
+from delone.distributed.rows import coordinates
 from delone.errors import InternalError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-    from delone.distributed.certify import Known, Questions
+    from delone.distributed.certify import Known
     from delone.distributed.rows import Rows
 
     Bools = NDArray[np.bool_]
@@ -43,14 +46,11 @@ class Border:
         The tile of each.
     edges : ndarray of int32, shape (k, 2)
         The certain edges that bound it, as vertices, with the region on their left.
-    pending : ndarray of int32, shape (m, 3)
-        The triangles that others have been asked about, as vertices.
     """
 
     rows: Rows
     owner: Indices
     edges: Indices
-    pending: Indices
 
 
 def belongs(simplices: Indices, owner: Indices, tile: int) -> Bools:
@@ -60,22 +60,23 @@ def belongs(simplices: Indices, owner: Indices, tile: int) -> Bools:
     return mine
 
 
-def cut_out(simplices: Indices, neighbors: Indices, certain: Bools) -> tuple[Indices, Indices]:
-    """Return the vertices of the triangles that are not certain, ascending, and their bounds.
-
-    These are the edges against triangles that are certain, as positions among the vertices.
-    """
-    open_rows = np.flatnonzero(~certain)
-    some, beside = simplices[open_rows], neighbors[open_rows]
+def cut_out(
+    rows: Rows, owner: Indices, simplices: Indices, neighbors: Indices, certain: Bools
+) -> Border:
+    """Return the triangles that are not certain: their vertices, and their edges against others."""
+    left = np.flatnonzero(~certain)
+    some, beside = simplices[left], neighbors[left]
     t, k = np.nonzero((beside >= 0) & certain[beside])
     edges = np.stack([some[t, (k + 1) % 3], some[t, (k + 2) % 3]], axis=1)
     vertices = np.unique(some)
-    return vertices, np.searchsorted(vertices, edges).astype(np.int32)
+    return Border(
+        rows[vertices], owner[vertices], np.searchsorted(vertices, edges).astype(np.int32)
+    )
 
 
 def advance(
-    border: Border, known: Known, news: Rows, refuted: Bools
-) -> tuple[Border | None, Rows, Indices, Questions | None]:
+    border: Border, known: Known, news: Rows, secretive: Sequence[int]
+) -> tuple[Border | None, Rows, Indices, Floats, NDArray[np.int64]]:
     """Take in the answers to all questions about a border.
 
     Parameters
@@ -85,9 +86,9 @@ def advance(
     known : Known
         What the tile knew at first.
     news : ndarray of records
-        The points in conflict that other tiles have told.
-    refuted : ndarray of bool, shape (m,)
-        Which of the pending triangles have points in conflict.
+        The points in conflict that other tiles have told, each once.
+    secretive : sequence of int
+        The tiles that have told less than all of theirs.
 
     Returns
     -------
@@ -97,43 +98,33 @@ def advance(
         The vertices of the triangles that follow.
     ndarray of int32, shape (k, 3)
         Triangles that have become certain and have a vertex of the tile.
-    Questions or None
-        What to ask about the pending triangles of the new border.
+    ndarray of float64, shape (m, 6)
+        Corners of the triangles to ask about.
+    ndarray of int64, shape (m,)
+        Whom to ask.
+
+    Notes
+    -----
+    A triangle without a new corner was there before, nobody has refuted it, and it is certain.
+    In conflict with one that has a new corner are only points that were in conflict with one that
+    was asked about: who has told all of those is not asked again.
     """
-    kept = border.pending[~refuted]
-    if not len(news):
-        if refuted.any():
-            raise InternalError("a triangle was refuted without a point")
-        return None, border.rows, border.pending, None
-    fresh = first_of_each(news)
-    fresh = fresh[~np.isin(fresh["id"], border.rows["id"])]
-    rows = np.concatenate([border.rows, fresh])
-    owner = np.concatenate([border.owner, known.tiles.locate(coordinates(fresh))])
+    rows = np.concatenate([border.rows, news])
+    owner = np.concatenate([border.owner, known.tiles.locate(coordinates(news))])
     points = coordinates(rows)
     simplices, neighbors, twins, _ = _core.triangulate2(points, "auto", 1)
     if len(twins):
         raise InternalError("two vertices of a border are the same point")
     inside = _within(simplices, neighbors, border.edges)
-    needed = inside & (owner[simplices] == known.tile).any(axis=1)
-    certain = needed & _among(simplices, kept)
-    doubtful = np.flatnonzero(needed & ~certain)
-    questions = known.questions(points, simplices[doubtful])
-    asked = np.zeros(len(doubtful), dtype=bool)
-    asked[questions.triangle] = True
-    certain[doubtful[~asked]] = True
-    found = simplices[certain]
-    if not asked.any():
-        return None, rows, found, None
-    # What lies beyond the bounding edges is certain as well.
-    vertices, edges = cut_out(simplices, neighbors, certain | ~inside)
-    pending = np.searchsorted(vertices, simplices[doubtful[asked]]).astype(np.int32)
-    left = Border(rows[vertices], owner[vertices], edges, pending)
-    number = np.cumsum(asked) - 1
-    return left, rows, found, _renumbered(questions, number)
-
-
-def _renumbered(questions: Questions, number: NDArray[np.int64]) -> Questions:
-    return type(questions)(number[questions.triangle], questions.tile)
+    certain = inside & (owner[simplices] == known.tile).any(axis=1)
+    fresh = (simplices >= len(border.rows)).any(axis=1)
+    triangle, tile = known.questions(points, simplices, np.flatnonzero(certain & fresh), secretive)
+    certain[triangle] = False
+    left = None
+    if len(triangle):
+        # What lies beyond the bounding edges is certain as well.
+        left = cut_out(rows, owner, simplices, neighbors, certain | ~inside)
+    return left, rows, simplices[certain], corners_of(points, simplices[triangle]), tile
 
 
 def _within(simplices: Indices, neighbors: Indices, edges: Indices) -> Bools:
@@ -149,12 +140,3 @@ def _within(simplices: Indices, neighbors: Indices, edges: Indices) -> Bools:
     beyond = np.isin(key, edges[:, 1] * n + edges[:, 0])
     label = _core.components2(neighbors, np.ascontiguousarray(mine | beyond))
     return np.isin(label, label[mine.any(axis=1)])
-
-
-def _among(simplices: Indices, some: Indices) -> Bools:
-    """Which triangles are among some others, wherever their corners begin."""
-    if not len(some):
-        return np.zeros(len(simplices), dtype=bool)
-    both = np.sort(np.concatenate([some, simplices]), axis=1)
-    number = np.unique(both, axis=0, return_inverse=True)[1].reshape(-1)
-    return np.isin(number[len(some) :], number[: len(some)])

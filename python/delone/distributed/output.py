@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +13,6 @@ from delone.distributed.rows import coordinates, first_of_each
 from delone.io.extras import require
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from delone.distributed.files import Store
@@ -37,6 +37,7 @@ def write_tile(  # noqa: PLR0917
     own: int,
     certain: Indices,
     late: dict[str, NDArray[Any]] | None,
+    threads: int,
 ) -> dict[str, Any]:
     """Write what has become certain of a tile.
 
@@ -51,16 +52,21 @@ def write_tile(  # noqa: PLR0917
     own : int
         How many these are.
     certain : ndarray of int32, shape (m, 3)
-        Triangles of the first round, as positions in `rows`.
+        Triangles of the first round, as positions in `rows`; spoiled.
     late : dict or None
         Triangles of later rounds, ``kept``, as numbers in the source, and the ``seen`` rows of
         their vertices.
+    threads : int
+        How many threads may write.
     """
     vertices, triangles = _joined(rows, own, certain, late)
     points = coordinates(vertices)
-    names = tile_names(tile)
-    _write_table(store, names[0], _columns(vertices, own))
-    _write_table(store, names[1], {n: triangles[:, k].copy() for k, n in enumerate("abc")})
+    sides = {name: triangles[:, k].copy() for k, name in enumerate("abc")}
+    with ThreadPoolExecutor(min(2, threads)) as pool:
+        hashes = pool.map(
+            partial(_write_table, store), tile_names(tile), (_columns(vertices, own), sides)
+        )
+        vertices_hash, triangles_hash = hashes
     return {
         "points": own,
         "foreign": len(vertices) - own,
@@ -68,8 +74,8 @@ def write_tile(  # noqa: PLR0917
         # The vertices of triangles may lie far out of the box of the tile's points.
         "box": _box(points[:own]),
         "extent": _box(points) if len(triangles) else None,
-        "vertices_sha256": digest(store.path(names[0])),
-        "triangles_sha256": digest(store.path(names[1])),
+        "vertices_sha256": vertices_hash,
+        "triangles_sha256": triangles_hash,
     }
 
 
@@ -79,31 +85,35 @@ def _joined(
     """All vertices, own rows first, foreign ones in the order of the source; all triangles."""
     used = np.zeros(len(rows), dtype=bool)
     # Corners of other tiles are few, and own ones stay where they are.
-    other = certain >= own
-    used[certain[other]] = True
+    corners = certain.reshape(-1)
+    other = np.flatnonzero(corners >= own)
+    used[corners[other]] = True
     beside = rows[used]
     if late is not None:
         seen = late["seen"]
-        mine = rows["id"][:own]
-        beside = np.concatenate([beside, seen[~np.isin(seen["id"], mine)]])
+        beside = np.concatenate([beside, seen[_places(rows["id"][:own], seen["id"]) < 0]])
     beside = first_of_each(beside)
     vertices = np.concatenate([rows[:own], beside])
-    place = np.arange(len(rows), dtype=np.int32)
-    place[used] = own + np.searchsorted(beside["id"], rows["id"][used])
-    triangles = certain.copy()
-    triangles[other] = place[certain[other]]
-    if late is not None:
-        triangles = np.concatenate([triangles, _numbered(late["kept"], vertices["id"], own)])
-    return vertices, triangles
+    corners[other] = own + np.searchsorted(beside["id"], rows["id"][corners[other]])
+    if late is None:
+        return vertices, certain
+    return vertices, np.concatenate([certain, _numbered(late["kept"], vertices["id"], own)])
 
 
 def _numbered(ids: NDArray[np.uint64], known: NDArray[np.uint64], own: int) -> Indices:
     """The positions of numbers among known ones, which ascend up to `own` and again from there."""
-    mine, beside = known[:own], known[own:]
-    at = np.searchsorted(mine, ids)
-    is_mine = mine[np.minimum(at, own - 1)] == ids
-    found: Indices = np.where(is_mine, at, own + np.searchsorted(beside, ids)).astype(np.int32)
-    return found
+    mine = _places(known[:own], ids)
+    found: Indices = np.where(mine >= 0, mine, own + np.searchsorted(known[own:], ids))
+    return found.astype(np.int32)
+
+
+def _places(known: NDArray[np.uint64], ids: NDArray[np.uint64]) -> NDArray[np.int64]:
+    """The positions of numbers among known ones, which ascend; -1 of those that are not there.
+
+    Looked up, not sorted or hashed: numbers are few, and known are all points of a tile.
+    """
+    at = np.searchsorted(known, ids)
+    return np.where(known[np.minimum(at, len(known) - 1)] == ids, at, -1)
 
 
 def _columns(vertices: Rows, own: int) -> dict[str, NDArray[Any]]:
@@ -112,19 +122,24 @@ def _columns(vertices: Rows, own: int) -> dict[str, NDArray[Any]]:
     return columns | {"owned": np.arange(len(vertices)) < own}
 
 
-def _write_table(store: Store, name: str, columns: dict[str, NDArray[Any]]) -> None:
+def _write_table(store: Store, name: str, columns: dict[str, NDArray[Any]]) -> str:
+    """Write a table; return its hash."""
     arrow = require("pyarrow", extra="dask", what=_WHAT)
     parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
-    table = arrow.table(columns)
+    table = arrow.table({name: _as_arrow(arrow, column) for name, column in columns.items()})
     with store.writing(name) as beside:
         # Coordinates and numbers hardly ever come again: a dictionary of them is lost work.
-        _write_parquet(parquet, table, beside)
+        parquet.write_table(
+            table, beside, use_dictionary=False, compression="lz4", row_group_size=1 << 20
+        )
+    return digest(store.path(name))
 
 
-def _write_parquet(parquet: Any, table: Any, path: Path) -> None:
-    parquet.write_table(
-        table, path, use_dictionary=False, compression="lz4", row_group_size=1 << 20
-    )
+def _as_arrow(arrow: Any, column: NDArray[Any]) -> Any:
+    """A column in place: `arrow.array` would import pandas, which takes longer than a tile."""
+    kind = arrow.from_numpy_dtype(column.dtype)
+    bits = np.packbits(column, bitorder="little") if column.dtype == bool else column
+    return arrow.Array.from_buffers(kind, len(column), [None, arrow.py_buffer(bits)])
 
 
 def _box(points: NDArray[np.float64]) -> list[float]:

@@ -114,7 +114,7 @@ class Run:
         begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})
         turns, told = self._ask(begun)
         closed = {key for key, summary in begun.items() if summary["asked"]}
-        tasks = {t: (runs, t in closed) for t, runs in enumerate(slices)}
+        tasks = {t: (runs, t in closed, threads) for t, runs in enumerate(slices)}
         finished = self._stage("finish", tasks)
         figures = {
             "rows": self.source.count,

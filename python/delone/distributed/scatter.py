@@ -33,16 +33,15 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
     # A radix sort, for as long as numbers of tiles fit in 16 bits.
     narrow = tile.astype(np.uint16) if len(layout.tiles) <= 1 << 16 else tile
     order = np.argsort(narrow, kind="stable")
-    own, tile = rows[order], tile[order]
+    own, tile = rows.take(order), tile.take(order)
     first = np.flatnonzero(np.diff(tile, prepend=-1))
     ends = np.append(first[1:], len(tile))
     runs = [[int(tile[a]), int(a), int(b)] for a, b in zip(first, ends, strict=True)]
-    points = coordinates(own)
+    columns = own["x"].copy(), own["y"].copy()
     boxes = []
     copies: dict[int, list[NDArray[np.int64]]] = {}
     for number, start, stop in runs:
-        some = points[start:stop]
-        x, y = some.T
+        x, y = (column[start:stop] for column in columns)
         low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
         boxes.append([*low.tolist(), *high.tolist()])
         near = (layout.strips[:, :2] <= high).all(axis=1) & (layout.strips[:, 2:] >= low).all(
@@ -59,6 +58,6 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
         chosen = chosen[np.argsort(own["id"][chosen], kind="stable")]
         if len(chosen):
             halo.append([other, end, end + len(chosen)])
-            parts.append(own[chosen])
+            parts.append(own.take(chosen))
             end += len(chosen)
     return np.concatenate(parts), {"own": runs, "halo": halo, "boxes": boxes}

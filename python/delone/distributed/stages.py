@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.distributed.certify import Questions, corners_of
+from delone.distributed.certify import corners_of
 from delone.distributed.files import Store
 from delone.distributed.hull import extreme_rows
 from delone.distributed.layout import Layout, gather
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST", "TASKS", "note_of", "perform"]
 
 # Points that a tile tells of each circle. One makes rounds, many are sent in vain.
-MOST = 4
+MOST = 16
 
 
 def note_of(stage: str, key: int) -> str:
@@ -94,66 +94,54 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     """Triangulate what a tile knows; keep what is certain, and ask about the rest."""
     layout = Layout.load(store)
     known = layout.known(store, key)
-    rows, own = gather(store, slices, layout.hull)
+    rows, own = gather(store, slices, layout, key)
     points = coordinates(rows)
     simplices, neighbors, twins, _ = _core.triangulate2(points, "auto", threads)
-    foreign = rows[own:]
     owner = np.full(len(rows), key, dtype=np.int32)
     owner[own:] = layout.tiles.locate(points[own:])
-    lowest, highest = _ends(simplices)
-    needed = lowest < own
-    certain = needed & known.certain(points, simplices, threads=threads)
-    doubtful = np.flatnonzero(needed & ~certain)
-    questions = known.questions(points, simplices[doubtful])
-    asked = np.zeros(len(doubtful), dtype=bool)
-    asked[questions.triangle] = True
-    certain[doubtful[~asked]] = True
+    # Nearly all triangles are certain and have own corners alone; what follows looks at the rest.
+    certain = known.certain(points, simplices, own, threads=threads)
+    rest = np.flatnonzero(~certain)
+    some = simplices.take(rest, axis=0)
+    triangle, tile = known.questions(points, simplices, rest[(some < own).any(axis=1)])
+    certain[rest] = (some < own).any(axis=1)
+    certain[triangle] = False
     # Who may be in conflict with a triangle of another tile: vertices that are not closed, and
     # neighbours of points of others.
     told = np.zeros(len(rows), dtype=bool)
-    told[simplices[(needed & ~certain) | (highest >= own)]] = True
-    store.save(f"work/told/{key:06}.npy", rows[:own][told[:own]])
-    # All triangles without foreign corners belong to the tile.
-    shared = certain & (highest >= own)
-    mine = certain & ~shared
-    mine[shared] = belongs(simplices[shared], owner, key)
-    store.save(f"work/certain/{key:06}.npy", simplices[mine])
-    summary = {"foreign": len(foreign), "twins": int((twins[:, 0] < own).sum()), "asked": []}
-    if asked.any():
-        vertices, edges = cut_out(simplices, neighbors, certain)
-        pending = np.searchsorted(vertices, simplices[doubtful[asked]]).astype(np.int32)
-        border = Border(rows[vertices], owner[vertices], edges, pending)
-        number = np.cumsum(asked) - 1
-        questions = Questions(number[questions.triangle], questions.tile)
-        none = np.empty((0, 3), dtype=np.uint64)
-        summary["asked"] = _ask(store, 0, key, border, questions, none, rows[:0])
-    return summary
-
-
-def _ends(simplices: Any) -> tuple[Any, Any]:
-    """The least and the greatest vertex of each triangle, by columns: the axis is too short."""
-    a, b, c = simplices.T
-    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    told[some[(some >= own).any(axis=1)]] = told[simplices[triangle]] = True
+    store.save(f"work/told/{key:06}.npy", rows.take(np.flatnonzero(told[:own])))
+    # Without foreign corners a triangle is the tile's.
+    mine = certain.copy()
+    mine[rest] &= belongs(some, owner, key)
+    store.save(f"work/certain/{key:06}.npy", simplices.take(np.flatnonzero(mine), axis=0))
+    if len(triangle):
+        border = cut_out(rows, owner, simplices, neighbors, certain)
+        kept = np.empty((0, 3), dtype=np.uint64)
+        _ask(store, 0, key, border, corners_of(points, simplices[triangle]), tile, kept, rows[:0])
+    return {
+        "foreign": len(rows) - own,
+        "twins": int((twins[:, 0] < own).sum()),
+        "asked": np.unique(tile).tolist(),
+    }
 
 
 def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
     """Answer what other tiles have asked a tile in a round."""
     told = store.load(f"work/told/{key:06}.npy")
     points = coordinates(told)
-    numbers, refuted, starts = [], [], []
+    numbers, is_all = [], []
     for asker in askers:
         with np.load(store.path(f"work/border/{turn:04}/{asker:06}.npz")) as asked:
-            mine = asked["triangle"][asked["tile"] == key]
-            corners = asked["corners"][mine]
-        ends, rows, _ = _core.deepest2(points, corners, MOST, 1)
+            corners = asked["corners"][asked["tile"] == key]
+        _, rows, whole = _core.deepest2(points, corners, MOST, 1)
         numbers.append(np.unique(rows))
-        refuted.append(mine[np.diff(ends) > 0])
-        starts.append((len(numbers[-1]), len(refuted[-1])))
+        is_all.append(whole.all())
     arrays = {
         "askers": np.array(askers, dtype=np.int64),
-        "counts": np.array(starts, dtype=np.int64).reshape(-1, 2),
+        "ends": np.cumsum([0, *map(len, numbers)]),
         "rows": told[np.concatenate(numbers)],
-        "refuted": np.concatenate(refuted),
+        "all": np.array(is_all, dtype=bool),
     }
     store.save_all(f"work/answers/{turn:04}/{key:06}.npz", arrays)
     return {"told": len(arrays["rows"])}
@@ -163,26 +151,26 @@ def proceed(store: Store, key: int, turn: int, asked: Sequence[int]) -> Summary:
     """Take in the answers of a round, and ask about what is new."""
     layout = Layout.load(store)
     found = store.load_all(f"work/border/{turn:04}/{key:06}.npz")
-    border = Border(found["rows"], found["owner"], found["edges"], found["pending"])
-    news, refuted = [border.rows[:0]], np.zeros(len(border.pending), dtype=bool)
+    border = Border(found["rows"], found["owner"], found["edges"])
+    news, secretive = [], []
     for tile in asked:
         with np.load(store.path(f"work/answers/{turn:04}/{tile:06}.npz")) as told:
             place = int(np.flatnonzero(told["askers"] == key)[0])
-            before, after = told["counts"][:place].sum(axis=0), told["counts"][: place + 1]
-            end = after.sum(axis=0)
-            news.append(told["rows"][before[0] : end[0]])
-            refuted[told["refuted"][before[1] : end[1]]] = True
+            news.append(told["rows"][slice(*told["ends"][place : place + 2])])
+            if not told["all"][place]:
+                secretive.append(tile)
     known = layout.known(store, key)
-    left, rows, certain, questions = advance(border, known, np.concatenate(news), refuted)
+    fresh = np.concatenate(news)
+    left, rows, certain, corners, tiles = advance(border, known, fresh, secretive)
     owner = known.tiles.locate(coordinates(rows))
     mine = certain[belongs(certain, owner, key)]
     kept = np.concatenate([found["kept"], rows["id"][mine]])
     seen = np.concatenate([found["seen"], rows[np.unique(mine)]])
-    if left is None or questions is None:
+    if left is None:
         store.save_all(f"work/closed/{key:06}.npz", {"kept": kept, "seen": seen})
-        return {"foreign": len(rows) - len(border.rows), "asked": []}
-    tiles = _ask(store, turn + 1, key, left, questions, kept, seen)
-    return {"foreign": len(rows) - len(border.rows), "asked": tiles}
+    else:
+        _ask(store, turn + 1, key, left, corners, tiles, kept, seen)
+    return {"foreign": len(fresh), "asked": np.unique(tiles).tolist()}
 
 
 def _ask(  # noqa: PLR0917
@@ -190,34 +178,31 @@ def _ask(  # noqa: PLR0917
     turn: int,
     key: int,
     border: Border,
-    questions: Questions,
+    corners: Any,
+    tile: Any,
     kept: Any,
     seen: Any,
-) -> list[int]:
-    """Write down a border with its questions; return the tiles that are asked."""
+) -> None:
+    """Write down a border and the questions about it."""
     arrays = {
         "rows": border.rows,
         "owner": border.owner,
         "edges": border.edges,
-        "pending": border.pending,
-        "corners": corners_of(coordinates(border.rows), border.pending),
-        "triangle": questions.triangle,
-        "tile": questions.tile,
+        "corners": corners,
+        "tile": tile,
         "kept": kept,
         "seen": seen,
     }
     store.save_all(f"work/border/{turn:04}/{key:06}.npz", arrays)
-    tiles: list[int] = np.unique(questions.tile).tolist()
-    return tiles
 
 
-def finish(store: Store, key: int, slices: Slices, is_closed: bool) -> Summary:
+def finish(store: Store, key: int, slices: Slices, is_closed: bool, threads: int) -> Summary:
     """Write the vertices and triangles of a tile."""
     layout = Layout.load(store)
-    rows, own = gather(store, slices, layout.hull)
+    rows, own = gather(store, slices, layout, key)
     certain = store.load(f"work/certain/{key:06}.npy")
     late = store.load_all(f"work/closed/{key:06}.npz") if is_closed else None
-    return write_tile(store, key, rows, own, certain, late)
+    return write_tile(store, key, rows, own, certain, late, threads)
 
 
 TASKS: dict[str, Callable[..., Summary]] = {

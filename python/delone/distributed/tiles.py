@@ -56,13 +56,14 @@ class Tiles:
         if not len(self.cut):
             return np.zeros(len(points), dtype=np.int32)
         tile = np.empty(len(points), dtype=np.int32)
+        columns = points[:, 0].copy(), points[:, 1].copy()
         # A list of rows for each node, so that a cell's points are looked at together.
-        open_nodes: list[tuple[int, NDArray[np.int64] | slice]] = [(0, slice(None))]
+        open_nodes = [(0, np.arange(len(points)))]
         while open_nodes:
             node, rows = open_nodes.pop()
-            right = points[rows, self.axis[node]] >= self.cut[node]
+            right = columns[self.axis[node]].take(rows) >= self.cut[node]
             for side, child in ((~right, self.children[node, 0]), (right, self.children[node, 1])):
-                some = np.flatnonzero(side) if isinstance(rows, slice) else rows[side]
+                some = rows.compress(side)
                 if child < 0:
                     tile[some] = ~child
                 elif len(some):

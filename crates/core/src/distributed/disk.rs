@@ -22,10 +22,18 @@
 
 use delone_predicates::Point2;
 
+use crate::error::Result;
+use crate::memory::with_room;
+use crate::parallel;
+use crate::watch::Watch;
+
 const UNIT: f64 = f64::EPSILON / 2.0;
 const ROUND: f64 = 16.0 * UNIT;
 const PAD: f64 = 64.0 * UNIT;
 const TINY: f64 = 1e-200;
+
+/// Triangles that one thread looks at before it takes the next ones.
+const TASK: usize = 1 << 16;
 
 /// Centre and radius of a disk that holds the closed circumdisk of the triangle; the radius is
 /// infinite where none is certain.
@@ -56,9 +64,60 @@ pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
     }
 }
 
+/// Which triangles have all corners among the first `own` points and their disks in a closed box: left,
+/// bottom, right, top.
+pub fn within(
+    points: &[Point2],
+    simplices: &[[i32; 3]],
+    own: usize,
+    bounds: [f64; 4],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<bool>> {
+    let [left, bottom, right, top] = bounds;
+    let mut found = with_room(simplices.len())?;
+    found.resize(simplices.len(), false);
+    let tasks = simplices.chunks(TASK).zip(found.chunks_mut(TASK)).collect();
+    let parts = parallel::map(
+        workers,
+        tasks,
+        |(some, found): (&[[i32; 3]], &mut [bool])| {
+            watch.check()?;
+            for (corners, found) in some.iter().zip(found) {
+                if corners.iter().all(|&v| (v as usize) < own) {
+                    let [x, y, r] = disk(corners.map(|v| points[v as usize]));
+                    *found = x - r >= left && x + r <= right && y - r >= bottom && y + r <= top;
+                }
+            }
+            Ok(())
+        },
+    );
+    parts.into_iter().collect::<Result<()>>()?;
+    Ok(found)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn triangles_within_a_box_are_told_from_others() {
+        let points = [[0.0, 0.0], [6.0, 0.0], [0.0, 8.0], [6.0, 8.0]];
+        let both = [[0, 1, 2], [1, 3, 2]];
+        let look = |own, bounds| within(&points, &both, own, bounds, 2, &Watch::idle()).unwrap();
+        let wide = [-2.1, -1.1, 8.1, 9.1];
+        assert_eq!(look(4, wide), [true, true]);
+        assert_eq!(look(3, wide), [true, false]);
+        assert_eq!(look(4, [-1.9, -1.1, 8.1, 9.1]), [false, false]);
+        assert_eq!(look(4, [-2.1, -1.1, 8.1, 8.9]), [false, false]);
+        let whole = [
+            f64::NEG_INFINITY,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+            f64::INFINITY,
+        ];
+        assert_eq!(look(4, whole), [true, true]);
+    }
 
     #[test]
     fn a_right_triangle_has_its_hypotenuse_for_a_diameter() {

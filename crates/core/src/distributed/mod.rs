@@ -8,4 +8,4 @@ mod deepest;
 mod disk;
 
 pub use deepest::{Answers, deepest};
-pub use disk::disk;
+pub use disk::{disk, within};
