@@ -2,13 +2,15 @@
 
 Three tables. The first: seconds and peak memory of the serial executor and of `Delaunay`, both from
 an npy file to the same Parquet files, at one size of tile and growing numbers of points; each in a
-process of its own. The second: what tiles exchange on clustered, gridded and track-like data. The
+process of its own, in turns, medians; beside them `Delaunay` from the file alone, with nothing
+written. The second: what tiles exchange on clustered, gridded and track-like data. The
 third, where a lidar file is named: two Dask workers with 1.5 GB each, without and with one of them
 killed. All triangulations are compared with the one in memory, triangle for triangle.
 """
 
 import argparse
 import os
+import shutil
 import signal
 import tempfile
 import time
@@ -33,10 +35,20 @@ def apart(work: Callable[..., Any], *arguments: Any) -> tuple[Any, float, float]
 
 def measured(work: Callable[..., Any], *arguments: Any) -> tuple[Any, float, float]:
     """Do some work; return its result, seconds and the peak memory of the process in MB."""
+    # pyarrow takes pandas along where it is given arrays of numpy: nobody pays for that here.
+    import pandas
+    import pyarrow.parquet
+
+    assert pandas and pyarrow.parquet
     start = time.perf_counter()
     found = work(*arguments)
     seconds = time.perf_counter() - start
     return found, seconds, peak_memory() / 1e6
+
+
+def alone(file: Path) -> int:
+    """Triangulate a file in memory, and write nothing."""
+    return len(Delaunay(np.load(file)).simplices)
 
 
 def in_memory(file: Path, folder: Path) -> int:
@@ -75,19 +87,28 @@ def canonical(simplices: Any) -> Any:
     return turned[np.lexsort(turned.T[::-1])]
 
 
-def growth(counts: list[int], size: int, folder: Path) -> None:
+def growth(counts: list[int], size: int, runs: int, folder: Path) -> None:
     """Seconds and memory at growing numbers of points."""
-    print(f"\nuniform points, tiles of {size:,}: from npy to Parquet")
-    names = ("points", "memory s", "tiles s", "ratio", "memory MB", "tiles MB", "foreign a tile")
-    print(("{:>12}" * 6 + "{:>16}").format(*names))
+    print(f"\nuniform points, tiles of {size:,}: from npy to Parquet; medians of {runs}")
+    names = ("points", "alone s", "memory s", "tiles s", "ratio", "memory MB", "tiles MB")
+    print(("{:>12}" * 7 + "{:>16}").format(*names, "foreign a tile"))
     for n in counts:
-        file = folder / "points.npy"
+        file, out = folder / "points.npy", folder / "out"
         np.save(file, datasets.uniform(n))
-        whole, one, most = apart(in_memory, file, folder / f"whole{n}")
-        (parts, given), other, peak = apart(in_tiles, file, folder / f"tiles{n}", size)
-        assert whole == parts
-        figures = f"{n:12,}{one:12.1f}{other:12.1f}{other / one:12.2f}{most:12,.0f}{peak:12,.0f}"
-        print(f"{figures}{given:16,.0f}", flush=True)
+        seconds, peaks = [], []
+        for _ in range(runs):
+            whole, plain, _ = apart(alone, file)
+            again, one, most = apart(in_memory, file, out)
+            shutil.rmtree(out)
+            (parts, given), other, peak = apart(in_tiles, file, out, size)
+            shutil.rmtree(out)
+            assert whole == again == parts
+            seconds.append((plain, one, other, other / one))
+            peaks.append((most, peak))
+        plain, one, other, ratio = np.median(seconds, axis=0)
+        most, peak = np.max(peaks, axis=0)
+        figures = f"{n:12,}{plain:12.2f}{one:12.2f}{other:12.2f}{ratio:12.2f}{most:12,.0f}"
+        print(f"{figures}{peak:12,.0f}{given:16,.0f}", flush=True)
 
 
 def kinds(n: int, tiles: int, folder: Path) -> None:
@@ -161,13 +182,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", nargs="?", default=os.environ.get("DELONE_LIDAR"))
     parser.add_argument("--counts", default="1000000,4000000,10000000")
+    parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--n", type=int, default=200_000)
     parser.add_argument("--tile-points", type=int, default=1_000_000)
     options = parser.parse_args()
     counts = [int(count) for count in options.counts.split(",") if count]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        growth(counts, options.tile_points, folder)
+        growth(counts, options.tile_points, options.runs, folder)
         kinds(options.n, 16, folder)
         if options.file:
             lidar(Path(options.file), 2 * options.tile_points, folder)

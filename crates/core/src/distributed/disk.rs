@@ -75,23 +75,24 @@ pub fn within(
     watch: &Watch,
 ) -> Result<Vec<bool>> {
     let [left, bottom, right, top] = bounds;
+    // Where nothing lies beyond, no disk need be computed.
+    let whole = [left, bottom, -right, -top] == [f64::NEG_INFINITY; 4];
+    let inside = |corners: [Point2; 3]| {
+        let [x, y, r] = disk(corners);
+        x - r >= left && x + r <= right && y - r >= bottom && y + r <= top
+    };
     let mut found = with_room(simplices.len())?;
     found.resize(simplices.len(), false);
     let tasks = simplices.chunks(TASK).zip(found.chunks_mut(TASK)).collect();
-    let parts = parallel::map(
-        workers,
-        tasks,
-        |(some, found): (&[[i32; 3]], &mut [bool])| {
-            watch.check()?;
-            for (corners, found) in some.iter().zip(found) {
-                if corners.iter().all(|&v| (v as usize) < own) {
-                    let [x, y, r] = disk(corners.map(|v| points[v as usize]));
-                    *found = x - r >= left && x + r <= right && y - r >= bottom && y + r <= top;
-                }
-            }
-            Ok(())
-        },
-    );
+    let look = |(some, found): (&[[i32; 3]], &mut [bool])| {
+        watch.check()?;
+        for (corners, found) in some.iter().zip(found) {
+            *found = corners.iter().all(|&v| (v as usize) < own)
+                && (whole || inside(corners.map(|v| points[v as usize])));
+        }
+        Ok(())
+    };
+    let parts = parallel::map(workers, tasks, look);
     parts.into_iter().collect::<Result<()>>()?;
     Ok(found)
 }

@@ -83,8 +83,22 @@ fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
         let mut proper = sides.filter(|(a, b)| a != b).peekable();
         proper.peek().is_some() && proper.all(|(a, b)| orient2d(a, b, p) == Sign::Positive)
     };
+    // Most points lie in a box that is inside, and four comparisons say so.
+    let [_, ne, _, nw, _, sw, _, se] = polygon[..] else {
+        unreachable!("eight directions have eight corners")
+    };
+    let (low, high) = (
+        [nw[0].max(sw[0]), sw[1].max(se[1])],
+        [ne[0].min(se[0]), nw[1].min(ne[1])],
+    );
+    let is_box = [low, high, [low[0], high[1]], [high[0], low[1]]]
+        .into_iter()
+        .all(inside);
+    let in_box = |p: Point2| {
+        is_box && low[0] <= p[0] && p[0] <= high[0] && low[1] <= p[1] && p[1] <= high[1]
+    };
     rows()
-        .filter(|&(_, &p)| !inside(p))
+        .filter(|&(_, &p)| !in_box(p) && !inside(p))
         .map(|(row, _)| row)
         .collect()
 }
@@ -105,5 +119,37 @@ mod tests {
         assert_eq!(hull2(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).0, [0, 2]);
         assert_eq!(hull2(&[[1.0, 1.0]; 3]).0, [0]);
         assert!(hull2(&[]).0.is_empty());
+    }
+
+    #[test]
+    fn no_extreme_point_is_lost_in_a_box() {
+        let mut state = 5u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 33) % 40
+        };
+        for (sheared, n) in [(false, 30), (true, 30), (false, 900), (true, 900)] {
+            let points: Vec<Point2> = (0..n)
+                .map(|_| (random() as f64, random() as f64))
+                .map(|(x, y)| {
+                    if sheared {
+                        [x + 3.0 * y, y - x]
+                    } else {
+                        [x, y]
+                    }
+                })
+                .collect();
+            let (hull, _) = hull2(&points);
+            // By definition: no point lies right of a side.
+            for (i, &u) in hull.iter().enumerate() {
+                let (a, b) = (
+                    points[u as usize],
+                    points[hull[(i + 1) % hull.len()] as usize],
+                );
+                assert!(points.iter().all(|&p| orient2d(a, b, p) != Sign::Negative));
+            }
+        }
     }
 }
