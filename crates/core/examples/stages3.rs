@@ -100,6 +100,9 @@ fn make(set: &str, n: usize) -> Vec<Point3> {
             .map(|i| i * 1_000_003 % (side * side * side))
             .map(|i| [i % side, i / side % side, i / side / side].map(|x| x as f64))
             .collect(),
+        "utm" => (0..n)
+            .map(|_| [0, 1, 2].map(|k| [5e5, 4.5e6, 300.0][k] + (random() * 1e6).round() / 1e3))
+            .collect(),
         "sphere" => (0..n).map(|_| direction().1).collect(),
         "gaussian" => (0..n).map(|_| direction().0).collect(),
         "kuzmin" => (0..n)

@@ -34,12 +34,17 @@
 //! its new neighbours, so all make at most n^2, and none is removed more than once: the work is
 //! bounded by the size that a triangulation in space may have.
 
+use std::hint::select_unpredictable;
+
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
-use super::sphere::{LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres};
+use super::lattice;
+use super::sphere::{
+    Facets, LANES, RANGE, Ray, Rays, SLACK, Sphere, UNKNOWN, power, sphere, spheres,
+};
 use crate::error::{Error, Result};
 use crate::memory::{push, with_room};
-use crate::mesh3::{Code, FACETS, Mesh3, tetrahedron};
+use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
 
 /// Most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4, rounded up.
 const STAR: usize = 64;
@@ -54,7 +59,8 @@ const NONE: u32 = u32::MAX;
 pub struct Room {
     /// The sphere of each record.
     pub spheres: Vec<Sphere>,
-    /// The vertex that has last found the record in conflict. Apart from the spheres: a store to
+    /// 2 p + 1 where p is the vertex that has last found the record in conflict, 2 p where predicates have
+    /// said that it is not. Apart from the spheres: a store to
     /// part of one would hold up the next load of the whole.
     mark: Vec<u32>,
     /// Where each vertex stands in the star of the vertex inserted last, if it does.
@@ -81,6 +87,8 @@ pub struct Kernel<'a> {
     place: Vec<u8>,
     /// Added to each radius: NaN where the coordinates are out of the range of spheres, else 0.
     doubt: f64,
+    /// Whether the points lie on a small lattice.
+    small: bool,
     /// The records in conflict, each as the facet by which it was reached.
     cavity: Vec<Code>,
     /// The facets of the hole, seen from inside.
@@ -93,6 +101,7 @@ pub struct Kernel<'a> {
 struct Star {
     vertices: [u32; 256],
     rays: Rays,
+    facets: Facets,
     /// By facet of the hole: its corners, their places, what lies across, and the new record.
     corners: [[u32; 3]; RIM],
     places: [[u8; 3]; RIM],
@@ -130,11 +139,13 @@ impl<'a> Kernel<'a> {
             mark,
             place,
             doubt: if certain { 0.0 } else { f64::NAN },
+            small: certain && lattice::is_small(&points[..points.len() - 1]),
             cavity: vec![0; RIM],
             rim: vec![0; RIM],
             star: Box::new(Star {
                 vertices: [NONE; 256],
                 rays: Rays::default(),
+                facets: Facets::default(),
                 corners: [[0; 3]; RIM],
                 places: [[0; 3]; RIM],
                 across: [0; RIM],
@@ -253,7 +264,7 @@ impl<'a> Kernel<'a> {
     #[inline(always)]
     fn carve(&mut self, p: u32, seed: u32) -> Result<(usize, usize)> {
         let q = self.at(p);
-        self.mark[seed as usize] = p;
+        self.mark[seed as usize] = 2 * p + 1;
         self.cavity[0] = 4 * seed;
         let mut ends = (1, 0);
         let mut next = 0;
@@ -287,45 +298,65 @@ impl<'a> Kernel<'a> {
         let power = distance - square;
         let certain = power.abs() > SLACK * (distance + square);
         let mut conflict = power < 0.0;
-        let mark = self.mark[other];
+        // All that is uncertain is behind a call, and the mark is read after it: the compiler would else branch
+        // on the conflict, too, which takes 250 ns a point more.
         if !certain {
-            conflict = mark == p || self.conflicts_exactly(other as u32, p);
+            conflict = self.uncertain(other as u32, p);
         }
-        self.mark[other] = if conflict { p } else { mark };
+        let (mark, taken) = (self.mark[other], 2 * p + 1);
+        self.mark[other] = select_unpredictable(conflict, taken, mark);
         self.cavity[*gone] = across;
-        *gone += usize::from(conflict & (mark != p));
+        *gone += usize::from(conflict & (mark != taken));
         self.rim[*rims] = e;
         *rims += usize::from(!conflict);
+    }
+
+    /// Whether t is in conflict with p, by predicates where they have not said so yet.
+    #[cold]
+    #[inline(never)]
+    fn uncertain(&mut self, t: u32, p: u32) -> bool {
+        let mark = self.mark[t as usize];
+        if mark >> 1 == p {
+            return mark & 1 == 1;
+        }
+        let conflict = self.view().conflicts_exactly(t, p);
+        self.mark[t as usize] = if conflict { mark } else { 2 * p };
+        conflict
     }
 
     /// Notes the corners of the hole's facets and numbers them; `false` where there are too many.
     #[inline(always)]
     fn number(&mut self, p: u32, gone: usize, rims: usize) -> bool {
         let star = &mut *self.star;
+        let (mesh, place) = (&self.mesh, &mut self.place[..]);
         let mut vertices = 0;
         // All corners of the cavity are on its border. Each record but the first brings one, at most.
-        for v in self.mesh.corners(tetrahedron(self.cavity[0])) {
-            self.place[v as usize] = vertices as u8;
+        for v in mesh.corners(tetrahedron(self.cavity[0])) {
+            place[v as usize] = vertices as u8;
             star.vertices[vertices] = v;
             vertices += 1;
         }
         for &e in &self.cavity[1..gone] {
-            let v = self.mesh.apex(e);
-            let place = self.place[v as usize];
-            let new = star.vertices[usize::from(place)] != v || usize::from(place) >= vertices;
-            let place = if new { vertices as u8 } else { place };
-            self.place[v as usize] = place;
-            star.vertices[usize::from(place)] = v;
+            let v = mesh.apex(e);
+            let own = &mut place[v as usize];
+            let new = star.vertices[usize::from(*own)] != v || usize::from(*own) >= vertices;
+            let here = if new { vertices as u8 } else { *own };
+            *own = here;
+            star.vertices[usize::from(here)] = v;
             vertices += usize::from(new);
             if vertices > STAR {
                 return false;
             }
         }
-        for (i, &e) in self.rim[..rims].iter().enumerate() {
-            let corners = self.mesh.facet(e);
-            star.across[i & (RIM - 1)] = self.mesh.opposite(e);
-            star.corners[i & (RIM - 1)] = corners;
-            star.places[i & (RIM - 1)] = corners.map(|v| self.place[v as usize]);
+        let facets = star
+            .corners
+            .iter_mut()
+            .zip(&mut star.places)
+            .zip(&mut star.across);
+        for (&e, ((corners, places), across)) in self.rim[..rims].iter().zip(facets) {
+            *across = mesh.opposite(e);
+            *corners = mesh.facet(e);
+            *places = corners.map(|v| place[v as usize]);
         }
         let origin = self.points[p as usize];
         for (i, &v) in star.vertices[..vertices].iter().enumerate() {
@@ -351,29 +382,32 @@ impl<'a> Kernel<'a> {
             star.table[STAR * c + a] = 4 * t + 1;
             star.table[STAR * a + b] = 4 * t + 2;
         }
+        let (all_corners, all_opposite) = self.mesh.all_mut();
         for i in 0..rims {
             let i = i & (RIM - 1);
             let (t, across) = (star.records[i], star.across[i]);
             let [a, b, c] = star.places[i];
             let (a, b, c) = (place(a), place(b), place(c));
             let [u, v, w] = star.corners[i];
-            let opposite = [
-                star.table[STAR * c + b],
-                star.table[STAR * a + c],
-                star.table[STAR * b + a],
-                across,
+            all_corners[t as usize] = [u as i32, v as i32, w as i32, p as i32];
+            all_opposite[t as usize] = [
+                star.table[STAR * c + b] as i32,
+                star.table[STAR * a + c] as i32,
+                star.table[STAR * b + a] as i32,
+                across as i32,
             ];
-            self.mesh.put(t, [u, v, w, p], opposite);
-            self.mesh.point(across, 4 * t + 3);
+            all_opposite[tetrahedron(across) as usize][corner(across)] = (4 * t + 3) as i32;
         }
+        star.facets.gather(&star.rays, &star.places[..rims]);
+        let all_spheres = &mut self.spheres[..];
         let origin = self.points[p as usize];
         let (mut best, mut least) = (star.records[0], f64::INFINITY);
         for from in (0..rims).step_by(LANES) {
-            let lanes = spheres(origin, &star.rays, &star.places[from..], self.doubt, aim);
+            let lanes = spheres(origin, &star.facets, from, self.doubt, aim);
             for lane in 0..LANES.min(rims - from) {
                 let t = star.records[(from + lane) & (RIM - 1)];
                 let [x, y, z, square] = &lanes.sphere;
-                self.spheres[t as usize] = [x[lane], y[lane], z[lane], square[lane]];
+                all_spheres[t as usize] = [x[lane], y[lane], z[lane], square[lane]];
                 // Ghosts and flat tetrahedra, whose powers are NaN, are for want of others.
                 let better = lanes.power[lane] < least;
                 least = if better { lanes.power[lane] } else { least };
@@ -440,8 +474,33 @@ impl<'a> Kernel<'a> {
 
     /// Whether t is in conflict with p.
     fn conflicts(&self, t: u32, p: u32) -> bool {
+        self.view().conflicts(t, p)
+    }
+
+    #[inline(always)]
+    fn view(&self) -> View<'_> {
+        View {
+            points: self.points,
+            mesh: &self.mesh,
+            spheres: &self.spheres,
+            small: self.small,
+        }
+    }
+}
+
+/// What a test for conflict reads.
+#[derive(Clone, Copy)]
+struct View<'a> {
+    points: &'a [Point3],
+    mesh: &'a Mesh3<'a>,
+    spheres: &'a [Sphere],
+    small: bool,
+}
+
+impl View<'_> {
+    fn conflicts(&self, t: u32, p: u32) -> bool {
         let [x, y, z, square] = self.spheres[t as usize];
-        let power = power([x, y, z, square], self.at(p));
+        let power = power([x, y, z, square], self.points[p as usize]);
         if power.abs() > SLACK * (power + 2.0 * square) {
             power < 0.0
         } else {
@@ -449,16 +508,21 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    #[cold]
     #[inline(never)]
     fn conflicts_exactly(&self, t: u32, p: u32) -> bool {
-        let Some(k) = self.mesh.infinite_corner(t) else {
-            let [a, b, c, d] = self.mesh.corners(t).map(|v| self.at(v));
-            return insphere_canonical(a, b, c, d, self.at(p)) == Sign::Positive;
-        };
+        let at = |v: u32| self.points[v as usize];
         let corners = self.mesh.corners(t);
-        let [a, b, c] = FACETS[k].map(|i| self.at(corners[i]));
-        match orient3d(a, b, c, self.at(p)) {
+        let Some(k) = self.mesh.infinite_corner(t) else {
+            let [a, b, c, d] = corners.map(at);
+            let sign = if self.small {
+                lattice::insphere_canonical([a, b, c, d, at(p)])
+            } else {
+                insphere_canonical(a, b, c, d, at(p))
+            };
+            return sign == Sign::Positive;
+        };
+        let [a, b, c] = FACETS[k].map(|i| at(corners[i]));
+        match orient3d(a, b, c, at(p)) {
             Sign::Positive => true,
             Sign::Negative => false,
             // See the head of the file.

@@ -8,6 +8,7 @@ mod cavity;
 mod dispatch;
 mod insertion;
 mod join;
+mod lattice;
 mod seam;
 mod sphere;
 mod triangulate;

@@ -27,8 +27,10 @@
 //! p from the same centre, errs by at most 2 (d + r) E + 2 E^2 < 2^-18 (d r + r^2) < 2^-17 (d^2 + r^2), and by
 //! some u (d^2 + r^2) for its own roundings. [`SLACK`] = 2^-16 covers it.
 //!
-//! *Range.* All coordinates are below 2^[`RANGE`] in magnitude, L^2 above 2^-600, so that each length is
-//! above 2^-350 and no underflow exceeds 2^-1074 times 2^300, which is nothing beside u L r.
+//! *Range.* All coordinates are below 2^[`RANGE`] in magnitude, so that each length is below 2^42, and L^2 is
+//! above 2^-600, so that each length is above 2^-384 and r above 2^-385. An underflow adds at most 2^-1074, times at
+//! most three lengths: less than 2^-940, which is nothing beside u L r > 2^-53 2^-300 2^-385. Where a sphere is
+//! certain, r < 2^27 2^42, and its fourth power is in range.
 
 use delone_predicates::Point3;
 
@@ -36,7 +38,7 @@ use delone_predicates::Point3;
 pub const SLACK: f64 = 1.0 / 65536.0;
 
 /// Coordinates below 2^RANGE may be asked of spheres.
-pub const RANGE: i32 = 20;
+pub const RANGE: i32 = 40;
 
 /// A centre, and the square of the radius. NaN, which fails every comparison, where nothing is certain.
 pub type Sphere = [f64; 4];
@@ -109,17 +111,15 @@ pub fn reach(square: f64) -> f64 {
 /// Spheres that are computed side by side.
 pub const LANES: usize = 8;
 
-/// The corners of a star as seen from its centre, coordinate by coordinate.
+/// The corners of a star as seen from its centre.
 pub struct Rays {
-    d: [[f64; 64]; 3],
-    lift: [f64; 64],
+    all: [[f64; 4]; 64],
 }
 
 impl Default for Rays {
     fn default() -> Self {
         Self {
-            d: [[0.0; 64]; 3],
-            lift: [0.0; 64],
+            all: [[0.0; 4]; 64],
         }
     }
 }
@@ -128,10 +128,39 @@ impl Rays {
     /// Puts ray i in place.
     #[inline(always)]
     pub fn set(&mut self, i: usize, ray: Ray) {
-        for k in 0..3 {
-            self.d[k][i] = ray.d[k];
+        let [x, y, z] = ray.d;
+        self.all[i] = [x, y, z, ray.lift];
+    }
+}
+
+/// The corners of facets of a star, coordinate by coordinate. All are gathered before the first are computed
+/// with: a load of what has been stored in pieces waits until it is in the cache.
+pub struct Facets {
+    corners: [[[f64; 136]; 4]; 3],
+}
+
+impl Default for Facets {
+    fn default() -> Self {
+        Self {
+            corners: [[[0.0; 136]; 4]; 3],
         }
-        self.lift[i] = ray.lift;
+    }
+}
+
+impl Facets {
+    /// Puts the rays of facets in place.
+    #[inline(always)]
+    pub fn gather(&mut self, rays: &Rays, places: &[[u8; 3]]) {
+        for (i, places) in places.iter().enumerate() {
+            let i = i & 127;
+            for (corner, &place) in self.corners.iter_mut().zip(places) {
+                let [x, y, z, lift] = rays.all[usize::from(place) & 63];
+                corner[0][i] = x;
+                corner[1][i] = y;
+                corner[2][i] = z;
+                corner[3][i] = lift;
+            }
+        }
     }
 }
 
@@ -143,25 +172,22 @@ pub struct Lanes {
     pub power: [f64; LANES],
 }
 
-/// The spheres through `p` and the first [`LANES`] of `facets`, and the powers of `aim`.
+/// The spheres through `p` and the [`LANES`] facets from `from` on, and the powers of `aim`.
 #[inline(always)]
-pub fn spheres(p: Point3, rays: &Rays, facets: &[[u8; 3]], doubt: f64, aim: Point3) -> Lanes {
-    let mut corners = [[[0.0; LANES]; 4]; 3];
-    for (lane, places) in facets.iter().take(LANES).enumerate() {
-        for (corner, &place) in corners.iter_mut().zip(places) {
-            let i = usize::from(place) & 63;
-            corner[0][lane] = rays.d[0][i];
-            corner[1][lane] = rays.d[1][i];
-            corner[2][lane] = rays.d[2][i];
-            corner[3][lane] = rays.lift[i];
-        }
-    }
+pub fn spheres(p: Point3, facets: &Facets, from: usize, doubt: f64, aim: Point3) -> Lanes {
     let mut out = Lanes {
         sphere: [[0.0; LANES]; 4],
         power: [0.0; LANES],
     };
+    let from = from & (127 & !(LANES - 1));
+    let lanes = |corner: usize, k: usize| -> &[f64; LANES] {
+        facets.corners[corner][k][from..from + LANES]
+            .try_into()
+            .expect("eight")
+    };
+    let corners = [0, 1, 2].map(|c| [0, 1, 2, 3].map(|k| lanes(c, k)));
     for lane in 0..LANES {
-        let ray = |corner: &[[f64; LANES]; 4]| Ray {
+        let ray = |corner: &[&[f64; LANES]; 4]| Ray {
             d: [corner[0][lane], corner[1][lane], corner[2][lane]],
             lift: corner[3][lane],
         };

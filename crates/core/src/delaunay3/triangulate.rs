@@ -22,20 +22,26 @@ use crate::{parallel, points};
 /// Sizes of blocks.
 #[derive(Debug, Clone, Copy)]
 struct Sizes {
+    /// Points from which on there are two blocks.
+    two: usize,
     /// Most points that a block should hold.
     block: usize,
     /// Fewest points of a seam that a block should hold.
     seam: usize,
     /// Points a block in the sample on which it is tried whether blocks are worth it.
     sample: usize,
+    /// Points of which at most one is in the sample, as it must cost little.
+    sparse: usize,
 }
 
-/// The seam of two halves of a million uniform points has 5 % of them, which are triangulated twice; smaller
-/// blocks have more.
+/// The seam of two halves of a million uniform points has 5 % of them, which are triangulated twice, that of two
+/// halves of 2^17 points 10 %; smaller blocks have more.
 const SIZES: Sizes = Sizes {
+    two: 1 << 17,
     block: 1 << 19,
     seam: 1 << 13,
-    sample: 1 << 11,
+    sample: 1 << 12,
+    sparse: 64,
 };
 
 /// A part of the work and the time it took.
@@ -71,8 +77,8 @@ fn in_blocks(
         workers,
         watch,
     };
-    if input.len() > sizes.block {
-        let blocks = input.len().div_ceil(sizes.block).next_power_of_two();
+    if input.len() >= sizes.two {
+        let blocks = input.len().div_ceil(sizes.block).next_power_of_two().max(2);
         let cuts = Cuts3::of(input, blocks)?;
         let pays = task.pays(input, &cuts)?;
         clock.lap("sample");
@@ -136,8 +142,9 @@ impl Task<'_> {
     /// Whether blocks are worth it: not where most points would be in the seam, as for points on a
     /// sphere, whose tetrahedra all have the one sphere.
     fn pays(self, input: &[Point3], cuts: &Cuts3) -> Result<bool> {
+        let step = input.len() / (self.sizes.sample * cuts.blocks());
         // Odd, as rows of a grid come in periods.
-        let step = (input.len() / (self.sizes.sample * cuts.blocks())) | 1;
+        let step = step.max(self.sizes.sparse) | 1;
         let mut sample = with_room(input.len() / step + 1)?;
         sample.extend(input.iter().step_by(step));
         let parts = self.parts(&sample, cuts)?;
@@ -339,9 +346,11 @@ mod tests {
         let n = points.len();
         let sets = [usize::MAX, n / 2 + 1, n / 7 + 1, n / 30 + 1].map(|block| {
             let sizes = Sizes {
+                two: block,
                 block,
                 seam: 60,
                 sample: 500,
+                sparse: 1,
             };
             let made = in_blocks(points, sizes, 2, &Watch::idle()).unwrap();
             let given = Given3 {

@@ -110,8 +110,8 @@ impl Mesh3<'_> {
     #[inline(always)]
     pub fn facet(&self, e: Code) -> [u32; 3] {
         let corners = &self.corners[tetrahedron(e) as usize];
-        let [a, b, c] = FACETS[corner(e)];
-        [corners[a] as u32, corners[b] as u32, corners[c] as u32]
+        // The mask spares a question about the range.
+        FACETS[corner(e)].map(|i| corners[i & 3] as u32)
     }
 
     /// The corner that facet e is opposite to.
@@ -136,6 +136,12 @@ impl Mesh3<'_> {
     #[inline]
     pub fn opposite(&self, e: Code) -> Code {
         self.opposite[tetrahedron(e) as usize][corner(e)] as Code
+    }
+
+    /// All corners and all codes, to be written.
+    #[inline(always)]
+    pub fn all_mut(&mut self) -> (&mut [[i32; 4]], &mut [[i32; 4]]) {
+        (self.corners, self.opposite)
     }
 
     /// The corner of t that is infinite, for ghosts.
