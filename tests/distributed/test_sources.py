@@ -82,6 +82,46 @@ def test_lidar(
     assert tin.tile(0).attributes["classification"].dtype == np.uint8
 
 
+@pytest.mark.parametrize("empty", [False, True])
+def test_copc(lidar: Any, write_copc: Callable[..., Any], empty: bool, tmp_path: Path) -> None:
+    import laspy
+
+    from delone.io import las, read_points
+
+    path = tmp_path / "survey.copc.laz"
+    some = slice(0, 40_000)
+    order = write_copc(path, lidar.points[some], lidar.z[some], empty=empty)
+    # Another reader finds the octree.
+    with laspy.CopcReader.open(path) as file:
+        assert len(file.query()) == len(order)
+        assert len(file.query(level=0)) == len(order) / 8
+    whole = read_points(path)
+    np.testing.assert_allclose(whole.points, lidar.points[order], atol=1e-6)
+    # Chunks end at 5,000, 14,179, 14,219, and 31,918 points.
+    for start in (0, 3001, 5000, 9003, 14_178, 14_200, 39_000):
+        for stop in (start + 1, start + 60, start + 997, 40_000):
+            found = las.read_range(path, start, stop, attributes=["intensity"])
+            assert np.array_equal(found.points, whole.points[start:stop])
+            assert np.array_equal(found.z, whole.z[start:stop])
+
+
+def test_copc_in_pieces(
+    lidar: Any,
+    write_copc: Callable[..., Any],
+    tmp_path: Path,
+    canonical: Callable[[Any], Any],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from delone.io import read_points
+
+    path = tmp_path / "survey.copc.laz"
+    write_copc(path, lidar.points[:40_000], lidar.z[:40_000])
+    monkeypatch.setattr(sources, "PIECE", 3001)
+    tin = distributed.triangulate(path, tmp_path / "tin", tile_points=9000)
+    right = Delaunay(read_points(path).points)
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+
+
 def test_classes_are_chosen(lidar: Any, tmp_path: Path, canonical: Callable[[Any], Any]) -> None:
     from delone.io import read_points
 
