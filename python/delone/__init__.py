@@ -20,6 +20,7 @@ from delone.constrained.validation import ConstrainedReport
 from delone.delaunay import Delaunay
 from delone.errors import (
     BudgetExceededError,
+    BusyError,
     CrossingSegmentsError,
     DegenerateInputError,
     DeloneError,
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BudgetExceededError",
+    "BusyError",
     "ConstrainedDelaunay",
     "ConstrainedReport",
     "ConvexHull",

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BudgetExceededError",
+    "BusyError",
     "CrossingSegmentsError",
     "DegenerateInputError",
     "DeloneError",
@@ -200,6 +201,37 @@ class BudgetExceededError(DeloneError, RuntimeError):
         super().__init__(message)
         self.limit = int(limit)
         self.found = int(found)
+
+
+class BusyError(DeloneError, RuntimeError):
+    """Another process is writing there.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    pid : int, optional
+        The number of the process, 0 where it has not said.
+    host : str, optional
+        The name of its machine.
+
+    Attributes
+    ----------
+    pid : int
+        The number of the process, 0 where it has not said.
+    host : str
+        The name of its machine.
+    """
+
+    pid: int
+    host: str
+
+    def __init__(
+        self, message: str = "another process is writing there", *, pid: int = 0, host: str = ""
+    ) -> None:
+        super().__init__(message)
+        self.pid = int(pid)
+        self.host = str(host)
 
 
 class LimitError(InputError):

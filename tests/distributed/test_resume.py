@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+import platform
 import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +16,11 @@ import pytest
 
 from delone import Delaunay, datasets, distributed
 from delone.distributed import files
-from delone.errors import InputError
+from delone.distributed.lock import LOCK, locked
+from delone.errors import BusyError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 POINTS = datasets.integer_lattice(90, side=12)
 SIZE = 45
@@ -48,11 +52,6 @@ def steps() -> int:
     return count
 
 
-def stops(count: int) -> Iterator[int]:
-    """Every step of the beginning and the end, and every third between."""
-    return (i for i in range(count) if i < 30 or i > count - 30 or i % 3 == 0)
-
-
 def crash_at(at: int, how: Callable[[], None]) -> Callable[[str], None]:
     left = at
 
@@ -74,7 +73,7 @@ def test_a_crash_between_any_two_changes_is_survived(
     def stop() -> None:
         raise Crash
 
-    for at in stops(steps):
+    for at in range(steps):
         folder = tmp_path / str(at)
         monkeypatch.setattr(files, "step", crash_at(at, stop))
         with pytest.raises(Crash):
@@ -90,7 +89,7 @@ def test_a_killed_process_leaves_what_can_be_gone_on_from(
     steps: int, tmp_path: Path, canonical: Callable[[Any], Any]
 ) -> None:
     right = canonical(Delaunay(POINTS).simplices)
-    for at in range(3, steps, 23):
+    for at in range(3, steps, 7):
         folder = tmp_path / str(at)
         child = os.fork()
         if child == 0:
@@ -159,6 +158,45 @@ def test_outputs_are_never_mixed(tmp_path: Path) -> None:
     assert (other / "thesis.txt").read_text() == "years of work"
     with pytest.raises(InputError, match="no folder"):
         distributed.triangulate(POINTS, other / "thesis.txt", tile_points=SIZE)
+
+
+def test_a_folder_named_work_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+    theirs = tmp_path / "tin" / "work" / "thesis.txt"
+    theirs.parent.mkdir(parents=True)
+    theirs.write_text("years of work")
+    with pytest.raises(InputError, match="holds something else"):
+        run(tmp_path)
+    assert theirs.read_text() == "years of work"
+    assert [p.name for p in (tmp_path / "tin").iterdir()] == ["work"]
+
+
+def test_two_runs_do_not_write_at_a_time(tmp_path: Path) -> None:
+    with locked(tmp_path / "tin"), pytest.raises(BusyError, match="is being written") as caught:
+        run(tmp_path)
+    assert (caught.value.pid, caught.value.host) == (os.getpid(), platform.node())
+    assert run(tmp_path).npoints == len(POINTS)
+    assert not (tmp_path / "tin" / LOCK).exists()
+    assert not (tmp_path / "tin" / "work").exists()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="processes are killed by signals")
+def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
+    code = f"""
+import pathlib, time
+from delone.distributed.lock import locked
+with locked(pathlib.Path({str(tmp_path / "tin")!r})):
+    print("locked", flush=True)
+    time.sleep(600)
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None and other.stdout.readline() == b"locked\n"
+        with pytest.raises(BusyError) as caught:
+            run(tmp_path)
+        assert caught.value.pid == other.pid
+        other.kill()
+    assert (tmp_path / "tin" / LOCK).exists()
+    assert run(tmp_path).npoints == len(POINTS)
+    assert not (tmp_path / "tin" / LOCK).exists()
 
 
 def test_what_is_not_finished_cannot_be_opened(

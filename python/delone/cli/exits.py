@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from delone.errors import (
     BudgetExceededError,
+    BusyError,
     CrossingSegmentsError,
     DegenerateInputError,
     FileFormatError,
@@ -120,6 +121,7 @@ def code_of(error: BaseException) -> Exit:
         (NonFiniteError, Exit.DEGENERATE),
         (CrossingSegmentsError, Exit.DEGENERATE),
         (BudgetExceededError, Exit.DEGENERATE),
+        (BusyError, Exit.OUTPUT),
         (InternalError, Exit.INTERNAL),
         (FileFormatError, Exit.INPUT),
         (InputError, Exit.USAGE),

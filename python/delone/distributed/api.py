@@ -79,6 +79,8 @@ def triangulate(
         pyarrow is not installed (extra ``dask``), or a library that reads the source.
     OSError
         The output cannot be written; a full disk says so. What is done is kept.
+    BusyError
+        Another run is at work in this output.
     DeloneError
         The scheduler or too many workers are gone. What is done is kept.
 

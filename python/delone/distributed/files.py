@@ -121,10 +121,10 @@ class Store:
         except ValueError as error:
             raise DeloneError(f"{self.path(name)} is torn: {error}") from error
 
-    def sweep(self, name: str) -> None:
-        """Remove what killed processes have left beside the files of a folder."""
-        step(f"before the sweep of {name}")
-        for left in self.path(name).glob(".*"):
+    def sweep(self, pattern: str) -> None:
+        """Remove what killed processes have left beside files."""
+        step(f"before the sweep of {pattern}")
+        for left in self.root.glob(pattern):
             left.unlink(missing_ok=True)
 
     def remove(self, name: str) -> None:

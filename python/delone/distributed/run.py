@@ -12,6 +12,7 @@ import numpy as np
 from delone.distributed.files import Store
 from delone.distributed.hull import extreme_rows
 from delone.distributed.layout import Layout, Slices, collect
+from delone.distributed.lock import LOCK, locked
 from delone.distributed.manifest import FORMAT, assemble, manifest_of
 from delone.distributed.rows import make_rows, widened
 from delone.distributed.stages import note_of
@@ -98,6 +99,11 @@ class Run:
 
     def go(self, resume: bool) -> None:
         """Do all that is not done yet."""
+        self._refuse_others()
+        with locked(self.store.root):
+            self._go(resume)
+
+    def _go(self, resume: bool) -> None:
         self._enter(resume)
         if self.store.exists("manifest.json"):
             # An earlier run was stopped after its last word.
@@ -126,24 +132,33 @@ class Run:
             "hull": len(layout.hull),
             "memory": self.progress.memory,
         }
-        for folder in ("vertices", "triangles"):
-            self.store.sweep(folder)
+        for left in ("vertices/.tile=*", "triangles/.tile=*", ".manifest-*"):
+            self.store.sweep(left)
         settings = self._settings()
         manifest = assemble(settings, self.source.crs, layout, figures, finished)
         self.store.note("manifest.json", manifest)
         self.store.remove("work")
 
+    def _refuse_others(self) -> None:
+        """Refuse what is no folder of a run, before anything is written."""
+        root = self.store.root
+        if root.exists() and not root.is_dir():
+            raise InputError(f"{root} is there and is no folder")
+        if self.store.exists("manifest.json") or self.store.exists("work/run.json"):
+            return
+        # A run that ended before its first word has left a lock and the beginning of that word.
+        others = [p for p in root.glob("*") if p.name not in ("work", LOCK)]
+        others += [p for p in root.glob("work/*") if not p.name.startswith(".run-")]
+        if others:
+            raise InputError(f"{root} is there and holds something else: choose another output")
+
     def _enter(self, resume: bool) -> None:
         """Begin in an empty folder, or go on with the same run in its own."""
         root = self.store.root
         settings = self._settings()
-        if root.exists() and not root.is_dir():
-            raise InputError(f"{root} is there and is no folder")
         begun = self.store.noted("work/run.json")
         before = manifest_of(self.store)["run"] if self.store.exists("manifest.json") else begun
         if before is None:
-            if root.is_dir() and any(p for p in root.iterdir() if p.name != "work"):
-                raise InputError(f"{root} is there and holds something else: choose another output")
             self.store.remove("work")
             self.store.note("work/run.json", settings)
         elif not resume:
