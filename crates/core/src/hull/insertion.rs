@@ -1,10 +1,11 @@
-//! The convex hull in space by insertion with conflicts.
+//! The convex hull in space by insertion.
 //!
 //! K. L. Clarkson and P. W. Shor, "Applications of random sampling in computational geometry, II"
-//! (1989): points come in random order, and each that is outside of the hull so far keeps one facet
-//! that it *sees*, being strictly beyond its plane. When p comes, the facets that it sees go, and a
-//! cone of new ones comes, from p to their rim. To begin with, a few dozen extreme points come alone,
-//! so that what is inside of a box within their hull need not be looked at.
+//! (1989): points come in random order; the facets that a point *sees*, being strictly beyond their
+//! planes, go, and a cone of new ones comes, from the point to their rim. In place of lists of conflicts
+//! there is a walk: seen from an inner point o, the facets tile the sphere, and a point that is outside
+//! sees the facet towards which it lies. A sample comes first; what its hull has inside is left out by
+//! `Cells` without a walk, and without being looked at again.
 //!
 //! # Points in the planes of facets
 //!
@@ -13,26 +14,24 @@
 //! then in the planes of both facets there, and would see neither. New triangles may be coplanar with
 //! old ones, and vertices may come to lie in the middle of a side or an edge; `faces` takes them out.
 //!
-//! # Conflicts
+//! # The walk
 //!
-//! The points x that kept what goes get a facet of the cone, if they see one:
-//!
-//! - If x is outside of the new hull, it does. The facets that x sees are connected. If all that it
-//!   saw goes, what it sees now is new. If not, it saw the facets g and h on either side of an edge of
-//!   the rim, p seeing g alone; the plane of the new facet on that edge is a combination of those of g
-//!   and h, that of h with a positive factor and that of g with one that is not negative: x is beyond.
-//! - Then it sees the one in whose wedge it lies, of the wedges round the line from an inner point o
-//!   to p that the edges at p bound: within its wedge, a facet's plane bounds the cone. A binary search
-//!   finds the wedge. Where rounding left o on the outside, all facets of the cone are asked.
+//! From a facet to the one across an edge, where p lies beyond the plane through o and the edge. Of the
+//! planes of facets that of the next one is met later on the way from o to p, or at the same place where
+//! both are coplanar; so a walk comes back to no side of the polytope, and within one it may turn in
+//! circles: it has a budget, and then all facets are asked. It may end at any facet that p sees.
 //!
 //! # Bound
 //!
-//! O(n log n) changes of facets expected, each by a search in the logarithm of the degree of p.
+//! Rounds in which the number of points doubles, each along a curve (N. Amenta, S. Choi and G. Rote,
+//! "Incremental constructions con BRIO", 2003): O(n log n) expected, with walks of a few steps.
 
 use delone_predicates::{Point3, Sign, orient2d, orient3d};
 
+use super::cells::Cells;
+use super::inner::Inner;
 use crate::error::{Error, Result};
-use crate::memory::filled;
+use crate::memory::{filled, with_room};
 use crate::order::order_of;
 use crate::watch::Watch;
 
@@ -40,7 +39,10 @@ use crate::watch::Watch;
 const WATCH_EVERY: usize = 1024;
 /// Directions along which extreme points are taken first, on a spiral over the sphere.
 const DIRECTIONS: usize = 40;
-/// No point, no facet.
+/// Points of which a sample comes before the others, and how many there are for each in the sample.
+const MANY: usize = 1 << 13;
+const SHARE: u64 = 32;
+/// No facet.
 const NONE: u32 = u32::MAX;
 
 /// A closed surface of triangles around all points.
@@ -50,6 +52,8 @@ pub struct Surface {
     pub facets: Vec<Facet>,
     /// Four points that are not in one plane.
     pub first: [Point3; 4],
+    /// The rows that may be at a vertex, ascending.
+    pub rows: Vec<u32>,
 }
 
 /// A triangle of the surface.
@@ -65,33 +69,34 @@ pub struct Facet {
 
 /// The surface around finite points; nothing where they span no volume.
 pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
-    let extreme = extreme_points(points);
-    let Some(first) = first_tetrahedron(points, &extreme) else {
+    let mut rows = with_room(points.len())?;
+    rows.extend(0..points.len() as u32);
+    let many = points.len() > MANY;
+    let is_early = |&row: &u32| random(row).is_multiple_of(SHARE);
+    let early: Vec<u32> = if many {
+        rows.iter().copied().filter(is_early).collect()
+    } else {
+        rows.clone()
+    };
+    let extreme = extreme_points(points, &early);
+    let Some(first) = first_tetrahedron(points, &extreme, &rows) else {
         return Ok(None);
     };
     let mut hull = Hull::start(points, first)?;
-    for &x in &extreme {
-        hull.enter(x);
-    }
-    for p in extreme {
-        if hull.kept[p as usize] != NONE {
-            hull.insert(p)?;
+    hull.insert_all(&extreme, watch)?;
+    hull.insert_all(&rounds(points, early)?, watch)?;
+    if many {
+        if let Some(cells) = Cells::of(&hull) {
+            rows.retain(|&row| !cells.holds(points[row as usize]));
         }
-    }
-    let rest = outside_of_box(points, &hull);
-    watch.check()?;
-    hull.enter_all(&rest, watch)?;
-    for (done, p) in rounds(points, rest)?.into_iter().enumerate() {
-        if hull.kept[p as usize] != NONE {
-            hull.insert(p)?;
-        }
-        if done % WATCH_EVERY == 0 {
-            watch.check()?;
-        }
+        watch.check()?;
+        let late = rows.iter().copied().filter(|row| !is_early(row)).collect();
+        hull.insert_all(&rounds(points, late)?, watch)?;
     }
     Ok(Some(Surface {
         facets: living(&hull.facets),
         first: first.map(|v| points[v as usize]),
+        rows,
     }))
 }
 
@@ -111,53 +116,14 @@ fn living(facets: &[Facet]) -> Vec<Facet> {
     alive.map(renumbered).collect()
 }
 
-/// The rows that are not in a box within the hull: as large as fits of those similar to the box of all.
-fn outside_of_box(points: &[Point3], hull: &Hull) -> Vec<u32> {
-    let rows = (0u32..).zip(points);
-    let facets = || hull.facets.iter().filter(|f| f.alive);
-    let holds = |p: Point3| {
-        facets().all(|f| {
-            let [a, b, c] = f.corners.map(|v| points[v as usize]);
-            orient3d(a, b, c, p) != Sign::Positive
-        })
-    };
-    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for v in facets().flat_map(|f| f.corners) {
-        for k in 0..3 {
-            ends[0][k] = ends[0][k].min(points[v as usize][k]);
-            ends[1][k] = ends[1][k].max(points[v as usize][k]);
-        }
-    }
-    // From the middle outwards; halves, so that no difference overflows.
-    let at = |share: f64| {
-        [-share, share].map(|t| {
-            [0, 1, 2].map(|k| {
-                let (low, high) = (ends[0][k] / 2.0, ends[1][k] / 2.0);
-                (low + high) + t * (high - low)
-            })
-        })
-    };
-    let fits = |[low, high]: &[Point3; 2]| {
-        (0..8).all(|i| holds([0, 1, 2].map(|k| if i >> k & 1 == 0 { low[k] } else { high[k] })))
-    };
-    let steps = (1..20).rev().map(|i| at(f64::from(i) / 20.0));
-    let Some([low, high]) = steps.into_iter().find(fits) else {
-        return rows.map(|(row, _)| row).collect();
-    };
-    let inside = |p: &Point3| (0..3).all(|k| low[k] <= p[k] && p[k] <= high[k]);
-    rows.filter(|(_, p)| !inside(p))
-        .map(|(row, _)| row)
-        .collect()
-}
-
-/// Rows in random rounds, each twice as large as the one before and along a curve (N. Amenta, S.
-/// Choi and G. Rote, "Incremental constructions con BRIO", 2003).
+/// Rows in random rounds, each twice as large as the one before and along a curve.
 fn rounds(points: &[Point3], rows: Vec<u32>) -> Result<Vec<u32>> {
-    let at: Vec<Point3> = rows.iter().map(|&row| points[row as usize]).collect();
-    let order = order_of(&at, 1)?.concat();
+    let mut at = with_room(rows.len())?;
+    at.extend(rows.iter().map(|&row| points[row as usize]));
+    let order = order_of::<3>(&at, 1)?.concat();
     let mut rows: Vec<u32> = order.into_iter().map(|i| rows[i as usize]).collect();
-    // Trailing zeros of a random number: 0 for one half, the last round, 1 for a quarter, ...
-    rows.sort_by_key(|&row| std::cmp::Reverse(random(row).trailing_zeros()));
+    // Leading zeros of a random number: 0 for one half, the last round, 1 for a quarter, ...
+    rows.sort_by_cached_key(|&row| std::cmp::Reverse(random(row).leading_zeros()));
     Ok(rows)
 }
 
@@ -170,13 +136,11 @@ fn random(v: u32) -> u64 {
 }
 
 /// The points farthest along directions all around, as far as rounding tells; any will do.
-fn extreme_points(points: &[Point3]) -> Vec<u32> {
-    if points.is_empty() {
-        return Vec::new();
-    }
-    let largest = points
-        .as_flattened()
+fn extreme_points(points: &[Point3], rows: &[u32]) -> Vec<u32> {
+    let at = |&row: &u32| points[row as usize];
+    let largest = rows
         .iter()
+        .flat_map(at)
         .fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
     let golden = (3.0 - 5f64.sqrt()) * std::f64::consts::PI;
     let directions: Vec<Point3> = (0..DIRECTIONS)
@@ -189,35 +153,33 @@ fn extreme_points(points: &[Point3]) -> Vec<u32> {
         .chain([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         .chain([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
         .collect();
-    let few = (points.len() >> 6).clamp(12, directions.len());
+    let few = (rows.len() >> 6).clamp(12, directions.len());
     let directions = &directions[directions.len() - few..];
-    let mut most = vec![(f64::NEG_INFINITY, 0u32); few];
-    for (row, p) in (0u32..).zip(points) {
+    let mut most = vec![(f64::NEG_INFINITY, NONE); few];
+    for row in rows {
         // Products of doubles near the largest must not overflow, all of them to one infinity.
         let p = if largest > 1e300 {
-            p.map(|x| x / 8.0)
+            at(row).map(|x| x / 8.0)
         } else {
-            *p
+            at(row)
         };
         for (d, best) in directions.iter().zip(&mut most) {
             let along = d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
             if along > best.0 {
-                *best = (along, row);
+                *best = (along, *row);
             }
         }
     }
-    let mut rows: Vec<u32> = most.into_iter().map(|(_, row)| row).collect();
-    rows.sort_unstable();
-    rows.dedup();
-    rows
+    let mut found: Vec<u32> = most.into_iter().map(|(_, row)| row).collect();
+    found.retain(|&row| row != NONE);
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Four points that are not in one plane, positively oriented; of the extreme ones where those do.
-fn first_tetrahedron(points: &[Point3], extreme: &[u32]) -> Option<[u32; 4]> {
-    let rows = || {
-        let all = (0u32..).zip(points).map(|(i, _)| i);
-        extreme.iter().copied().chain(all)
-    };
+fn first_tetrahedron(points: &[Point3], extreme: &[u32], all: &[u32]) -> Option<[u32; 4]> {
+    let rows = || extreme.iter().chain(all).copied();
     let at = |v: u32| points[v as usize];
     let a = rows().next()?;
     let b = rows().find(|&b| at(b) != at(a))?;
@@ -237,31 +199,32 @@ pub fn in_line(a: Point3, b: Point3, c: Point3) -> bool {
         .all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == Sign::Zero)
 }
 
-/// The hull so far, and where the other points see it.
-struct Hull<'a> {
+/// The hull so far.
+pub struct Hull<'a> {
     points: &'a [Point3],
     facets: Vec<Facet>,
-    /// For each point a facet that it sees, or none, and the next point that keeps the same.
-    kept: Vec<u32>,
-    next: Vec<u32>,
-    /// For each facet the first point that keeps it.
-    kept_by: Vec<u32>,
+    /// A point strictly inside.
+    pub inner: Inner,
+    /// Where the next walk begins: a facet that is there.
+    near: u32,
     /// Facets that may be used again.
     free: Vec<u32>,
     /// For each vertex of the rim the new facet whose edge begins there.
     spoke: Vec<u32>,
-    /// An inner point, unless rounding left it outside.
-    inner: Option<Point3>,
     seen: Vec<u32>,
     rim: Vec<(u32, u32, u32)>,
-    cone: Vec<(u32, u32)>,
-    moved: Vec<u32>,
+}
+
+/// Where a point is.
+pub enum Towards {
+    /// Outside, strictly beyond this facet.
+    Beyond(u32),
+    /// In the hull, on the way from the inner point to this facet.
+    Before(u32),
 }
 
 impl<'a> Hull<'a> {
     fn start(points: &'a [Point3], [a, b, c, d]: [u32; 4]) -> Result<Self> {
-        let n = points.len();
-        let at = |v: u32| points[v as usize];
         // Opposite a, b, c and d, counter-clockwise seen from outside.
         let corners = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]];
         let beyond = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -270,44 +233,30 @@ impl<'a> Hull<'a> {
             beyond: beyond[i],
             alive: true,
         });
-        let inner = [0, 1, 2].map(|k| [a, b, c, d].iter().map(|&v| at(v)[k] / 4.0).sum());
-        let is_inner = corners
-            .iter()
-            .all(|&[u, v, w]| orient3d(at(u), at(v), at(w), inner) == Sign::Negative);
         Ok(Self {
             points,
             facets: facets.to_vec(),
-            kept: filled(n, NONE)?,
-            next: filled(n, NONE)?,
-            kept_by: vec![NONE; 4],
+            inner: Inner::of([a, b, c, d].map(|v| points[v as usize])),
+            near: 0,
             free: Vec::new(),
-            spoke: filled(n, NONE)?,
-            inner: is_inner.then_some(inner),
+            spoke: filled(points.len(), NONE)?,
             seen: Vec::new(),
             rim: Vec::new(),
-            cone: Vec::new(),
-            moved: Vec::new(),
         })
     }
 
-    /// Gives a point a facet that it sees, if there is one, of all.
-    fn enter(&mut self, x: u32) {
-        let facets = 0..self.facets.len() as u32;
-        let seen = facets
-            .into_iter()
-            .find(|&f| self.facets[f as usize].alive && self.sees(x, f));
-        if let Some(facet) = seen {
-            self.keep(x, facet);
-        }
-    }
-
-    /// The same for many points.
-    fn enter_all(&mut self, rows: &[u32], watch: &Watch) -> Result<()> {
-        for (i, &x) in rows.iter().enumerate() {
-            if i % (1 << 16) == 0 {
+    fn insert_all(&mut self, rows: &[u32], watch: &Watch) -> Result<()> {
+        for (done, &p) in rows.iter().enumerate() {
+            if done % WATCH_EVERY == 0 {
                 watch.check()?;
             }
-            self.enter(x);
+            match self.towards(self.at(p), self.near) {
+                Towards::Before(facet) => self.near = facet,
+                Towards::Beyond(facet) => {
+                    self.look(p, facet);
+                    self.raise_cone(p)?;
+                }
+            }
         }
         Ok(())
     }
@@ -316,44 +265,66 @@ impl<'a> Hull<'a> {
         self.points[v as usize]
     }
 
-    /// Whether `p` is strictly beyond the plane of a facet.
+    /// The corners of a facet.
+    pub fn corners(&self, facet: u32) -> [Point3; 3] {
+        self.facets[facet as usize].corners.map(|v| self.at(v))
+    }
+
+    /// The side of a facet on which `p` is; positive is beyond.
     #[inline]
-    fn sees(&self, p: u32, facet: u32) -> bool {
-        let [a, b, c] = self.facets[facet as usize].corners.map(|v| self.at(v));
-        orient3d(a, b, c, self.at(p)) == Sign::Positive
+    pub fn side(&self, p: Point3, facet: u32) -> Sign {
+        let [a, b, c] = self.corners(facet);
+        orient3d(a, b, c, p)
     }
 
-    fn keep(&mut self, x: u32, facet: u32) {
-        self.kept[x as usize] = facet;
-        let list = &mut self.kept_by[facet as usize];
-        self.next[x as usize] = std::mem::replace(list, x);
+    /// A facet that is there.
+    pub fn near(&self) -> u32 {
+        self.near
     }
 
-    /// Puts `p`, which is outside, into the hull.
-    fn insert(&mut self, p: u32) -> Result<()> {
-        self.look(p);
-        self.moved.clear();
-        for i in 0..self.seen.len() {
-            let list = &mut self.kept_by[self.seen[i] as usize];
-            let mut x = std::mem::replace(list, NONE);
-            while x != NONE {
-                if x != p {
-                    self.moved.push(x);
-                }
-                x = self.next[x as usize];
+    /// How far from a point the hull reaches along an axis, and the largest coordinate.
+    pub fn reach(&self, o: Point3) -> (f64, f64) {
+        let alive = (0u32..).zip(&self.facets).filter(|(_, f)| f.alive);
+        let corners = alive.flat_map(|(i, _)| self.corners(i));
+        corners.fold((0.0, 0.0), |(far, most), p| {
+            let away = (0..3).fold(far, |far: f64, k| far.max((p[k] - o[k]).abs()));
+            (away, p.iter().fold(most, |most: f64, x| most.max(x.abs())))
+        })
+    }
+
+    /// Where `p` is, by a walk from a facet.
+    pub fn towards(&self, p: Point3, near: u32) -> Towards {
+        let mut facet = near;
+        let mut from = NONE;
+        // Far more than walks have between neighbours on the curve.
+        for step in 0..64 + self.facets.len().isqrt() {
+            if self.side(p, facet) == Sign::Positive {
+                return Towards::Beyond(facet);
+            }
+            let beyond = self.facets[facet as usize].beyond;
+            let corners = self.corners(facet);
+            let turned = [0, 1, 2].map(|k| (k + step) % 3);
+            let leaves = |&k: &usize| {
+                let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                beyond[k] != from && self.inner.side(u, v, p) == Sign::Negative
+            };
+            match turned.iter().find(|k| leaves(k)) {
+                Some(&k) => (from, facet) = (facet, beyond[k]),
+                None => return Towards::Before(facet),
             }
         }
-        self.kept[p as usize] = NONE;
-        self.raise_cone(p)?;
-        self.redistribute(p);
-        Ok(())
+        let alive = (0..self.facets.len() as u32).filter(|&f| self.facets[f as usize].alive);
+        let seen = alive
+            .into_iter()
+            .find(|&f| self.side(p, f) == Sign::Positive);
+        seen.map_or(Towards::Before(near), Towards::Beyond)
     }
 
     /// Finds the facets that `p` sees, which go, and the edges of their rim with what is beyond.
-    fn look(&mut self, p: u32) {
+    fn look(&mut self, p: u32, seed: u32) {
+        let point = self.at(p);
         self.seen.clear();
         self.rim.clear();
-        let seed = self.kept[p as usize];
         self.facets[seed as usize].alive = false;
         self.seen.push(seed);
         let mut i = 0;
@@ -366,7 +337,7 @@ impl<'a> Hull<'a> {
                 if !self.facets[facet as usize].alive {
                     continue;
                 }
-                if self.sees(p, facet) {
+                if self.side(point, facet) == Sign::Positive {
                     self.facets[facet as usize].alive = false;
                     self.seen.push(facet);
                 } else {
@@ -381,7 +352,6 @@ impl<'a> Hull<'a> {
     /// Joins `p` to the rim.
     fn raise_cone(&mut self, p: u32) -> Result<()> {
         self.free.append(&mut self.seen);
-        self.cone.clear();
         for i in 0..self.rim.len() {
             let (u, v, beyond) = self.rim[i];
             let facet = self.fresh();
@@ -394,27 +364,29 @@ impl<'a> Hull<'a> {
             let k = there.corners.iter().position(|&c| c != u && c != v);
             there.beyond[k.unwrap_or(0)] = facet;
             self.spoke[u as usize] = facet;
+            self.near = facet;
         }
         // Once round, from edge to edge.
+        let broken = || Error::Internal("the rim of a cone is no cycle".into());
         let (start, ..) = self.rim[0];
         let mut u = start;
-        loop {
+        for count in 1.. {
             let facet = self.spoke[u as usize];
-            self.cone.push((u, facet));
             let v = self.facets[facet as usize].corners[2];
             let after = self.spoke[v as usize];
-            if self.cone.len() > self.rim.len() || after == NONE {
-                return Err(Error::Internal("the rim of a cone is no cycle".into()));
+            if after == NONE || count > self.rim.len() {
+                return Err(broken());
             }
             self.facets[facet as usize].beyond[1] = after;
             self.facets[after as usize].beyond[2] = facet;
             u = v;
             if u == start {
-                break;
+                return if count == self.rim.len() {
+                    Ok(())
+                } else {
+                    Err(broken())
+                };
             }
-        }
-        if self.cone.len() != self.rim.len() {
-            return Err(Error::Internal("the rim of a cone is no cycle".into()));
         }
         Ok(())
     }
@@ -429,82 +401,6 @@ impl<'a> Hull<'a> {
             alive: false,
         };
         self.facets.push(dead);
-        self.kept_by.push(NONE);
         self.facets.len() as u32 - 1
-    }
-
-    /// Gives each moved point a facet of the cone that it sees, if there is one.
-    fn redistribute(&mut self, p: u32) {
-        let moved = std::mem::take(&mut self.moved);
-        let cone = std::mem::take(&mut self.cone);
-        let wedges = self.inner.map(|o| Wedges::round(self.points, o, p, &cone));
-        for &x in &moved {
-            let facet = match &wedges {
-                Some(wedges) => {
-                    let (_, facet) = cone[wedges.of(self.at(x))];
-                    self.sees(x, facet).then_some(facet)
-                }
-                None => cone.iter().map(|s| s.1).find(|&f| self.sees(x, f)),
-            };
-            match facet {
-                Some(facet) => self.keep(x, facet),
-                None => self.kept[x as usize] = NONE,
-            }
-        }
-        (self.cone, self.moved) = (cone, moved);
-    }
-}
-
-/// The wedges round the line from an inner point to the apex of a cone.
-struct Wedges<'a> {
-    points: &'a [Point3],
-    o: Point3,
-    p: Point3,
-    cone: &'a [(u32, u32)],
-    /// The first spoke that is a half turn or more from the first one.
-    half: usize,
-}
-
-impl<'a> Wedges<'a> {
-    fn round(points: &'a [Point3], o: Point3, p: u32, cone: &'a [(u32, u32)]) -> Self {
-        let mut wedges = Self {
-            points,
-            o,
-            p: points[p as usize],
-            cone,
-            half: cone.len(),
-        };
-        let first = points[cone[0].0 as usize];
-        let within =
-            |s: &(u32, u32)| orient3d(o, wedges.p, first, points[s.0 as usize]) == Sign::Positive;
-        wedges.half = 1 + cone[1..].partition_point(within);
-        wedges
-    }
-
-    /// Whether `x` is at a spoke or past it, by less than a half turn.
-    fn passed(&self, spoke: usize, x: Point3) -> bool {
-        let u = self.points[self.cone[spoke].0 as usize];
-        orient3d(self.o, self.p, u, x) != Sign::Negative
-    }
-
-    /// The last spoke before the half plane of `x`, or in it.
-    fn of(&self, x: Point3) -> usize {
-        let past = |range: std::ops::Range<usize>| {
-            let (mut low, mut high) = (range.start, range.end);
-            while low < high {
-                let middle = (low + high) / 2;
-                if self.passed(middle, x) {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            low
-        };
-        if self.passed(0, x) {
-            past(1..self.half) - 1
-        } else {
-            past(self.half..self.cone.len()) - 1
-        }
     }
 }

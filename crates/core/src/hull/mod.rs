@@ -1,14 +1,18 @@
 //! Convex hulls in the plane and in space: exact, each vertex extreme, each facet canonical.
 //!
-//! `plane` is one chain below and one above. In space `insertion` makes a surface of triangles, in
-//! which vertices may lie in the middle of flat facets; `faces` merges coplanar triangles to polygons
+//! `plane` is one chain below and one above. In space `insertion` makes a surface of triangles by walks
+//! round an `inner` point, `cells` keep from it most of what is inside. In the surface vertices may lie in the middle of flat facets; `faces` merges coplanar triangles to polygons
 //! of extreme vertices; `polygon` triangulates those by coordinates alone. Orders and numbers of
 //! insertion leave no trace.
 
+mod cells;
 mod faces;
+mod inner;
 mod insertion;
 mod plane;
 mod polygon;
+
+use std::collections::HashMap;
 
 use delone_predicates::{Point3, lexicographic};
 
@@ -43,76 +47,93 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
         return Ok(None);
     };
     watch.check()?;
-    let mut found = faces::polygons(points, &surface.facets)?;
-    let (rank, duplicates) = first_rows(points, &mut found.vertices)?;
-    let Polygons {
-        vertices: polygons,
-        starts,
-    } = in_order(found, &rank);
+    let found = faces::polygons(points, &surface.facets)?;
+    let Vertices {
+        rows,
+        rank,
+        duplicates,
+    } = first_rows(points, &found.vertices, &surface.rows)?;
+    // From here on vertices go by their places in lexicographic order.
+    let Polygons { vertices, starts } = in_order(found, &rank);
     watch.check()?;
+    let at: Vec<Point3> = rows.iter().map(|&row| points[row as usize]).collect();
     let mut triangles = with_room(surface.facets.len())?;
     for (i, ends) in (0u32..).zip(starts.windows(2)) {
-        let polygon = &polygons[ends[0] as usize..ends[1] as usize];
-        let made = polygon::triangulate(points, polygon, surface.first)?;
-        triangles.extend(made.into_iter().map(|t| (turned(t, &rank), i)));
+        let polygon = &vertices[ends[0] as usize..ends[1] as usize];
+        let made = polygon::triangulate(&at, polygon, surface.first)?;
+        triangles.extend(made.into_iter().map(|t| (turned(t), i)));
     }
-    triangles.sort_unstable_by_key(|(t, _)| t.map(|v| rank[v as usize]));
+    triangles.sort_unstable();
     let (simplices, facet): (Vec<[u32; 3]>, Vec<u32>) = triangles.into_iter().unzip();
+    let named = |v: u32| rows[v as usize];
     Ok(Some(Hull3 {
-        neighbors: across(&simplices)?,
-        simplices,
+        neighbors: across(&simplices, rows.len())?,
+        simplices: simplices.into_iter().map(|t| t.map(named)).collect(),
         facet,
-        polygons,
+        polygons: vertices.into_iter().map(named).collect(),
         starts,
         duplicates,
     }))
 }
 
-/// Names each vertex by the first row with its coordinates; returns the place of each vertex in
-/// lexicographic order, of other rows nothing, and the rows that repeat a vertex with it.
-fn first_rows(points: &[Point3], vertices: &mut [u32]) -> Result<(Vec<u32>, Vec<[u32; 2]>)> {
+/// The vertices of a hull in lexicographic order.
+struct Vertices {
+    /// The first row of each.
+    rows: Vec<u32>,
+    /// The place of each row that stands for a vertex of the surface.
+    rank: Vec<u32>,
+    /// `[row, vertex]` for rows that repeat a vertex, ascending.
+    duplicates: Vec<[u32; 2]>,
+}
+
+/// Puts vertices of a surface in order; `rows`, which ascend, are those that may be at one.
+fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Vertices> {
+    // Adding zero makes -0.0 the same key as 0.0.
+    let key = |row: u32| points[row as usize].map(|x| (x + 0.0).to_bits());
     let mut rank = filled(points.len(), u32::MAX)?;
-    let mut order = with_room(vertices.len())?;
-    for &v in &*vertices {
+    let mut order: Vec<u32> = with_room(vertices.len())?;
+    for &v in vertices {
         if std::mem::replace(&mut rank[v as usize], 0) == u32::MAX {
             order.push(v);
         }
     }
-    let at = |v: u32| points[v as usize];
-    order.sort_unstable_by(|&u, &v| lexicographic(at(u), at(v)));
+    order.sort_unstable_by(|&u, &v| lexicographic(points[u as usize], points[v as usize]));
+    let mut place = HashMap::with_capacity(order.len());
     for (i, &v) in (0u32..).zip(&order) {
         rank[v as usize] = i;
+        place.insert(key(v), i);
     }
     let mut first = filled(order.len(), u32::MAX)?;
     let mut duplicates = Vec::new();
-    for (row, &p) in (0u32..).zip(points) {
-        if let Ok(i) = order.binary_search_by(|&v| lexicographic(at(v), p)) {
-            if first[i] == u32::MAX {
-                first[i] = row;
+    for &row in rows {
+        if let Some(&i) = place.get(&key(row)) {
+            let first = &mut first[i as usize];
+            if *first == u32::MAX {
+                *first = row;
             } else {
-                duplicates.push([row, first[i]]);
+                duplicates.push([row, *first]);
             }
         }
     }
-    for v in vertices {
-        *v = first[rank[*v as usize] as usize];
-    }
-    for (i, &row) in (0u32..).zip(&first) {
-        rank[row as usize] = i;
-    }
-    Ok((rank, duplicates))
+    Ok(Vertices {
+        rows: first,
+        rank,
+        duplicates,
+    })
 }
 
-/// Polygons from their smallest vertex on, in the order of their vertices.
+/// Polygons by places, each from its smallest vertex on, in the order of their vertices.
 fn in_order(mut found: Polygons, rank: &[u32]) -> Polygons {
-    let of = |v: &u32| rank[*v as usize];
+    for v in &mut found.vertices {
+        *v = rank[*v as usize];
+    }
     for ends in found.starts.windows(2) {
         let polygon = &mut found.vertices[ends[0] as usize..ends[1] as usize];
-        let least = (0..polygon.len()).min_by_key(|&i| of(&polygon[i]));
+        let least = (0..polygon.len()).min_by_key(|&i| polygon[i]);
         polygon.rotate_left(least.unwrap_or(0));
     }
     let mut list: Vec<&[u32]> = found.iter().collect();
-    list.sort_unstable_by(|a, b| a.iter().map(of).cmp(b.iter().map(of)));
+    list.sort_unstable();
     let mut sorted = Polygons {
         starts: vec![0],
         ..Polygons::default()
@@ -125,32 +146,40 @@ fn in_order(mut found: Polygons, rank: &[u32]) -> Polygons {
 }
 
 /// A triangle from its smallest vertex on.
-fn turned(t: [u32; 3], rank: &[u32]) -> [u32; 3] {
-    let least = (0..3).min_by_key(|&k| rank[t[k] as usize]).unwrap_or(0);
+fn turned(t: [u32; 3]) -> [u32; 3] {
+    let least = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
     [0, 1, 2].map(|k| t[(least + k) % 3])
 }
 
-/// The triangle across each edge of a closed surface.
-fn across(simplices: &[[u32; 3]]) -> Result<Vec<[u32; 3]>> {
-    let mut edges = with_room(3 * simplices.len())?;
+/// The triangle across each edge of a closed surface on `n` vertices.
+fn across(simplices: &[[u32; 3]], n: usize) -> Result<Vec<[u32; 3]>> {
+    let edges = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[(k + 1) % 3], t[(k + 2) % 3]));
+    // The heads of the edges that begin at each vertex, with their triangles.
+    let mut starts = filled(n + 1, 0u32)?;
+    for &v in simplices.as_flattened() {
+        starts[v as usize + 1] += 1;
+    }
+    for v in 0..n {
+        starts[v + 1] += starts[v];
+    }
+    let mut heads = filled(3 * simplices.len(), [0; 2])?;
+    let mut next = starts.clone();
     for (i, t) in (0u32..).zip(simplices) {
-        for k in 0..3 {
-            let (u, v) = (t[(k + 1) % 3], t[(k + 2) % 3]);
-            edges.push((
-                u64::from(u.min(v)) << 32 | u64::from(u.max(v)),
-                3 * i + k as u32,
-            ));
+        for (u, v) in edges(t) {
+            let slot = &mut next[u as usize];
+            heads[*slot as usize] = [v, i];
+            *slot += 1;
         }
     }
-    edges.sort_unstable();
-    let mut beyond = filled(simplices.len(), [0; 3])?;
-    let (pairs, rest) = edges.as_chunks();
-    for &[(edge, one), (other_edge, other)] in pairs {
-        if edge != other_edge || !rest.is_empty() {
-            return Err(Error::Internal("the hull is not closed".into()));
+    let mut beyond = with_room(simplices.len())?;
+    for t in simplices {
+        let mut row = [0; 3];
+        for (other, (u, v)) in row.iter_mut().zip(edges(t)) {
+            let of = &heads[starts[v as usize] as usize..starts[v as usize + 1] as usize];
+            let back = of.iter().find(|[head, _]| *head == u);
+            *other = back.ok_or_else(|| Error::Internal("the hull is not closed".into()))?[1];
         }
-        beyond[one as usize / 3][one as usize % 3] = other / 3;
-        beyond[other as usize / 3][other as usize % 3] = one / 3;
+        beyond.push(row);
     }
     Ok(beyond)
 }

@@ -1,0 +1,132 @@
+//! What is surely inside of a hull, told by one look into a table.
+//!
+//! Seen from the inner point o, directions are cells on the six sides of a cube. For each corner of the
+//! cells one point on its ray is known to be in the hull; so is the pyramid from o to the four points of
+//! a cell, and in it all of the cell up to the depth of the least deep of them.
+//!
+//! # Rounding
+//!
+//! The points of corners are rounded, but as such they are in the hull, by exact predicates. A point is
+//! taken for inside only if its direction, which has a relative error of a few 2^-53, is farther from the
+//! bounds of its cell than `MARGIN` of it, and if it is less deep by `MARGIN`; a corner's point may be off
+//! its ray by a unit in the last place of the coordinates, and counts only where that is less than a
+//! hundredth of `MARGIN` of its depth.
+
+use delone_predicates::{Point3, Sign};
+
+use super::inner::Inner;
+use super::insertion::{Hull, Towards};
+
+/// Cells along each edge of the cube: as many corners as a walk each is worth beside a million points.
+const CELLS: usize = 32;
+/// Share of a cell, and of a depth, that rounding stays below by far.
+const MARGIN: f64 = 1e-6;
+/// Planes that are met from outside before a corner is given up.
+const TRIES: usize = 16;
+/// Sizes of hulls whose planes are computed without over- or underflow.
+const SAFE: std::ops::Range<f64> = 1e-90..1e90;
+
+/// Depths by side of the cube and cell.
+pub struct Cells {
+    o: Point3,
+    depths: Vec<f64>,
+}
+
+impl Cells {
+    /// The cells of a hull; nothing where its inner point or its size is beyond doubles.
+    pub fn of(hull: &Hull) -> Option<Self> {
+        let Inner::At(o) = hull.inner else {
+            return None;
+        };
+        let (size, most) = hull.reach(o);
+        if !SAFE.contains(&size) || !most.is_finite() {
+            return None;
+        }
+        // What a coordinate is rounded by, over the share of a depth that is little enough.
+        let least = most * f64::EPSILON / (MARGIN / 100.0 / CELLS as f64);
+        let mut near = hull.near();
+        let mut depths = vec![0.0; 6 * CELLS * CELLS];
+        let mut corners = vec![0.0; (CELLS + 1) * (CELLS + 1)];
+        for side in 0..6 {
+            let of = |i: usize| 2.0 * i as f64 / CELLS as f64 - 1.0;
+            for (at, depth) in corners.iter_mut().enumerate() {
+                let (i, j) = (at / (CELLS + 1), at % (CELLS + 1));
+                let mut way = [0.0; 3];
+                way[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
+                way[(side / 2 + 1) % 3] = of(i);
+                way[(side / 2 + 2) % 3] = of(j);
+                let found = depth_along(hull, o, way, 2.0 * size, &mut near);
+                *depth = if found > least { found } else { 0.0 };
+            }
+            for i in 0..CELLS {
+                for j in 0..CELLS {
+                    let at = i * (CELLS + 1) + j;
+                    let four = [at, at + 1, at + CELLS + 1, at + CELLS + 2].map(|at| corners[at]);
+                    let least = four.into_iter().fold(f64::INFINITY, f64::min);
+                    depths[(side * CELLS + i) * CELLS + j] = least * (1.0 - MARGIN);
+                }
+            }
+        }
+        Some(Self { o, depths })
+    }
+
+    /// Whether `p` is surely in the hull, and no extreme point of it.
+    #[inline]
+    pub fn holds(&self, p: Point3) -> bool {
+        let way = [0, 1, 2].map(|k| p[k] - self.o[k]);
+        let size = way.map(f64::abs);
+        let axis = if size[0] >= size[1] && size[0] >= size[2] {
+            0
+        } else if size[1] >= size[2] {
+            1
+        } else {
+            2
+        };
+        let cell = |k: usize| {
+            let place = (way[(axis + k) % 3] / size[axis] + 1.0) * (CELLS as f64 / 2.0);
+            // NaN, at o itself, becomes zero, and then is within no margin.
+            let whole = (place as usize).min(CELLS - 1);
+            let rest = place - whole as f64;
+            (whole, rest > MARGIN && rest < 1.0 - MARGIN)
+        };
+        let ((i, apart), (j, too)) = (cell(1), cell(2));
+        let side = 2 * axis + usize::from(way[axis] < 0.0);
+        apart && too && size[axis] <= self.depths[(side * CELLS + i) * CELLS + j]
+    }
+}
+
+/// How far along a way from `o` a rounded point is in the hull, nearly as far as can be; 0 where none
+/// is found. The way has a largest coordinate of 1, and ends outside.
+fn depth_along(hull: &Hull, o: Point3, way: Point3, end: f64, near: &mut u32) -> f64 {
+    let mut depth = end;
+    for _ in 0..TRIES {
+        let at = [0, 1, 2].map(|k| o[k] + depth * way[k]);
+        match hull.towards(at, *near) {
+            Towards::Before(facet) => {
+                *near = facet;
+                // On a facet it might be an extreme point.
+                let inside = hull.side(at, facet) == Sign::Negative;
+                return if inside { depth } else { 0.0 };
+            }
+            Towards::Beyond(facet) => {
+                *near = facet;
+                let [a, b, c] = hull.corners(facet).map(|p| [0, 1, 2].map(|k| p[k] - o[k]));
+                let (u, v) = (
+                    [0, 1, 2].map(|k| b[k] - a[k]),
+                    [0, 1, 2].map(|k| c[k] - a[k]),
+                );
+                let normal = [0, 1, 2].map(|k| {
+                    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                    u[i] * v[j] - u[j] * v[i]
+                });
+                let dot = |p: Point3| (0..3).map(|k| p[k] * normal[k]).sum::<f64>();
+                let met = dot(a) / dot(way) * (1.0 - MARGIN);
+                if !(met > 0.0 && met < depth) {
+                    return 0.0;
+                }
+                depth = met;
+            }
+        }
+    }
+    0.0
+}
