@@ -26,6 +26,12 @@ pub struct Extent<const D: usize = 2> {
 }
 
 impl<const D: usize> Extent<D> {
+    /// The box of all points.
+    pub const EVERYWHERE: Self = Self {
+        min: [f64::NEG_INFINITY; D],
+        max: [f64::INFINITY; D],
+    };
+
     /// The box of some points, which must be finite; inside out where there are none.
     pub fn of(points: impl IntoIterator<Item = [f64; D]>) -> Self {
         let mut e = Self {

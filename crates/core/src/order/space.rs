@@ -1,92 +1,17 @@
-//! The distinct points of space in Hilbert order. As in the plane (see `curve`): a key a point, a
-//! radix sort, crowded cells keyed again in the box of their own points, equal points found where
-//! they meet.
+//! The distinct points of space in Hilbert order, as in the plane (see `curve`): a key a point, a
+//! radix sort, equal points found where they meet.
 
-use delone_predicates::{Point3, lexicographic};
+use delone_predicates::Point3;
 
-use super::{hilbert3, radix};
+use super::cells::{Cells, fine_bits, order_runs, row};
+use super::radix;
 use crate::error::Result;
 use crate::memory::{push, with_room};
+use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Longest run of equal keys that is sorted lexicographically and not keyed again.
-const CROWD: usize = 16;
-
-/// Bits of a key.
-const KEY_BITS: u32 = 3 * hilbert3::BITS;
-
 /// The box of a finite point set in space.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent3 {
-    /// Smallest coordinate of each axis.
-    pub min: Point3,
-    /// Largest coordinate of each axis.
-    pub max: Point3,
-}
-
-impl Extent3 {
-    /// The box of all points.
-    pub const EVERYWHERE: Self = Self {
-        min: [f64::NEG_INFINITY; 3],
-        max: [f64::INFINITY; 3],
-    };
-
-    /// The box of some points, which must be finite; inside out where there are none.
-    pub fn of(points: impl IntoIterator<Item = Point3>) -> Self {
-        let mut e = Self {
-            min: [f64::INFINITY; 3],
-            max: [f64::NEG_INFINITY; 3],
-        };
-        for p in points {
-            for (k, x) in p.into_iter().enumerate() {
-                // Selections, which are one instruction where `f64::min` has to mind NaN.
-                e.min[k] = if x < e.min[k] { x } else { e.min[k] };
-                e.max[k] = if x > e.max[k] { x } else { e.max[k] };
-            }
-        }
-        e
-    }
-}
-
-/// Cells of a box: 1024 to the longest side.
-struct Cells {
-    min: Point3,
-    before: f64,
-    scale: f64,
-}
-
-impl Cells {
-    fn of(extent: &Extent3) -> Self {
-        let side = (0..3).fold(0.0, |side: f64, k| side.max(extent.max[k] - extent.min[k]));
-        // As in the plane: a power of two keeps what follows inside the range of doubles.
-        let before = if side > 1e300 {
-            2f64.powi(-30)
-        } else if side < 1e-280 {
-            2f64.powi(200)
-        } else {
-            1.0
-        };
-        let min = extent.min.map(|x| x * before);
-        let far = (0..3).map(|k| extent.max[k] * before - min[k]);
-        let cells = f64::from(1u32 << hilbert3::BITS);
-        Self {
-            min,
-            before,
-            scale: cells / far.fold(0.0, f64::max),
-        }
-    }
-
-    /// The key of the cell of `p`, in the upper bits.
-    #[inline]
-    fn key(&self, p: Point3) -> u64 {
-        const LAST: u32 = (1 << hilbert3::BITS) - 1;
-        let cell = |k: usize| {
-            // Conversions saturate and make NaN zero: the far corner is in the last cell.
-            (((p[k] * self.before - self.min[k]) * self.scale) as u32).min(LAST)
-        };
-        u64::from(hilbert3::key([cell(0), cell(1), cell(2)])) << (64 - KEY_BITS)
-    }
-}
+pub type Extent3 = Extent<3>;
 
 /// Distinct points of space, numbered as vertices along the curve.
 #[derive(Debug)]
@@ -151,56 +76,6 @@ pub fn arrange_rows(
     order_runs(points, &mut items);
     watch.check()?;
     collect(points, rows, &items, out)
-}
-
-/// Bits of a key that are worth sorting by, in whole digits of the sort.
-fn fine_bits(points: usize) -> u32 {
-    (usize::BITS - points.leading_zeros() + 4)
-        .next_multiple_of(8)
-        .min(32)
-}
-
-fn row(item: u64) -> usize {
-    (item & u64::from(u32::MAX)) as usize
-}
-
-/// Puts the items of each run of equal keys in order. A run that is keyed again splits, since two
-/// ends of its box get different keys; so the stack of runs empties.
-fn order_runs(points: &[Point3], items: &mut [u64]) {
-    let mut runs = Vec::new();
-    push_runs(items, 0, &mut runs);
-    while let Some((start, end)) = runs.pop() {
-        let run = &mut items[start..end];
-        if run.len() <= CROWD {
-            run.sort_unstable_by(|&i, &j| {
-                lexicographic(points[row(i)], points[row(j)]).then(row(i).cmp(&row(j)))
-            });
-            continue;
-        }
-        let extent = Extent3::of(run.iter().map(|&i| points[row(i)]));
-        if extent.min == extent.max {
-            continue; // One point many times; the stable sort has left its rows ascending.
-        }
-        let cells = Cells::of(&extent);
-        for item in run.iter_mut() {
-            *item = cells.key(points[row(*item)]) & (u64::MAX << 32) | row(*item) as u64;
-        }
-        run.sort_unstable();
-        push_runs(run, start, &mut runs);
-    }
-}
-
-/// Lists the runs of two and more equal keys of `items`, whose first is item `offset` of all.
-fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
-    let mut start = 0;
-    for i in 1..=items.len() {
-        if i == items.len() || items[i] >> 32 != items[start] >> 32 {
-            if i - start > 1 {
-                runs.push((offset + start, offset + i));
-            }
-            start = i;
-        }
-    }
 }
 
 fn collect(
