@@ -237,7 +237,7 @@ def measured(points: Floats, simplices: Indices) -> TetQuality:
         # Radii D / sum of |N| and |center| / (2 D), for the determinant D.
         ratio = 6 * determinant**2 / np.where(around > 0, around, np.inf)
         found[3, block] = np.clip(ratio, 0, 1)
-        found[4, block] = lengths.max(axis=0) / lengths.min(axis=0)
+        found[4, block] = _edge_ratio(edges)
     return TetQuality(
         smallest_dihedral=found[0],
         largest_dihedral=found[1],
@@ -245,6 +245,17 @@ def measured(points: Floats, simplices: Indices) -> TetQuality:
         radius_ratio=found[3],
         edge_ratio=found[4],
     )
+
+
+def _edge_ratio(edges: Floats) -> Floats:
+    """The longest edge over the shortest, infinite beyond the range of doubles."""
+    largest = np.abs(edges).max(axis=-1)
+    # Each in a unit of its own: the square of a short one may underflow in that of all.
+    with np.errstate(all="ignore"):
+        scaled = edges / largest[..., None]
+        lengths = largest * np.sqrt((scaled * scaled).sum(axis=-1))
+        ratio: Floats = lengths.max(axis=0) / lengths.min(axis=0)
+    return np.where(np.isnan(ratio), np.inf, ratio)
 
 
 def dihedral_angles(points: Floats, simplices: Indices) -> Floats:

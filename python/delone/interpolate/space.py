@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["SPACE", "face_terms", "hull_gradients", "refuse", "slopes"]
 
 SPACE = 3
+# Above, differences of coordinates may overflow.
+_LARGE = 1e300
 
 
 def refuse(what: str, instead: str) -> None:
@@ -129,13 +131,20 @@ def hull_gradients(mesh: Triangulation, columns: Floats) -> Floats:
     first = np.repeat(indptr[rows].astype(np.int64), count)
     ends = np.cumsum(count)
     beside = indices[first + np.arange(len(owner)) - np.repeat(ends - count, count)]
-    way = mesh.points[beside] - mesh.points[rows][owner]
-    longest = np.sqrt((way**2).sum(axis=1))
-    way /= longest[:, None]
-    rise = (columns[beside] - columns[rows][owner]) / longest[:, None]
-    begins = ends - count
-    matrix = np.add.reduceat(way[:, :, None] * way[:, None], begins, axis=0)
-    right = np.add.reduceat(way[:, :, None] * rise[:, None], begins, axis=0)
-    solved = np.linalg.pinv(matrix, hermitian=True) @ right
+    points = mesh.points
+    # In units of their own, and halves of the largest, so that nothing overflows; slopes beyond the
+    # range of doubles are not finite.
+    half = 0.5 if np.abs(points).max(initial=0.0) > _LARGE else 1.0
+    with np.errstate(over="ignore", invalid="ignore"):
+        way = half * points[beside] - half * points[rows][owner]
+        unit = np.abs(way).max(axis=1, keepdims=True)
+        way /= unit
+        length = np.sqrt((way**2).sum(axis=1, keepdims=True))
+        way /= length
+        rise = (half * columns[beside] - half * columns[rows][owner]) / length / unit
+        begins = ends - count
+        matrix = np.add.reduceat(way[:, :, None] * way[:, None], begins, axis=0)
+        right = np.add.reduceat(way[:, :, None] * rise[:, None], begins, axis=0)
+        solved = np.linalg.pinv(matrix, hermitian=True) @ right
     found[rows] = np.moveaxis(solved, 1, 2)
     return found

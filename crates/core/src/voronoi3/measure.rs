@@ -69,18 +69,31 @@ impl<'a> Cells<'a> {
         &self.ridges[self.ridge_starts[cell] as usize..self.ridge_starts[cell + 1] as usize]
     }
 
-    /// The plane of a ridge as seen from one of its sites: the vector d to the other site, and h, so
-    /// that the cell of the first has (x - p) . d <= h.
+    /// The plane of a ridge as seen from one of its sites: a vector d towards the other site, and h, so
+    /// that the cell of the first has (x - p) . d <= h. The largest component of d is 1 to 2: no square of
+    /// it over- or underflows.
     pub(super) fn plane(&self, ridge: usize, site: i32) -> (Point3, f64) {
         let [a, b] = self.sites[ridge];
         let other = if a == site { b } else { a };
         let given = self.given();
         let (p, q) = (given.point(site), given.point(other));
-        let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-        (
-            d,
-            (dot(d, d) + (given.weight(site) - given.weight(other))) / 2.0,
-        )
+        let way = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+        let unit = power_below(way.iter().fold(0.0, |most, x| most.max(x.abs())));
+        let d = way.map(|x| x / unit);
+        let lift = (given.weight(site) - given.weight(other)) / unit;
+        (d, (dot(d, d) * unit + lift) / 2.0)
+    }
+}
+
+/// The largest power of two that is not above a number; 1 for zero and infinity.
+fn power_below(x: f64) -> f64 {
+    let bits = x.to_bits();
+    if x == 0.0 || !x.is_finite() {
+        1.0
+    } else if x.is_normal() {
+        f64::from_bits(bits & !((1 << 52) - 1))
+    } else {
+        f64::from_bits(1 << bits.ilog2())
     }
 }
 
