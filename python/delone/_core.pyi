@@ -15,6 +15,8 @@ __all__ = [
     "constrained2",
     "deepest2",
     "disks2",
+    "edges3",
+    "faces3",
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
@@ -64,6 +66,10 @@ def triangulate3(
 def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> dict[str, NDArray[np.int32]]: ...
+def edges3(simplices: NDArray[np.int32], npoints: int, workers: int) -> NDArray[np.int32]: ...
+def faces3(
+    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
+) -> NDArray[np.int32]: ...
 def find_simplex2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 import numpy as np
 
 from delone import _core, quality3
-from delone.quality3 import EDGES, FACES, counted_tetrahedra
+from delone.quality3 import counted_tetrahedra
 from delone.space import location as places
+from delone.space import topology
 from delone.triangulation import counted, kept, sealed
 
 if TYPE_CHECKING:
@@ -126,21 +127,13 @@ class TetMesh:
     @kept
     def boundary(self) -> Indices:
         """The faces with one tetrahedron, (h, 3), counter-clockwise seen from outside."""
-        faces = [
-            self._simplices[self._neighbors[:, k] < 0][:, list(face[::-1])]
-            for k, face in enumerate(FACES)
-        ]
-        return sealed(np.concatenate(faces))
+        return sealed(topology.boundary_faces(self._simplices, self._neighbors))
 
     @property
     @kept
     def edges(self) -> Indices:
         """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
-        pairs = np.concatenate([self._simplices[:, list(pair)] for pair in EDGES])
-        pairs.sort(axis=1)
-        keys = np.unique(pairs[:, 0].astype(np.int64) * self.npoints + pairs[:, 1])
-        found = np.column_stack(np.divmod(keys, max(self.npoints, 1)))
-        return sealed(np.ascontiguousarray(found.astype(np.int32)))
+        return sealed(topology.edges(self._simplices, self.npoints))
 
     @property
     def volumes(self) -> Floats:

@@ -48,6 +48,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
+    m.add_function(wrap_pyfunction!(space::edges3, m)?)?;
+    m.add_function(wrap_pyfunction!(space::faces3, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull2, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull3, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;

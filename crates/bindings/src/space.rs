@@ -3,6 +3,7 @@
 use delone_core::delaunay3::triangulate;
 use delone_core::delaunay3::validate::{Findings3, Given3, validate};
 use delone_core::error::Error;
+use delone_core::skeleton3;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -97,4 +98,48 @@ fn checked<'a>(
     in_range(given.simplices, 0, given.points.len(), "simplices")?;
     in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
     Ok(given)
+}
+
+/// Every edge once: the smaller vertex first, rows ascending.
+#[pyfunction]
+pub fn edges3(
+    py: Python<'_>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    npoints: usize,
+    workers: usize,
+) -> PyResult<Py<PyAny>> {
+    let simplices = (|| {
+        let simplices = rows(&simplices, "simplices")?;
+        in_range(simplices, 0, npoints, "simplices")?;
+        Ok::<_, Error>(simplices)
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        skeleton3::edges(simplices, npoints, workers, watch)
+    })?;
+    table(py, found)
+}
+
+/// Every face once: vertices and rows ascending.
+#[pyfunction]
+pub fn faces3(
+    py: Python<'_>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    npoints: usize,
+    workers: usize,
+) -> PyResult<Py<PyAny>> {
+    let (simplices, neighbors) = (|| {
+        let (simplices, neighbors) = (
+            rows(&simplices, "simplices")?,
+            rows(&neighbors, "neighbors")?,
+        );
+        in_range(simplices, 0, npoints, "simplices")?;
+        Ok::<_, Error>((simplices, neighbors))
+    })()
+    .map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| {
+        skeleton3::faces(simplices, neighbors, npoints, workers, watch)
+    })?;
+    table(py, found)
 }

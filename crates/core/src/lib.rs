@@ -23,6 +23,7 @@ pub mod points;
 pub mod refine;
 pub mod regular;
 pub mod regular3;
+pub mod skeleton3;
 pub mod voronoi;
 pub mod voronoi3;
 pub mod watch;

@@ -45,7 +45,7 @@ class Spatial(Triangulation):
         """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
         if self.ndim == 2:
             return super().edges
-        return sealed(topology.edges(self._simplices, self.npoints))
+        return sealed(topology.edges(self._simplices, self.npoints, self._workers))
 
     @property
     @kept
@@ -55,7 +55,7 @@ class Spatial(Triangulation):
         In space only: in the plane the faces are `simplices`.
         """
         self._only(3, "faces", "the faces of the plane are `simplices`")
-        return sealed(topology.faces(self._simplices, self._neighbors))
+        return sealed(topology.faces(self._simplices, self._neighbors, self.npoints, self._workers))
 
     @property
     @kept

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core
+from delone._arrays import as_workers
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -20,12 +23,8 @@ __all__ = ["FACES", "boundary_faces", "edges", "faces", "is_mutual", "neighbors"
 # The face opposite vertex k, counter-clockwise as seen from outside.
 FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
 
-_PAIRS = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-# Simplices whose edges are sorted at once, so that the keys of all need not be there together.
-_CHUNK = 1 << 20
 
-
-def edges(simplices: Indices, npoints: int) -> Indices:
+def edges(simplices: Indices, npoints: int, workers: int | None = None) -> Indices:
     """Return every edge once.
 
     Parameters
@@ -34,6 +33,8 @@ def edges(simplices: Indices, npoints: int) -> Indices:
         Tetrahedra.
     npoints : int
         Number of points.
+    workers : int or None, optional
+        Number of threads; by default all cores.
 
     Returns
     -------
@@ -42,33 +43,21 @@ def edges(simplices: Indices, npoints: int) -> Indices:
 
     Notes
     -----
-    O(m log m).
+    O(m).
 
     Examples
     --------
     >>> import numpy as np
     >>> from delone.space.topology import edges
-    >>> edges(np.array([[0, 1, 2, 3]]), 4).tolist()
+    >>> edges(np.array([[0, 1, 2, 3]], dtype=np.int32), 4).tolist()
     [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
     """
-    parts = [np.empty(0, dtype=np.int64)]
-    for start in range(0, len(simplices), _CHUNK):
-        part = simplices[start : start + _CHUNK].astype(np.int64)
-        part.sort(axis=1)
-        keys = np.concatenate([part[:, i] * npoints + part[:, j] for i, j in _PAIRS])
-        parts.append(_distinct(keys))
-    keys = _distinct(np.concatenate(parts)) if len(parts) > 2 else parts[-1]
-    return np.column_stack(np.divmod(keys, max(npoints, 1))).astype(np.int32)
+    return _core.edges3(simplices, npoints, as_workers(workers))
 
 
-def _distinct(keys: NDArray[np.int64]) -> NDArray[np.int64]:
-    keys.sort()
-    fresh = np.ones(len(keys), dtype=bool)
-    np.not_equal(keys[1:], keys[:-1], out=fresh[1:])
-    return keys[fresh]
-
-
-def faces(simplices: Indices, neighbors: Indices) -> Indices:
+def faces(
+    simplices: Indices, neighbors: Indices, npoints: int, workers: int | None = None
+) -> Indices:
     """Return every face once.
 
     Parameters
@@ -77,6 +66,10 @@ def faces(simplices: Indices, neighbors: Indices) -> Indices:
         Tetrahedra.
     neighbors : ndarray of int32, shape (m, 4)
         The tetrahedron opposite each vertex.
+    npoints : int
+        Number of points.
+    workers : int or None, optional
+        Number of threads; by default all cores.
 
     Returns
     -------
@@ -85,20 +78,17 @@ def faces(simplices: Indices, neighbors: Indices) -> Indices:
 
     Notes
     -----
-    O(m log m).
+    O(m).
 
     Examples
     --------
     >>> import numpy as np
     >>> from delone.space.topology import faces
-    >>> faces(np.array([[0, 1, 2, 3]]), np.array([[-1, -1, -1, -1]])).tolist()
+    >>> alone = np.array([[0, 1, 2, 3]], dtype=np.int32), np.full((1, 4), -1, dtype=np.int32)
+    >>> faces(*alone, 4).tolist()
     [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
     """
-    # Of the two sides of an inner face, the one in the later tetrahedron counts.
-    once = neighbors < np.arange(len(simplices), dtype=np.int32)[:, None]
-    found = simplices[:, FACES][once]
-    found.sort(axis=1)
-    return found[np.lexsort(found.T[::-1])]
+    return _core.faces3(simplices, neighbors, npoints, as_workers(workers))
 
 
 def boundary_faces(simplices: Indices, neighbors: Indices) -> Indices:
