@@ -31,3 +31,17 @@ def test_las(tmp_path, figures, command):
     assert found["classes"] == {"2": 2, "6": 1}
     assert found["point_format"] == las.header.point_format.id
     assert "2 ground: 2" in command("info", tmp_path / "a.laz")[1]
+
+
+def test_points_in_space(tmp_path, figures, command):
+    rows = [(0, 0, 0), (2, 4, 8), (1, 1, "nan"), (1, 3, 5)]
+    (tmp_path / "a.xyz").write_text("\n".join(" ".join(map(str, row)) for row in rows))
+    found = figures("info", "--3d", tmp_path / "a.xyz")
+    assert (found["dimensions_of_points"], found["not_finite"]) == (3, 1)
+    assert found["z"] == [0.0, 8.0]
+    assert "0.0625 points per unit of volume" in command("info", "--3d", tmp_path / "a.xyz")[1]
+    flat = figures("info", tmp_path / "a.xyz")
+    assert (flat["dimensions_of_points"], flat["not_finite"]) == (2, 0)
+    assert "0.5 points per unit of area" in command("info", tmp_path / "a.xyz")[1]
+    (tmp_path / "b.csv").write_text("1,2\n3,4\n")
+    assert command("info", "--3d", tmp_path / "b.csv")[0] != 0

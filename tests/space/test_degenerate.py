@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import ConvexHull, DegenerateInputError, Delaunay, datasets
+from delone import ConvexHull, DegenerateInputError, Delaunay, Voronoi, datasets
 from delone.testing import same_triangles, triangle_set
 
 PLANES = [
@@ -91,3 +91,21 @@ def test_planes_at_the_ends_of_the_range() -> None:
     for scale in (5e-324, 2.0**-1060, 2.0**1023, np.finfo(float).max):
         plane = error_of(square * scale).plane
         assert triangle_set(plane.simplices) == {(0, 1, 2), (0, 2, 3)}
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0**-1040, 2.0**1000])
+def test_circumcentres_are_the_vertices_of_the_diagram_of_the_plane(scale: float) -> None:
+    a, b = np.random.default_rng(1).random((2, 30, 1)) * 8
+    points = (a.round(3) * (1, 0, 1) + b.round(3) * (0, 1, 2)).round(3)
+    points[:, 2] = points[:, 0] + 2 * points[:, 1]
+    points = np.round(points * 2**10) * scale
+    points[:, 2] = points[:, 0] + 2 * points[:, 1]
+    with pytest.raises(DegenerateInputError) as caught:
+        Voronoi(points)
+    plane = caught.value.plane
+    centers = plane.circumcenters
+    away = plane.points[plane.simplices] / scale - centers[:, None] / scale
+    radii = np.sqrt((away**2).sum(axis=2))
+    assert radii == pytest.approx(np.repeat(radii[:, :1], 3, axis=1), rel=1e-9)
+    upright = (centers @ (1, 2, -1)) / scale
+    assert np.abs(upright).max() < 1e-6 * np.abs(centers / scale).max()

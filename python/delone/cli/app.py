@@ -255,13 +255,20 @@ def info(
     classes: Classes = None,
     columns: Columns = None,
     layer: Layer = None,
+    space: Annotated[
+        bool | None,
+        typer.Option(
+            "--3d/--2d",
+            help="Take points for points in space, or in the plane; as for triangulate.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Say what a file holds, without triangulating it."""
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(
-            source, columns=_split(columns), classes=_numbers(classes), layer=layer
+            source, columns=_split(columns), classes=_numbers(classes), layer=layer, space=space
         )
     if as_json:
         print_json(figures)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from delone.cli.constraints import read_input
 from delone.cli.exits import reading
 from delone.cli.report import finite_or_none
+from delone.cli.solid import is_space
 from delone.io import GeometrySet
 
 if TYPE_CHECKING:
@@ -40,7 +42,12 @@ _CLASSES = {
 
 
 def describe(
-    source: Path, *, columns: list[str] | None, classes: list[int] | None, layer: str | None
+    source: Path,
+    *,
+    columns: list[str] | None,
+    classes: list[int] | None,
+    layer: str | None,
+    space: bool | None = None,
 ) -> tuple[dict[str, Any], list[Row]]:
     """Read a file and say what is in it.
 
@@ -50,6 +57,8 @@ def describe(
         The file.
     columns, classes, layer
         As `delone.io.read_points` takes them.
+    space : bool or None, optional
+        Whether points are in space; by default as `delone.cli.solid.is_space` tells.
 
     Returns
     -------
@@ -68,10 +77,11 @@ def describe(
             attributes=("classification",) if las else (),
         )
         header = _las_header(source) if las else {}
+        solid = is_space(source, space, survey)
     if isinstance(survey, GeometrySet):
         figures = _figures(survey.coordinates()) | _of_geometries(survey)
     else:
-        figures = _figures(survey) | header
+        figures = _figures(survey, solid=solid) | header
     figures["file_bytes"] = source.stat().st_size
     return figures, _rows(figures)
 
@@ -87,11 +97,14 @@ def _las_header(source: Path) -> dict[str, Any]:
     return header(source)
 
 
-def _figures(survey: PointSet) -> dict[str, Any]:
+def _figures(survey: PointSet, *, solid: bool = False) -> dict[str, Any]:
     finite = np.isfinite(survey.points).all(axis=1)
+    if solid and survey.z is not None:
+        finite &= np.isfinite(survey.z)
     figures: dict[str, Any] = {
         "input": survey.source,
         "crs": survey.crs,
+        "dimensions_of_points": 3 if solid else 2,
         "points": len(survey),
         "not_finite": int(np.count_nonzero(~finite)),
         "x": _range(survey.points[:, 0]),
@@ -127,8 +140,10 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         if figures[axis] is not None:
             low, high = figures[axis]
             rows.append((axis, f"{low!r} to {high!r}"))
-    if figures["x"] and figures["y"] and (density := _density(figures)) is not None:
-        rows.append(("mean density", f"{density:.4g} points per unit of area of the box"))
+    solid = figures["dimensions_of_points"] == 3
+    if (density := _density(figures, "xyz" if solid else "xy")) is not None:
+        unit = "volume" if solid else "area"
+        rows.append(("mean density", f"{density:.4g} points per unit of {unit} of the box"))
     if "classes" in figures:
         named = [
             f"{number} {_CLASSES.get(int(number), '')}".strip() + f": {count:,}"
@@ -150,7 +165,8 @@ def _feature_rows(figures: dict[str, Any]) -> list[Row]:
     return [("features", f"{figures['features']:,}"), ("kinds", kinds)]
 
 
-def _density(figures: dict[str, Any]) -> float | None:
-    (left, right), (bottom, top) = figures["x"], figures["y"]
-    area = (right - left) * (top - bottom)
-    return finite_or_none(figures["points"] / area) if area > 0 else None
+def _density(figures: dict[str, Any], axes: str) -> float | None:
+    if not all(figures[axis] for axis in axes):
+        return None
+    size = prod(high - low for low, high in (figures[axis] for axis in axes))
+    return finite_or_none(figures["points"] / size) if size > 0 else None

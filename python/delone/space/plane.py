@@ -69,6 +69,26 @@ class PlaneTriangulation:
         """The edges of the convex hull, (h, 2), each with the triangulation to its left."""
         return topology.boundary_edges(self.simplices, self.neighbors)
 
+    @cached_property
+    def circumcenters(self) -> Floats:
+        """Centres of the circles of triangles, (m, 3): the vertices of the plane's Voronoi diagram.
+
+        In the plane up to rounding; those of thin triangles are far away, and infinite beyond the
+        range of doubles.
+        """
+        a, b, c = (self.points[self.simplices[:, k]] for k in range(3))
+        with np.errstate(all="ignore"):
+            # Halves in a unit of each triangle, so that no difference or square overflows.
+            u, v = b / 2 - a / 2, c / 2 - a / 2
+            unit = np.abs(np.stack((u, v))).max(axis=(0, 2), initial=0.0)[:, None]
+            u, v = u / unit, v / unit
+            normal = np.cross(u, v)
+            uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+            across = np.cross(uu[:, None] * v - vv[:, None] * u, normal)
+            way = across / (2 * (normal * normal).sum(axis=1))[:, None]
+            found: Floats = a + 2 * unit * way
+        return found
+
 
 def plane_of(points: Floats, workers: int) -> PlaneTriangulation | None:
     """Triangulate points of one plane.
