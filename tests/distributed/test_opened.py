@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,6 +85,39 @@ def test_raster_without_seams(tin: distributed.TiledDelaunay, tmp_path: Path) ->
         tin.to_raster(cell, tmp_path / "dem.csv")
     with pytest.raises(InputError, match="above 0"):
         tin.to_raster(0.0, tmp_path / "dem.tif")
+
+
+def test_a_disk_without_room_for_a_raster(
+    tin: distributed.TiledDelaunay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("rasterio")
+    usage = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: usage._replace(free=1000))
+    with pytest.raises(OSError, match="on disk while it is made") as caught:
+        tin.to_raster(0.01, tmp_path / "dem.tif")
+    assert caught.value.errno == errno.ENOSPC
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(OSError, match="on disk"):
+        tin.to_raster(1e-7, tmp_path / "dem.tif")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of processes are POSIX")
+def test_a_disk_that_fills_up_under_a_raster(
+    tin: distributed.TiledDelaunay, tmp_path: Path
+) -> None:
+    pytest.importorskip("rasterio")
+    code = f"""
+import errno, resource
+from delone import distributed
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+try:
+    distributed.open({str(tin.path)!r}).to_raster(0.01, {str(tmp_path / "dem.tif")!r})
+except OSError as error:
+    print(errno.errorcode[error.errno])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "EFBIG\n"
+    assert not list(tmp_path.iterdir())
 
 
 def test_dask_data_frames(tin: distributed.TiledDelaunay, canonical: Callable[[Any], Any]) -> None:

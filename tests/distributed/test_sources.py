@@ -139,7 +139,9 @@ def test_torn_and_lying_lidar_files(lidar: Any, tmp_path: Path) -> None:
     lying = tmp_path / "lying.laz"
     at = 247 if whole[25] >= 4 else 107
     lying.write_bytes(whole[:at] + b"\xff\xff\xff\x7f" + whole[at + 4 :])
-    for path in (torn, lying):
+    modest = tmp_path / "modest.laz"
+    modest.write_bytes(whole[:at] + b"\xe8\x03\0\0" + whole[at + 4 :])
+    for path in (torn, lying, modest):
         with pytest.raises(FileFormatError, match=path.name):
             distributed.triangulate(path, tmp_path / "tin")
     # Bytes in the middle say nothing of themselves; the decoder finds out, or reads other points.
@@ -183,7 +185,8 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
         distributed.triangulate(points, tmp_path / "tin", tile_points=300)
     assert caught.value.rows.tolist() == [3, 512, 700]
     assert caught.value.count == 3
-    tin = distributed.triangulate(points, tmp_path / "other", tile_points=300, nan="drop")
+    # As the error proposes, in the same place.
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=300, nan="drop")
     assert tin.manifest["dropped"] == 3
     kept = np.flatnonzero(np.isfinite(points).all(axis=1))
     right = kept[Delaunay(points[kept]).simplices]

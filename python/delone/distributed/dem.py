@@ -6,6 +6,8 @@ seam can show. Values wait in a file beside the target, so that memory is that o
 
 from __future__ import annotations
 
+import errno
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,12 +47,12 @@ def write_dem(
     if target.suffix.lower() not in (".tif", ".tiff"):
         raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
     left, bottom, right, top = tin.bounds
-    x, y = raster_nodes(([left, bottom], [right, top]), resolution=resolution)
+    x, y = raster_nodes(([left, bottom], [right, top]), resolution=resolution, in_memory=False)
+    _require_room(target, len(x), len(y))
     sides = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
     with replacing(target) as beside:
         waiting = beside.with_name(beside.name + ".values")
-        values = np.memmap(waiting, dtype=np.float64, mode="w+", shape=(len(y), len(x)))
-        values[:] = np.nan
+        values = _empty_values(waiting, len(x), len(y))
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
                 _fill(tin.tile(number), known["extent"], x, y, values, value)
@@ -59,6 +61,30 @@ def write_dem(
         _write(rasterio, beside, values, transform, tin.crs, value)
         del values
     return target
+
+
+def _require_room(target: Path, columns: int, rows: int) -> None:
+    """Refuse a raster whose values the disk has no room for while they wait."""
+    needed, free = 8 * columns * rows, shutil.disk_usage(target.absolute().parent).free
+    if needed > free:
+        raise OSError(
+            errno.ENOSPC,
+            f"a raster of {columns:,} x {rows:,} cells needs {needed / 1e9:,.1f} GB on disk while "
+            f"it is made, and {free / 1e9:,.1f} GB are free; choose larger cells",
+            str(target),
+        )
+
+
+def _empty_values(path: Path, columns: int, rows: int) -> NDArray[np.float64]:
+    """Write a file without values and map it.
+
+    Written, not mapped at once: where the disk is full a mapping ends the process.
+    """
+    nothing = np.full((max(1, _BLOCK // columns), columns), np.nan)
+    with path.open("wb") as file:
+        for start in range(0, rows, len(nothing)):
+            file.write(nothing[: rows - start].data)
+    return np.memmap(path, dtype=np.float64, mode="r+", shape=(rows, columns))
 
 
 def _fill(  # noqa: PLR0917

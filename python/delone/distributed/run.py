@@ -101,7 +101,12 @@ class Run:
         """Do all that is not done yet."""
         self._refuse_others()
         with locked(self.store.root):
-            self._go(resume)
+            try:
+                self._go(resume)
+            except (NonFiniteError, DegenerateInputError):
+                # No call with these arguments gets further: nothing is kept for one.
+                self.store.remove("work")
+                raise
 
     def _go(self, resume: bool) -> None:
         self._enter(resume)
@@ -167,7 +172,7 @@ class Run:
             wrong = [name for name in settings if before.get(name) != settings[name]]
             raise InputError(
                 f"{root} holds a run of another kind ({', '.join(wrong)} differ); nothing is "
-                "mixed: choose another output"
+                "mixed: choose another output, or remove this one"
             )
 
     def _settings(self) -> dict[str, Any]:

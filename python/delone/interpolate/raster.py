@@ -189,6 +189,7 @@ def raster_nodes(
     resolution: float | tuple[float, float] | None = None,
     shape: tuple[int, int] | None = None,
     bounds: Sequence[float] | None = None,
+    in_memory: bool = True,
 ) -> tuple[Floats, Floats]:
     """Return the nodes of a raster, the centres of its cells.
 
@@ -198,6 +199,8 @@ def raster_nodes(
         Least and greatest coordinates, for the lack of bounds.
     resolution, shape, bounds
         As in `grid`.
+    in_memory : bool, optional
+        Whether memory must have room for the raster, not only for its nodes.
 
     Returns
     -------
@@ -222,7 +225,7 @@ def raster_nodes(
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r}")
         counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
-    require_memory(counts[0], counts[1], 1)
+    require_memory(*(counts if in_memory else (sum(counts), 1)), 1)
     x, y = (low[k] + cells[k] * (np.arange(counts[k], dtype=np.float64) + 0.5) for k in range(2))
     return x, y
 

@@ -196,7 +196,11 @@ def _check_claim(path: Path, file: Any) -> None:
     header = file.header
     count, size = int(header.point_count), path.stat().st_size
     if header.are_points_compressed:
-        held = _compressed_records(path, header)
+        least, held = _compressed_records(path, header)
+        if count < least:
+            raise FileFormatError(
+                f"{path} announces {count} points and holds {least} or more: its header is wrong"
+            )
     else:
         record = int(header.point_format.size)
         held = max(0, size - int(header.offset_to_point_data)) // record
@@ -206,8 +210,8 @@ def _check_claim(path: Path, file: Any) -> None:
         )
 
 
-def _compressed_records(path: Path, header: Any) -> int:
-    """Return how many records the chunks of a LAZ file can hold."""
+def _compressed_records(path: Path, header: Any) -> tuple[int, int]:
+    """Return how many records the chunks of a LAZ file hold at least and at most."""
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     record = header.vlrs.get("LasZipVlr")[0].record_data
     vlr = lazrs.LazVlr(record)
@@ -233,8 +237,11 @@ def _compressed_records(path: Path, header: Any) -> int:
         # Writers that end a chunk where the file ends leave one behind that is empty.
         _check_layers(file, record, start, [int(length) for points, length in held if points])
     if vlr.uses_variable_size_chunks():
-        return sum(int(points) for points, _ in held)
-    return int(chunks * vlr.chunk_size())
+        count = sum(int(points) for points, _ in held)
+        return count, count
+    # The last chunk may be short, and writers leave one of nothing behind it.
+    full = sum(length > 0 for _, length in held) - 1
+    return max(0, full * int(vlr.chunk_size()) + 1), int(chunks * vlr.chunk_size())
 
 
 def _check_layers(file: IO[bytes], record: bytes, start: int, lengths: Sequence[int]) -> None:
