@@ -22,7 +22,7 @@ _ROW, _WAITING, _OUTPUT = 32.0, 24.0, 62.0
 # Seconds of one core for each point, without the reading of compressed files.
 _SECONDS = 1.2e-6
 # Questions are put in this many rounds.
-_ROUNDS = 4
+_ROUNDS = 3
 
 
 @dataclass(frozen=True)

@@ -225,7 +225,8 @@ def raster_nodes(
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r}")
         counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
-    require_memory(*(counts if in_memory else (sum(counts), 1)), 1)
+    columns, rows = counts if in_memory else (sum(counts), 1)
+    require_memory(columns, rows, 1)
     x, y = (low[k] + cells[k] * (np.arange(counts[k], dtype=np.float64) + 0.5) for k in range(2))
     return x, y
 
