@@ -9,9 +9,11 @@ use crate::error::{Error, Result};
 use crate::memory::filled;
 use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
 
-/// Triangles that a walk to a new vertex meets before all triangles are searched: new vertices are
-/// near what they come from, and a visibility walk may turn in circles where edges are marked.
+/// Triangles that a walk to a new vertex meets before all triangles are searched, and for each of
+/// them along the side of a square of all vertices some more: new vertices are near what they come
+/// from, and a visibility walk may turn in circles where edges are marked.
 const WALK: usize = 256;
+const WALK_ACROSS: usize = 4;
 
 /// The triangulation.
 #[derive(Debug)]
@@ -152,7 +154,8 @@ impl Marked {
     /// The triangle whose closed area holds `p`, or a ghost whose hull edge has p strictly beyond.
     fn find(&mut self, p: Point2, from: u32) -> Result<u32> {
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
-        if let Some((t, _)) = walk_within(&mesh, &self.points, from, p, WALK) {
+        let most = WALK + WALK_ACROSS * self.count.isqrt();
+        if let Some((t, _)) = walk_within(&mesh, &self.points, from, p, most) {
             return Ok(t);
         }
         let at = |v: u32| self.points[v as usize];

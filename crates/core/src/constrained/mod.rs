@@ -6,11 +6,13 @@
 
 mod components;
 pub(crate) mod conforming;
+mod edges;
 pub mod intersection;
 pub(crate) mod marked;
 pub mod pairs;
 mod polygon;
 mod present;
+mod reroute;
 mod segment;
 mod split;
 mod subsegments;
@@ -143,30 +145,35 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Lays all segments. Where two of them cross, that is an error or starts anew with the crossings
-    /// among the points.
+    /// Lays all segments. Where two of them cross, that is an error, or they are split: few of them
+    /// in place, many by starting anew with the crossings among the points.
     fn lay(&mut self, input: &[Point2], watch: &Watch) -> Result<Laid> {
         let Options {
             conforming,
             max_vertices: limit,
+            split,
             ..
         } = self.options;
-        let laid = self.lay_all(watch)?;
-        let mut splitter = match laid {
-            Some(laid) if !conforming => return Ok(laid),
-            Some(laid) => {
-                let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
-                splitter.adopt(laid);
-                splitter
+        let few = if split { self.few() } else { 0 };
+        let laid = match self.lay_all(few, watch)? {
+            Some((laid, waiting)) if waiting.is_empty() => Some(laid),
+            Some((laid, waiting)) if split => self.reroute(input, laid, &waiting, watch)?,
+            _ if !split => return Err(self.crossing_error(input, watch)?),
+            _ => None,
+        };
+        let mut splitter = if let Some(laid) = laid {
+            if !conforming {
+                return Ok(laid);
             }
-            None if !self.options.split => return Err(self.crossing_error(input, watch)?),
-            None => {
-                let found = self.crossings(input, watch)?;
-                let meets = self.start_anew(input, &found, watch)?;
-                let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
-                splitter.run(&found.pairs, &meets, watch)?;
-                splitter
-            }
+            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
+            splitter.adopt(laid);
+            splitter
+        } else {
+            let found = self.crossings(input, watch)?;
+            let meets = self.start_anew(input, &found, watch)?;
+            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
+            splitter.run(&found.pairs, &meets, watch)?;
+            splitter
         };
         if conforming {
             splitter.conform(watch)?;
@@ -174,9 +181,9 @@ impl<'a> Work<'a> {
         Ok(splitter.finish())
     }
 
-    /// Marks the segments that are edges, and lays the others row by row; nothing where one crosses
-    /// another.
-    fn lay_all(&mut self, watch: &Watch) -> Result<Option<Laid>> {
+    /// Marks the segments that are edges, and lays the others row by row. Returns the rows that are
+    /// crossed by what was laid before, which wait; nothing where there are more than `few`.
+    fn lay_all(&mut self, few: usize, watch: &Watch) -> Result<Option<(Laid, Vec<u32>)>> {
         let present = mark_present(&mut self.marked, &self.ends)?;
         watch.check()?;
         let mut laid = Laid {
@@ -185,6 +192,7 @@ impl<'a> Work<'a> {
             sorted: true,
             ..Laid::default()
         };
+        let mut waiting = Vec::new();
         let mut cavity = Cavity::default();
         let mut steps = 0;
         for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
@@ -199,7 +207,8 @@ impl<'a> Work<'a> {
             let mut back = Vec::new();
             while a != b {
                 let Step::Joined { from, to, again } = self.marked.join(a, b, &mut cavity)? else {
-                    return Ok(None);
+                    waiting.push(row);
+                    break;
                 };
                 laid.repeated |= again;
                 if to != a ^ b ^ from {
@@ -216,8 +225,11 @@ impl<'a> Work<'a> {
             for piece in back.into_iter().rev() {
                 push(&mut laid.pieces, piece)?;
             }
+            if waiting.len() > few {
+                return Ok(None);
+            }
         }
-        Ok(Some(laid))
+        Ok(Some((laid, waiting)))
     }
 
     /// The error that names all pairs that cross.
@@ -239,23 +251,40 @@ impl<'a> Work<'a> {
                 found: pairs.len(),
             });
         }
-        let mut given: Vec<Point2> = with_room(input.len())?;
-        given.extend_from_slice(input);
-        given.sort_unstable_by(|p, q| lexicographic(*p, *q));
+        self.meetings(input, pairs, watch)
+    }
+
+    /// Where `pairs` cross, but for those that do in a point of the input.
+    fn meetings(&self, input: &[Point2], pairs: Vec<[u32; 2]>, watch: &Watch) -> Result<Crossings> {
         let at = |row: u32| self.segments[row as usize].map(|v| input[v as usize]);
-        let mut found = Crossings {
-            pairs: with_room(pairs.len())?,
-            points: with_room(pairs.len())?,
-        };
-        for (i, [s, t]) in pairs.into_iter().enumerate() {
+        let mut points = with_room(pairs.len())?;
+        let mut exact = Vec::new();
+        for (i, &[s, t]) in pairs.iter().enumerate() {
             if i.is_multiple_of(WATCH_EVERY) {
                 watch.check()?;
             }
             let ([a, b], [c, d]) = (at(s), at(t));
             let x = intersection::intersection(a, b, c, d);
-            let exact = orient2d(a, b, x).is_zero() && orient2d(c, d, x).is_zero();
-            if !(exact && given.binary_search_by(|p| lexicographic(*p, x)).is_ok()) {
-                found.pairs.push([s, t]);
+            points.push(x);
+            if orient2d(a, b, x).is_zero() && orient2d(c, d, x).is_zero() {
+                push(&mut exact, (x, i))?;
+            }
+        }
+        exact.sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
+        let mut given = filled(if exact.is_empty() { 0 } else { pairs.len() }, false)?;
+        for p in input.iter().filter(|_| !exact.is_empty()) {
+            let first = exact.partition_point(|(q, _)| lexicographic(*q, *p).is_lt());
+            for (_, i) in exact[first..].iter().take_while(|(q, _)| q == p) {
+                given[*i] = true;
+            }
+        }
+        let mut found = Crossings {
+            pairs: with_room(pairs.len())?,
+            points: with_room(pairs.len())?,
+        };
+        for (i, (pair, x)) in pairs.into_iter().zip(points).enumerate() {
+            if !given.get(i).is_some_and(|given| *given) {
+                found.pairs.push(pair);
                 found.points.push(x);
             }
         }

@@ -106,8 +106,9 @@ impl Item {
     }
 }
 
+/// Whether two boxes have a point in common.
 #[inline]
-fn overlap(a: &Extent, b: &Extent) -> bool {
+pub(super) fn overlap(a: &Extent, b: &Extent) -> bool {
     // Not short-circuited: four comparisons cost less than a branch that is hard to foresee.
     (a.min[0] <= b.max[0])
         & (b.min[0] <= a.max[0])

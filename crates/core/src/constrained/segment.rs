@@ -23,7 +23,7 @@ use delone_predicates::{Sign, lexicographic, orient2d};
 
 use super::marked::{Marked, turn};
 use crate::error::{Error, Result};
-use crate::mesh2::{Code, next, prev, triangle};
+use crate::mesh2::{Code, Patch, next, prev, triangle};
 
 /// How far a segment came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,6 +142,37 @@ impl Marked {
         }
         stops.retain(|&w| w != a && w != b);
         Ok(stops)
+    }
+
+    /// Shows `visit` the edges that the segment from `a` to `b` crosses, but for those that it only
+    /// touches. It ends as `gather` does.
+    pub fn cross(&mut self, a: u32, b: u32, mut visit: impl FnMut(&Patch, Code)) -> Result<()> {
+        let mut from = a;
+        while from != b {
+            from = match self.leave(from, b)? {
+                Leave::Along(_, w) => w,
+                Leave::Across(first) => {
+                    let mut e = first;
+                    let mesh = self.mesh.resume(2 * self.count as u32 - 2);
+                    loop {
+                        visit(&mesh, e);
+                        let o = mesh.opposite(e);
+                        let x = mesh.vertex(o);
+                        if x == mesh.infinite() {
+                            let message = format!("the segment {a} {b} leaves the hull");
+                            return Err(Error::Internal(message));
+                        }
+                        let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
+                        e = match orient2d(p, q, at) {
+                            Sign::Positive => next(o),
+                            Sign::Negative => prev(o),
+                            Sign::Zero => break x,
+                        };
+                    }
+                }
+            };
+        }
+        Ok(())
     }
 
     /// Looks for the edge from `a` to `b` round both at once, as one of them may have very many.

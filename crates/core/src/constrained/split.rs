@@ -95,6 +95,7 @@ impl<'a> Splitter<'a> {
             self.add(ends, &[2 * i + Cover::from(against)]);
         }
         self.through = laid.through;
+        self.crossings = laid.crossings;
     }
 
     /// Lays all of them. Those in `pairs` cross, in the vertices `meets`.
@@ -109,42 +110,14 @@ impl<'a> Splitter<'a> {
             let ([a, b], row) = self.segments[i];
             let first = own.partition_point(|o| o[0] < row);
             let meets = own[first..].iter().take_while(|o| o[0] == row);
-            let stops = self.way([a, b], row, meets.map(|o| o[1]).collect())?;
+            let meets = meets.map(|o| o[1]).collect();
+            let stops = way(self.marked, [a, b], row, meets, &mut self.through)?;
             for pair in stops.windows(2).rev() {
                 self.wait([pair[0], pair[1]], &[2 * i as Cover]);
             }
             self.work_off(watch)?;
         }
         Ok(())
-    }
-
-    /// The vertices on the way of a segment, in order, its ends with them: where it meets others, the
-    /// vertices that lie on it exactly, and, if it meets any, those to whose pixel it comes.
-    fn way(&mut self, [a, b]: [u32; 2], row: u32, meets: Vec<u32>) -> Result<Vec<u32>> {
-        let [p, q] = [a, b].map(|v| self.marked.at(v));
-        let snaps = !meets.is_empty();
-        let near = |marked: &Marked, w: u32| snaps && passes(p, q, marked.at(w));
-        let mut stops = self.marked.stops(a, b, near)?;
-        for &w in &stops {
-            if orient2d(p, q, self.marked.at(w)).is_zero() {
-                self.through.push([row, w]);
-            }
-        }
-        stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
-        stops.extend([a, b]);
-        // The rounded points of a line keep its order in both coordinates, though perhaps not
-        // strictly; it goes up in the first, or in the second where that stays.
-        let falls = p[1] > q[1];
-        stops.sort_by(|&v, &w| {
-            let [v, w] = [v, w].map(|v| self.marked.at(v));
-            let second = v[1].total_cmp(&w[1]);
-            let second = if falls { second.reverse() } else { second };
-            v[0].partial_cmp(&w[0])
-                .unwrap_or(Ordering::Equal)
-                .then(second)
-        });
-        stops.dedup();
-        Ok(stops)
     }
 
     /// Lays what waits.
@@ -292,6 +265,41 @@ impl<'a> Splitter<'a> {
     }
 }
 
+/// The vertices on the way of a segment, in order, its ends with them: where it meets others, the
+/// vertices that lie on it exactly, which go to `through` with its row, and, if it meets any, those
+/// to whose pixel it comes.
+pub(super) fn way(
+    marked: &mut Marked,
+    [a, b]: [u32; 2],
+    row: u32,
+    meets: Vec<u32>,
+    through: &mut Vec<[u32; 2]>,
+) -> Result<Vec<u32>> {
+    let [p, q] = [a, b].map(|v| marked.at(v));
+    let snaps = !meets.is_empty();
+    let near = |marked: &Marked, w: u32| snaps && passes(p, q, marked.at(w));
+    let mut stops = marked.stops(a, b, near)?;
+    for &w in &stops {
+        if orient2d(p, q, marked.at(w)).is_zero() {
+            through.push([row, w]);
+        }
+    }
+    stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
+    stops.extend([a, b]);
+    // The rounded points of a line keep its order in both coordinates, though perhaps not strictly:
+    // in the first, or in the second where that stays.
+    let along = |v: Point2, w: Point2, k: usize| {
+        let (v, w) = if p[k] <= q[k] { (v, w) } else { (w, v) };
+        v[k].partial_cmp(&w[k]).unwrap_or(Ordering::Equal)
+    };
+    stops.sort_by(|&v, &w| {
+        let [v, w] = [v, w].map(|v| marked.at(v));
+        along(v, w, 0).then_with(|| along(v, w, 1))
+    });
+    stops.dedup();
+    Ok(stops)
+}
+
 /// The segments that have a length, each from its lexicographically smaller end, sorted by their
 /// ends.
 fn in_order(marked: &Marked, segments: &[[u32; 2]]) -> Vec<([u32; 2], u32)> {
@@ -316,7 +324,7 @@ fn in_box(x: Point2, p: Point2, q: Point2) -> bool {
 
 /// Whether the segment `r s` comes to the pixel of `p`, the places that are rounded to it: at the
 /// abscissa of p it has an ordinate that is rounded to that of p, or the other way round.
-fn passes(r: Point2, s: Point2, p: Point2) -> bool {
+pub(super) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
     if !in_box(p, r, s) || p == r || p == s || far(r, s, p) {
         return false;
     }

@@ -1,0 +1,426 @@
+//! Few segments that cross: they alone are laid anew, and the others stay where they are.
+//!
+//! Segments that find a marked edge in their way wait until all others lie. The marked edges on the
+//! way of each say which rows it crosses; with the pairs among those that wait that is every
+//! pair, as of two that cross one was laid first or neither was. The rows of the pairs are taken
+//! away, their crossings inserted, and they are laid through these, as `split` would do it.
+//!
+//! Where a rounded crossing falls on another segment, or a segment comes to the pixel of a vertex that
+//! is none of its own, or a piece still crosses one, nothing is repaired here: `split` starts from the
+//! beginning. Where that does not happen, the pieces are the same as there, and so are the triangles,
+//! since one set of pieces has one triangulation.
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::edges::{Edges, edge};
+use super::marked::{Marked, turn};
+use super::pairs::overlap;
+use super::segment::{Cavity, Step};
+use super::split::{passes, way};
+use super::{Crossings, Laid, Work, pairs};
+use crate::error::Result;
+use crate::memory::{filled, push, with_room};
+use crate::mesh2::{next, prev, triangle};
+use crate::points::Extent;
+use crate::watch::Watch;
+
+/// Segments that may wait, whatever their number, and one in so many.
+const FEW: usize = 16;
+const ONE_IN: usize = 32;
+/// One crossing for so many points, and a few: one by one they cost more than all points at once.
+const POINTS: usize = 4;
+
+/// The stamp of no row.
+const NEVER: u32 = u32::MAX;
+
+/// The side of the line p q on which x lies, and zero at least where it lies as near as the pixels
+/// in the box of p and q are wide.
+fn beside(p: Point2, q: Point2, x: Point2) -> Sign {
+    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+    let (left, right) = (dx * (x[1] - p[1]), dy * (x[0] - p[0]));
+    let largest = (p.iter().chain(&q)).fold(0.0, |m: f64, x| m.max(x.abs()));
+    let pixel = (dx.abs() + dy.abs()) * (largest * f64::EPSILON + f64::MIN_POSITIVE);
+    let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
+    let det = left - right;
+    // Also where something overflowed, which is not a number then.
+    if det.abs() > 2.0 * pixel + rounding {
+        Sign::of(det)
+    } else {
+        Sign::Zero
+    }
+}
+
+impl Work<'_> {
+    /// How many segments may wait.
+    pub(super) fn few(&self) -> usize {
+        FEW + self.ends.len() / ONE_IN
+    }
+
+    /// Lays the segments that wait, `laid` being the others, and those that they cross. Nothing
+    /// where that is not enough; then the triangulation is to be thrown away.
+    pub(super) fn reroute(
+        &mut self,
+        input: &[Point2],
+        mut laid: Laid,
+        waiting: &[u32],
+        watch: &Watch,
+    ) -> Result<Option<Laid>> {
+        let most = FEW + input.len() / POINTS;
+        let Some(pairs) = self.pairs_of(input, &laid, waiting, most, watch)? else {
+            return Ok(None);
+        };
+        let found = self.meetings(input, pairs, watch)?;
+        let mut rows = found.pairs.concat();
+        rows.sort_unstable();
+        rows.dedup();
+        if !waiting.iter().all(|row| rows.binary_search(row).is_ok()) {
+            return Ok(None);
+        }
+        self.take_away(&mut laid, &rows)?;
+        let Some(meets) = self.insert(input.len(), &found)? else {
+            return Ok(None);
+        };
+        for (&[s, t], &w) in found.pairs.iter().zip(&meets) {
+            push(&mut laid.crossings, [s, t, w])?;
+        }
+        let mut own = with_room(2 * meets.len())?;
+        for &[s, t, w] in &laid.crossings {
+            own.extend([[s, w], [t, w]]);
+        }
+        own.sort_unstable();
+        // All ways first, so that they do not hang on the order of the rows.
+        let mut ways = with_room(rows.len())?;
+        let mut seen = filled(self.marked.triangles() as usize, NEVER)?;
+        for meets in own.chunk_by(|a, b| a[0] == b[0]) {
+            let row = meets[0][0];
+            let ends = self.ends[row as usize];
+            let own: Vec<_> = meets.iter().map(|m| m[1]).collect();
+            let through = &mut laid.through;
+            let stops = way(&mut self.marked, ends, row, own.clone(), through)?;
+            if !self.is_clear(row, &stops, &own, &mut seen)? {
+                return Ok(None);
+            }
+            ways.push((row, stops));
+        }
+        let mut cavity = Cavity::default();
+        for (row, stops) in ways {
+            watch.check()?;
+            if !self.lay_again(row, &stops, &mut laid, &mut cavity)? {
+                return Ok(None);
+            }
+        }
+        (laid.sorted, laid.repeated) = (false, true);
+        Ok(Some(laid))
+    }
+
+    /// All pairs that cross, ascending, `waiting` being all rows that are not laid; nothing where
+    /// there are more than `most`.
+    fn pairs_of(
+        &mut self,
+        input: &[Point2],
+        laid: &Laid,
+        waiting: &[u32],
+        most: usize,
+        watch: &Watch,
+    ) -> Result<Option<Vec<[u32; 2]>>> {
+        let mut met = Vec::new();
+        for &row in waiting {
+            watch.check()?;
+            let [a, b] = self.ends[row as usize];
+            self.marked.cross(a, b, |mesh, e| {
+                if mesh.is_marked(e) {
+                    let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+                    met.push((edge(ends), row));
+                }
+            })?;
+            if met.len() > most {
+                return Ok(None);
+            }
+        }
+        met.sort_unstable();
+        let edges = Edges::of(met.iter().map(|m| m.0).collect(), self.marked.count)?;
+        let own: Vec<_> = waiting.iter().map(|&r| self.segments[r as usize]).collect();
+        let mut pairs = pairs::crossing_pairs_above(input, &own, most, watch)?;
+        for pair in &mut pairs {
+            *pair = pair.map(|i| waiting[i as usize]);
+        }
+        for &(ends, row) in &laid.pieces {
+            let Some(place) = edges.place(ends) else {
+                continue;
+            };
+            let first = met.partition_point(|m| m.0 < edges.all[place]);
+            let here = met[first..].iter().take_while(|m| m.0 == edges.all[place]);
+            pairs.extend(here.map(|m| [m.1.min(row), m.1.max(row)]));
+            if pairs.len() > most {
+                return Ok(None);
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        Ok((pairs.len() <= most).then_some(pairs))
+    }
+
+    /// Takes away what is laid of the `rows`, which ascend.
+    fn take_away(&mut self, laid: &mut Laid, rows: &[u32]) -> Result<()> {
+        let mut goes = filled(self.ends.len(), false)?;
+        for &row in rows {
+            goes[row as usize] = true;
+        }
+        let mut gone = Vec::new();
+        laid.pieces.retain(|&(ends, row)| {
+            if goes[row as usize] {
+                gone.push(edge(ends));
+            }
+            !goes[row as usize]
+        });
+        laid.through.retain(|t| !goes[t[0] as usize]);
+        let mut free = Edges::of(gone, self.marked.count)?;
+        if laid.repeated {
+            let mut kept: Vec<_> = (laid.pieces.iter())
+                .filter_map(|p| free.place(p.0))
+                .collect();
+            kept.sort_unstable();
+            kept.dedup();
+            for place in kept.into_iter().rev() {
+                free.all.remove(place);
+            }
+        }
+        self.marked.stack.clear();
+        for [u, v] in free.all {
+            let e = self.marked.edge(u, v)?;
+            self.marked.patch().mark(e, false);
+            self.marked.stack.push(e);
+        }
+        self.marked.legalise()
+    }
+
+    /// Makes the crossings vertices behind the `n` rows of the input. Nothing where one falls on a
+    /// segment, or there are too many.
+    fn insert(&mut self, n: usize, found: &Crossings) -> Result<Option<Vec<u32>>> {
+        let mut meets = with_room(found.points.len())?;
+        for (&[s, t], &x) in found.pairs.iter().zip(&found.points) {
+            let ends = [s, t].map(|row| self.ends[row as usize]);
+            let far = |&v: &u32| {
+                let p = self.marked.at(v);
+                (0.5 * p[0] - 0.5 * x[0]).abs() + (0.5 * p[1] - 0.5 * x[1]).abs()
+            };
+            let ends = ends.into_iter().flatten();
+            let near = ends.min_by(|v, w| far(v).total_cmp(&far(w)));
+            let from = self.marked.near[near.unwrap_or(0) as usize];
+            let before = self.marked.count;
+            let (w, parted) = self.marked.vertex_at(x, from)?;
+            if self.marked.count > before {
+                let row = (n + self.met.len()) as u32;
+                push(&mut self.rows, row)?;
+                push(&mut self.met, x)?;
+            }
+            if parted.is_some() || self.met.len() > self.options.max_vertices {
+                return Ok(None);
+            }
+            meets.push(w);
+        }
+        Ok(Some(meets))
+    }
+
+    /// Whether a segment comes to the pixel of no vertex but of those on it and its crossings `meets`,
+    /// which ascend, however the mesh lies: from the segment to such a vertex one comes within its box, across
+    /// edges that come as near.
+    fn is_clear(
+        &mut self,
+        row: u32,
+        stops: &[u32],
+        meets: &[u32],
+        seen: &mut [u32],
+    ) -> Result<bool> {
+        let [a, b] = self.ends[row as usize];
+        let [p, q] = [a, b].map(|v| self.marked.at(v));
+        let on = |v: &u32| {
+            meets.binary_search(v).is_ok() || orient2d(p, q, self.marked.at(*v)).is_zero()
+        };
+        if !stops.iter().all(on) {
+            return Ok(false);
+        }
+        let mut own = stops.to_vec();
+        own.sort_unstable();
+        let mut stack = Vec::new();
+        self.marked.cross(a, b, |mesh, e| {
+            stack.extend([triangle(e), triangle(mesh.opposite(e))]);
+        })?;
+        let used = self.marked.triangles();
+        let Marked {
+            points, near, mesh, ..
+        } = &mut self.marked;
+        let mesh = &mesh.resume(used);
+        for &v in stops {
+            let start = near[v as usize];
+            let mut corner = start;
+            loop {
+                stack.push(triangle(corner));
+                corner = turn(mesh, corner);
+                if corner == start {
+                    break;
+                }
+            }
+        }
+        while let Some(t) = stack.pop() {
+            let corners = mesh.corners(t);
+            if seen[t as usize] == row || corners.contains(&mesh.infinite()) {
+                continue;
+            }
+            seen[t as usize] = row;
+            let at = corners.map(|v| points[v as usize]);
+            if !overlap(&Extent::of([p, q]), &Extent::of(at)) {
+                continue;
+            }
+            let met = |k: usize| own.binary_search(&corners[k]).is_err() && passes(p, q, at[k]);
+            if (0..3).any(met) {
+                return Ok(false);
+            }
+            let sides = at.map(|x| beside(p, q, x));
+            for k in 0..3 {
+                let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
+                if u == Sign::Zero || u != v {
+                    stack.push(triangle(mesh.opposite(8 * t + k as u32)));
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// Lays a segment through its `stops`; whether nothing was in its way.
+    fn lay_again(
+        &mut self,
+        row: u32,
+        stops: &[u32],
+        laid: &mut Laid,
+        cavity: &mut Cavity,
+    ) -> Result<bool> {
+        for pair in stops.windows(2) {
+            let [mut a, mut b] = [pair[0], pair[1]];
+            while a != b {
+                let Step::Joined { from, to, .. } = self.marked.join(a, b, cavity)? else {
+                    return Ok(false);
+                };
+                let ends = if from == a { [a, to] } else { [to, b] };
+                push(&mut laid.pieces, (ends, row))?;
+                (a, b) = if from == a { (to, b) } else { (a, to) };
+            }
+        }
+        Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+
+    use super::super::Options;
+    use super::super::split::Splitter;
+    use super::*;
+    use crate::delaunay2::{Clock, Method};
+
+    type Bits = [u64; 2];
+
+    /// What a triangulation came to, by coordinates: its triangles, the pieces with their rows, and
+    /// the vertices in segments and at crossings.
+    #[derive(Debug, PartialEq)]
+    struct Outcome {
+        triangles: BTreeSet<[Bits; 3]>,
+        pieces: BTreeSet<(Bits, Bits, u32)>,
+        through: BTreeSet<(u32, Bits)>,
+        crossings: BTreeSet<(u32, u32, Bits)>,
+        added: Vec<Bits>,
+    }
+
+    fn outcome(work: &mut Work, laid: &Laid, n: usize) -> Outcome {
+        let bits = |p: Point2| p.map(|x| (x + 0.0).to_bits());
+        let points = work.marked.points.clone();
+        let at = |v: u32| bits(points[v as usize]);
+        let triangles = work.marked.triangles();
+        let mesh = work.marked.patch();
+        let real = (0..triangles).filter(|&t| !mesh.corners(t).contains(&mesh.infinite()));
+        let turned = |t: u32| {
+            let mut corners = mesh.corners(t).map(at);
+            while corners.iter().min() != Some(&corners[0]) {
+                corners.rotate_left(1);
+            }
+            corners
+        };
+        let triangles = real.map(turned).collect();
+        let pieces = laid.pieces.iter();
+        Outcome {
+            triangles,
+            pieces: pieces.map(|&([u, v], row)| (at(u), at(v), row)).collect(),
+            through: laid.through.iter().map(|t| (t[0], at(t[1]))).collect(),
+            crossings: (laid.crossings.iter())
+                .map(|c| (c[0], c[1], at(c[2])))
+                .collect(),
+            added: work.added(n).into_iter().map(bits).collect(),
+        }
+    }
+
+    /// Segments that cross are laid in place, or all anew: the same comes of it.
+    fn check(points: &[Point2], segments: &[[u32; 2]]) -> std::result::Result<bool, TestCaseError> {
+        let options = Options {
+            split: true,
+            conforming: false,
+            max_vertices: 10_000,
+            method: Method::Auto,
+            workers: 1,
+        };
+        let watch = Watch::idle();
+        let start = || Work::start(points, segments, options, &watch, &mut Clock::start());
+        let Ok(mut work) = start() else {
+            return Ok(false);
+        };
+        let (laid, waiting) = work.lay_all(usize::MAX, &watch).unwrap().unwrap();
+        if waiting.is_empty() {
+            return Ok(false);
+        }
+        let Some(laid) = work.reroute(points, laid, &waiting, &watch).unwrap() else {
+            return Ok(false);
+        };
+        let found = outcome(&mut work, &laid, points.len());
+        let mut work = start().unwrap();
+        let crossings = work.crossings(points, &watch).unwrap();
+        let meets = work.start_anew(points, &crossings, &watch).unwrap();
+        let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000);
+        splitter.run(&crossings.pairs, &meets, &watch).unwrap();
+        let laid = splitter.finish();
+        prop_assert_eq!(
+            found,
+            outcome(&mut work, &laid, points.len()),
+            "{:?} {:?}",
+            points,
+            segments
+        );
+        Ok(true)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+        #[test]
+        fn few_or_all_makes_no_difference(
+            points in prop::collection::vec((0..9, 0..9), 3..24),
+            segments in prop::collection::vec((any::<u32>(), any::<u32>()), 2..16),
+            offset in prop::sample::select(vec![0.0, 1e3, 2f64.powi(40), 2f64.powi(51)]),
+        ) {
+            let n = points.len() as u32;
+            let points: Vec<_> = (points.iter())
+                .map(|&(x, y)| [f64::from(x) + offset, f64::from(y)])
+                .collect();
+            let segments: Vec<_> = segments.iter().map(|&(a, b)| [a % n, b % n]).collect();
+            check(&points, &segments)?;
+        }
+    }
+
+    #[test]
+    fn two_diagonals_are_laid_in_place() {
+        let square = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
+        let twice = [[0, 2], [1, 3], [2, 0]];
+        assert!(check(&square, &twice).unwrap());
+    }
+}
