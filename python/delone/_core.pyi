@@ -39,6 +39,7 @@ __all__ = [
     "refine2",
     "regular2",
     "regular3",
+    "ring2",
     "touched2",
     "triangulate2",
     "triangulate3",
@@ -92,6 +93,7 @@ def components2(
 def polygon2(
     points: NDArray[np.float64], starts: NDArray[np.int32], nonzero: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
+def ring2(points: object) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None: ...
 def disks2(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> NDArray[np.float64]: ...
 def within2(
     points: NDArray[np.float64],

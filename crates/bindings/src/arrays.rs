@@ -48,6 +48,18 @@ pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> P
     Ok(Bound::<PyArray2<T>>::into_any(array).unbind())
 }
 
+/// A read-only copy of rows: where they are few, cheaper than an array that owns a vector.
+pub fn frozen<T: Element + Copy, const D: usize>(
+    py: Python<'_>,
+    rows: &[[T; D]],
+) -> PyResult<Py<PyAny>> {
+    let array = PyArray2::<T>::zeros(py, [rows.len(), D], false);
+    let mut lent = array.try_readwrite()?;
+    lent.as_slice_mut()?.copy_from_slice(rows.as_flattened());
+    lent.make_nonwriteable();
+    Ok(array.into_any().unbind())
+}
+
 /// A vector as a one-dimensional array that owns it.
 pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyAny> {
     PyArray1::from_vec(py, values).into_any().unbind()

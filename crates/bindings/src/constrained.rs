@@ -1,7 +1,9 @@
 //! Constrained triangulations as arrays.
 
 use delone_core::Point2;
-use delone_core::constrained::{Constrained, Options, Rule, components, constrain, polygon};
+use delone_core::constrained::{
+    Constrained, Options, Rule, components, constrain, polygon, simple_ring,
+};
 use delone_core::delaunay2::Method;
 use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -9,7 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
+use crate::arrays::{column, frozen, in_range, rows, table};
 use crate::errors::raise;
 use crate::triangulation::{methods2, watched};
 
@@ -117,6 +119,27 @@ pub fn polygon2(
     };
     let filled = watched(py, |watch| polygon(points, &starts, rule, watch))?;
     Ok((table(py, filled.added)?, table(py, filled.simplices)?))
+}
+
+/// A copy of the points and the triangles of one ring, read-only; nothing unless it is known to be
+/// simple, and `points` an array that can be read as it lies.
+///
+/// It holds the GIL: such rings are short, and giving it back would cost as much as the triangles.
+#[pyfunction]
+pub fn ring2(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+) -> PyResult<Option<(Py<PyAny>, Py<PyAny>)>> {
+    let Ok(points) = points.extract::<PyReadonlyArray2<'_, f64>>() else {
+        return Ok(None);
+    };
+    let Ok(points) = rows::<f64, 2>(&points, "points") else {
+        return Ok(None);
+    };
+    let Some(simplices) = simple_ring(points).map_err(|e| raise(py, &e))? else {
+        return Ok(None);
+    };
+    Ok(Some((frozen(py, points)?, frozen(py, &simplices)?)))
 }
 
 /// Where each ring begins, and the end: ascending, within `n` points.

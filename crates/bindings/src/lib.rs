@@ -38,6 +38,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::polygon2, m)?)?;
+    m.add_function(wrap_pyfunction!(constrained::ring2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::within2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::deepest2, m)?)?;

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["PolygonTriangles", "from_geometry", "triangulate_polygon"]
 
 _RULES = ("even-odd", "nonzero")
-_FLOAT64 = np.dtype(np.float64)
 
 
 def from_geometry(
@@ -249,16 +248,11 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
     8
     """
     nonzero = as_choice(rule, _RULES, name="rule") == "nonzero"
-    if (
-        type(polygon) is np.ndarray
-        and polygon.dtype is _FLOAT64
-        and polygon.ndim == 2
-        and polygon.shape[1] == 2
-    ):
-        points = polygon.copy()
-        starts = np.array((0, len(points)), dtype=np.int32)
-    else:
-        points, starts = _rings(polygon, nonzero)
+    if type(polygon) is np.ndarray:
+        ring = _core.ring2(polygon)
+        if ring is not None:
+            return PolygonTriangles._make(ring)
+    points, starts = _rings(polygon, nonzero)
     added, simplices = _core.polygon2(points, starts, nonzero)
     if len(added):
         points = np.concatenate((points, added))

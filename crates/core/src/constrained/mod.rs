@@ -13,6 +13,7 @@ pub mod pairs;
 mod polygon;
 mod present;
 mod reroute;
+mod ring;
 mod segment;
 mod split;
 mod subsegments;
@@ -21,6 +22,7 @@ use delone_predicates::{Point2, lexicographic, orient2d};
 
 pub use self::components::components;
 pub use self::polygon::{Filled, Rule, polygon};
+pub use self::ring::simple_ring;
 pub use self::subsegments::Subsegments;
 
 use self::marked::Marked;

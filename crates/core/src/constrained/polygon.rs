@@ -1,7 +1,7 @@
 //! The triangles inside rings, whatever the rings are: crossings become vertices, and the winding
 //! number of each triangle says whether it is inside.
 //!
-//! The winding number is 0 outside of the hull and changes
+//! One simple ring is filled by `ring`. Else the winding number is 0 outside of the hull and changes
 //! by one at each edge of a ring, so a flood over the triangles finds it: linear after the
 //! triangulation.
 
@@ -9,6 +9,7 @@ use delone_predicates::Point2;
 
 use super::edges::{Edges, edge};
 use super::marked::Marked;
+use super::ring::simple_ring;
 use super::{Options, Work};
 use crate::delaunay2::{Clock, Method};
 use crate::error::{Error, Result};
@@ -41,6 +42,18 @@ const UNKNOWN: u32 = u32::MAX;
 /// The triangles inside the rings `points[starts[i]..starts[i + 1]]`, each of which closes itself.
 /// Rings without area have none.
 pub fn polygon(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Result<Filled> {
+    if let [0, end] = starts[..]
+        && end == points.len()
+        && let Some(simplices) = simple_ring(points)?
+    {
+        let added = Vec::new();
+        return Ok(Filled { added, simplices });
+    }
+    wound(points, starts, rule, watch)
+}
+
+/// The same by the triangulation of the hull.
+fn wound(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Result<Filled> {
     let mut segments = with_room(points.len())?;
     for ring in starts.windows(2) {
         let rows = ring[0] as u32..ring[1] as u32;
@@ -148,4 +161,143 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
         winding.push(winding[from as usize] - more);
     }
     Ok(Parts { of, winding })
+}
+
+#[cfg(test)]
+mod tests {
+    use delone_predicates::{Sign, orient2d};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn turned(simplices: &[[i32; 3]]) -> Vec<[i32; 3]> {
+        let turn = |t: &[i32; 3]| {
+            let k = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+            [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]
+        };
+        let mut all: Vec<_> = simplices.iter().map(turn).collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// Whether two segments of some length have a point in common.
+    fn meet([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
+        let on = |a: Point2, b: Point2, p: Point2| {
+            orient2d(a, b, p).is_zero()
+                && (0..2).all(|k| a[k].min(b[k]) <= p[k] && p[k] <= a[k].max(b[k]))
+        };
+        let parted = |a, b, c, d| {
+            let sides = [orient2d(a, b, c), orient2d(a, b, d)];
+            sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative)
+        };
+        parted(a, b, c, d) && parted(c, d, a, b)
+            || on(a, b, c)
+            || on(a, b, d)
+            || on(c, d, a)
+            || on(c, d, b)
+    }
+
+    /// Whether a ring, closed or not, is simple, from every pair of its sides.
+    fn is_simple(ring: &[Point2]) -> bool {
+        let closed = ring.len() > 1 && ring.first() == ring.last();
+        let ring = &ring[..ring.len() - usize::from(closed)];
+        let n = ring.len();
+        let side = |i: usize| [ring[i % n], ring[(i + 1) % n]];
+        let apart = |i: usize, j: usize| match j - i {
+            1 => !meet([side(i)[0]; 2], side(j)) && !meet([side(j)[1]; 2], side(i)),
+            _ if i == 0 && j == n - 1 => {
+                !meet([side(i)[1]; 2], side(j)) && !meet([side(j)[0]; 2], side(i))
+            }
+            _ => !meet(side(i), side(j)),
+        };
+        n >= 3 && (0..n).all(|i| side(i)[0] != side(i)[1] && (i + 1..n).all(|j| apart(i, j)))
+    }
+
+    /// A short ring gets triangles without its hull if and only if it is simple, and the same.
+    fn check(ring: &[Point2]) -> std::result::Result<(), TestCaseError> {
+        let found = simple_ring(ring).unwrap();
+        prop_assert_eq!(found.is_some(), is_simple(ring), "{:?}", ring);
+        if let Some(found) = found {
+            let whole = wound(ring, &[0, ring.len()], Rule::NonZero, &Watch::idle()).unwrap();
+            prop_assert_eq!(whole.added.len(), 0);
+            prop_assert_eq!(turned(&found), turned(&whole.simplices), "{:?}", ring);
+            if ring.first() != ring.last() {
+                let closed = [ring, &ring[..1]].concat();
+                prop_assert_eq!(simple_ring(&closed).unwrap(), Some(found));
+            }
+        }
+        Ok(())
+    }
+
+    fn lattice(side: i32) -> impl Strategy<Value = Point2> {
+        (0..=side, 0..=side).prop_map(|(x, y)| [f64::from(x), f64::from(y)])
+    }
+
+    /// A ring that is made of a triangle, vertex by vertex, and stays simple.
+    fn grown(points: &[(Point2, usize)], turn: bool) -> Vec<Point2> {
+        let mut ring: Vec<Point2> = Vec::new();
+        for &(p, place) in points {
+            let place = place % (ring.len() + 1);
+            ring.insert(place, p);
+            if ring.len() >= 3 && !is_simple(&ring) {
+                ring.remove(place);
+            }
+        }
+        if turn {
+            ring.reverse();
+        }
+        ring
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+        #[test]
+        fn any_short_ring_is_simple_or_not(
+            ring in prop::collection::vec(lattice(3), 0..8),
+            scale in prop::sample::select(vec![1.0, 0.1, 1e-300, 1e300, 3e-324]),
+        ) {
+            let ring: Vec<_> = ring.iter().map(|p| p.map(|x| x * scale)).collect();
+            let found = simple_ring(&ring).unwrap();
+            // What is too small or large for the grid is left to the hull.
+            if scale > 1e-305 {
+                check(&ring)?;
+            } else {
+                prop_assert!(found.is_none() || is_simple(&ring));
+            }
+        }
+
+        #[test]
+        fn simple_rings_with_ties_and_straight_corners(
+            points in prop::collection::vec((lattice(9), any::<usize>()), 3..90),
+            turn in any::<bool>(),
+        ) {
+            check(&grown(&points, turn))?;
+        }
+
+        #[test]
+        fn simple_rings_at_large(
+            points in prop::collection::vec((lattice(1 << 20), any::<usize>()), 3..120),
+            turn in any::<bool>(),
+        ) {
+            check(&grown(&points, turn))?;
+        }
+    }
+
+    #[test]
+    fn a_ring_that_runs_round_twice_is_not_simple() {
+        let [a, b, c] = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
+        assert_eq!(simple_ring(&[a, b, c, a, b, c]).unwrap(), None);
+        // A strip bent to a circle and a bit beyond: all of its triangles turn left.
+        let strip = |radius: f64, k: i32| {
+            let turn = f64::from(k) * 0.3;
+            [radius * turn.cos(), radius * turn.sin()]
+        };
+        for (steps, simple) in [(18, true), (24, false)] {
+            let outer = (0..=steps).map(|k| strip(2.0, k));
+            let inner = (0..=steps).rev().map(|k| strip(1.0, k));
+            let ring: Vec<Point2> = outer.chain(inner).collect();
+            assert_eq!(simple_ring(&ring).unwrap().is_some(), simple);
+        }
+    }
 }
