@@ -33,20 +33,41 @@ const POINTS: usize = 4;
 /// The stamp of no row.
 const NEVER: u32 = u32::MAX;
 
-/// The side of the line p q on which x lies, and zero at least where it lies as near as the pixels
-/// in the box of p and q are wide.
-fn beside(p: Point2, q: Point2, x: Point2) -> Sign {
-    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-    let (left, right) = (dx * (x[1] - p[1]), dy * (x[0] - p[0]));
-    let largest = (p.iter().chain(&q)).fold(0.0, |m: f64, x| m.max(x.abs()));
-    let pixel = (dx.abs() + dy.abs()) * (largest * f64::EPSILON + f64::MIN_POSITIVE);
-    let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
-    let det = left - right;
-    // Also where something overflowed, which is not a number then.
-    if det.abs() > 2.0 * pixel + rounding {
-        Sign::of(det)
-    } else {
-        Sign::Zero
+/// A segment and the width of the pixels in its box.
+struct Band {
+    from: Point2,
+    along: Point2,
+    extent: Extent,
+    pixel: f64,
+}
+
+impl Band {
+    fn of(p: Point2, q: Point2) -> Self {
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let largest = (p.iter().chain(&q)).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let unit = largest * f64::EPSILON + f64::MIN_POSITIVE;
+        Self {
+            from: p,
+            along,
+            extent: Extent::of([p, q]),
+            pixel: 2.0 * (along[0].abs() + along[1].abs()) * unit,
+        }
+    }
+
+    /// The side of the line on which x lies, and zero at least where x lies as near as a pixel is
+    /// wide.
+    #[inline]
+    fn side(&self, x: Point2) -> Sign {
+        let left = self.along[0] * (x[1] - self.from[1]);
+        let right = self.along[1] * (x[0] - self.from[0]);
+        let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
+        let det = left - right;
+        // Also where something overflowed, which is not a number then.
+        if det.abs() > self.pixel + rounding {
+            Sign::of(det)
+        } else {
+            Sign::Zero
+        }
     }
 }
 
@@ -242,6 +263,7 @@ impl Work<'_> {
         }
         let mut own = stops.to_vec();
         own.sort_unstable();
+        let band = Band::of(p, q);
         let mut stack = Vec::new();
         self.marked.cross(a, b, |mesh, e| {
             stack.extend([triangle(e), triangle(mesh.opposite(e))]);
@@ -269,14 +291,16 @@ impl Work<'_> {
             }
             seen[t as usize] = row;
             let at = corners.map(|v| points[v as usize]);
-            if !overlap(&Extent::of([p, q]), &Extent::of(at)) {
+            if !overlap(&band.extent, &Extent::of(at)) {
                 continue;
             }
-            let met = |k: usize| own.binary_search(&corners[k]).is_err() && passes(p, q, at[k]);
+            let sides = at.map(|x| band.side(x));
+            let met = |k: usize| {
+                sides[k].is_zero() && own.binary_search(&corners[k]).is_err() && passes(p, q, at[k])
+            };
             if (0..3).any(met) {
                 return Ok(false);
             }
-            let sides = at.map(|x| beside(p, q, x));
             for k in 0..3 {
                 let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
                 if u == Sign::Zero || u != v {
