@@ -124,9 +124,7 @@ class Run:
         threads = self.executor.threads
         begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})
         turns, told = self._ask(begun)
-        closed = {key for key, summary in begun.items() if summary["asked"]}
-        tasks = {t: (runs, t in closed, threads) for t, runs in enumerate(slices)}
-        finished = self._stage("finish", tasks)
+        finished = self._stage("finish", {t: (runs, threads) for t, runs in enumerate(slices)})
         figures = {
             "rows": self.source.count,
             "points": int(counts.sum()),

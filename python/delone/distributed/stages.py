@@ -114,11 +114,17 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     # Without foreign corners a triangle is the tile's.
     mine = certain.copy()
     mine[rest] &= belongs(some, owner, key)
-    store.save(f"work/certain/{key:06}.npy", simplices.take(np.flatnonzero(mine), axis=0))
+    written = simplices.take(np.flatnonzero(mine), axis=0)
     if len(triangle):
+        store.save(f"work/certain/{key:06}.npy", written)
         border = cut_out(rows, owner, simplices, neighbors, certain)
         kept = np.empty((0, 3), dtype=np.uint64)
         _ask(store, 0, key, border, corners_of(points, simplices[triangle]), tile, kept, rows[:0])
+    else:
+        # Who asks nobody is finished.
+        del points, simplices, neighbors
+        summary = write_tile(store, key, rows, own, written, None, threads)
+        store.note(note_of("finish", key), summary | {"memory": peak_memory()})
     return {
         "foreign": len(rows) - own,
         "twins": int((twins[:, 0] < own).sum()),
@@ -196,12 +202,12 @@ def _ask(  # noqa: PLR0917
     store.save_all(f"work/border/{turn:04}/{key:06}.npz", arrays)
 
 
-def finish(store: Store, key: int, slices: Slices, is_closed: bool, threads: int) -> Summary:
-    """Write the vertices and triangles of a tile."""
+def finish(store: Store, key: int, slices: Slices, threads: int) -> Summary:
+    """Write the vertices and triangles of a tile that has asked others."""
     layout = Layout.load(store)
     rows, own = gather(store, slices, layout, key)
     certain = store.load(f"work/certain/{key:06}.npy")
-    late = store.load_all(f"work/closed/{key:06}.npz") if is_closed else None
+    late = store.load_all(f"work/closed/{key:06}.npz")
     return write_tile(store, key, rows, own, certain, late, threads)
 
 

@@ -58,12 +58,13 @@ class Tiles:
         tile = np.empty(len(points), dtype=np.int32)
         columns = points[:, 0].copy(), points[:, 1].copy()
         # A list of rows for each node, so that a cell's points are looked at together.
-        open_nodes = [(0, np.arange(len(points)))]
+        open_nodes: list[tuple[int, Numbers | None]] = [(0, None)]
         while open_nodes:
             node, rows = open_nodes.pop()
-            right = columns[self.axis[node]].take(rows) >= self.cut[node]
+            column = columns[self.axis[node]]
+            right = (column if rows is None else column.take(rows)) >= self.cut[node]
             for side, child in ((~right, self.children[node, 0]), (right, self.children[node, 1])):
-                some = rows.compress(side)
+                some = np.flatnonzero(side) if rows is None else rows.compress(side)
                 if child < 0:
                     tile[some] = ~child
                 elif len(some):
