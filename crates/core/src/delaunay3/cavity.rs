@@ -242,9 +242,11 @@ impl<'a> Kernel<'a> {
             if self.conflicts(t, p) {
                 return Ok(t);
             }
-            let corners = self.mesh.corners(t).map(|v| self.at(v));
+            let [a, b, c, d] = self.mesh.corners(t);
+            let corners = [self.at(a), self.at(b), self.at(c), self.at(d)];
             let beyond = (0..4).find(|&k| {
-                let [a, b, c] = FACETS[k].map(|i| corners[i]);
+                let [a, b, c] = FACETS[k];
+                let [a, b, c] = [corners[a], corners[b], corners[c]];
                 orient3d(a, b, c, self.at(p)) == Sign::Negative
             });
             let Some(k) = beyond else {
@@ -356,7 +358,9 @@ impl<'a> Kernel<'a> {
         for (&e, ((corners, places), across)) in self.rim[..rims].iter().zip(facets) {
             *across = mesh.opposite(e);
             *corners = mesh.facet(e);
-            *places = corners.map(|v| place[v as usize]);
+            // `map` of an array may be a call.
+            let [a, b, c] = *corners;
+            *places = [place[a as usize], place[b as usize], place[c as usize]];
         }
         let origin = self.points[p as usize];
         for (i, &v) in star.vertices[..vertices].iter().enumerate() {
@@ -513,7 +517,8 @@ impl View<'_> {
         let at = |v: u32| self.points[v as usize];
         let corners = self.mesh.corners(t);
         let Some(k) = self.mesh.infinite_corner(t) else {
-            let [a, b, c, d] = corners.map(at);
+            let [a, b, c, d] = corners;
+            let [a, b, c, d] = [at(a), at(b), at(c), at(d)];
             let sign = if self.small {
                 lattice::insphere_canonical([a, b, c, d, at(p)])
             } else {
@@ -521,7 +526,8 @@ impl View<'_> {
             };
             return sign == Sign::Positive;
         };
-        let [a, b, c] = FACETS[k].map(|i| at(corners[i]));
+        let [a, b, c] = FACETS[k];
+        let [a, b, c] = [at(corners[a]), at(corners[b]), at(corners[c])];
         match orient3d(a, b, c, at(p)) {
             Sign::Positive => true,
             Sign::Negative => false,

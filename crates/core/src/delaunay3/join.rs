@@ -71,7 +71,12 @@ impl Plan {
             Err(_) => -1,
         };
         let (corners, neighbors) = (arrays.simplices[t], arrays.neighbors[t]);
-        (corners.map(row), neighbors.map(number))
+        let [a, b, c, d] = corners;
+        let [e, f, g, h] = neighbors;
+        (
+            [row(a), row(b), row(c), row(d)],
+            [number(e), number(f), number(g), number(h)],
+        )
     }
 }
 

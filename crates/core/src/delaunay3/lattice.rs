@@ -66,7 +66,8 @@ fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
 
 /// As `insphere_canonical`, for points on a small lattice.
 pub fn insphere_canonical(points: [Point3; 5]) -> Sign {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| minus(points[i], points[4]));
+    let [a, b, c, d, e] = points;
+    let (a, b, c, d) = (minus(a, e), minus(b, e), minus(c, e), minus(d, e));
     let length = |p: Point3| p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
     let inner = length(a) * det3(b, c, d) + length(c) * det3(a, b, d);
     let outer = length(b) * det3(a, c, d) + length(d) * det3(a, b, c);
@@ -81,15 +82,16 @@ pub fn insphere_canonical(points: [Point3; 5]) -> Sign {
 /// to the front from place i takes i exchanges of neighbours, which leave the others in their order.
 fn tie(points: [Point3; 5]) -> Sign {
     let i = smallest(&points);
-    let others: [Point3; 4] = std::array::from_fn(|k| points[k + usize::from(k >= i)]);
+    let other = |k: usize| points[k + usize::from(k >= i)];
+    let others = [other(0), other(1), other(2), other(3)];
     let [a, b, c, d] = others;
     let first = orient3d(a, b, c, d);
     if first != Sign::Zero {
         return first.flip_if(i % 2 == 1);
     }
     let j = smallest(&others);
-    let [a, b, c] = std::array::from_fn(|k| others[k + usize::from(k >= j)]);
-    (-orient3d(points[i], a, b, c)).flip_if((i + j) % 2 == 1)
+    let other = |k: usize| others[k + usize::from(k >= j)];
+    (-orient3d(points[i], other(0), other(1), other(2))).flip_if((i + j) % 2 == 1)
 }
 
 /// The place of the smallest point in lexicographic order, without a branch: nobody can guess it.

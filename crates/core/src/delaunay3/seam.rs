@@ -268,7 +268,8 @@ pub fn joints(blocks: &[Block], seam: &Seam, workers: usize) -> Result<Vec<Joint
         let (mut joints, mut outside) = (Vec::new(), 0);
         for (t, (corners, around)) in (start..).zip(simplices.iter().zip(neighbors)) {
             for k in 0..4 {
-                let [a, b, c] = FACETS[k].map(|i| corners[i] as u32);
+                let [a, b, c] = FACETS[k];
+                let [a, b, c] = [corners[a] as u32, corners[b] as u32, corners[c] as u32];
                 let e = 4 * t + k as u32;
                 if let Some(joint) = borders.joint([a, b, c], e) {
                     push(&mut joints, joint)?;

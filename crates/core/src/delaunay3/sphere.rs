@@ -57,7 +57,7 @@ pub struct Ray {
 
 impl Ray {
     /// `q` as seen from `p`.
-    #[inline]
+    #[inline(always)]
     pub fn new(q: Point3, p: Point3) -> Self {
         let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
         Self {
@@ -133,10 +133,13 @@ impl Rays {
     }
 }
 
+/// A coordinate by facet; rows a multiple of 4 KiB apart would contend for the cache.
+type Row = [f64; 136];
+
 /// The corners of facets of a star, coordinate by coordinate. All are gathered before the first are computed
 /// with: a load of what has been stored in pieces waits until it is in the cache.
 pub struct Facets {
-    corners: [[[f64; 136]; 4]; 3],
+    corners: [[Row; 4]; 3],
 }
 
 impl Default for Facets {
@@ -180,18 +183,14 @@ pub fn spheres(p: Point3, facets: &Facets, from: usize, doubt: f64, aim: Point3)
         power: [0.0; LANES],
     };
     let from = from & (127 & !(LANES - 1));
-    let lanes = |corner: usize, k: usize| -> &[f64; LANES] {
-        facets.corners[corner][k][from..from + LANES]
-            .try_into()
-            .expect("eight")
-    };
-    let corners = [0, 1, 2].map(|c| [0, 1, 2, 3].map(|k| lanes(c, k)));
+    let [b, c, d] = &facets.corners;
+    let (b, c, d) = (lanes(b, from), lanes(c, from), lanes(d, from));
     for lane in 0..LANES {
-        let ray = |corner: &[&[f64; LANES]; 4]| Ray {
-            d: [corner[0][lane], corner[1][lane], corner[2][lane]],
-            lift: corner[3][lane],
+        let ray = |[x, y, z, lift]: &[&[f64; LANES]; 4]| Ray {
+            d: [x[lane], y[lane], z[lane]],
+            lift: lift[lane],
         };
-        let [b, c, d] = [ray(&corners[0]), ray(&corners[1]), ray(&corners[2])];
+        let (b, c, d) = (ray(&b), ray(&c), ray(&d));
         let s = sphere(p, b, c, d, doubt);
         for (to, from) in out.sphere.iter_mut().zip(s) {
             to[lane] = from;
@@ -199,4 +198,20 @@ pub fn spheres(p: Point3, facets: &Facets, from: usize, doubt: f64, aim: Point3)
         out.power[lane] = power(s, aim);
     }
     out
+}
+
+/// The coordinates of [`LANES`] rays from `from` on.
+#[inline(always)]
+fn lanes(rows: &[Row; 4], from: usize) -> [&[f64; LANES]; 4] {
+    [
+        part(&rows[0], from),
+        part(&rows[1], from),
+        part(&rows[2], from),
+        part(&rows[3], from),
+    ]
+}
+
+#[inline(always)]
+fn part(row: &Row, from: usize) -> &[f64; LANES] {
+    row[from..].first_chunk().unwrap_or(&[0.0; LANES])
 }

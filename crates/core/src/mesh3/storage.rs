@@ -14,13 +14,13 @@ pub const LIMIT: usize = 1 << 30;
 pub const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// The tetrahedron of a code.
-#[inline]
+#[inline(always)]
 pub fn tetrahedron(e: Code) -> u32 {
     e >> 2
 }
 
 /// The corner that a facet is opposite to.
-#[inline]
+#[inline(always)]
 pub fn corner(e: Code) -> usize {
     (e & 3) as usize
 }
@@ -100,7 +100,7 @@ impl Mesh3<'_> {
     }
 
     /// The corners of tetrahedron t.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, t: u32) -> [u32; 4] {
         let [a, b, c, d] = self.corners[t as usize];
         [a as u32, b as u32, c as u32, d as u32]
@@ -110,8 +110,13 @@ impl Mesh3<'_> {
     #[inline(always)]
     pub fn facet(&self, e: Code) -> [u32; 3] {
         let corners = &self.corners[tetrahedron(e) as usize];
-        // The mask spares a question about the range.
-        FACETS[corner(e)].map(|i| corners[i & 3] as u32)
+        // The mask spares a question about the range; `map` of an array may be a call.
+        let [a, b, c] = FACETS[corner(e)];
+        [
+            corners[a & 3] as u32,
+            corners[b & 3] as u32,
+            corners[c & 3] as u32,
+        ]
     }
 
     /// The corner that facet e is opposite to.
@@ -126,14 +131,14 @@ impl Mesh3<'_> {
     }
 
     /// The codes of its facets as seen from the other sides.
-    #[inline]
+    #[inline(always)]
     pub fn opposites(&self, t: u32) -> [Code; 4] {
         let [a, b, c, d] = self.opposite[t as usize];
         [a as Code, b as Code, c as Code, d as Code]
     }
 
     /// The facet `e` as seen from the other side.
-    #[inline]
+    #[inline(always)]
     pub fn opposite(&self, e: Code) -> Code {
         self.opposite[tetrahedron(e) as usize][corner(e)] as Code
     }
@@ -177,7 +182,7 @@ impl Mesh3<'_> {
     }
 
     /// A record to be filled; `TooManyTetrahedra` where the room is used up.
-    #[inline]
+    #[inline(always)]
     pub fn fresh(&mut self) -> Result<u32> {
         if let Some(t) = self.free.pop() {
             return Ok(t);
@@ -191,7 +196,7 @@ impl Mesh3<'_> {
     }
 
     /// Gives a record back.
-    #[inline]
+    #[inline(always)]
     pub fn release(&mut self, t: u32) {
         self.free.push(t);
     }

@@ -87,7 +87,8 @@ fn collect(
     let (mut last, mut first) = ([f64::NAN; 3], 0);
     for &item in items {
         // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
-        let p = points[row(item)].map(|x| x + 0.0);
+        let [x, y, z] = points[row(item)];
+        let p = [x + 0.0, y + 0.0, z + 0.0];
         let own = rows.map_or(row(item) as u32, |rows| rows[row(item)]);
         if p == last {
             push(&mut out.duplicates, [own, first])?;
