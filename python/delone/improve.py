@@ -159,7 +159,8 @@ def _given(mesh: Any) -> tuple[Floats, Indices, Indices | None]:
         points = as_points(mesh[0], ndim=3)
         simplices = as_simplices(mesh[1], len(points), 3)
     else:
-        if getattr(mesh, "ndim", None) != 3 or not hasattr(mesh, "simplices"):
+        corners = np.shape(getattr(mesh, "simplices", ()))[1:]
+        if getattr(mesh, "ndim", None) != 3 or corners != (4,):
             raise DtypeError(
                 "mesh must be a Delaunay of points in space, a TetMesh, or (points, simplices), "
                 f"got {type(mesh).__name__}"

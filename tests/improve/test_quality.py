@@ -7,6 +7,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from delone import ConvexHull, improve
+from delone.errors import DtypeError
 from delone.quality3 import dihedral_angles, measured
 
 REGULAR = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
@@ -77,3 +79,9 @@ def test_the_summary_and_the_histogram_count_all() -> None:
     assert str(quality).startswith("2 tetrahedra")
     with pytest.raises(ValueError, match="read-only"):
         quality.volume[0] = 1
+
+
+def test_what_has_no_tetrahedra_is_refused() -> None:
+    hull = ConvexHull(np.random.default_rng(0).random((20, 3)))
+    with pytest.raises(DtypeError, match="ConvexHull"):
+        improve(hull)

@@ -83,7 +83,8 @@ PYTHON: dict[str, set[str]] = {
     "improve": {"_core", "improvement", "quality3", "tetmesh"} | FOUNDATION,
     "regular": {"_core", "space", "triangulation"} | FOUNDATION,
     "periodic": {"_core", "geometry", "regular", "triangulation"} | FOUNDATION,
-    "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "triangulation"} | FOUNDATION,
+    "voronoi": {"_core", "delaunay", "io", "periodic", "regular", "space", "triangulation"}
+    | FOUNDATION,
     "interpolate": {"_core", "delaunay", "location", "space", "topology", "triangulation"}
     | FOUNDATION,
     "compat": {

@@ -559,3 +559,21 @@ def test_weights_are_checked() -> None:
         RegularTriangulation(uniform(10, 0), [1, 2])
     with pytest.raises(DegenerateInputError):
         RegularTriangulation([(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1)], [0, 1, 2, 3])
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-160, 1.0, 1e90])
+@pytest.mark.filterwarnings("error")
+def test_half_spaces_and_hulls_of_any_size(scale: float) -> None:
+    sites = np.random.default_rng(0).random((40, 3))
+    planes = [(1, 0, 0, -1), (-1, 0, 0, 0), (0, 1, 0, -1), (0, -1, 0, 0), (0, 0, 1, -1)]
+    planes.append((0, 0, -1, 0))
+    diagram = Voronoi(sites, clip=np.array(planes) * scale)
+    assert diagram.cell_volumes.sum() == pytest.approx(1, rel=1e-12)
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * scale
+    diagram = Voronoi(sites * scale, clip=corners)
+    box = Voronoi(sites * scale, clip=(corners[0], corners[-1]))
+    assert np.array_equal(diagram.neighbors.indices, box.neighbors.indices)
+    diagram = Voronoi(sites, clip=np.array(planes) * 1e300)
+    assert diagram.cell_volumes.sum() == pytest.approx(1, rel=1e-12)
+    with pytest.raises(InputError, match="normal is zero"):
+        Voronoi(sites, clip=[*planes, (0, 0, 0, -1)])

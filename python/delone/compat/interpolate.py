@@ -339,7 +339,8 @@ class NearestNDInterpolator:
         flat = queries.reshape(-1, ndim)
         rows = self._nearest(flat, p)
         offset = self._scaled[rows] - flat
-        distance = np.linalg.norm(offset, ord=p, axis=1)
+        with np.errstate(over="ignore"):  # beyond all doubles is beyond any bound
+            distance = np.linalg.norm(offset, ord=p, axis=1)
         # NaN is not below the bound.
         counts = (rows >= 0) & (distance < distance_upper_bound)
         found = np.where(counts[:, None], self._field.columns[rows], np.nan)

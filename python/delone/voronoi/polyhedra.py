@@ -15,6 +15,7 @@ from delone import _core
 from delone._arrays import as_vectors
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DeloneError, InputError
+from delone.space.geometry import face_normals
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -142,9 +143,7 @@ def _hull(points: Floats) -> Polyhedron:
         raise InputError("the points of clip span no volume") from error
     faces = np.ascontiguousarray(mesh.convex_hull, dtype=np.int32)
     used, corners = np.unique(faces, return_inverse=True)
-    a, b, c = np.moveaxis(points[faces], 1, 0)
-    normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    normal = face_normals(points, faces)
     # No corner may be outside of a plane by its rounding.
     offset = (normal @ points[used].T).max(axis=1)
     return Polyhedron(
@@ -158,10 +157,17 @@ def _hull(points: Floats) -> Polyhedron:
 
 def _common(halfspaces: Floats) -> Polyhedron:
     """The polyhedron where all of n @ x + d <= 0."""
-    length = np.linalg.norm(halfspaces[:, :3], axis=1)
-    if not (length > 0).all():
-        raise InputError(f"row {int(length.argmin())} of clip is no half-space: its normal is zero")
-    planes = halfspaces / length[:, None]
+    largest = np.abs(halfspaces[:, :3]).max(axis=1, keepdims=True)
+    if not (largest > 0).all():
+        row = int(largest.argmin())
+        raise InputError(f"row {row} of clip is no half-space: its normal is zero")
+    # In a unit of each first, so that no square leaves the range of doubles.
+    with np.errstate(over="ignore"):
+        planes = halfspaces / largest
+        planes /= np.linalg.norm(planes[:, :3], axis=1)[:, None]
+    if not np.isfinite(planes).all():
+        row = int(np.flatnonzero(~np.isfinite(planes).all(axis=1))[0])
+        raise InputError(f"row {row} of clip is a half-space beyond the range of doubles")
     planes[:, 3] *= -1
     size = 2.0 * float(np.abs(planes[:, 3]).max()) or 1.0
     for _ in range(_ROUNDS):
