@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import scipy.spatial
 
 from delone import ConvexHull, Delaunay, datasets
@@ -42,6 +43,7 @@ def hulls(n: int, runs: int) -> None:
         "hull, uniform square": datasets.uniform(n),
         "hull, circle": datasets.circle(n // 10),
         "hull, uniform cube": space["uniform"](n),
+        "hull, uniform ball": ball(n),
         "hull, grid": space["grid"](n),
         "hull, sphere": space["sphere"](n // 10),
     }
@@ -51,17 +53,32 @@ def hulls(n: int, runs: int) -> None:
         line(f"{name}, {len(points):,}", ours, theirs)
 
 
+def ball(n: int) -> Any:
+    """Uniform points in a ball: the more of them, the more are on the hull."""
+    rng = np.random.default_rng(0)
+    ways = rng.normal(size=(n, 3))
+    return ways * (rng.random(n) ** (1 / 3) / np.linalg.norm(ways, axis=1))[:, None]
+
+
 def location(n: int, runs: int) -> None:
-    """Queries in random order; SciPy is asked for a tenth of them, on its own triangulation."""
+    """Queries in random order; SciPy is asked for a tenth of them, on its own triangulation.
+
+    The nearest vertex is asked of SciPy's k-d tree, of as many queries.
+    """
     points, queries = datasets.uniform(n // 10, ndim=3), datasets.uniform(n, ndim=3, seed=1)
     few = queries[: n // 10]
-    peer = scipy.spatial.Delaunay(points)
+    peer, sites = scipy.spatial.Delaunay(points), scipy.spatial.KDTree(points)
     theirs = 10 * median(lambda: peer.find_simplex(few), runs)
     for name, workers in (("one thread", 1), ("all cores", None)):
         mesh = Delaunay(points, workers=workers)
         mesh.find_simplex(few[:1])  # makes the index
         ours = median(lambda mesh=mesh: mesh.find_simplex(queries), runs)
         line(f"find_simplex, {name}, {n:,} queries", ours, theirs)
+        mesh.nearest(few[:1])
+        ours = median(lambda mesh=mesh: mesh.nearest(queries), runs)
+        threads = -1 if workers is None else workers
+        tree = median(lambda threads=threads: sites.query(queries, workers=threads), runs)
+        line(f"nearest, {name}, {n:,} queries", ours, tree)
 
 
 def main() -> None:
