@@ -19,7 +19,15 @@ from numpy.typing import NDArray
 from worker import Peer
 
 SEED = 2026
-SETS = ("uniform:100000", "uniform:1000000", "grid:1000000", "sphere:1000000", "clusters:1000000")
+SETS = (
+    "uniform:100000",
+    "uniform:1000000",
+    "grid:1000000",
+    "sphere:1000000",
+    "clusters:1000000",
+    "kuzmin:1000000",
+    "utm:1000000",
+)
 # SciPy takes half a minute for more points, and for ten thousand on a sphere.
 FEW = 200_000
 LIMIT = 300.0
@@ -38,6 +46,15 @@ def make(name: str) -> Points:
         return points / np.linalg.norm(points, axis=1)[:, None]
     if kind == "clusters":
         return rng.random((20, 3))[rng.integers(0, 20, n)] + 0.01 * rng.standard_normal((n, 3))
+    if kind == "kuzmin":
+        # Dense at the centre, thin for ever outside.
+        points = rng.standard_normal((n, 3))
+        points /= np.linalg.norm(points, axis=1)[:, None]
+        return points * np.sqrt(1 / (1 - rng.random(n)) ** 2 - 1)[:, None]
+    if kind == "utm":
+        # A cubic kilometre in millimetres, where UTM has it.
+        corner = np.array([500_000.0, 4_500_000.0, 300.0])
+        return corner + np.round(1000 * rng.random((n, 3)), 3)
     return rng.random((n, 3))
 
 
