@@ -145,8 +145,24 @@ def test_queries_that_are_no_numbers(method: str) -> None:
     points = datasets.uniform(30)
     for extrapolate in ("nan", "nearest", "error"):
         made = interpolator(method, points, linear(points), extrapolate=extrapolate)
-        found = made([(np.nan, 0.5), (0.5, np.inf), tuple(points[3])])
+        found = made([(np.nan, 0.5), (0.5, np.nan), tuple(points[3])])
         assert np.isnan(found[:2]).all() and found[2] == linear(points)[3]
+        if extrapolate != "error":
+            assert np.isnan(made([(0.5, np.inf), (-np.inf, 0.5)])).all()
+
+
+@pytest.mark.parametrize("extrapolate", ["nearest", "linear"])
+@pytest.mark.parametrize("method", [name for name in ALL if name != "nearest"])
+def test_beyond_a_hull_that_spans_the_range_of_doubles(method: str, extrapolate: str) -> None:
+    corners = np.array([(-1.0, -1), (1, -1), (1, 1), (-1, 1), (0, 0)])
+    values = np.array([1.0, 2, 3, 4, 2.5])
+    queries = np.array([(1.03, 1.03), (0, 1.03), (-1.03, 0.2)])
+    plain = interpolator(method, corners, values, extrapolate=extrapolate)
+    vast = interpolator(method, corners * 1.7e308, values, extrapolate=extrapolate)
+    found = vast(queries * 1.7e308)
+    # Estimated gradients converge at different rates.
+    np.testing.assert_allclose(found, plain(queries), atol=0.02)
+    np.testing.assert_allclose(vast.weights(queries * 1.7e308) @ values, found, rtol=1e-12)
 
 
 @pytest.mark.parametrize("method", ALL)

@@ -12,15 +12,23 @@ use crate::arrays::table;
 
 /// Runs `work` without the GIL.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
-    let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
-    let outcome = outcome.unwrap_or_else(|panic| {
+    py.detach(|| caught(work)).map_err(|e| raise(py, &e))
+}
+
+/// Runs `work`, which is short, with the GIL.
+pub fn attached<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> {
+    caught(work).map_err(|e| raise(py, &e))
+}
+
+/// What `work` gives, a panic as an error: the core is called through here alone.
+fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
         Err(Error::Internal(
             text.unwrap_or_else(|| "a panic without a message".into()),
         ))
-    });
-    outcome.map_err(|e| raise(py, &e))
+    })
 }
 
 /// The Python exception of an error.

@@ -9,7 +9,7 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUnty
 use pyo3::prelude::*;
 
 use crate::arrays::{column, rows, shaped};
-use crate::errors::{detached, raise};
+use crate::errors::{attached, detached, raise};
 use crate::interpolate::{
     Closed, Gradients, Neighbours, Points, Smooth, Values, corner_weights_of, leave_one_out_of,
     linear_of, natural_of, smooth_of,
@@ -75,7 +75,7 @@ impl Locator2 {
         let given = borrowed.given().map_err(|e| raise(py, &e))?;
         let locator = Locator::new(given, &self.kept);
         if count <= FEW {
-            return work(&locator, &Watch::idle()).map_err(|e| raise(py, &e));
+            return attached(py, || work(&locator, &Watch::idle()));
         }
         watched(py, |watch| work(&locator, watch))
     }

@@ -9,7 +9,7 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{column, in_range, rows, shaped};
-use crate::errors::{detached, raise};
+use crate::errors::{attached, detached, raise};
 use crate::triangulation::watched;
 
 /// Queries below which a call keeps the GIL: it is over before another thread could run.
@@ -73,7 +73,7 @@ impl Locator3 {
         let given = borrowed(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
         let locator = Locator::new(given, &self.kept);
         if count <= FEW {
-            return work(&locator, &Watch::idle()).map_err(|e| raise(py, &e));
+            return attached(py, || work(&locator, &Watch::idle()));
         }
         watched(py, |watch| work(&locator, watch))
     }

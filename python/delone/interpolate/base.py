@@ -115,7 +115,7 @@ class Interpolator:
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Where. NaN gives NaN.
+            Where. NaN gives NaN; so does infinity, unless ``extrapolate="error"`` refuses it.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default that of the constructor.
 
@@ -131,8 +131,8 @@ class Interpolator:
         NonFiniteError
             Values are not finite, and ``nan="error"``.
         InputError
-            No values are there; duplicates have different ones; a query is outside of the hull, and
-            ``extrapolate="error"``.
+            No values are there; duplicates have different ones; a query is outside of the hull,
+            infinity included, and ``extrapolate="error"``.
         """
         interpolator, field, columns = self._with(values)
         queries = as_vectors(xi, self._ndim, name="xi")
@@ -338,16 +338,23 @@ class Interpolator:
         if found is not None and found.shape[1]:
             suspects = np.flatnonzero(np.isnan(found[:, 0]))
         place = self._located(queries[suspects])
+        if self._extrapolate == "error":
+            # Not by `beside`: infinity, and what is outside of no triangle at all, is beside none.
+            missed = (place.simplex < 0) & ~np.isnan(queries[suspects]).any(axis=1)
+            self._refuse(suspects[missed], len(queries))
         outside = np.flatnonzero(place.beside >= 0)
-        rows = suspects[outside]
-        if rows.size and self._extrapolate == "error":
-            first = ", ".join(map(str, rows[:_NAMED].tolist()))
-            more = ", ..." if len(rows) > _NAMED else ""
-            raise InputError(
-                f"xi: {len(rows)} of {len(queries)} queries are outside of the hull: rows {first}"
-                f"{more}; choose extrapolate='nan', 'nearest' or 'linear'"
-            )
-        return rows, place.at(outside)
+        return suspects[outside], place.at(outside)
+
+    def _refuse(self, rows: Rows, count: int) -> None:
+        if not rows.size:
+            return
+        first = ", ".join(map(str, rows[:_NAMED].tolist()))
+        more = ", ..." if len(rows) > _NAMED else ""
+        *most, last = (f"'{each}'" for each in self.EXTRAPOLATE if each != "error")
+        raise InputError(
+            f"xi: {len(rows)} of {count} queries are outside of the hull: rows {first}{more}; "
+            f"choose extrapolate={', '.join(most)} or {last}"
+        )
 
     def _located(self, queries: Floats) -> Any:
         """Where queries lie: a `Location`, in space a `SpaceLocation`."""

@@ -133,5 +133,7 @@ class CloughTocher(Smooth):
         )
         counts = (triangle >= 0)[:, None] & ((weights != 0) | (slopes != 0).any(axis=2))
         indptr = np.concatenate(([0], np.cumsum(counts.sum(axis=1))))
-        table = (indptr, sheet.simplices[triangle][counts], weights[counts], slopes[counts])
+        query, corner = np.nonzero(counts)
+        vertices = sheet.simplices[triangle[query], corner]
+        table = (indptr, vertices, weights[counts], slopes[counts])
         return Weights(*self._completed(table, queries, weights), shape, self)

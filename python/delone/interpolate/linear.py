@@ -119,6 +119,10 @@ class Linear(Interpolator):
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         place = self._located(queries)
-        weights = place.barycentric
-        table = rectangular(self._mesh.simplices[place.simplex], weights)
+        weights, simplices = place.barycentric, self._mesh.simplices
+        # Without a triangle there is no row that could stand for none.
+        corners = (
+            simplices[place.simplex] if len(simplices) else np.full(weights.shape, -1, np.int32)
+        )
+        table = rectangular(corners, weights)
         return Weights(*self._completed(table, queries, weights), shape, self)

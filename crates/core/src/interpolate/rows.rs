@@ -75,6 +75,10 @@ impl Rows {
             |(ends, places, indices, weights, slopes)| {
                 for (pair, &(part, start)) in ends.windows(2).zip(places) {
                     let [from, to] = [pair[0], pair[1]].map(|end| (end - ends[0]) as usize);
+                    if from == to {
+                        // An empty row is in no part, and there may be none.
+                        continue;
+                    }
                     let part = &parts[part as usize];
                     let source = start..start + (to - from);
                     indices[from..to].copy_from_slice(&part.indices[source.clone()]);
