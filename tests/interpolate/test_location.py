@@ -250,3 +250,13 @@ def test_many_threads_may_ask_at_once() -> None:
     assert len(found) == 4
     for each in found:
         np.testing.assert_array_equal(each, expected)
+
+
+@pytest.mark.parametrize("scale", [4.4e307, 4.5e307, 6e307, 8.9e307])
+def test_the_nearest_point_of_an_outline_that_spans_the_range_of_doubles(scale: float) -> None:
+    corners = np.array([(-2, -2), (2, -2), (2, 2), (0, -1), (-2, 2.0)])
+    ring = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0)]
+    queries = np.array([(0.2, 1), (0.9, 1.9), (2.01, 0), (-2, 2.01), (-0.5, 1)])
+    plain = ConstrainedDelaunay(corners, ring, boundary="outline").locate(queries)
+    vast = ConstrainedDelaunay(corners * scale, ring, boundary="outline").locate(queries * scale)
+    np.testing.assert_allclose(vast.nearest / scale, plain.nearest, rtol=1e-14)

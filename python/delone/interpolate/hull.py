@@ -79,8 +79,9 @@ def edge_terms(
     if base and cubic:
         weights = np.stack(((1 - s) ** 2 * (1 + 2 * s), s**2 * (3 - 2 * s)), axis=1)
         tangents = np.stack((s * (1 - s) ** 2, -(s**2) * (1 - s)), axis=1)
-        edge = points[place.edge[:, 1]] - points[place.edge[:, 0]]
-        slopes += tangents[..., None] * edge[:, None]
+        # By halves, as an edge may be longer than any double; a tangent is a seventh at most.
+        half = points[place.edge[:, 1]] / 2 - points[place.edge[:, 0]] / 2
+        slopes += 2 * (tangents[..., None] * half[:, None])
     elif base:
         weights = shares
     return Terms(place.edge, weights, slopes if cubic or step.any() else None)
