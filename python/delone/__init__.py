@@ -21,6 +21,7 @@ from delone.delaunay import Delaunay
 from delone.errors import (
     BudgetExceededError,
     BusyError,
+    ConflictingValuesError,
     CrossingSegmentsError,
     DegenerateInputError,
     DeloneError,
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BudgetExceededError",
     "BusyError",
+    "ConflictingValuesError",
     "ConstrainedDelaunay",
     "ConstrainedReport",
     "ConvexHull",

@@ -434,6 +434,47 @@ def as_count(n: int, *, name: str = "n") -> int:
     return number
 
 
+def as_number(value: float, *, name: str) -> float:
+    """Return a real number as a Python float.
+
+    Parameters
+    ----------
+    value : float
+        A number of Python or NumPy, NaN and infinity included; no truth value, no text.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    float
+        The number, rounded to a double.
+
+    Raises
+    ------
+    DtypeError
+        It is none, or beyond the range of doubles.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_number
+    >>> as_number(3, name="tol")
+    3.0
+    >>> as_number("3", name="tol")
+    Traceback (most recent call last):
+    ...
+    delone.errors.DtypeError: tol must be a real number, got '3'
+    """
+    plain = not isinstance(value, bool | np.bool_ | str | bytes | np.ndarray) or (
+        isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf"
+    )
+    try:
+        if plain:
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise DtypeError(f"{name} must be a real number, got {value!r:.60}")
+
+
 def as_workers(workers: int | None) -> int:
     """Return how many threads to use.
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BudgetExceededError",
     "BusyError",
+    "ConflictingValuesError",
     "CrossingSegmentsError",
     "DegenerateInputError",
     "DeloneError",
@@ -170,6 +171,32 @@ class CrossingSegmentsError(InputError):
         self.points = np.array(points, dtype=np.float64).reshape(-1, 2)
         self.pairs.flags.writeable = False
         self.points.flags.writeable = False
+
+
+class ConflictingValuesError(InputError):
+    """Points that coincide have different values, and no policy says which one counts.
+
+    Parameters
+    ----------
+    message : str
+        What the user reads.
+    rows : array_like of int, shape (k, 2), optional
+        Rows of points, each with the first row of the same coordinates.
+
+    Attributes
+    ----------
+    rows : ndarray of int64, shape (k, 2)
+        Rows of points, each with the first row of the same coordinates.
+    """
+
+    rows: NDArray[np.int64]
+
+    def __init__(
+        self, message: str = "points have several values", *, rows: ArrayLike = ()
+    ) -> None:
+        super().__init__(message)
+        self.rows = np.array(rows, dtype=np.int64).reshape(-1, 2)
+        self.rows.flags.writeable = False
 
 
 class BudgetExceededError(DeloneError, RuntimeError):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, improvement, quality3
-from delone._arrays import as_choice, as_count, as_points, as_simplices, require_finite
+from delone._arrays import as_choice, as_count, as_number, as_points, as_simplices, require_finite
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.tetmesh import TetMesh
 
@@ -219,10 +219,7 @@ def _mask(fixed: ArrayLike | None, count: int) -> Bools:
 
 
 def _angle(value: float) -> float:
-    try:
-        goal = float(value)
-    except (TypeError, ValueError):
-        raise DtypeError(f"min_angle must be a number, got {value!r}") from None
+    goal = as_number(value, name="min_angle")
     if not 0 <= goal <= _MOST:
         raise InputError(f"min_angle must be from 0 to {_MOST}, got {value!r}")
     return goal

@@ -95,3 +95,15 @@ def test_without_values(tmp_path, command):
     file.write_text("x,y\n0,0\n1,0\n0,1\n")
     code, _, err = command("interpolate", file, "--grid", "3x3")
     assert code == 2 and "--value" in err
+
+
+def test_faults_of_the_data_have_their_code_and_the_words_of_the_command(tmp_path, command):
+    twice, holed = tmp_path / "twice.csv", tmp_path / "holed.csv"
+    twice.write_text("x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,0,2.5\n")
+    holed.write_text("x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,1,nan\n")
+    for name in (("interpolate", "--grid", "2x2"), ("crossval",)):
+        code, _, err = command(name[0], twice, *name[1:])
+        assert code == 4 and "rows 3 and 1; choose --duplicates mean, first, last, min, max" in err
+        code, _, err = command(name[0], holed, *name[1:])
+        assert code == 4 and "first: 3; choose --nan drop or --nan propagate" in err
+        assert err.count("3") == 1

@@ -56,3 +56,9 @@ def test_triangulations_and_refusals() -> None:
     flat = NearestNDInterpolator(POINTS * [1, 1, 0], VALUES)
     theirs = peer.NearestNDInterpolator(POINTS * [1, 1, 0], VALUES)
     assert np.array_equal(flat(QUERIES), theirs(QUERIES))
+
+
+def test_without_a_site_there_is_no_value() -> None:
+    for ndim in (2, 3):
+        made = NearestNDInterpolator(np.empty((0, ndim)), np.empty(0))
+        assert np.isnan(made(np.zeros((4, ndim)))).all()

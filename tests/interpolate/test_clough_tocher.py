@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
+from delone.errors import DtypeError
 from delone.interpolate import CloughTocher, GradientWarning, interpolator
 from delone.reference import clough_tocher
 
@@ -140,3 +141,9 @@ def test_local_gradients_do_not_swing_between_tracks(kind: str) -> None:
     values = np.sin(4 * points[:, 0]) + 0.01 * rng.random(200)
     found = interpolator(kind, points, values, gradients="local")(0.1 + 0.8 * rng.random((500, 2)))
     assert np.abs(found).max() < 2
+
+
+@pytest.mark.parametrize("tol", ["a", "1", True, None])
+def test_a_tolerance_that_is_no_number(tol: Any) -> None:
+    with pytest.raises(DtypeError, match="tol must be a real number"):
+        CloughTocher([(0, 0), (1, 0), (0, 1)], tol=tol)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from delone import datasets
-from delone.errors import InputError, NonFiniteError
+from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
 from delone.interpolate import cross_validate, interpolator
 from delone.interpolate.methods import METHODS
 
@@ -161,3 +161,30 @@ def test_progress_is_told() -> None:
     told: list[float] = []
     cross_validate(points, field(points), "farin", progress=told.append)
     assert told == sorted(told) and told[-1] == 1.0
+
+
+@pytest.mark.parametrize("method", sorted(METHODS))
+def test_a_site_without_which_there_is_no_area(method: str) -> None:
+    points = np.array([(0, 0), (1, 0), (2, 0), (3, 0), (1, 1)])
+    found = cross_validate(points, np.arange(5.0), method)
+    if method != "nearest":
+        np.testing.assert_allclose(found.predicted, [np.nan, 1, 2, np.nan, np.nan], atol=1e-5)
+    # Those who are left out together are so only to save time.
+    found = cross_validate(
+        np.append(points, [(2, 1.5)], axis=0), np.arange(6.0), method, nan="drop"
+    )
+    assert found.predicted.shape == (6,)
+    assert np.isnan(cross_validate(points, np.arange(5.0), method, folds=2).predicted).any()
+
+
+@pytest.mark.parametrize(("seed", "kind"), [("a", DtypeError), (-1, InputError), (1.5, DtypeError)])
+def test_a_seed_that_is_none(seed: Any, kind: type[Exception]) -> None:
+    points = datasets.uniform(20)
+    with pytest.raises(kind, match="seed must be"):
+        cross_validate(points, points[:, 0], folds=2, seed=seed)
+
+
+def test_a_predictor_that_returns_too_few() -> None:
+    points = datasets.uniform(20)
+    with pytest.raises(ShapeError, match="what the interpolator returns must have shape"):
+        cross_validate(points, points[:, 0], lambda *_: lambda xi: xi[:0, 0], folds=2)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
-from delone.errors import InputError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate import Linear, grid
 from delone.interpolate import raster as module
 
@@ -96,3 +96,56 @@ def test_bad_rasters_are_refused(options: dict[str, Any]) -> None:
 def test_nodes_have_one_axis() -> None:
     with pytest.raises(ShapeError, match="x must"):
         grid(SQUARE, VALUES, x=[[0, 1]], y=[0])
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"resolution": "1"},
+        {"resolution": True},
+        {"resolution": (1, "2")},
+        {"resolution": 1, "bounds": (0, 0, "a", 1)},
+        {"shape": (2.5, 1)},
+        {"x": ["a"], "y": [1]},
+        {"x": [True], "y": [1]},
+    ],
+)
+def test_what_is_no_number(options: dict[str, Any]) -> None:
+    with pytest.raises(DtypeError):
+        grid(SQUARE, VALUES, **options)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"resolution": (1, 2, 3)},
+        {"resolution": [[1, 2]]},
+        {"shape": 5},
+        {"shape": "22"},
+        {"shape": (1, 2, 3)},
+        {"resolution": 1, "bounds": 5},
+        {"resolution": 1, "bounds": (0, 1)},
+    ],
+)
+def test_wrong_numbers_of_numbers(options: dict[str, Any]) -> None:
+    with pytest.raises(ShapeError):
+        grid(SQUARE, VALUES, **options)
+
+
+def test_a_box_wider_than_any_double() -> None:
+    corners = 1.7e308 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    found = grid(corners, [0.0, 1, 2, 1], shape=(4, 2))
+    np.testing.assert_allclose(found.x / 1.7e308, [-0.75, -0.25, 0.25, 0.75])
+    np.testing.assert_allclose(
+        found.values, [[0.375, 0.625, 0.875, 1.125], [0.875, 1.125, 1.375, 1.625]]
+    )
+    assert np.isfinite(found.cell).all() and np.isfinite(found.extent).all()
+    again = grid(corners, [0.0, 1, 2, 1], resolution=(0.85e308, 1.7e308))
+    np.testing.assert_array_equal(again.x, found.x)
+    with pytest.raises(InputError, match="range of doubles"):
+        grid(corners, [0.0, 1, 2, 1], resolution=1.5e308)
+
+
+def test_sites_in_space_have_no_raster() -> None:
+    with pytest.raises(InputError, match="in the plane"):
+        grid(datasets.uniform(20, ndim=3), np.arange(20.0), resolution=0.5)

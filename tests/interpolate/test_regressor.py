@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -47,3 +49,10 @@ def test_other_features() -> None:
         DelaunayRegressor("kriging").fit(points, points[:, 0])
     with pytest.raises(ValueError, match="minimum of 3"):
         DelaunayRegressor().fit(points[:2], points[:2, 0])
+
+
+@pytest.mark.parametrize("columns", [("a", "b"), (0,), 1, (0.0, 1.0)])
+def test_columns_that_are_no_pair_of_integers(columns: Any) -> None:
+    points = datasets.uniform(20)
+    with pytest.raises(TypeError, match="columns must be two integers"):
+        DelaunayRegressor(columns=columns).fit(points, points[:, 0])

@@ -116,3 +116,13 @@ def test_what_is_not_understood_is_refused() -> None:
         stations().delone.grid(shape=(2, 2), coords=("u", "v"))
     with pytest.raises(InputError, match="one axis"):
         stations().delone.interp([[0]], [0])
+
+
+def test_a_variable_without_numbers_is_named() -> None:
+    stations = xarray.Dataset(
+        {"height": ("station", [1.0, 5.0, 9.0]), "label": ("station", ["a", "b", "c"])},
+        coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
+    )
+    with pytest.raises(TypeError, match="variable 'label' holds no numbers"):
+        stations.delone.grid(shape=(2, 2))
+    assert stations.drop_vars("label").delone.grid(shape=(2, 2)).height.shape == (2, 2)

@@ -134,3 +134,24 @@ def test_sizes_whose_squares_leave_the_range_are_refused() -> None:
     for scale in (1e300, 1e-300):
         mesh = delone.mesh((points * scale, ring), min_angle=33)
         assert mesh.nsimplex == 2
+
+
+@pytest.mark.parametrize(
+    "options", [{"max_area": "1"}, {"max_area": True}, {"min_angle": "20"}, {"min_angle": True}]
+)
+def test_what_is_no_number(options: dict[str, Any]) -> None:
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    with pytest.raises(DtypeError, match="must be a real number"):
+        delone.mesh(square, **options)
+
+
+def test_no_domain_and_no_inside() -> None:
+    with pytest.raises(DtypeError, match="domain must be a ConstrainedDelaunay"):
+        delone.mesh(None)
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    empty = delone.ConstrainedDelaunay(square, [(0, 2)], holes=[(3, 1), (1, 3)])
+    with pytest.raises(InputError, match="holes took all triangles"):
+        delone.mesh(empty)
+    whole = delone.ConstrainedDelaunay(square, [(0, 2)])
+    with pytest.raises(InputError, match="without a triangle"):
+        delone.mesh(whole, size=(empty, [1, 1, 1, 1]))

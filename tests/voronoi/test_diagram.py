@@ -315,3 +315,10 @@ def test_the_triangulation_is_the_dual() -> None:
     mesh = Voronoi(points).triangulation
     assert mesh is not None
     assert np.array_equal(mesh.simplices, Delaunay(points).simplices)
+
+
+def test_one_site_is_enough_and_none_is_said_to_be_too_few() -> None:
+    assert len(Voronoi([(1, 2)]).point_region) == 1
+    for options in ({}, {"weights": []}):
+        with pytest.raises(DegenerateInputError, match="a diagram needs one"):
+            Voronoi(np.empty((0, 2)), **options)

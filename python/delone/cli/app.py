@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 import signal
 import sys
 import threading
@@ -18,7 +19,16 @@ from delone.atomic import check_target, replacing
 from delone.cli import cells, field, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
-from delone.cli.exits import MEANINGS, Exit, Failure, code_of, reading, spare_inputs, writing
+from delone.cli.exits import (
+    MEANINGS,
+    Exit,
+    Failure,
+    as_options,
+    code_of,
+    reading,
+    spare_inputs,
+    writing,
+)
 from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
 from delone.cli.report import Stopwatch, peak_memory, summary
@@ -400,8 +410,8 @@ def _said(error: BaseException) -> int:
         message, code = str(error) or "there is not enough memory", Exit.MEMORY
     else:
         code = code_of(error)
-        message = str(error)
-        if isinstance(error, NonFiniteError):
+        message = as_options(str(error))
+        if isinstance(error, NonFiniteError) and not re.search(r"first: \d", message):
             more = ", ..." if error.count > len(error.rows) else ""
             message += f" (rows {', '.join(map(str, error.rows.tolist()))}{more})"
         if code == Exit.INTERNAL:

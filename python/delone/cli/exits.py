@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from contextlib import contextmanager
 from enum import IntEnum
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 from delone.errors import (
     BudgetExceededError,
     BusyError,
+    ConflictingValuesError,
     CrossingSegmentsError,
     DegenerateInputError,
     FileFormatError,
@@ -24,7 +26,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-__all__ = ["MEANINGS", "Exit", "Failure", "code_of", "reading", "spare_inputs", "writing"]
+__all__ = [
+    "MEANINGS",
+    "Exit",
+    "Failure",
+    "as_options",
+    "code_of",
+    "reading",
+    "spare_inputs",
+    "writing",
+]
 
 
 class Exit(IntEnum):
@@ -48,8 +59,8 @@ MEANINGS = {
     Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation",
     Exit.USAGE: "the command line is wrong",
     Exit.INPUT: "the input is missing, torn or of unknown format",
-    Exit.DEGENERATE: "no triangulation: too few points, one line, NaN or infinity, crossings that "
-    "are errors, vertices beyond a limit",
+    Exit.DEGENERATE: "no triangulation: too few points, one line, NaN or infinity, one point with "
+    "several values, crossings that are errors, vertices beyond a limit",
     Exit.OUTPUT: "the output cannot be written; no file was, unless the message says so",
     Exit.MISSING_EXTRA: "an optional library is not installed",
     Exit.MEMORY: "there is not enough memory",
@@ -119,6 +130,7 @@ def code_of(error: BaseException) -> Exit:
         (MissingExtraError, Exit.MISSING_EXTRA),
         (DegenerateInputError, Exit.DEGENERATE),
         (NonFiniteError, Exit.DEGENERATE),
+        (ConflictingValuesError, Exit.DEGENERATE),
         (CrossingSegmentsError, Exit.DEGENERATE),
         (BudgetExceededError, Exit.DEGENERATE),
         (BusyError, Exit.OUTPUT),
@@ -128,6 +140,34 @@ def code_of(error: BaseException) -> Exit:
         (MemoryError, Exit.MEMORY),
     )
     return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
+
+
+_QUOTES = str.maketrans("", "", "'\"")
+_OPTION = re.compile(
+    r"""\b(crossing|duplicates|extrapolate|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""
+)
+
+
+def as_options(message: str) -> str:
+    """Return a message with arguments of Python as options of the command.
+
+    Parameters
+    ----------
+    message : str
+        Of an exception.
+
+    Returns
+    -------
+    str
+        The same for the shell.
+
+    Examples
+    --------
+    >>> from delone.cli.exits import as_options
+    >>> as_options("choose nan='drop'")
+    'choose --nan drop'
+    """
+    return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", message)
 
 
 @contextmanager

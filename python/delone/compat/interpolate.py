@@ -47,9 +47,10 @@ class _Scale:
     """Points moved and stretched to the unit square, where that is asked for."""
 
     def __init__(self, points: Floats, wanted: bool) -> None:
-        self.offset = points.mean(axis=0) if wanted else None
-        extent = np.ptp(points, axis=0)
-        self.scale = np.where(extent > 0, extent, 1.0) if wanted else None
+        self.offset = self.scale = None
+        if wanted and len(points):
+            extent = np.ptp(points, axis=0)
+            self.offset, self.scale = points.mean(axis=0), np.where(extent > 0, extent, 1.0)
 
     def __call__(self, points: Floats) -> Floats:
         if self.offset is None or self.scale is None:
@@ -337,6 +338,9 @@ class NearestNDInterpolator:
         ndim = self.points.shape[1]
         queries = self._scale(_queries(args, ndim))
         flat = queries.reshape(-1, ndim)
+        if not len(self.points):
+            none = np.full((len(flat), self._field.columns.shape[1]), np.nan)
+            return self._field.shaped(none, queries.shape[:-1])
         rows = self._nearest(flat, p)
         offset = self._scaled[rows] - flat
         with np.errstate(over="ignore"):  # beyond all doubles is beyond any bound

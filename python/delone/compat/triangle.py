@@ -8,6 +8,7 @@ ones follow; the order of triangles and the places of added vertices are delone'
 from __future__ import annotations
 
 import re
+from collections import abc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from delone._arrays import as_points, as_segments
 from delone.compat.triangle_input import again, interpolated, rows_of
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError
 from delone.refine.meshed import Mesh
 from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
 
@@ -126,6 +127,10 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
     delone.errors.InputError: switch u is not supported: a test of triangles in C that is compiled \
 into Triangle; give delone.mesh a size
     """
+    if not isinstance(tri, abc.Mapping):
+        raise DtypeError(f"tri must be a mapping of names to arrays, got {tri!r:.60}")
+    if not isinstance(opts, str):
+        raise DtypeError(f"opts must be a string of switches, got {opts!r:.60}")
     switches = _parsed(opts)
     unknown = sorted(set(tri) - set(_KEYS))
     if unknown:

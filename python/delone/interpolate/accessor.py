@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import InputError, MissingExtraError
+from delone.errors import DtypeError, InputError, MissingExtraError
 from delone.interpolate.methods import interpolator
 from delone.interpolate.raster import raster_nodes, require_memory
 
@@ -232,6 +232,10 @@ def _interpolated(
     plain = data.drop_vars(gone)
     if isinstance(plain, xarray.Dataset):
         names = [name for name, part in plain.data_vars.items() if set(dims) <= set(part.dims)]
+        for name in names:
+            if plain[name].dtype.kind not in "iufc":
+                kind = plain[name].dtype
+                raise DtypeError(f"variable {name!r} holds no numbers (dtype {kind}); drop it")
         found = {name: _applied(plain[name], table, dims, target) for name in names}
         return plain.drop_vars(names).assign(found)
     return _applied(plain, table, dims, target)

@@ -16,7 +16,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_count, as_points, as_workers
 from delone.delaunay import Delaunay
-from delone.errors import InputError
+from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.interpolate.methods import METHODS, interpolator
 from delone.interpolate.values import (
     DUPLICATES,
@@ -57,7 +57,8 @@ class CrossValidation:
     values : ndarray, shape (n,) or (n, ...)
         The values, those of ``nan="drop"`` left as they are.
     predicted : ndarray, shape (n,) or (n, ...)
-        What the others say; NaN where they say nothing, as at corners of the hull.
+        What the others say; NaN where they say nothing, as at corners of the hull, and where they
+        span no area.
     """
 
     method: str
@@ -185,13 +186,23 @@ def cross_validate(
         require_finite_values(field)
     mesh = Delaunay(sites[kept], workers=workers)
     merged = field.at(kept).merged(mesh.duplicate_of, chosen("duplicates", duplicates, DUPLICATES))
-    task = _Task(mesh, merged, interpolator, options, workers, progress)
-    columns = task.left_one_out() if leave_one_out else task.folded(folds or 0, seed)
+    task = _Task(mesh, merged, interpolator, options, workers, progress, leave_one_out)
+    rng = _dealer(seed)
+    columns = task.left_one_out() if leave_one_out else task.folded(folds or 0, rng)
     predicted = np.full_like(field.columns, np.nan)
     predicted[kept] = columns[mesh.duplicate_of]
     name = interpolator if isinstance(interpolator, str) else getattr(interpolator, "__name__", "")
     shaped = (field.shaped(part, (len(sites),)) for part in (field.columns, predicted))
     return CrossValidation(name, *shaped)
+
+
+def _dealer(seed: int) -> np.random.Generator:
+    try:
+        return np.random.default_rng(seed)
+    except TypeError:
+        raise DtypeError(f"seed must be an integer of at least 0, got {seed!r:.60}") from None
+    except ValueError:
+        raise InputError(f"seed must be an integer of at least 0, got {seed!r:.60}") from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +215,8 @@ class _Task:
     options: dict[str, Any]
     workers: int | None
     progress: Callable[[float], None] | None
+    # Each site by all others, not folds.
+    alone: bool
 
     def left_one_out(self) -> Floats:
         """Each vertex predicted by the others, as columns."""
@@ -216,12 +229,12 @@ class _Task:
             return self._by_batches(self._far_apart(self._reach()))
         return self._by_batches(iter(self._vertices()[:, None]))
 
-    def folded(self, folds: int, seed: int) -> Floats:
+    def folded(self, folds: int, rng: np.random.Generator) -> Floats:
         """Each vertex predicted by those of other folds, as columns."""
         vertices = self._vertices()
         if not 2 <= as_count(folds, name="folds") <= len(vertices):
             raise InputError(f"folds must be from 2 to the {len(vertices)} sites, got {folds}")
-        dealt = np.random.default_rng(seed).permutation(vertices)
+        dealt = rng.permutation(vertices)
         return self._by_batches(iter([np.sort(dealt[start::folds]) for start in range(folds)]))
 
     def _vertices(self) -> Rows:
@@ -241,11 +254,24 @@ class _Task:
         done = 0
         for batch in batches:
             rest = np.setdiff1d(vertices, batch, assume_unique=True)
-            predicted[batch] = self._predicted(rest, batch)
+            predicted[batch] = self._tried(rest, batch)
             done += len(batch)
             if self.progress is not None:
                 self.progress(done / len(vertices))
         return predicted
+
+    def _tried(self, rest: Rows, batch: Rows) -> Floats:
+        """Predictions from the rest; NaN where that spans no area."""
+        try:
+            return self._predicted(rest, batch)
+        except DegenerateInputError:
+            found = np.full((len(batch), self.field.columns.shape[1]), np.nan)
+        if self.alone and len(batch) > 1:
+            # Left out together only to save time: alone each leaves a rest with more points.
+            for k in range(len(batch)):
+                others = np.union1d(rest, np.delete(batch, k))
+                found[k] = self._tried(others, batch[k : k + 1])[0]
+        return found
 
     def _predicted(self, rest: Rows, batch: Rows) -> Floats:
         points, known = self.mesh.points, self.field.at(rest)
@@ -255,7 +281,9 @@ class _Task:
             made: Any = interpolator(self.method, points[rest], values, **options)
         else:
             made = self.method(points[rest], values, **self.options)
-        return as_field(made(points[batch]), len(batch)).columns
+        return as_field(
+            made(points[batch]), len(batch), name="what the interpolator returns"
+        ).columns
 
     def _far_apart(self, reach: int) -> Iterator[Rows]:
         """All vertices in batches whose members are at least so many edges apart.

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count
-from delone.errors import InputError, ShapeError
+from delone._arrays import as_count, as_number
+from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator
 from delone.interpolate.methods import interpolator
+from delone.interpolate.space import SPACE, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -152,6 +153,8 @@ def grid(
     else:
         made = interpolator(method, points, values, **options)
         values = None
+    if made._ndim == SPACE:
+        refuse("a raster", "call the interpolator with the points where values are wanted")
     field, columns = made._with(values)[1:]
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
     require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
@@ -215,20 +218,50 @@ def raster_nodes(
     if (resolution is None) == (shape is None):
         raise InputError("give one of resolution, shape, or x and y")
     low, high = box if bounds is None else _bounded(bounds)
+    units = [_unit(low[k], high[k]) for k in range(2)]
     if shape is not None:
-        counts = [as_count(count, name="shape") for count in shape]
-        if len(counts) != 2 or min(counts) < 1:
+        counts = [as_count(count, name="shape") for count in _listed(shape, "shape", 2)]
+        if min(counts) < 1:
             raise InputError(f"shape must be two numbers of at least 1, got {shape!r}")
-        cells = [(high[k] - low[k]) / counts[k] for k in range(2)]
+        cells = [_length(low[k], high[k], units[k]) / counts[k] for k in range(2)]
     else:
-        cells = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
+        side: Any = resolution
+        given = [side] * 2 if np.ndim(side) == 0 else side
+        cells = [as_number(cell, name="resolution") for cell in _listed(given, "resolution", 2)]
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r}")
-        counts = [max(1, _cells(high[k] - low[k], cells[k])) for k in range(2)]
+        cells = [cells[k] * units[k] for k in range(2)]
+        counts = [max(1, _cells(_length(low[k], high[k], units[k]), cells[k])) for k in range(2)]
     columns, rows = counts if in_memory else (sum(counts), 1)
     require_memory(columns, rows, 1)
-    x, y = (low[k] + cells[k] * (np.arange(counts[k], dtype=np.float64) + 0.5) for k in range(2))
+    x, y = (_centres(low[k], cells[k], counts[k], units[k]) for k in range(2))
     return x, y
+
+
+def _unit(low: float, high: float) -> float:
+    """The factor by which a length is a double: 1, but where a box is wider than any."""
+    return 1.0 if math.isfinite(high - low) else 0.5
+
+
+def _length(low: float, high: float, unit: float) -> float:
+    return high * unit - low * unit
+
+
+def _centres(low: float, cell: float, count: int, unit: float) -> Floats:
+    """Centres of cells of a length in that unit."""
+    with np.errstate(over="ignore"):
+        nodes: Floats = (low * unit + cell * (np.arange(count, dtype=np.float64) + 0.5)) / unit
+    if not np.isfinite(nodes[-1]):
+        raise InputError("cells go beyond the range of doubles; choose smaller ones, or bounds")
+    return nodes
+
+
+def _listed(given: Any, name: str, count: int) -> list[Any]:
+    """So many things, of whatever holds them."""
+    found = None if isinstance(given, str | bytes) or np.ndim(given) == 0 else list(given)
+    if found is None or len(found) != count:
+        raise ShapeError(f"{name} must be {count} numbers, got {given!r:.60}")
+    return found
 
 
 def _cells(length: float, cell: float) -> int:
@@ -240,14 +273,17 @@ def _cells(length: float, cell: float) -> int:
 
 
 def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
-    box = [float(bound) for bound in bounds]
-    if len(box) != 4 or not (box[0] < box[2] and box[1] < box[3] and np.isfinite(box).all()):
+    box = [as_number(bound, name="bounds") for bound in _listed(bounds, "bounds", 4)]
+    if not (box[0] < box[2] and box[1] < box[3] and np.isfinite(box).all()):
         raise InputError(f"bounds must be left, bottom, right, top; got {bounds!r}")
     return box[:2], box[2:]
 
 
 def _ascending(nodes: ArrayLike, name: str) -> Floats:
-    array = np.array(nodes, dtype=np.float64)
+    given = np.asarray(nodes)
+    if given.dtype.kind not in "iuf":
+        raise DtypeError(f"{name} must hold real numbers, got dtype {given.dtype}")
+    array = given.astype(np.float64)
     if array.ndim != 1 or not len(array):
         raise ShapeError(f"{name} must have shape (k,) with k of at least 1, got {array.shape}")
     if not np.isfinite(array).all() or not (np.diff(array) > 0).all():
@@ -294,7 +330,11 @@ def _free_memory() -> int | None:
 
 
 def _step(nodes: Floats) -> float:
-    return float((nodes[-1] - nodes[0]) / (len(nodes) - 1)) if len(nodes) > 1 else 0.0
+    if len(nodes) < 2:
+        return 0.0
+    low, high = float(nodes[0]), float(nodes[-1])
+    unit = _unit(low, high)
+    return _length(low, high, unit) / (len(nodes) - 1) / unit
 
 
 def _dtype(is_complex: bool) -> type[np.generic]:

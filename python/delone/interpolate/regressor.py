@@ -6,11 +6,12 @@ it when it is asked for.
 
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone.errors import MissingExtraError
+from delone.errors import DtypeError, MissingExtraError
 from delone.interpolate.methods import interpolator
 
 try:
@@ -54,8 +55,9 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
 
     Notes
     -----
-    With exactly two features, or with `columns`, it passes scikit-learn's own checks of estimators.
-    Training points must span an area.
+    With ``columns=(0, 1)`` it passes scikit-learn's own checks of estimators (``check_estimator``).
+    The default does not, as the checks bring more than two features and it refuses to guess which
+    are coordinates. Training points must span an area.
 
     Examples
     --------
@@ -141,7 +143,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
                     f"{self.n_features_in_} feature(s); choose two by columns="
                 )
             return np.asarray(X)
-        first, second = self.columns
+        first, second = self._pair()
         if (
             not -self.n_features_in_
             <= min(first, second)
@@ -152,6 +154,14 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
                 f"columns={self.columns} are not among {self.n_features_in_} feature(s)"
             )
         return np.ascontiguousarray(np.asarray(X)[:, [first, second]])
+
+    def _pair(self) -> tuple[int, int]:
+        columns: Any = self.columns
+        try:
+            first, second = map(operator.index, columns)
+        except (TypeError, ValueError):
+            raise DtypeError(f"columns must be two integers, got {columns!r:.60}") from None
+        return first, second
 
     def __sklearn_tags__(self) -> Any:
         """Return what scikit-learn wants to know of an estimator."""

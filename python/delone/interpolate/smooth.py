@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core, location, topology
-from delone._arrays import as_count, as_vectors, as_workers
+from delone._arrays import as_count, as_number, as_vectors, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
@@ -80,7 +80,7 @@ class Smooth(Interpolator):
         **options: Any,
     ) -> None:
         self._estimate = chosen("gradients", gradients, GRADIENTS)
-        self._tol = float(tol)
+        self._tol = as_number(tol, name="tol")
         self._maxiter = as_count(maxiter, name="maxiter")
         if not self._tol > 0:
             raise InputError(f"tol must be above 0, got {tol}")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
+from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -90,8 +90,10 @@ class Field:
 
         Raises
         ------
+        ConflictingValuesError
+            The policy is ``"error"`` and values differ.
         InputError
-            The policy is ``"error"`` and values differ, or asks for an order of complex numbers.
+            The policy asks for an order of complex numbers.
         """
         again = np.flatnonzero(first != np.arange(len(first)))
         if not again.size:
@@ -102,16 +104,19 @@ class Field:
         if not rows.size and policy == "error":
             return self
         if policy == "error":
-            raise InputError(self._told_apart(rows, first))
+            raise self._told_apart(rows, first)
         return replace(self, columns=self._merge(again, first, policy))
 
-    def _told_apart(self, rows: NDArray[np.int64], first: NDArray[np.integer]) -> str:
+    def _told_apart(
+        self, rows: NDArray[np.int64], first: NDArray[np.integer]
+    ) -> ConflictingValuesError:
         named = ", ".join(f"{row} and {first[row]}" for row in rows[:_NAMED].tolist())
         more = ", ..." if len(rows) > _NAMED else ""
         choices = ", ".join(map(repr, DUPLICATES[1:]))
-        return (
+        return ConflictingValuesError(
             f"{len(rows)} points come again with another value: rows {named}{more}; "
-            f"choose duplicates={choices}"
+            f"choose duplicates={choices}",
+            rows=np.column_stack((rows, first[rows])),
         )
 
     def _merge(self, again: NDArray[np.int64], first: NDArray[np.integer], policy: str) -> Floats:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import topology
-from delone._arrays import as_count
+from delone._arrays import as_count, as_number
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
 from delone.refine import domains
 from delone.refine.domains import Counts
@@ -47,8 +47,7 @@ def finer(
     progress: Any,
 ) -> Mesh:
     """Return a finer mesh; see ``Mesh.refine``."""
-    if not isinstance(ratio, int | float | np.integer | np.floating):
-        raise DtypeError(f"ratio must be a number, got {ratio!r:.60}")
+    ratio = as_number(ratio, name="ratio")
     if not 0 < ratio <= 1:
         raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, geometry
-from delone._arrays import as_workers
+from delone._arrays import as_number, as_workers
 from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
 from delone.triangulation import Triangulation
 
@@ -254,10 +254,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _positive(value: Any, name: str) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number above 0, got {value!r:.60}") from None
+    number = as_number(value, name=name)
     if not number > 0:
         raise InputError(f"{name} must be above 0, got {value!r}")
     return number
@@ -322,6 +319,8 @@ def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Float
         raise InputError(
             f"size has values of shape {lengths.shape} for {mesh.npoints} points of its mesh"
         )
+    if not mesh.nsimplex:
+        raise InputError("size is on a triangulation without a triangle")
     _checked(lengths, mesh.points)
 
     def at(places: Floats) -> Floats:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Voronoi", "compressed"]
 
 _SPACE = 3
+_NO_SITE = "there is no point; a diagram needs one"
 
 
 class Voronoi:
@@ -629,7 +630,7 @@ def _dual(points: Floats, workers: int) -> tuple[Delaunay | None, dict[str, NDAr
         mesh = Delaunay(points, workers=workers)
     except DegenerateInputError as error:
         if not len(error.chain):
-            raise
+            raise DegenerateInputError(_NO_SITE, reason="too few points") from None
         arrays = dual.of_chain(points, error.chain.astype(np.int32))
         arrays["region"] = arrays["region"][first_rows(points)]
         return None, arrays
@@ -651,7 +652,7 @@ def _power_dual(
     elif len(chain):
         arrays = dual.of_chain(points, chain)
     else:
-        raise DegenerateInputError("there is no point", reason="too few points")
+        raise DegenerateInputError(_NO_SITE, reason="too few points")
     duplicate, first = found["duplicates"].T
     arrays["region"][duplicate] = arrays["region"][first]
     return mesh, arrays
