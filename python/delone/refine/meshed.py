@@ -328,7 +328,8 @@ class Mesh(Triangulation):
         marked : array_like of bool, shape (m,), or of int, optional
             Triangles that are too large: a mask, or their numbers.
         ratio : float, optional
-            What is made of a marked triangle has at most this share of its area.
+            A triangle of the finer mesh whose centre lies in a marked one has at most this share of
+            its area. Those that reach into it from outside may be larger.
         min_angle : float, optional
             By default what the mesh was made with.
         max_area, size, max_points, progress : optional
