@@ -177,7 +177,7 @@ CORE: dict[str, set[str]] = {
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "improve": {"delone_predicates"} | GROUND,
-    "locate": {"delaunay2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "locate": {"delaunay2", "order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "locate3": {"locate", "order", "parallel", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
@@ -186,7 +186,7 @@ CORE: dict[str, set[str]] = {
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
-    "interpolate": {"locate", "delaunay2", "parallel", "delone_predicates"} | GROUND,
+    "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "parallel", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.

@@ -66,8 +66,13 @@ class CloughTocher(Smooth):
     Notes
     -----
     With local gradients linear and quadratic functions are reproduced up to rounding, with global
-    ones linear functions up to `tol`. Local gradients take O(n), each sweep of the global
-    estimation as well; sweeps are few where the sites are spread evenly. Values that are not known
+    ones linear functions up to `tol`. Beside sites that are nearer to each other than 1e-5 of the
+    way to others, up to about 1e-11 of the values is left of rounding, and across the edge between
+    them the first derivatives may differ; near sites within 1e-10 of a line about 1e-8. Global
+    gradients trust the slope between two sites however near they are: there choose ``"local"``.
+    Of a site with more than 32 neighbours, others take those around them and some of the rest.
+    Local gradients take O(n log n), each sweep of the global estimation O(n); sweeps are few where
+    the sites are spread evenly. Values that are not known
     (``nan="propagate"``) take no part in the gradients of others. A slope that is beyond the range
     of doubles counts as none.
 

@@ -71,9 +71,11 @@ class NaturalNeighbor(Smooth):
     Notes
     -----
     Weights of ``"sibson"`` and ``"laplace"`` are not negative, sum to 1 and have the query as their
-    mean, so that linear functions are reproduced up to rounding; on an edge of the hull the
+    mean, so that linear functions are reproduced up to rounding, beside sites that all but coincide
+    as well; where doubles do not tell the weights, integers do. On an edge of the hull the
     interpolant is linear between its ends. ``"farin"`` with local gradients reproduces quadratic
-    functions, ``"sibson1"`` those that are round. Each query takes time in the number of its
+    functions, ``"sibson1"`` those that are round, as far as gradients do: see `CloughTocher`.
+    Each query takes time in the number of its
     neighbours, about six. In space, where the weights are areas over distances and neighbours about
     fifteen, there are values and weights, but no derivatives. At a site the derivatives of
     ``"sibson"`` and ``"laplace"`` do not exist and are NaN.

@@ -27,9 +27,15 @@ use crate::locate::{
 struct Frame {
     /// For each corner the way to the next and to the previous one.
     ways: [[Point2; 2]; 3],
-    /// For the edge opposite each corner k: the direction across as weights of i, j and c.
-    across: [[f64; 3]; 3],
+    /// For the edge opposite each corner k the direction across: this many times the way from j to i,
+    /// and that from the middle of the edge to the centroid.
+    across: [f64; 3],
 }
+
+/// The most of the edge that a direction across may have. Where an edge is far shorter than the
+/// triangles beside it, the rounding of the values at its ends would show as many times; and what
+/// the cubic along it departs there from its chord is of its length cubed.
+const OBLIQUE: f64 = 1e5;
 
 impl Frame {
     fn of(given: &Given, barrier: Barrier, triangle: usize) -> Self {
@@ -49,9 +55,9 @@ impl Frame {
                 }
                 None => [0.5, 0.5, 0.0],
             };
-            // From corner k to there, three times the way between the centroids; corner k is
-            // 3 c - i - j.
-            [xi - xk + 1.0, xj - xk + 1.0, 3.0 * (xk - 1.0)]
+            // From corner k to there are three times the way between the centroids.
+            let share = (xi - xj) / (6.0 * (xk - 1.0));
+            share.clamp(-OBLIQUE, OBLIQUE)
         };
         Self {
             ways: std::array::from_fn(|k| [way(k, next(k)), way(k, prev(k))]),
@@ -107,13 +113,16 @@ impl Ordinates {
             std::array::from_fn(|i| (values[i] + along[i][0] + along[i][1]) / 3.0);
         let middle: [f64; 3] = std::array::from_fn(|k| {
             // The derivative across the edge is a parabola along it; its middle ordinate is made
-            // the mean of the outer two.
+            // the mean of the outer two. What it takes from the edge is how the slopes of the ends
+            // depart from the chord, which cancels nothing but values.
             let (i, j) = (next(k), prev(k));
-            let [di, dj, dc] = frame.across[k];
-            let (iij, ijj) = (along[i][0], along[j][1]);
-            let at_i = di * values[i] + dj * iij + dc * inner[i];
-            let at_j = di * ijj + dj * values[j] + dc * inner[j];
-            (0.5 * (at_i + at_j) - di * iij - dj * ijj) / dc
+            let [gx, gy] = [0, 1].map(|l| gradients[i][l] + gradients[j][l]);
+            let (from_i, from_j) = (frame.ways[i][1], frame.ways[j][0]);
+            let up = gx * (from_i[0] + from_j[0]) + gy * (from_i[1] + from_j[1]);
+            let edge = frame.ways[j][1];
+            let along_edge = 0.5 * (gx * edge[0] + gy * edge[1]);
+            let bend = along_edge - (values[i] - values[j]);
+            0.5 * (along[i][0] + along[j][1]) + up / 36.0 + frame.across[k] * bend
         });
         let deep: [f64; 3] =
             std::array::from_fn(|i| (inner[i] + middle[next(i)] + middle[prev(i)]) / 3.0);

@@ -3,6 +3,7 @@
 use delone_predicates::Point2;
 
 use super::field::Field;
+use super::hubs::Hubs;
 use crate::error::{Error, Result};
 use crate::locate::{Output, in_unit, unit_of};
 use crate::memory::{filled, with_room};
@@ -11,6 +12,11 @@ use crate::watch::Watch;
 
 /// Vertices between two looks at the watch, and for a thread at once.
 const SHARE: usize = 1 << 12;
+
+/// Share of the longest edge below which an edge counts in a local fit no more than if it were as long. The rounding
+/// of two values makes a slope between them, the larger the nearer they are; and the nearer they are,
+/// the more they would count. So about 1e-11 of the values over the distances is left of that.
+const NEAR: f64 = 1e-5;
 
 /// Which vertices share an edge, in compressed rows.
 #[derive(Debug, Clone, Copy)]
@@ -37,12 +43,17 @@ impl<'a> Adjacency<'a> {
     }
 
     #[inline]
+    pub(super) fn vertices(&self) -> usize {
+        self.indptr.len() - 1
+    }
+
+    #[inline]
     fn range(&self, v: usize) -> std::ops::Range<usize> {
         self.indptr[v] as usize..self.indptr[v + 1] as usize
     }
 
     #[inline]
-    fn neighbours(&self, v: usize) -> &'a [i32] {
+    pub(super) fn neighbours(&self, v: usize) -> &'a [i32] {
         &self.indices[self.range(v)]
     }
 }
@@ -226,8 +237,9 @@ impl Network {
 /// Gradients of polynomials of degree 1 or 2 through each vertex that fit its surroundings in the
 /// least squares sense, nearer ones by the inverse square of their distance more.
 ///
-/// Degree 1 takes the neighbours; degree 2 takes their neighbours, too. Where those do not determine
-/// it, or hardly, it is degree 1: see `SWING`.
+/// Degree 1 takes the neighbours; degree 2 takes their neighbours, too, but of a hub's those around
+/// the vertex alone: see `hubs`. Where those do not determine it, or hardly, it is degree 1: see
+/// `SWING`. So all takes O(n log n).
 pub fn local_gradients(
     points: &[Point2],
     adjacency: Adjacency,
@@ -238,13 +250,24 @@ pub fn local_gradients(
 ) -> Result<Vec<f64>> {
     let out = Output::filled(2 * points.len() * field.columns, 0.0)?;
     let unit = unit_of(points);
+    let hubs = Hubs::of(points, adjacency);
     let tasks = (0..points.len()).step_by(SHARE).collect();
     let ends = parallel::map(workers, tasks, |start: usize| {
         watch.check()?;
         let mut wide = Vec::new();
+        let mut work = 0;
         for v in start..points.len().min(start + SHARE) {
             let near = adjacency.neighbours(v);
-            surroundings(adjacency, v, degree, &mut wide);
+            surroundings(&hubs, v, degree, &mut wide);
+            let of_near = || Fit::of(points, unit, v, near, 1);
+            if degree == 1 && of_near().is_none_or(|plane| plane.is_noisy()) {
+                surroundings(&hubs, v, 2, &mut wide);
+            }
+            work += wide.len();
+            if work > 16 * SHARE {
+                work = 0;
+                watch.check()?;
+            }
             let common = Fit::best(points, unit, v, near, &wide, degree);
             for column in 0..field.columns {
                 let known = |u: &i32| field.value(*u, column).is_finite();
@@ -271,12 +294,13 @@ pub fn local_gradients(
 }
 
 /// The neighbours of a vertex, for degree 2 theirs as well, itself left out.
-fn surroundings(adjacency: Adjacency, v: usize, degree: usize, ring: &mut Vec<i32>) {
+fn surroundings(hubs: &Hubs, v: usize, degree: usize, ring: &mut Vec<i32>) {
+    let near = hubs.adjacency.neighbours(v);
     ring.clear();
-    ring.extend_from_slice(adjacency.neighbours(v));
+    ring.extend_from_slice(near);
     if degree > 1 {
-        for &u in adjacency.neighbours(v) {
-            ring.extend_from_slice(adjacency.neighbours(u as usize));
+        for &u in near {
+            hubs.extend(u, v as i32, ring);
         }
         ring.sort_unstable();
         ring.dedup();
@@ -290,8 +314,14 @@ fn surroundings(adjacency: Adjacency, v: usize, degree: usize, ring: &mut Vec<i3
 /// quadric swings. There any bound from 0.7 to 10 is as good.
 const SWING: f64 = 3.0;
 
+/// How much a gradient may move with the values, over their distances, before the plane of a wider
+/// ring is asked: where the neighbours are on a line but for one that all but coincides.
+const NOISY: f64 = 1e5;
+
 /// The factors by which differences to surrounding values make a gradient.
 struct Fit<'a> {
+    /// The distance of the farthest.
+    size: f64,
     ring: &'a [i32],
     factors: Vec<[f64; 2]>,
 }
@@ -306,8 +336,15 @@ impl<'a> Fit<'a> {
         wide: &'a [i32],
         degree: usize,
     ) -> Option<Self> {
-        let plane =
-            Self::of(points, unit, v, near, 1).or_else(|| Self::along(points, unit, v, near));
+        let plane = Self::of(points, unit, v, near, 1);
+        let plane = if plane.as_ref().is_none_or(Self::is_noisy) {
+            let further = Self::of(points, unit, v, wide, 1).filter(|fit| !fit.is_noisy());
+            further
+                .or(plane)
+                .or_else(|| Self::along(points, unit, v, near))
+        } else {
+            plane
+        };
         if degree > 1
             && let Some(quadric) = Self::of(points, unit, v, wide, 2)
             && plane
@@ -338,7 +375,11 @@ impl<'a> Fit<'a> {
         let factors = factors
             .map(|(s, w)| line.map(|x| x * s / length(w) / sum))
             .collect();
-        Some(Self { ring, factors })
+        Some(Self {
+            size,
+            ring,
+            factors,
+        })
     }
 
     /// Solves the least squares problem by orthogonal columns (modified Gram-Schmidt), for the
@@ -353,7 +394,8 @@ impl<'a> Fit<'a> {
         if !(size > 0.0 && size.is_finite()) {
             return None;
         }
-        let weights: Vec<f64> = ways.iter().map(|w| size / w[0].hypot(w[1])).collect();
+        let weight = |w: &Point2| size / w[0].hypot(w[1]).max(NEAR * size);
+        let weights: Vec<f64> = ways.iter().map(weight).collect();
         let column = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
             let scaled = ways.iter().map(|w| f(w[0] / size, w[1] / size));
             scaled.zip(&weights).map(|(x, w)| x * w).collect()
@@ -369,6 +411,7 @@ impl<'a> Fit<'a> {
         let (gx, gy) = last_two(&mut basis)?;
         let factors = gx.iter().zip(&gy).zip(&weights);
         Some(Self {
+            size,
             ring,
             factors: factors
                 .map(|((x, y), w)| [x * w / size, y * w / size])
@@ -379,6 +422,11 @@ impl<'a> Fit<'a> {
     /// Whether errors of the values move its gradient little more than that of a plane.
     fn is_steady_beside(&self, plane: &Self) -> bool {
         self.norm() <= SWING * plane.norm()
+    }
+
+    /// Whether rounding of the values shows in it.
+    fn is_noisy(&self) -> bool {
+        self.norm() * self.size > NOISY
     }
 
     /// The root of the sum of squares of all factors.
@@ -403,6 +451,8 @@ impl<'a> Fit<'a> {
 fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
     /// Below this share of its length, a column is one of those before.
     const DEPENDENT: f64 = 1e-10;
+    /// Squares of lengths below this have lost digits at the lower end of the range.
+    const LEAST: f64 = 1e-140;
     let n = columns.len();
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     let mut corner = 0.0; // The last entry of the triangular factor above its diagonal.
@@ -411,15 +461,23 @@ fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (before, rest) = columns.split_at_mut(i);
         let column = &mut rest[0];
         let length = dot(column, column).sqrt();
-        for (j, q) in before.iter().enumerate() {
-            let part = dot(q, column);
-            if i == n - 1 && j == n - 2 {
-                corner = part;
+        let mut left = length;
+        loop {
+            let longer = left;
+            for (j, q) in before.iter().enumerate() {
+                let part = dot(q, column);
+                if i == n - 1 && j == n - 2 {
+                    corner += part;
+                }
+                column.iter_mut().zip(q).for_each(|(x, y)| *x -= part * y);
             }
-            column.iter_mut().zip(q).for_each(|(x, y)| *x -= part * y);
+            left = dot(column, column).sqrt();
+            // Where little is left, rounding has kept it from being orthogonal: once more.
+            if left.is_nan() || left > 0.5 * longer || left <= DEPENDENT * length {
+                break;
+            }
         }
-        let left = dot(column, column).sqrt();
-        if left.is_nan() || left <= DEPENDENT * length {
+        if left.is_nan() || left <= LEAST || left <= DEPENDENT * length {
             return None;
         }
         column.iter_mut().for_each(|x| *x /= left);

@@ -5,8 +5,10 @@
 
 mod cavity;
 mod clough_tocher;
+mod exact;
 mod field;
 mod gradients;
+mod hubs;
 mod leave_one_out;
 mod linear;
 mod natural;

@@ -15,6 +15,10 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// How many numbers it is: the value, or with it derivatives by x, y, xx, xy and yy.
+    const PARTS: usize;
+    /// The number of these parts.
+    fn of_parts(parts: &[f64]) -> Self;
     /// A number that does not depend on the query.
     fn constant(value: f64) -> Self;
     /// A number with this value and this gradient, linear in the place of the query.
@@ -30,6 +34,11 @@ pub trait Number:
 }
 
 impl Number for f64 {
+    const PARTS: usize = 1;
+    #[inline]
+    fn of_parts(parts: &[f64]) -> Self {
+        parts[0]
+    }
     #[inline]
     fn constant(value: f64) -> Self {
         value
@@ -87,6 +96,14 @@ impl Jet {
 }
 
 impl Number for Jet {
+    const PARTS: usize = 6;
+    fn of_parts(parts: &[f64]) -> Self {
+        Self {
+            value: parts[0],
+            gradient: [parts[1], parts[2]],
+            hessian: [parts[3], parts[4], parts[5]],
+        }
+    }
     fn constant(value: f64) -> Self {
         Self {
             value,

@@ -25,8 +25,9 @@
 use delone_predicates::Point2;
 
 use super::cavity::Cavity;
+use super::exact;
 use super::number::Number;
-use crate::locate::{cross, in_unit, seen_from};
+use crate::locate::{certain, in_unit, plain, seen_from};
 
 /// Which weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +66,13 @@ impl Kind {
 /// Squared sine of the angle below which a new triangle counts as flat.
 const FLAT: f64 = 1e-6;
 
+/// Size of all terms over their sum above which more than nine bits are lost: about 1e-13 is left.
+/// It is 20 between spread points, and some hundreds between points on lines.
+const LOST: f64 = 512.0;
+
+/// Cross products below this may have lost digits at the lower end of the range.
+const LEAST: f64 = 1e-250;
+
 /// Weights of the slots of a cavity.
 #[derive(Debug)]
 pub struct Weights<T> {
@@ -76,6 +84,8 @@ pub struct Weights<T> {
     seen: Vec<[T; 2]>,
     /// The triangles from the query to the ring.
     fans: Vec<Fan<T>>,
+    /// The sum of the sizes of all terms; NaN where one is not certain.
+    size: f64,
 }
 
 impl<T> Default for Weights<T> {
@@ -85,6 +95,7 @@ impl<T> Default for Weights<T> {
             slopes: Vec::new(),
             seen: Vec::new(),
             fans: Vec::new(),
+            size: 0.0,
         }
     }
 }
@@ -94,6 +105,8 @@ impl<T> Default for Weights<T> {
 struct Fan<T> {
     u: usize,
     v: usize,
+    /// The square of the length of the edge.
+    wall: f64,
     /// Twice its area.
     cross: T,
     /// Cosines times lengths at the query, at u and at v.
@@ -113,10 +126,10 @@ impl<T: Number> Weights<T> {
         } else {
             self.areas(cavity, flat, unit);
         }
-        if !self.normalise() {
+        self.slopes.clear();
+        if !self.normalise() && !exact::weights(kind, cavity, q, unit, &mut self.values) {
             return false;
         }
-        self.slopes.clear();
         match kind {
             Kind::Sibson1 => self.blend(unit),
             Kind::Farin => self.cubic(unit),
@@ -151,18 +164,20 @@ impl<T: Number> Weights<T> {
             let after = if i + 1 < ring.len() { i + 1 } else { 0 };
             let (u, v) = (u as usize, ring[after] as usize);
             let (a, b) = (self.seen[u], self.seen[v]);
-            let edge = [b[0] - a[0], b[1] - a[1]];
+            let (p, r) = (cavity.points[u], cavity.points[v]);
+            let edge = in_unit(p, r, unit);
             let area = if cavity.flat == Some(u as u32) {
                 0.0
-            } else if unit == 1.0 {
-                cross(q, cavity.points[u], cavity.points[v], values(a), values(b))
             } else {
-                cross([0.0; 2], values(a), values(b), values(a), values(b))
+                area(p, r, q, edge, values(a).map(|x| -x), unit)
             };
+            let wall = edge[0] * edge[0] + edge[1] * edge[1];
+            let edge = edge.map(T::constant);
             self.fans.push(Fan {
                 u,
                 v,
-                cross: (a[0] * b[1] - a[1] * b[0]).with_value(area),
+                wall,
+                cross: (a[0] * edge[1] - a[1] * edge[0]).with_value(area),
                 at: [dot(a, b), -dot(edge, a), dot(edge, b)],
             });
         }
@@ -188,28 +203,36 @@ impl<T: Number> Weights<T> {
     /// Laplace weights, twice over.
     fn lengths(&mut self, flat: Option<usize>) {
         let scale = flat.map(|i| self.fans[i].cross);
+        self.size = 0.0;
         for (i, fan) in self.fans.iter().enumerate() {
             let factor = factor(fan.cross, scale, flat == Some(i));
             self.values[fan.u] = self.values[fan.u] + fan.at[2] * factor;
             self.values[fan.v] = self.values[fan.v] + fan.at[1] * factor;
+            let [_, u, v] = fan.at.map(|x| x.value().abs());
+            self.size += (u + v + 2.0 * fan.cross.value()) * factor.value();
         }
     }
 
     /// Areas taken, eight times over.
     fn areas(&mut self, cavity: &Cavity, flat: Option<usize>, unit: f64) {
         let scale = flat.map(|i| self.fans[i].cross);
+        self.size = 0.0;
         for (i, fan) in self.fans.iter().enumerate() {
             let (a, b) = (self.seen[fan.u], self.seen[fan.v]);
-            let edge = [b[0] - a[0], b[1] - a[1]];
+            let (aa, bb) = (dot(a, a), dot(b, b));
             let factor = factor(fan.cross, scale, flat == Some(i));
-            let wall = dot(edge, edge) * fan.at[0];
-            let at_u = (wall + dot(a, a) * fan.at[2]) * factor;
-            let at_v = (wall + dot(b, b) * fan.at[1]) * factor;
-            self.values[fan.u] = self.values[fan.u] - at_u;
-            self.values[fan.v] = self.values[fan.v] - at_v;
+            let wall = T::constant(fan.wall) * fan.at[0];
+            let (at_u, at_v) = (aa * fan.at[2], bb * fan.at[1]);
+            self.values[fan.u] = self.values[fan.u] - (wall + at_u) * factor;
+            self.values[fan.v] = self.values[fan.v] - (wall + at_v) * factor;
+            // A cotangent is off by a rounding of 1 + its size.
+            let squares = 2.0 * fan.wall + aa.value() + bb.value();
+            let [wall, u, v] = [wall, at_u, at_v].map(|x| x.value().abs());
+            self.size += (2.0 * wall + u + v + squares * fan.cross.value()) * factor.value();
         }
+        let scaled = scale.map_or(1.0, T::value);
         for slots in &cavity.triangles {
-            let parts = corner_areas(slots.map(|s| cavity.points[s as usize]), unit);
+            let (parts, size) = corner_areas(slots.map(|s| cavity.points[s as usize]), unit);
             for (&slot, part) in slots.iter().zip(parts) {
                 let value = &mut self.values[slot as usize];
                 *value = match scale {
@@ -217,6 +240,7 @@ impl<T: Number> Weights<T> {
                     Some(scale) => *value + scale * T::constant(part),
                 };
             }
+            self.size += size * scaled;
         }
     }
 
@@ -232,7 +256,8 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Divides by the sum; what is below zero by rounding becomes zero.
+    /// Divides by the sum; what is below zero by rounding becomes zero. False where the sum is not
+    /// certain, or NaN.
     fn normalise(&mut self) -> bool {
         let mut sum = T::constant(0.0);
         for value in &mut self.values {
@@ -241,7 +266,8 @@ impl<T: Number> Weights<T> {
             }
             sum = sum + *value;
         }
-        if !(sum.value() > 0.0 && sum.value().is_finite()) {
+        let sure = sum.value() * LOST >= self.size;
+        if !(sure && sum.value() > 0.0 && sum.value().is_finite()) {
             return false;
         }
         for value in &mut self.values {
@@ -332,21 +358,33 @@ fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
     }
 }
 
-/// Eight times the part of each corner's cell in a triangle.
+/// The cross product of the edges `op` and `or`; NaN where it is not certain.
 #[inline]
-fn corner_areas(corners: [Point2; 3], unit: f64) -> [f64; 3] {
+fn area(o: Point2, p: Point2, r: Point2, op: Point2, or: Point2, unit: f64) -> f64 {
+    match plain(op, or) {
+        Some(area) if area > LEAST => area,
+        _ if unit == 1.0 => certain(o, p, r).unwrap_or(f64::NAN),
+        _ => f64::NAN,
+    }
+}
+
+/// Eight times the part of each corner's cell in a triangle; and the size of the terms.
+#[inline]
+fn corner_areas(corners: [Point2; 3], unit: f64) -> ([f64; 3], f64) {
     let [a, b, c] = corners;
-    let (ab, ac) = (in_unit(a, b, unit), in_unit(a, c, unit));
-    let area = if unit == 1.0 {
-        cross(a, b, c, ab, ac)
-    } else {
-        cross([0.0; 2], ab, ac, ab, ac)
-    };
-    let bc = [ac[0] - ab[0], ac[1] - ab[1]];
+    let (ab, ac, bc) = (
+        in_unit(a, b, unit),
+        in_unit(a, c, unit),
+        in_unit(b, c, unit),
+    );
+    let area = area(a, b, c, ab, ac, unit);
     let at_a = dot(ab, ac);
     let at_b = -dot(ab, bc);
     let at_c = dot(ac, bc);
-    let (aa, bb, cc) = (dot(bc, bc) * at_a, dot(ac, ac) * at_b, dot(ab, ab) * at_c);
+    let squares = [dot(bc, bc), dot(ac, ac), dot(ab, ab)];
+    let (aa, bb, cc) = (squares[0] * at_a, squares[1] * at_b, squares[2] * at_c);
     let one = 1.0 / area;
-    [(bb + cc) * one, (aa + cc) * one, (aa + bb) * one]
+    let parts = [(bb + cc) * one, (aa + cc) * one, (aa + bb) * one];
+    let size = (aa.abs() + bb.abs() + cc.abs()) * one + (squares[0] + squares[1] + squares[2]);
+    (parts, 2.0 * size)
 }

@@ -2,12 +2,17 @@
 //! offsets and in thin triangles, exact at corners, and zero opposite the edges that hold the point.
 
 use delone_predicates::Point2;
+use num_bigint::BigInt;
 
-use super::cross::{accurate, plain};
+use super::cross::{certain, plain};
 use super::range::seen_from;
 use super::star::Place;
 use super::tiling::{next, prev};
 use crate::delaunay2::validate::Given;
+use crate::wide::{lowest, ratio, scaled};
+
+/// Areas below this may have lost digits at the lower end of the range.
+const LEAST: f64 = 1e-250;
 
 /// The weights of the corners of the triangle at `place` for `q`: not negative, of sum 1.
 #[inline]
@@ -32,7 +37,7 @@ pub fn weights(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
         areas[k] = plain(seen[next(k)], seen[prev(k)]).unwrap_or(f64::NAN); // not accurate
     }
     let sum = areas[0] + areas[1] + areas[2];
-    if sum.is_nan() || sum <= 0.0 || on != [false; 3] || areas.iter().any(|&a| a < 0.0) {
+    if sum.is_nan() || sum <= LEAST || on != [false; 3] || areas.iter().any(|&a| a < 0.0) {
         return with_care(corners, seen, unit, on, q);
     }
     areas.map(|a| a / sum)
@@ -46,30 +51,42 @@ fn with_care(
     on: [bool; 3],
     q: Point2,
 ) -> [f64; 3] {
+    if on != [false; 3] {
+        return along_edge(corners, on, q);
+    }
     let mut areas = [0.0; 3];
-    for k in 0..3 {
-        if on[k] {
-            continue;
-        }
+    for (k, area) in areas.iter_mut().enumerate() {
         let (i, j) = (next(k), prev(k));
-        let area = plain(seen[i], seen[j]).unwrap_or_else(|| {
-            if unit == 1.0 {
-                accurate(q, corners[i], corners[j])
-            } else {
-                accurate([0.0; 2], seen[i], seen[j])
-            }
-        });
-        areas[k] = area.max(0.0);
+        *area = match plain(seen[i], seen[j]) {
+            Some(area) if area > LEAST => area,
+            _ if unit == 1.0 => match certain(q, corners[i], corners[j]) {
+                Some(area) => area.max(0.0),
+                None => return exact(corners, on, q),
+            },
+            _ => return exact(corners, on, q),
+        };
     }
     let sum = areas[0] + areas[1] + areas[2];
-    if sum > 0.0 {
-        return areas.map(|a| a / sum);
-    }
-    along_edge(corners, on, q)
+    areas.map(|a| a / sum)
 }
 
-/// The weights on the edge that has the point, or in a triangle that no arithmetic of doubles tells
-/// from its longest edge.
+/// The weights by areas in integers, where doubles do not tell them.
+#[cold]
+fn exact(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
+    let low = lowest(&[corners[0], corners[1], corners[2], q], &[]);
+    let seen = corners.map(|p| [0, 1].map(|k| scaled(p[k], low) - scaled(q[k], low)));
+    let areas: [BigInt; 3] = std::array::from_fn(|k| {
+        let (a, b) = (&seen[next(k)], &seen[prev(k)]);
+        (&a[0] * &b[1] - &a[1] * &b[0]).max(BigInt::ZERO)
+    });
+    let sum = &areas[0] + &areas[1] + &areas[2];
+    if sum == BigInt::ZERO {
+        return along_edge(corners, on, q);
+    }
+    areas.map(|area| ratio(&area, &sum, 0).unwrap_or(0.0))
+}
+
+/// The weights on the edge that has the point; in what is no triangle, on the longest edge.
 #[cold]
 fn along_edge(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
     let (mut seen, _) = seen_from(q, corners);

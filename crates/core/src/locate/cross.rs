@@ -34,12 +34,28 @@ pub fn cross(o: Point2, p: Point2, r: Point2, a: Point2, b: Point2) -> f64 {
 #[cold]
 #[inline(never)]
 pub fn accurate(o: Point2, p: Point2, r: Point2) -> f64 {
+    with_products(o, p, r).0
+}
+
+/// The same where it is right in nearly all of its digits.
+#[cold]
+#[inline(never)]
+pub fn certain(o: Point2, p: Point2, r: Point2) -> Option<f64> {
+    // What is left of 2^-100 of the products, and far above what underflow takes.
+    const SHARE: f64 = (1_u64 << 45) as f64;
+    const LEAST: f64 = 1e-250;
+    let (cross, products) = with_products(o, p, r);
+    (cross.abs() * SHARE >= products && cross.abs() > LEAST).then_some(cross)
+}
+
+fn with_products(o: Point2, p: Point2, r: Point2) -> (f64, f64) {
     let [ax, ay] = [0, 1].map(|k| difference(p[k], o[k]));
     let [bx, by] = [0, 1].map(|k| difference(r[k], o[k]));
     let (left, left_rest) = product(ax, by);
     let (right, right_rest) = product(ay, bx);
     let (head, tail) = difference(left, right);
-    head + (tail + (left_rest - right_rest))
+    let cross = head + (tail + (left_rest - right_rest));
+    (cross, left.abs() + right.abs())
 }
 
 /// `a - b` without a rounding (D. E. Knuth's two-sum).
@@ -69,6 +85,8 @@ mod tests {
         let r = [o[0] + 2000.0, o[1] + 2000.0 + step];
         assert_eq!(accurate(o, p, r), 1000.0 * step);
         assert_eq!(accurate(o, r, p), -1000.0 * step);
+        assert_eq!(certain(o, p, r), Some(1000.0 * step));
+        assert_eq!(certain([1e-30, 0.0], [1.0, 1.0], [2.0, 2.0]), None);
         let far = [1e16, 1.0];
         assert_eq!(accurate([1.0, 0.0], far, [0.0, 1.0]), 1e16);
     }

@@ -27,7 +27,7 @@ pub use batch::{Batch, Output};
 pub use boundary::Boundary;
 pub use boxes::{Boxes, length};
 pub use coordinates::{Coordinates, coordinates};
-pub use cross::cross;
+pub use cross::{certain, cross, plain};
 pub use nearest::nearest;
 pub use range::{in_unit, seen_from, unit_of};
 pub use segment::along;

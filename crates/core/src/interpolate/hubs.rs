@@ -1,0 +1,97 @@
+//! Neighbours of neighbours, where some vertices have very many: the centre of a circle of n points
+//! has n, and if each of them took all of those, the surroundings together would be of n^2.
+//!
+//! Of a hub's neighbours a vertex takes those that follow and precede it around the hub, and as many
+//! that are spread evenly around, as an arc alone hardly determines a quadric. Directions are
+//! compared exactly, so that they depend on the coordinates alone.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::gradients::Adjacency;
+
+/// Neighbours above which a vertex is a hub. Among spread points none has half as many.
+const MANY: usize = 32;
+
+/// The neighbours of a hub.
+struct Ring {
+    /// Counter-clockwise.
+    around: Vec<i32>,
+    /// Each with its place in the above, by vertex.
+    places: Vec<(i32, usize)>,
+}
+
+/// Vertices with the neighbours of their neighbours.
+pub struct Hubs<'a> {
+    /// The neighbours.
+    pub adjacency: Adjacency<'a>,
+    rings: HashMap<i32, Ring>,
+}
+
+impl<'a> Hubs<'a> {
+    /// Sorts the neighbours of hubs.
+    pub fn of(points: &[Point2], adjacency: Adjacency<'a>) -> Self {
+        let mut rings = HashMap::new();
+        let all = 0..adjacency.vertices();
+        for v in all.filter(|&v| adjacency.neighbours(v).len() > MANY) {
+            let mut around = adjacency.neighbours(v).to_vec();
+            let at = |u: i32| points[u as usize];
+            around.sort_unstable_by(|&a, &b| turn(points[v], at(a), at(b)).then(a.cmp(&b)));
+            let places = around.iter().enumerate().map(|(i, &u)| (u, i));
+            let mut places: Vec<(i32, usize)> = places.collect();
+            places.sort_unstable();
+            rings.insert(v as i32, Ring { around, places });
+        }
+        Self { adjacency, rings }
+    }
+
+    /// Adds the neighbours of `u` that count for its neighbour `v`.
+    pub fn extend(&self, u: i32, v: i32, found: &mut Vec<i32>) {
+        let Some(ring) = self.rings.get(&u) else {
+            found.extend_from_slice(self.adjacency.neighbours(u as usize));
+            return;
+        };
+        let known = ring.places.binary_search_by_key(&v, |&(vertex, _)| vertex);
+        let place = known.map_or(0, |i| ring.places[i].1);
+        let n = ring.around.len();
+        let (first, part) = (place + n - MANY / 4, MANY / 2);
+        found.extend((first..=first + part).map(|i| ring.around[i % n]));
+        found.extend((1..part).map(|i| ring.around[(place + i * n / part) % n]));
+    }
+}
+
+/// The order of directions from `o`, counter-clockwise from that of the x-axis.
+fn turn(o: Point2, a: Point2, b: Point2) -> Ordering {
+    let is_low = |p: Point2| p[1] < o[1] || (p[1] == o[1] && p[0] < o[0]);
+    is_low(a)
+        .cmp(&is_low(b))
+        .then_with(|| match orient2d(o, a, b) {
+            Sign::Positive => Ordering::Less,
+            Sign::Zero => Ordering::Equal,
+            Sign::Negative => Ordering::Greater,
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_follow_each_other_around() {
+        let ways = [
+            [3.0, 0.0],
+            [1.0, 1.0],
+            [0.0, 2.0],
+            [-1.0, 5e-324],
+            [-1.0, 0.0],
+            [0.0, -1.0],
+        ];
+        for (i, &a) in ways.iter().enumerate() {
+            for (j, &b) in ways.iter().enumerate() {
+                assert_eq!(turn([0.0; 2], a, b), i.cmp(&j), "{a:?} {b:?}");
+            }
+        }
+    }
+}
