@@ -19,7 +19,7 @@
 //! for points that were not chosen to the contrary. What lies outside of the cavity stays as it is,
 //! since the constrained Delaunay triangulation is unique and only a segment takes sight away.
 
-use delone_predicates::{Sign, lexicographic, orient2d};
+use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
 use super::marked::{Marked, turn};
 use crate::error::{Error, Result};
@@ -76,6 +76,24 @@ enum Side {
     Inner(Code),
 }
 
+/// The vertex behind edge `e`, which the segment from `a` to `b` crosses, and the edge that the
+/// segment crosses next; none where it meets the vertex.
+#[inline]
+fn behind(mesh: &Patch, points: &[Point2], e: Code, a: u32, b: u32) -> Result<(u32, Option<Code>)> {
+    let o = mesh.opposite(e);
+    let x = mesh.vertex(o);
+    if x == mesh.infinite() {
+        let message = format!("the segment {a} {b} leaves the hull");
+        return Err(Error::Internal(message));
+    }
+    let [p, q, at] = [a, b, x].map(|v| points[v as usize]);
+    Ok(match orient2d(p, q, at) {
+        Sign::Positive => (x, Some(next(o))),
+        Sign::Negative => (x, Some(prev(o))),
+        Sign::Zero => (x, None),
+    })
+}
+
 impl Marked {
     /// Joins vertices `a` and `b`, which differ, as far as the first vertex or marked edge on the
     /// way, seen from one of them.
@@ -116,22 +134,12 @@ impl Marked {
                 Leave::Along(_, w) => w,
                 Leave::Across(first) => {
                     let mut e = first;
-                    let mesh = self.patch();
+                    let mesh = self.mesh.resume(2 * self.count as u32 - 2);
                     let mut beside = vec![mesh.vertex(next(e)), mesh.vertex(prev(e))];
                     let end = loop {
-                        let mesh = self.mesh.resume(2 * self.count as u32 - 2);
-                        let o = mesh.opposite(e);
-                        let x = mesh.vertex(o);
-                        if x == mesh.infinite() {
-                            let message = format!("the segment {a} {b} leaves the hull");
-                            return Err(Error::Internal(message));
-                        }
-                        let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
-                        e = match orient2d(p, q, at) {
-                            Sign::Positive => next(o),
-                            Sign::Negative => prev(o),
-                            Sign::Zero => break x,
-                        };
+                        let (x, beyond) = behind(&mesh, &self.points, e, a, b)?;
+                        let Some(f) = beyond else { break x };
+                        e = f;
                         beside.push(x);
                     };
                     stops.extend(beside.into_iter().filter(|&w| near(self, w)));
@@ -156,18 +164,9 @@ impl Marked {
                     let mesh = self.mesh.resume(2 * self.count as u32 - 2);
                     loop {
                         visit(&mesh, e);
-                        let o = mesh.opposite(e);
-                        let x = mesh.vertex(o);
-                        if x == mesh.infinite() {
-                            let message = format!("the segment {a} {b} leaves the hull");
-                            return Err(Error::Internal(message));
-                        }
-                        let [p, q, at] = [a, b, x].map(|v| self.points[v as usize]);
-                        e = match orient2d(p, q, at) {
-                            Sign::Positive => next(o),
-                            Sign::Negative => prev(o),
-                            Sign::Zero => break x,
-                        };
+                        let (x, beyond) = behind(&mesh, &self.points, e, a, b)?;
+                        let Some(f) = beyond else { break x };
+                        e = f;
                     }
                 }
             };

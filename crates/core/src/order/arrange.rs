@@ -4,8 +4,9 @@ use std::sync::Mutex;
 
 use delone_predicates::Point2;
 
-use super::blocks::{Blocks, Cuts, split};
+use super::blocks::{Cuts, split};
 use super::curve::{Scratch, along_curve};
+use super::deal::Blocks;
 use crate::error::Result;
 use crate::parallel;
 use crate::watch::Watch;

@@ -4,9 +4,9 @@
 
 use delone_predicates::{Point2, lexicographic};
 
+use super::deal::{Blocks, deal};
 use crate::error::Result;
-use crate::memory::{with_room, zeroed};
-use crate::parallel;
+use crate::memory::with_room;
 use crate::points::Extent;
 
 /// Most points that a block should hold: its mesh of 80 bytes a point fits a shared cache.
@@ -14,9 +14,6 @@ const BLOCK: usize = 1 << 17;
 
 /// Sampled points a block: cuts are off the median by some per cent.
 const SAMPLE: usize = 256;
-
-/// Points that one task classifies.
-const SHARE: usize = 1 << 16;
 
 /// Which coordinate leads where points are compared across a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,19 +115,8 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
     cut(cuts, 2 * node + 2, right);
 }
 
-/// Points sorted into blocks, in the order of their rows within each.
-#[derive(Debug)]
-pub struct Blocks {
-    /// The points, block after block, with room for one more.
-    pub points: Vec<Point2>,
-    /// Their rows.
-    pub rows: Vec<u32>,
-    /// Where each block begins, and the end.
-    pub starts: Vec<usize>,
-}
-
 /// Sorts `points` into the blocks of `cuts`.
-pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks> {
+pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks<2>> {
     let blocks = cuts.blocks();
     if blocks == 1 {
         let mut rows = with_room(points.len())?;
@@ -143,62 +129,7 @@ pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks> {
             starts: vec![0, points.len()],
         });
     }
-    let shares: Vec<&[Point2]> = points.chunks(SHARE).collect();
-    let classified = parallel::map(workers, shares, |share| {
-        let mut counts = vec![0usize; blocks];
-        let block_of: Vec<u16> = share
-            .iter()
-            .map(|&p| {
-                let b = cuts.block(p);
-                counts[b] += 1;
-                b as u16
-            })
-            .collect();
-        (block_of, counts)
-    });
-    // Each share writes its part of each block: cut the outputs into those parts, block by block.
-    let mut out_points: Vec<Point2> = zeroed(points.len() + 1)?;
-    out_points.pop(); // Room for one more.
-    let mut out_rows: Vec<u32> = zeroed(points.len())?;
-    let mut starts = vec![0];
-    let mut parts: Vec<Vec<_>> = classified
-        .iter()
-        .map(|_| Vec::with_capacity(blocks))
-        .collect();
-    let (mut rest_points, mut rest_rows) = (&mut out_points[..], &mut out_rows[..]);
-    for b in 0..blocks {
-        let mut size = 0;
-        for ((_, counts), part) in classified.iter().zip(&mut parts) {
-            let (p, q) = rest_points.split_at_mut(counts[b]);
-            let (r, s) = rest_rows.split_at_mut(counts[b]);
-            part.push((p, r));
-            (rest_points, rest_rows) = (q, s);
-            size += counts[b];
-        }
-        starts.push(starts[b] + size);
-    }
-    let tasks = points
-        .chunks(SHARE)
-        .zip(&classified)
-        .zip(parts)
-        .enumerate()
-        .collect();
-    parallel::map(workers, tasks, |(i, ((share, (block_of, _)), mut part))| {
-        let mut filled = vec![0usize; blocks];
-        let first_row = (i * SHARE) as u32;
-        for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
-            let b = usize::from(b);
-            let (points, rows) = &mut part[b];
-            points[filled[b]] = p;
-            rows[filled[b]] = row;
-            filled[b] += 1;
-        }
-    });
-    Ok(Blocks {
-        points: out_points,
-        rows: out_rows,
-        starts,
-    })
+    deal(points, blocks, |p| cuts.block(p), workers)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ mod arrange;
 pub mod blocks;
 mod cells;
 pub mod curve;
+mod deal;
 mod hilbert;
 mod hilbert3;
 mod radix;

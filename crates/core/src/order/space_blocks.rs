@@ -4,17 +4,14 @@
 
 use delone_predicates::{Point3, lexicographic};
 
+use super::deal::{Blocks, deal};
 use super::space::Extent3;
 use crate::error::Result;
-use crate::memory::{with_room, zeroed};
-use crate::parallel;
+use crate::memory::with_room;
 
 /// Sampled points a block. A median of so many is off by 0.3 % of the points, and by so much two threads with
 /// a block each differ; to find it costs 2 ns a point of a million.
 const SAMPLE: usize = 1 << 14;
-
-/// Points that one task classifies.
-const SHARE: usize = 1 << 16;
 
 /// A cut of space: what comes before `at`, by the coordinate `axis` and then the next ones, goes left.
 /// That is a half-space with a part of its border, so the hulls of the two sides do not meet.
@@ -94,74 +91,9 @@ impl Cuts3 {
     }
 }
 
-/// Points sorted into blocks, in the order of their rows within each.
-#[derive(Debug)]
-pub struct Blocks3 {
-    points: Vec<Point3>,
-    rows: Vec<u32>,
-    starts: Vec<usize>,
-}
-
-impl Blocks3 {
-    /// The points of each block with their rows, which ascend.
-    pub fn each(&self) -> impl Iterator<Item = (&[Point3], &[u32])> {
-        let range = |w: &[usize]| (&self.points[w[0]..w[1]], &self.rows[w[0]..w[1]]);
-        self.starts.windows(2).map(range)
-    }
-}
-
 /// Sorts `points` into the blocks of `cuts`.
-pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize) -> Result<Blocks3> {
-    let blocks = cuts.blocks();
-    let shares: Vec<&[Point3]> = points.chunks(SHARE).collect();
-    let classified: Vec<_> = parallel::map(workers, shares, |share| {
-        let mut counts = vec![0usize; blocks];
-        let block_of = share.iter().map(|&p| {
-            let b = cuts.block(p);
-            counts[b] += 1;
-            b as u16
-        });
-        (block_of.collect::<Vec<u16>>(), counts)
-    });
-    let mut out = Blocks3 {
-        points: zeroed(points.len())?,
-        rows: zeroed(points.len())?,
-        starts: vec![0],
-    };
-    // Each share writes its part of each block: cut the outputs into those parts, block by block.
-    let mut parts: Vec<Vec<_>> = classified
-        .iter()
-        .map(|_| Vec::with_capacity(blocks))
-        .collect();
-    let (mut rest_points, mut rest_rows) = (&mut out.points[..], &mut out.rows[..]);
-    for b in 0..blocks {
-        let mut size = 0;
-        for ((_, counts), part) in classified.iter().zip(&mut parts) {
-            let (p, q) = rest_points.split_at_mut(counts[b]);
-            let (r, s) = rest_rows.split_at_mut(counts[b]);
-            part.push((p, r));
-            (rest_points, rest_rows) = (q, s);
-            size += counts[b];
-        }
-        out.starts.push(out.starts[b] + size);
-    }
-    let tasks = points.chunks(SHARE).zip(&classified).zip(parts).enumerate();
-    parallel::map(
-        workers,
-        tasks.collect(),
-        |(i, ((share, (block_of, _)), mut part))| {
-            let mut filled = vec![0usize; blocks];
-            let first_row = (i * SHARE) as u32;
-            for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
-                let b = usize::from(b);
-                let (points, rows) = &mut part[b];
-                points[filled[b]] = p;
-                rows[filled[b]] = row;
-                filled[b] += 1;
-            }
-        },
-    );
-    Ok(out)
+pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize) -> Result<Blocks<3>> {
+    deal(points, cuts.blocks(), |p| cuts.block(p), workers)
 }
 
 fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point3]) {

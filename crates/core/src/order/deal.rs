@@ -1,0 +1,91 @@
+//! Deals points to the blocks that cuts make of them, shares of the points at a time.
+
+use crate::error::Result;
+use crate::memory::{Zero, zeroed};
+use crate::parallel;
+
+/// Points that one task deals.
+const SHARE: usize = 1 << 16;
+
+/// Points sorted by block, in the order of their rows within each.
+#[derive(Debug)]
+pub struct Blocks<const D: usize> {
+    /// The points, block after block.
+    pub points: Vec<[f64; D]>,
+    /// Their rows.
+    pub rows: Vec<u32>,
+    /// Where each block begins, and the end.
+    pub starts: Vec<usize>,
+}
+
+impl<const D: usize> Blocks<D> {
+    /// The points of each block with their rows, which ascend.
+    pub fn each(&self) -> impl Iterator<Item = (&[[f64; D]], &[u32])> {
+        let range = |w: &[usize]| (&self.points[w[0]..w[1]], &self.rows[w[0]..w[1]]);
+        self.starts.windows(2).map(range)
+    }
+}
+
+/// Sorts `points` into `blocks` blocks, of which `block` knows the one of a point; there is room for one
+/// more.
+pub fn deal<const D: usize>(
+    points: &[[f64; D]],
+    blocks: usize,
+    block: impl Fn([f64; D]) -> usize + Sync,
+    workers: usize,
+) -> Result<Blocks<D>>
+where
+    [f64; D]: Zero,
+{
+    let shares: Vec<&[[f64; D]]> = points.chunks(SHARE).collect();
+    let classified = parallel::map(workers, shares, |share| {
+        let mut counts = vec![0usize; blocks];
+        let mut block_of = Vec::with_capacity(share.len());
+        for &p in share {
+            let b = block(p);
+            counts[b] += 1;
+            block_of.push(b as u16);
+        }
+        (block_of, counts)
+    });
+    let mut out = Blocks {
+        points: zeroed(points.len() + 1)?,
+        rows: zeroed(points.len())?,
+        starts: vec![0],
+    };
+    out.points.pop(); // Room for one more.
+    // Each share writes its part of each block: cut the outputs into those parts, block by block.
+    let mut parts: Vec<Vec<_>> = classified
+        .iter()
+        .map(|_| Vec::with_capacity(blocks))
+        .collect();
+    let (mut rest_points, mut rest_rows) = (&mut out.points[..], &mut out.rows[..]);
+    for b in 0..blocks {
+        let mut size = 0;
+        for ((_, counts), part) in classified.iter().zip(&mut parts) {
+            let (p, q) = rest_points.split_at_mut(counts[b]);
+            let (r, s) = rest_rows.split_at_mut(counts[b]);
+            part.push((p, r));
+            (rest_points, rest_rows) = (q, s);
+            size += counts[b];
+        }
+        out.starts.push(out.starts[b] + size);
+    }
+    let tasks = points.chunks(SHARE).zip(&classified).zip(parts).enumerate();
+    parallel::map(
+        workers,
+        tasks.collect(),
+        |(i, ((share, (block_of, _)), mut part))| {
+            let mut filled = vec![0usize; blocks];
+            let first_row = (i * SHARE) as u32;
+            for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
+                let b = usize::from(b);
+                let (points, rows) = &mut part[b];
+                points[filled[b]] = p;
+                rows[filled[b]] = row;
+                filled[b] += 1;
+            }
+        },
+    );
+    Ok(out)
+}
