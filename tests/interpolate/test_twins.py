@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from delone import Delaunay
@@ -70,6 +70,8 @@ def test_of_twins_at_any_gap(
 
 @pytest.mark.parametrize("kind", KINDS)
 @given(st.integers(-1074, -20), st.integers(-1000, 960), st.booleans())
+# Squares times cosines of the needle between the twins are subnormal, its area is not.
+@example(-277, -199, False)
 def test_of_twins_far_closer_than_doubles_tell_elsewhere(
     kind: str, exponent: int, scale: int, upright: bool
 ) -> None:

@@ -221,14 +221,16 @@ impl<T: Number> Weights<T> {
             let (a, b) = (self.seen[fan.u], self.seen[fan.v]);
             let (aa, bb) = (dot(a, a), dot(b, b));
             let factor = factor(fan.cross, scale, flat == Some(i));
-            let wall = T::constant(fan.wall) * fan.at[0];
-            let (at_u, at_v) = (aa * fan.at[2], bb * fan.at[1]);
-            self.values[fan.u] = self.values[fan.u] - (wall + at_u) * factor;
-            self.values[fan.v] = self.values[fan.v] - (wall + at_v) * factor;
+            // Cotangents first: squares times cosines may lose digits at the lower end of the range.
+            let [at_q, at_v, at_u] = fan.at.map(|x| x * factor);
+            let wall = T::constant(fan.wall) * at_q;
+            let (at_u, at_v) = (aa * at_u, bb * at_v);
+            self.values[fan.u] = self.values[fan.u] - (wall + at_u);
+            self.values[fan.v] = self.values[fan.v] - (wall + at_v);
             // A cotangent is off by a rounding of 1 + its size.
             let squares = 2.0 * fan.wall + aa.value() + bb.value();
             let [wall, u, v] = [wall, at_u, at_v].map(|x| x.value().abs());
-            self.size += (2.0 * wall + u + v + squares * fan.cross.value()) * factor.value();
+            self.size += 2.0 * wall + u + v + squares * (fan.cross.value() * factor.value());
         }
         let scaled = scale.map_or(1.0, T::value);
         for slots in &cavity.triangles {
@@ -363,7 +365,9 @@ fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
 fn area(o: Point2, p: Point2, r: Point2, op: Point2, or: Point2, unit: f64) -> f64 {
     match plain(op, or) {
         Some(area) if area > LEAST => area,
-        _ if unit == 1.0 => certain(o, p, r).unwrap_or(f64::NAN),
+        _ if unit == 1.0 => certain(o, p, r)
+            .filter(|&area| area > LEAST)
+            .unwrap_or(f64::NAN),
         _ => f64::NAN,
     }
 }
@@ -378,13 +382,12 @@ fn corner_areas(corners: [Point2; 3], unit: f64) -> ([f64; 3], f64) {
         in_unit(b, c, unit),
     );
     let area = area(a, b, c, ab, ac, unit);
-    let at_a = dot(ab, ac);
-    let at_b = -dot(ab, bc);
-    let at_c = dot(ac, bc);
+    // Cotangents, not yet times squares: those products may lose digits at the end of the range.
+    let one = 1.0 / area;
+    let (at_a, at_b, at_c) = (dot(ab, ac) * one, -dot(ab, bc) * one, dot(ac, bc) * one);
     let squares = [dot(bc, bc), dot(ac, ac), dot(ab, ab)];
     let (aa, bb, cc) = (squares[0] * at_a, squares[1] * at_b, squares[2] * at_c);
-    let one = 1.0 / area;
-    let parts = [(bb + cc) * one, (aa + cc) * one, (aa + bb) * one];
-    let size = (aa.abs() + bb.abs() + cc.abs()) * one + (squares[0] + squares[1] + squares[2]);
+    let parts = [bb + cc, aa + cc, aa + bb];
+    let size = aa.abs() + bb.abs() + cc.abs() + (squares[0] + squares[1] + squares[2]);
     (parts, 2.0 * size)
 }
