@@ -210,6 +210,16 @@ def test_what_is_wrong_is_found(
     assert words in str(report)
 
 
+@pytest.mark.parametrize("left", [0, 200])
+def test_a_torn_manifest(tin: distributed.TiledDelaunay, tmp_path: Path, left: int) -> None:
+    torn = tmp_path / "torn"
+    shutil.copytree(tin.path, torn)
+    manifest = torn / "manifest.json"
+    manifest.write_text(manifest.read_text(encoding="utf-8")[:left], encoding="utf-8")
+    with pytest.raises(FileFormatError, match=r"manifest\.json is torn"):
+        distributed.open(torn)
+
+
 def test_torn_outputs(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
     shutil.copytree(tin.path, tmp_path / "tin")
     path = tmp_path / "tin" / "triangles" / "tile=000000.parquet"

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import DeloneError
+from delone.errors import FileFormatError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -119,7 +119,7 @@ class Store:
         except FileNotFoundError:
             return None
         except ValueError as error:
-            raise DeloneError(f"{self.path(name)} is torn: {error}") from error
+            raise FileFormatError(f"{self.path(name)} is torn: {error}") from error
 
     def sweep(self, pattern: str) -> None:
         """Remove what killed processes have left beside files."""
