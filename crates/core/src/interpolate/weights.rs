@@ -73,6 +73,9 @@ const LOST: f64 = 512.0;
 /// Cross products below this may have lost digits at the lower end of the range.
 const LEAST: f64 = 1e-250;
 
+/// Area from which on its square is far above the lower end of the range.
+const SMALL: f64 = 1e-120;
+
 /// Weights of the slots of a cavity.
 #[derive(Debug)]
 pub struct Weights<T> {
@@ -221,16 +224,17 @@ impl<T: Number> Weights<T> {
             let (a, b) = (self.seen[fan.u], self.seen[fan.v]);
             let (aa, bb) = (dot(a, a), dot(b, b));
             let factor = factor(fan.cross, scale, flat == Some(i));
-            // Cotangents first: squares times cosines may lose digits at the lower end of the range.
-            let [at_q, at_v, at_u] = fan.at.map(|x| x * factor);
+            let (before, after) = around(fan.cross.value(), factor, T::constant(1.0));
+            let [at_q, at_v, at_u] = fan.at.map(|x| x * before);
             let wall = T::constant(fan.wall) * at_q;
             let (at_u, at_v) = (aa * at_u, bb * at_v);
-            self.values[fan.u] = self.values[fan.u] - (wall + at_u);
-            self.values[fan.v] = self.values[fan.v] - (wall + at_v);
+            self.values[fan.u] = self.values[fan.u] - (wall + at_u) * after;
+            self.values[fan.v] = self.values[fan.v] - (wall + at_v) * after;
             // A cotangent is off by a rounding of 1 + its size.
             let squares = 2.0 * fan.wall + aa.value() + bb.value();
             let [wall, u, v] = [wall, at_u, at_v].map(|x| x.value().abs());
-            self.size += 2.0 * wall + u + v + squares * (fan.cross.value() * factor.value());
+            self.size += (2.0 * wall + u + v) * after.value()
+                + squares * (fan.cross.value() * factor.value());
         }
         let scaled = scale.map_or(1.0, T::value);
         for slots in &cavity.triangles {
@@ -360,6 +364,17 @@ fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
     }
 }
 
+/// The factor of cosines before they meet squares, and that after: as a rule the latter, which rounds
+/// lattices least; cotangents first where those products may fall below the range.
+#[inline]
+fn around<T>(area: f64, factor: T, one: T) -> (T, T) {
+    if area > SMALL {
+        (one, factor)
+    } else {
+        (factor, one)
+    }
+}
+
 /// The cross product of the edges `op` and `or`; NaN where it is not certain.
 #[inline]
 fn area(o: Point2, p: Point2, r: Point2, op: Point2, or: Point2, unit: f64) -> f64 {
@@ -382,12 +397,11 @@ fn corner_areas(corners: [Point2; 3], unit: f64) -> ([f64; 3], f64) {
         in_unit(b, c, unit),
     );
     let area = area(a, b, c, ab, ac, unit);
-    // Cotangents, not yet times squares: those products may lose digits at the end of the range.
-    let one = 1.0 / area;
-    let (at_a, at_b, at_c) = (dot(ab, ac) * one, -dot(ab, bc) * one, dot(ac, bc) * one);
+    let (before, after) = around(area, 1.0 / area, 1.0);
+    let [at_a, at_b, at_c] = [dot(ab, ac), -dot(ab, bc), dot(ac, bc)].map(|x| x * before);
     let squares = [dot(bc, bc), dot(ac, ac), dot(ab, ab)];
     let (aa, bb, cc) = (squares[0] * at_a, squares[1] * at_b, squares[2] * at_c);
-    let parts = [bb + cc, aa + cc, aa + bb];
-    let size = aa.abs() + bb.abs() + cc.abs() + (squares[0] + squares[1] + squares[2]);
+    let parts = [bb + cc, aa + cc, aa + bb].map(|x| x * after);
+    let size = (aa.abs() + bb.abs() + cc.abs()) * after + (squares[0] + squares[1] + squares[2]);
     (parts, 2.0 * size)
 }
