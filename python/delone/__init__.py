@@ -36,16 +36,16 @@ from delone.errors import (
 )
 from delone.hull import ConvexHull
 from delone.improve import improve
-from delone.improvement import ImproveReport
+from delone.improve.report import ImproveReport
+from delone.improve.tetmesh import TetMesh
 from delone.lawson import LawsonResult, lawson
 from delone.periodic import PeriodicDelaunay
-from delone.quality import Quality
-from delone.quality3 import TetQuality
+from delone.plane.quality import Quality
 from delone.refine.meshed import Mesh
 from delone.refine.refine import mesh
 from delone.refine.report import MeshReport
 from delone.regular import RegularTriangulation
-from delone.tetmesh import TetMesh
+from delone.space.quality import TetQuality
 from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd
 

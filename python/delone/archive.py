@@ -21,8 +21,8 @@ import numpy as np
 from delone import predicates
 from delone.atomic import replacing
 from delone.errors import FileFormatError
+from delone.plane.topology import among, boundary_edges, boundary_next, edge_keys, is_mutual
 from delone.space import topology as space
-from delone.topology import among, boundary_edges, boundary_next, edge_keys, is_mutual
 
 if TYPE_CHECKING:
     import os

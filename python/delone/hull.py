@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from delone import _core, predicates
-from delone import geometry as plane
 from delone._arrays import require_finite
 from delone.delaunay import Delaunay
 from delone.errors import InternalError
+from delone.plane import geometry as plane
+from delone.plane.triangulation import counted, kept, own_copy, sealed
 from delone.space import geometry as space
-from delone.triangulation import counted, kept, own_copy, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

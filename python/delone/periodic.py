@@ -16,8 +16,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import require_finite
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
+from delone.plane.triangulation import counted, first_rows, kept, own_copy, sealed
 from delone.regular import as_weights
-from delone.triangulation import counted, first_rows, kept, own_copy, sealed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -425,7 +425,7 @@ def _circles(
     """
     corners = points[simplices] + offsets * lengths
     if weights is None:
-        from delone import geometry
+        from delone.plane import geometry
 
         center = geometry.circumcenters(corners.reshape(-1, 2), _numbered(len(simplices)))
         return center, np.hypot(*(center - corners[:, 0]).T) * (1 + 2.0**-40)

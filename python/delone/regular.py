@@ -13,8 +13,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_vectors
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
+from delone.plane.triangulation import counted, kept, own_copy, sealed
 from delone.space.spatial import Spatial
-from delone.triangulation import counted, kept, own_copy, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

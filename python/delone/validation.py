@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from delone import _core, topology
+from delone import _core
 from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
 from delone.errors import InternalError
+from delone.plane import topology
 from delone.space import topology as space
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from delone.compat import triangle as drop_in
-from delone.quality import below
+from delone.plane.quality import below
 
 package = pytest.importorskip("triangle")
 

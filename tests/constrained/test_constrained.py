@@ -14,8 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import delone
-from delone import ConstrainedDelaunay, Delaunay, topology
+from delone import ConstrainedDelaunay, Delaunay
 from delone.constrained import validation
+from delone.plane import topology
 
 OUTER = [(0, 0), (6, 0), (6, 6), (0, 6)]
 INNER = [(2, 2), (4, 2), (4, 4), (2, 4)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets, distributed
-from delone.samples import ahn3, baja
+from delone.datasets import ahn3, baja
 
 if TYPE_CHECKING:
     from collections.abc import Callable

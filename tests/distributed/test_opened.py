@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, distributed
+from delone.datasets import baja
 from delone.errors import FileFormatError, InputError
 from delone.interpolate import Linear, grid
-from delone.samples import baja
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,7 +9,7 @@ import pytest
 
 from delone import ConvexHull, improve
 from delone.errors import DtypeError
-from delone.quality3 import dihedral_angles, measured
+from delone.space.quality import dihedral_angles, measured
 
 REGULAR = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 CORNER = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])

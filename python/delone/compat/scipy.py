@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import delaunay, topology
+from delone import delaunay
 from delone._arrays import as_points, as_vectors
 from delone.compat.furthest import furthest_site as furthest_triangles
 from delone.compat.interpolate import (
@@ -46,6 +46,7 @@ from delone.compat.qhull_options import QhullOptions, UnknownOptionError
 from delone.compat.scipy_hull import ConvexHull
 from delone.compat.scipy_voronoi import Voronoi, voronoi_plot_2d
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
+from delone.plane import topology
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -217,7 +217,7 @@ class Voronoi:
 
     @cached_property
     def _first_rows(self) -> NDArray[np.int64]:
-        from delone.triangulation import first_rows
+        from delone.plane.triangulation import first_rows
 
         return first_rows(self._mesh.points)
 

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import topology
 from delone._arrays import as_points, as_segments
 from delone.compat.triangle_input import again, interpolated, rows_of
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
+from delone.plane import topology
 from delone.refine.meshed import Mesh
 from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import location, topology
+from delone import location
 from delone._arrays import as_segments, as_simplices
 from delone.errors import InputError, ShapeError
+from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Domain, Lines
 from delone.refine.meshed import Mesh

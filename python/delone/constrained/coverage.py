@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.topology import edge_keys
+from delone.plane.topology import edge_keys
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

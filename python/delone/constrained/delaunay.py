@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core, location, topology
+from delone import _core, location
 from delone._arrays import (
     as_choice,
     as_count,
@@ -25,7 +25,8 @@ from delone.constrained import regions
 from delone.constrained.segmented import Options, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.errors import InputError, InternalError
-from delone.triangulation import counted, kept, own_copy
+from delone.plane import topology
+from delone.plane.triangulation import counted, kept, own_copy
 
 if TYPE_CHECKING:
     import os

@@ -14,8 +14,8 @@ import numpy as np
 
 from delone._arrays import as_points, as_segments, require_finite
 from delone.errors import DeloneError, DtypeError, InputError, ShapeError
-from delone.topology import among, edge_keys
-from delone.triangulation import first_rows
+from delone.plane.topology import among, edge_keys
+from delone.plane.triangulation import first_rows
 
 if TYPE_CHECKING:
     from types import TracebackType

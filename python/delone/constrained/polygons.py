@@ -16,7 +16,7 @@ from delone._arrays import as_choice, as_points, require_finite
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError, NonFiniteError
-from delone.triangulation import first_rows
+from delone.plane.triangulation import first_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

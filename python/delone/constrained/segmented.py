@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from delone import _core, topology
+from delone import _core
 from delone._arrays import as_workers
 from delone.constrained import coverage, regions, segments
-from delone.triangulation import Triangulation, kept, sealed
+from delone.plane import topology
+from delone.plane.triangulation import Triangulation, kept, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone.topology import among
+from delone.plane.topology import among
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.topology import among, edge_keys
+from delone.plane.topology import among, edge_keys
 from delone.validation import SENTENCES, ValidationReport
 
 if TYPE_CHECKING:

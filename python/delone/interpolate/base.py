@@ -30,8 +30,8 @@ from delone.interpolate.values import (
     require_finite_values,
 )
 from delone.interpolate.weights import joined
+from delone.plane.triangulation import Triangulation, own_copy
 from delone.space import location as places
-from delone.triangulation import Triangulation, own_copy
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

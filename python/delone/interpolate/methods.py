@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone.interpolate.base import Interpolator
-    from delone.triangulation import Triangulation
+    from delone.plane.triangulation import Triangulation
 
 __all__ = ["METHODS", "interpolator"]
 

@@ -15,7 +15,7 @@ from delone.interpolate.weights import Weights, rectangular
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.triangulation import Triangulation
+    from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]

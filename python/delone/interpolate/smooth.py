@@ -13,19 +13,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import _core, location, topology
+from delone import _core, location
 from delone._arrays import as_count, as_number, as_vectors, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
 from delone.interpolate.space import SPACE, refuse
 from delone.interpolate.values import chosen
+from delone.plane import topology
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
-    from delone.triangulation import Triangulation
+    from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]

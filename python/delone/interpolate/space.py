@@ -18,8 +18,8 @@ from delone.space import geometry
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone.plane.triangulation import Triangulation
     from delone.space.location import SpaceLocation
-    from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]

@@ -18,13 +18,13 @@ import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone.errors import DeloneError, FileFormatError, InputError
+from delone.improve.tetmesh import TetMesh
 from delone.io.cells import cell_values
 from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
 from delone.refine.meshed import Mesh as QualityMesh
-from delone.tetmesh import TetMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.atomic import replacing
 from delone.errors import FileFormatError
+from delone.improve.tetmesh import TetMesh
 from delone.io.compressed import SUFFIXES
-from delone.tetmesh import TetMesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import topology
 from delone._arrays import as_count, as_number
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
+from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Counts
 from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, rounds

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import _core, topology
+from delone import _core
 from delone._arrays import as_workers
+from delone.plane import topology
 
 if TYPE_CHECKING:
     from collections.abc import Callable

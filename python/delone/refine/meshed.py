@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import quality, topology
+from delone.plane import quality, topology
+from delone.plane.triangulation import Triangulation, counted, kept, sealed
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain, Lines
 from delone.refine.report import reported
-from delone.triangulation import Triangulation, counted, kept, sealed
 
 if TYPE_CHECKING:
     import os
@@ -590,7 +590,7 @@ class Mesh(Triangulation):
         >>> delone.mesh(square).to_meshio().cells_dict["triangle"].shape
         (2, 3)
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.to_meshio(self)
 
@@ -615,7 +615,7 @@ class Mesh(Triangulation):
         >>> delone.mesh(square).to_skfem().nelements
         2
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.to_skfem(self)
 
@@ -635,7 +635,7 @@ class Mesh(Triangulation):
         >>> sorted(delone.mesh(square).to_dolfinx_arrays())
         ['cell_tags', 'cells', 'facet_tags', 'facets', 'x']
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.to_dolfinx_arrays(self)
 
@@ -659,7 +659,7 @@ class Mesh(Triangulation):
         >>> delone.mesh(square).to_pyvista().n_cells
         2
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.to_pyvista(self)
 
@@ -683,7 +683,7 @@ class Mesh(Triangulation):
         >>> delone.mesh(square).to_matplotlib().triangles.shape
         (2, 3)
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.to_matplotlib(self)
 

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, geometry
+from delone import _core
 from delone._arrays import as_number, as_workers
 from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
-from delone.triangulation import Triangulation
+from delone.plane import geometry
+from delone.plane.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

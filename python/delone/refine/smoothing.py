@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import geometry, quality
 from delone._arrays import as_choice, as_count
+from delone.plane import geometry, quality
 from delone.refine import domains
 from delone.refine.domains import Counts
 

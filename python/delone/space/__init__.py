@@ -1,7 +1,8 @@
 """Triangulations in space: what follows from tetrahedra, as its neighbours do from triangles.
 
-`topology` needs no coordinates, `geometry` measures, `location` finds points, `plane` triangulates
-points of one plane in space, and `spatial` is the base of `delone.Delaunay` that puts them to use.
+`topology` needs no coordinates, `geometry` measures, `quality` judges, `location` finds points,
+`plane` triangulates points of one plane in space, and `spatial` is the base of `delone.Delaunay`
+that puts them to use.
 """
 
 from delone.space.location import SpaceLocation

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone import _core, predicates, topology
+from delone import _core, predicates
+from delone.plane import topology
 from delone.space.topology import FACES
 
 if TYPE_CHECKING:

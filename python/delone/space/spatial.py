@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, location, quality, quality3
+from delone import _core, location
+from delone.plane.quality import measured as measured_triangles
+from delone.plane.triangulation import Triangulation, kept, sealed
 from delone.space import geometry, topology
 from delone.space import location as places
-from delone.triangulation import Triangulation, kept, sealed
+from delone.space.quality import measured as measured_tetrahedra
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -287,8 +289,8 @@ class Spatial(Triangulation):
         array([90.])
         """
         if self.ndim == 2:
-            return quality.measured(self._points, self._simplices)
-        return quality3.measured(self._points, self._simplices)
+            return measured_triangles(self._points, self._simplices)
+        return measured_tetrahedra(self._points, self._simplices)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the triangulation.

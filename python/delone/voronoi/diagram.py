@@ -18,8 +18,8 @@ from delone._arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
+from delone.plane.triangulation import counted, first_rows, kept, own_copy, sealed
 from delone.regular import RegularTriangulation, as_weights, triangulated
-from delone.triangulation import counted, first_rows, kept, own_copy, sealed
 from delone.voronoi import clipping, dual, shapes, torus
 from delone.voronoi.cells import Cell, Neighbors, Rays
 

@@ -58,7 +58,7 @@ def edges(simplices: Indices, neighbors: Indices, npoints: int) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import edges
+    >>> from delone.plane.topology import edges
     >>> edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]]), 3).tolist()
     [[0, 1], [0, 2], [1, 2]]
     """
@@ -97,7 +97,7 @@ def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import boundary_edges
+    >>> from delone.plane.topology import boundary_edges
     >>> boundary_edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]])).tolist()
     [[1, 2], [2, 0], [0, 1]]
     """
@@ -123,7 +123,7 @@ def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import boundary_next
+    >>> from delone.plane.topology import boundary_next
     >>> boundary_next(np.array([[1, 2], [2, 0], [0, 1]]), 2).tolist()
     [2, 0, 1]
     """
@@ -156,7 +156,7 @@ def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import vertex_to_simplex
+    >>> from delone.plane.topology import vertex_to_simplex
     >>> vertex_to_simplex(np.array([[0, 1, 3], [1, 4, 3]]), 5).tolist()
     [0, 0, -1, 0, 1]
     """
@@ -185,7 +185,7 @@ def rows_among(triangles: Indices, some: Indices) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import rows_among
+    >>> from delone.plane.topology import rows_among
     >>> rows_among(np.array([(0, 1, 2), (2, 1, 3)]), np.array([(1, 3, 2)]))
     array([-1,  0, -1], dtype=int32)
     """
@@ -222,7 +222,7 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import vertex_neighbor_vertices
+    >>> from delone.plane.topology import vertex_neighbor_vertices
     >>> indptr, indices = vertex_neighbor_vertices(np.array([[0, 1], [0, 2], [1, 2]]), 3)
     >>> indices[indptr[1]:indptr[2]].tolist()
     [0, 2]
@@ -258,7 +258,7 @@ def neighbors(simplices: Indices, npoints: int) -> Indices:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import neighbors
+    >>> from delone.plane.topology import neighbors
     >>> neighbors(np.array([[0, 1, 2], [0, 2, 3]]), 4).tolist()
     [[-1, 1, -1], [-1, -1, 0]]
     """
@@ -291,7 +291,7 @@ def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import is_mutual
+    >>> from delone.plane.topology import is_mutual
     >>> simplices = np.array([[0, 1, 2], [0, 2, 3]])
     >>> is_mutual(simplices, np.array([[-1, 1, -1], [-1, -1, 0]]))
     array([ True,  True])
@@ -329,7 +329,7 @@ def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> N
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import edge_keys
+    >>> from delone.plane.topology import edge_keys
     >>> edge_keys(np.array([0, 3]), np.array([2, 1]), 10).tolist()
     [2, 13]
     """
@@ -359,7 +359,7 @@ def among(keys: NDArray[np.int64], others: NDArray[np.int64]) -> NDArray[np.bool
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.topology import among
+    >>> from delone.plane.topology import among
     >>> among(np.array([1, 5, 9]), np.array([9, 1]))
     array([ True, False,  True])
     """

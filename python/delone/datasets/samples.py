@@ -62,7 +62,7 @@ def ahn3() -> Sample:
 
     Examples
     --------
-    >>> from delone.samples import ahn3
+    >>> from delone.datasets import ahn3
     >>> sample = ahn3()
     >>> sample.points.shape, sample.crs
     ((212550, 2), 'EPSG:28992')
@@ -89,7 +89,7 @@ def baja() -> Sample:
 
     Examples
     --------
-    >>> from delone.samples import baja
+    >>> from delone.datasets import baja
     >>> sample = baja()
     >>> sample.points.shape, float(sample.z.min())
     ((82970, 2), -7708.0)
@@ -107,7 +107,7 @@ def baja() -> Sample:
 
 def _columns(name: str) -> dict[str, NDArray[np.integer]]:
     """Read integer columns; x, y and z are stored as steps from row to row, which pack better."""
-    with (files(__name__) / name).open("rb") as file, np.load(file) as archive:
+    with (files(__package__) / name).open("rb") as file, np.load(file) as archive:
         columns: dict[str, NDArray[np.integer]] = {key: archive[key] for key in archive.files}
     for key in "xyz":
         columns[key] = np.cumsum(columns[key], dtype=np.int64)

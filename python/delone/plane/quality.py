@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.geometry import areas
-from delone.triangulation import counted
+from delone.plane.geometry import areas
+from delone.plane.triangulation import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -239,7 +239,7 @@ def squared_cosine(degrees: float) -> float:
 
     Examples
     --------
-    >>> from delone.quality import squared_cosine
+    >>> from delone.plane.quality import squared_cosine
     >>> squared_cosine(30)
     0.75
     """
@@ -271,7 +271,7 @@ def below(points: Floats, simplices: Indices, min_angle: float) -> NDArray[np.in
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.quality import below
+    >>> from delone.plane.quality import below
     >>> points = np.array([(0.0, 0), (1, 0), (0, 1), (0, 0.5)])
     >>> below(points, np.array([(0, 1, 2), (0, 1, 3)]), 45)
     array([1])

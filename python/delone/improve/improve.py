@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core, improvement, quality3
+from delone import _core
 from delone._arrays import as_choice, as_count, as_number, as_points, as_simplices, require_finite
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.tetmesh import TetMesh
+from delone.improve import report
+from delone.improve.tetmesh import TetMesh
+from delone.space import quality
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -141,10 +143,10 @@ def improve(
         made = _core.improve3(points, simplices, labels, held, goal, *kinds, turn, passes, progress)
     except ShapeError as error:
         raise InputError(*error.args) from None
-    before = quality3.measured(points, simplices)
+    before = quality.measured(points, simplices)
     if not len(held):
         held = np.zeros(len(points), dtype=bool)
-    judged, after = improvement.report(before, made, held, goal)
+    judged, after = report.report(before, made, held, goal)
     arrays = {name: made[name] for name in ("points", "simplices", "neighbors")}
     better = TetMesh._of(arrays | {"region": made["labels"]}, judged)
     better._cache["quality"] = after
@@ -179,7 +181,7 @@ def _require_positive(points: Floats, simplices: Indices) -> None:
     for sign, what in ((-1, "negatively oriented: swap two of their vertices"), (0, "flat")):
         rows = np.flatnonzero(signs == sign)
         if len(rows):
-            noun = quality3.counted_tetrahedra(len(rows))
+            noun = quality.counted_tetrahedra(len(rows))
             verb = "is" if len(rows) == 1 else "are"
             raise InputError(f"{noun} {verb} {what}; first: {rows[0]}")
 

@@ -1,9 +1,9 @@
-"""Point sets to try, test and measure with: seeded generators, and two real surveys.
+"""Point sets in the plane to try, test and measure with: seeded generators.
 
 Every generator is a function of the number of points and a seed, and returns float64 points of
 shape (n, 2); n must be an integer of at least 0, or InputError is raised. Each is here because it
 breaks something: a float predicate, a sort, a tolerance, a super-triangle. `GENERATORS` lists them
-by name, and `GENERATORS3` those of points in space. The surveys live in `delone.samples`.
+by name.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ import numpy as np
 
 from delone._arrays import as_count
 from delone.errors import InputError
-from delone.samples import Sample, ahn3, baja
-from delone.space.datasets import GENERATORS as GENERATORS3
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -28,10 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "GENERATORS",
-    "GENERATORS3",
-    "Sample",
-    "ahn3",
-    "baja",
     "circle",
     "collinear_lines",
     "duplicates",

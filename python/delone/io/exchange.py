@@ -11,8 +11,8 @@ from delone.io.extras import require
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone.improve.tetmesh import TetMesh
     from delone.refine.meshed import Mesh
-    from delone.tetmesh import TetMesh
 
 __all__ = [
     "draw_tetrahedra",

@@ -55,7 +55,7 @@ def areas(points: Floats, simplices: Indices) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.geometry import areas
+    >>> from delone.plane.geometry import areas
     >>> areas(np.array([(0, 0), (4, 0), (0, 3.0)]), np.array([[0, 1, 2]]))
     array([6.])
     """
@@ -90,7 +90,7 @@ def transform(points: Floats, simplices: Indices) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.geometry import transform
+    >>> from delone.plane.geometry import transform
     >>> transform(np.array([(4, 0), (4, 2), (2, 1.0)]), np.array([[0, 1, 2]]))
     array([[[ 0.25, -0.5 ],
             [ 0.25,  0.5 ],
@@ -137,7 +137,7 @@ def circumcenters(points: Floats, simplices: Indices) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.geometry import circumcenters
+    >>> from delone.plane.geometry import circumcenters
     >>> circumcenters(np.array([(0, 0), (4, 0), (2, 1.0)]), np.array([[0, 1, 2]]))
     array([[ 2. , -1.5]])
     """
@@ -190,7 +190,7 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.geometry import edge_normals
+    >>> from delone.plane.geometry import edge_normals
     >>> edge_normals(np.array([(1, 1), (1, 5.0)]), np.array([[0, 1], [1, 0]]))
     array([[ 1.,  0.],
            [-1.,  0.]])

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import quality3
-from delone.quality3 import EDGES, counted_tetrahedra
-from delone.triangulation import counted
+from delone.plane.triangulation import counted
+from delone.space import quality
+from delone.space.quality import EDGES, counted_tetrahedra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -180,8 +180,8 @@ _SENTENCES = {
 
 
 def report(
-    before: quality3.TetQuality, made: dict[str, Any], fixed: NDArray[np.bool_], min_angle: float
-) -> tuple[ImproveReport, quality3.TetQuality]:
+    before: quality.TetQuality, made: dict[str, Any], fixed: NDArray[np.bool_], min_angle: float
+) -> tuple[ImproveReport, quality.TetQuality]:
     """Judge improved tetrahedra.
 
     Parameters
@@ -205,7 +205,7 @@ def report(
     """
     points, simplices, counts = made["points"], made["simplices"], made["counts"]
     exhausted = bool(made["exhausted"])
-    after = quality3.measured(points, simplices)
+    after = quality.measured(points, simplices)
     was, bounds = before.histogram()
     now, _ = after.histogram()
     below = np.flatnonzero(after.smallest_dihedral < min_angle)
@@ -247,7 +247,7 @@ def _walls(neighbors: Indices, region: Indices) -> NDArray[np.bool_]:
 
 def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDArray[np.bool_]:
     held = np.zeros(npoints, dtype=bool)
-    for k, face in enumerate(quality3.FACES):
+    for k, face in enumerate(quality.FACES):
         held[simplices[walls[:, k]][:, list(face)]] = True
     return held
 
@@ -256,7 +256,7 @@ def _forced(
     points: Floats, simplices: Indices, walls: NDArray[np.bool_], min_angle: float
 ) -> NDArray[np.bool_]:
     """Tell which tetrahedra have a small dihedral angle between two walls."""
-    angles = quality3.dihedral_angles(points, simplices)
+    angles = quality.dihedral_angles(points, simplices)
     forced = np.zeros(len(simplices), dtype=bool)
     for e, (i, j) in enumerate(EDGES):
         k, m = (c for c in range(4) if c not in (i, j))

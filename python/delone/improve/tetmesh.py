@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
-from delone import _core, quality3
-from delone.quality3 import counted_tetrahedra
+from delone import _core
+from delone.plane.triangulation import counted, kept, sealed
 from delone.space import location as places
 from delone.space import topology
-from delone.triangulation import counted, kept, sealed
+from delone.space.quality import TetQuality, counted_tetrahedra, measured
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.improvement import ImproveReport
+    from delone.improve.report import ImproveReport
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -141,7 +141,7 @@ class TetMesh:
         return self.quality().volume
 
     @kept
-    def quality(self) -> quality3.TetQuality:
+    def quality(self) -> TetQuality:
         """Measure the tetrahedra.
 
         Returns
@@ -156,7 +156,7 @@ class TetMesh:
         >>> delone.improve(corner).quality().largest_dihedral
         array([90.])
         """
-        return quality3.measured(self._points, self._simplices)
+        return measured(self._points, self._simplices)
 
     @property
     @kept
@@ -244,7 +244,7 @@ class TetMesh:
         >>> delone.improve(corner).to_meshio().cells_dict["tetra"].shape
         (1, 4)
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.tetrahedra_to_meshio(self)
 
@@ -268,7 +268,7 @@ class TetMesh:
         >>> delone.improve(corner).to_pyvista().n_cells  # doctest: +SKIP
         1
         """
-        from delone import exchange
+        from delone.io import exchange
 
         return exchange.tetrahedra_to_pyvista(self)
 
@@ -298,7 +298,7 @@ class TetMesh:
         >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
         >>> delone.improve(corner).plot().show()  # doctest: +SKIP
         """
-        from delone import exchange
+        from delone.io import exchange
 
         bound = self._report.min_angle if below is None else float(below)
         return exchange.draw_tetrahedra(self, plotter, bound)

@@ -187,7 +187,7 @@ def counted_tetrahedra(count: int) -> str:
 
     Examples
     --------
-    >>> from delone.quality3 import counted_tetrahedra
+    >>> from delone.space.quality import counted_tetrahedra
     >>> counted_tetrahedra(1), counted_tetrahedra(2)
     ('1 tetrahedron', '2 tetrahedra')
     """
@@ -212,7 +212,7 @@ def measured(points: Floats, simplices: Indices) -> TetQuality:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.quality3 import measured
+    >>> from delone.space.quality import measured
     >>> regular = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
     >>> quality = measured(regular, np.array([(0, 2, 1, 3)]))
     >>> quality.radius_ratio.round(12), quality.smallest_dihedral.round(2)
@@ -276,7 +276,7 @@ def dihedral_angles(points: Floats, simplices: Indices) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.quality3 import dihedral_angles
+    >>> from delone.space.quality import dihedral_angles
     >>> corner = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
     >>> dihedral_angles(corner, np.array([(0, 1, 2, 3)])).round(2)
     array([[90.  , 90.  , 90.  , 54.74, 54.74, 54.74]])

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self, TypeVar
 
 import numpy as np
 
-from delone import _core, geometry, location, topology
+from delone import _core, location
 from delone._arrays import as_points, as_vectors, as_workers
+from delone.plane import geometry, topology
 
 if TYPE_CHECKING:
     from collections.abc import Callable
