@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import plot
 from delone.errors import InputError
 from delone.io.extras import require
-from delone.shading import Raster, relief
+from delone.plot.colours import add_bar, scale, shaded
+from delone.plot.picture import axis_names
+from delone.plot.shading import Raster, relief
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,12 +87,12 @@ def plot_raster(
         raise InputError("the raster has no finite value to be drawn")
     if ax is None:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
-    colours = plot._colours(values, cmap)
+    colours = scale(values, cmap)
     rgba = colours.to_rgba(values)
     extent = _extent(x, y)
     if shade:
         light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
-        rgba[..., :3] = plot._shaded(rgba[..., :3], light)
+        rgba[..., :3] = shaded(rgba[..., :3], light)
     rgba[..., 3] = np.isfinite(values)
     image = np.round(rgba * 255).astype(np.uint8)
     ax.imshow(image, extent=extent, origin="lower", interpolation="auto", zorder=0)
@@ -107,7 +108,7 @@ def plot_raster(
             alpha=0.45,
         )
     if colorbar:
-        plot._add_bar(ax, colours, values, label)
+        add_bar(ax, colours, values, label)
     if title:
         ax.set_title(title, fontsize="medium")
     return ax
@@ -150,7 +151,7 @@ def draw_raster(
         figsize=(width + 1.9, height + 0.9), dpi=dpi, layout="constrained"
     )
     ax = plot_raster(values, x, y, figure.add_subplot(), label=label)
-    xlabel, ylabel = plot._axis_names(crs)
+    xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")
 

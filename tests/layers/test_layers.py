@@ -13,8 +13,12 @@ import re
 import shutil
 import tomllib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "python" / "delone"
@@ -71,26 +75,20 @@ PYTHON: dict[str, set[str]] = {
     }
     | FOUNDATION,
     "reference": FOUNDATION,
-    "testing": {"reference"} | FOUNDATION,
+    "testing": FOUNDATION,
     "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     "datasets": FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
     "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays"},
-    "shading": PUBLIC,
-    "cartography": PUBLIC | {"io", "shading"},
-    "plot": PUBLIC | {"atomic", "cartography", "io", "shading"},
+    "plot": PUBLIC | {"atomic", "io"},
     "scene": PUBLIC | {"io", "_arrays"},
-    "relief": PUBLIC | {"io", "plot", "shading"},
-    "report": PUBLIC | {"io"},
+    "relief": PUBLIC | {"io", "plot"},
     "cli": PUBLIC
     | {
         "atomic",
         "distributed",
         "interpolate",
         "io",
-        "plot",
-        "report",
-        "voronoi",
     },
     "__main__": PUBLIC | {"cli"},
     # The package itself re-exports.
@@ -129,12 +127,12 @@ CORE: dict[str, set[str]] = {
     "memory": {"error", "libc"},
     "watch": {"error"},
     "parallel": GROUND,
-    "points": {"error", "memory", "parallel", "delone_predicates"},
+    "points": {"error", "memory", "delone_predicates"},
     "order": {"points", "parallel", "delone_predicates"} | GROUND,
     # Topology alone: neither coordinates nor predicates.
     "mesh2": {"parallel"} | GROUND,
     "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
-    "mesh3": {"parallel"} | GROUND,
+    "mesh3": GROUND,
     "skeleton3": {"parallel"} | GROUND,
     "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
@@ -150,7 +148,7 @@ CORE: dict[str, set[str]] = {
     "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
-    "interpolate3": {"interpolate", "locate", "locate3", "parallel", "delone_predicates"} | GROUND,
+    "interpolate3": {"interpolate", "locate", "locate3", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.
 NEEDS = {
@@ -280,6 +278,36 @@ def test_core_arrows_point_one_way() -> None:
     assert core_faults(CRATES / "core") == []
 
 
+def used(paths: Iterable[Path], part_of: Callable[[Path], str], uses: Callable[[Path], set[str]]):
+    """What each part is known to use, for all of its files."""
+    found: dict[str, set[str]] = {}
+    for path in paths:
+        found.setdefault(part_of(path), set()).update(uses(path))
+    return found
+
+
+def test_the_tables_hold_nothing_that_is_not_so() -> None:
+    python = used(
+        PACKAGE.rglob("*.py"),
+        lambda path: python_part(path, PACKAGE),
+        lambda path: python_imports(path, PACKAGE),
+    )
+    source = CRATES / "core" / "src"
+    rust = used(
+        source.rglob("*.rs"),
+        lambda path: path.relative_to(source).parts[0].removesuffix(".rs"),
+        rust_uses,
+    )
+    stale = {
+        (part, to)
+        for table, found in ((PYTHON, python), (CORE, rust))
+        for part, allowed in table.items()
+        for to in allowed & set(table) - FOUNDATION - GROUND - PUBLIC
+        if to not in found.get(part, ())
+    }
+    assert not stale, sorted(stale)
+
+
 def test_crates_need_what_they_may() -> None:
     assert crate_faults(CRATES) == []
 
@@ -351,7 +379,7 @@ def test_no_module_waits_for_itself() -> None:
     [
         ("io/text.py", "from delone import _core", "io/text.py imports _core"),
         ("io/text.py", "from delone.plane.topology import edges", "io/text.py imports plane"),
-        ("plot.py", "def f():\n    import delone._core", "plot.py imports _core"),
+        ("plot/mesh.py", "def f():\n    import delone._core", "plot/mesh.py imports _core"),
         (
             "plane/geometry.py",
             "from delone.delaunay import Delaunay",

@@ -11,9 +11,9 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from PIL import Image
 
-from delone import ConstrainedDelaunay, InputError, cartography
-from delone.plot import plot, save_picture
-from delone.shading import facet_values
+from delone import ConstrainedDelaunay, InputError
+from delone.plot import cartography, plot, save_picture
+from delone.plot.shading import facet_values
 
 OUTER = [(0, 0), (9, 0), (9, 6), (0, 6)]
 INNER = [(2, 2), (4, 2), (4, 4), (2, 4)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
-from delone.shading import Raster, facet_light, point_density, rasterize, relief
+from delone.plot.shading import Raster, facet_light, point_density, rasterize, relief
 
 
 def plane(points):
@@ -22,7 +22,7 @@ def centres(raster):
 @pytest.mark.parametrize("offset", [0.0, 5_400_000.0])
 @pytest.mark.parametrize("block", [50, 1 << 20])
 def test_a_plane_seen_through_few_points(monkeypatch, offset, block):
-    monkeypatch.setattr("delone.shading._BLOCK", block)
+    monkeypatch.setattr("delone.plot.shading._BLOCK", block)
     points = datasets.uniform(200) + offset
     raster = rasterize(Delaunay(points), plane(points - offset), 40)
     wanted = plane(centres(raster) - offset)

@@ -38,7 +38,7 @@ def write_mesh(
     if triangulation.ndim == 3:
         _draw_space(path, triangulation, attributes)
         return
-    from delone.plot import draw_picture
+    from delone.plot.picture import draw_picture
 
     if attributes:
         raise FileFormatError("a picture shows one value for each point: give it as z")

@@ -77,7 +77,7 @@ def rasterize(triangulation: Mesh, values: Floats, pixels: int) -> Raster:
     Examples
     --------
     >>> from delone import Delaunay
-    >>> from delone.shading import rasterize
+    >>> from delone.plot.shading import rasterize
     >>> import numpy as np
     >>> mesh = Delaunay([(0, 0), (4, 0), (4, 4), (0, 4)])
     >>> rasterize(mesh, np.array([0.0, 4.0, 4.0, 0.0]), 4).values[1]
@@ -117,7 +117,7 @@ def point_density(triangulation: Mesh, pixels: int) -> Raster:
     Examples
     --------
     >>> from delone import Delaunay
-    >>> from delone.shading import point_density
+    >>> from delone.plot.shading import point_density
     >>> mesh = Delaunay([(0, 0), (2, 0), (2, 2), (0, 2)])
     >>> point_density(mesh, 2).values
     array([[1., 1.],
@@ -151,7 +151,7 @@ def facet_values(triangulation: Mesh, values: NDArray[np.integer] | Floats, pixe
     --------
     >>> import numpy as np
     >>> from delone import ConstrainedDelaunay
-    >>> from delone.shading import facet_values
+    >>> from delone.plot.shading import facet_values
     >>> corners = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 0), (2, 4)]
     >>> mesh = ConstrainedDelaunay(corners, [(4, 5)])
     >>> facet_values(mesh, mesh.region, 4).values[0]
@@ -185,7 +185,7 @@ def relief(raster: Raster) -> Floats:
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.shading import Raster, relief
+    >>> from delone.plot.shading import Raster, relief
     >>> relief(Raster(np.zeros((2, 2)), 1.0, (0, 2, 0, 2))).round(2)
     array([[0.71, 0.71],
            [0.71, 0.71]])
@@ -218,7 +218,7 @@ def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floa
     Examples
     --------
     >>> import numpy as np
-    >>> from delone.shading import facet_light
+    >>> from delone.plot.shading import facet_light
     >>> square = np.array([(0, 0), (1, 0), (0, 1.0)])
     >>> facet_light(square, np.zeros(3), np.array([[0, 1, 2]])).round(2)
     array([0.71])

@@ -1,29 +1,21 @@
-"""Pictures of triangulations by matplotlib (extra ``plot``).
-
-Where triangles can be seen they are drawn; where they are smaller than a few pixels the surface (or
-the density of points) is drawn as an image, so that a million points take a second and the picture
-is no black square. Nothing here needs a display: `save_picture` draws without pyplot.
-"""
+"""Triangulations drawn on axes: as triangles, or where these are too small to be seen an image."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone import cartography
-from delone.atomic import replacing
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
+from delone.plot import cartography
+from delone.plot.colours import add_bar, scale, shaded
+from delone.plot.shading import Raster, facet_light, point_density, rasterize, relief
 from delone.refine.meshed import Mesh as QualityMesh
-from delone.shading import Raster, facet_light, point_density, rasterize, relief
 
 if TYPE_CHECKING:
-    import os
-
     from numpy.typing import ArrayLike, NDArray
 
     from delone.delaunay import Delaunay
@@ -31,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
-__all__ = ["draw_angles", "draw_histograms", "plot", "save_picture"]
+__all__ = ["plot", "require_drawable"]
 
 # A triangle of fewer pixels than this is no triangle to the eye.
 _VISIBLE = 14.0
@@ -40,8 +32,6 @@ _FEW_CIRCLES = 60  # so few that each is to be seen whole, with its centre
 _DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to a hundred
 _MOST_DOTS = 2000
 _INK, _RIM, _DOT, _CIRCLE = "#35506b", "#b3372f", "#17324d", "#d98b2b"
-_LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
-_WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
 
 _SEGMENTED = (ConstrainedDelaunay, QualityMesh)
 
@@ -125,7 +115,7 @@ def plot(
             f"circumcircles is for up to {_MOST_CIRCLES}"
         )
     heights = as_values(z, triangulation.npoints)
-    _require_drawable(triangulation, heights)
+    require_drawable(triangulation, heights)
     if ax is None:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
     look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
@@ -150,192 +140,7 @@ def plot(
     return ax
 
 
-def save_picture(
-    path: str | os.PathLike[str],
-    triangulation: Mesh,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    title: str | None = None,
-    size: float = 10.0,
-    dpi: int = 160,
-    **options: Any,
-) -> None:
-    """Draw a triangulation into a PNG or SVG file, whole or not at all.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-    triangulation : Delaunay or ConstrainedDelaunay
-        What to draw.
-    z : array_like of float, shape (n,), optional
-        Heights: triangles are coloured by them.
-    crs : str, optional
-        Coordinate reference system, which names the axes where pyproj is installed.
-    title : str, optional
-        By default the numbers of points and triangles.
-    size : float, optional
-        Longer side of the picture in inches.
-    dpi : int, optional
-        Pixels per inch.
-    **options
-        As in `plot`.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-    InputError
-        As in `plot`.
-    OSError
-        The file cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from delone import Delaunay
-    >>> from delone.plot import save_picture
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "mesh.png"
-    ...     save_picture(file, Delaunay([(0, 0), (4, 0), (4, 3)]))
-    ...     file.read_bytes()[1:4]
-    b'PNG'
-    """
-    with replacing(path) as beside:
-        draw_picture(
-            beside, triangulation, z=z, crs=crs, title=title, size=size, dpi=dpi, **options
-        )
-
-
-def draw_picture(
-    path: Path,
-    triangulation: Mesh,
-    *,
-    z: ArrayLike | None = None,
-    crs: str | None = None,
-    title: str | None = None,
-    size: float = 10.0,
-    dpi: int = 160,
-    **options: Any,
-) -> None:
-    """Draw into the file itself; `save_picture` is the same by way of a temporary file."""
-    figure_module = require("matplotlib.figure", extra="plot", what="drawing")
-    _require_drawable(triangulation, as_values(z, triangulation.npoints))
-    width, height = _figure_size(triangulation, size, with_bar=z is not None)
-    if isinstance(triangulation, QualityMesh):
-        figure = figure_module.Figure(figsize=(width, height + 2.5), dpi=dpi, layout="constrained")
-        ax, below = figure.subplots(2, 1, height_ratios=(height, 2.5))
-        triangulation.plot_quality(below)
-    else:
-        figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
-        ax = figure.add_subplot()
-    plot(triangulation, ax, z=z, title=title or _numbers(triangulation), **options)
-    xlabel, ylabel = _axis_names(crs)
-    ax.set(xlabel=xlabel, ylabel=ylabel)
-    figure.savefig(path, dpi=dpi, facecolor="white")
-
-
-def draw_angles(
-    smallest: Floats, largest: Floats, *, ax: Any = None, bound: float | None = None
-) -> Any:
-    """Draw the histogram of the smallest and the largest angles of triangles.
-
-    Parameters
-    ----------
-    smallest, largest : ndarray of float64, shape (m,)
-        Angles in degrees.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on new axes.
-    bound : float, optional
-        An angle to be marked.
-
-    Returns
-    -------
-    matplotlib Axes
-        What was drawn on.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plot import draw_angles
-    >>> draw_angles(np.array([45.0]), np.array([90.0])).get_xlabel()
-    'angle in degrees'
-    """
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
-    bins = np.arange(0, 181, 2)
-    for angles, color, label in (
-        (smallest, "#2f6f9f", "smallest angle"),
-        (largest, "#d98f3d", "largest angle"),
-    ):
-        ax.hist(angles, bins=bins, color=color, alpha=0.85, label=label)
-    if bound is not None:
-        ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"bound {bound:g}°")
-    ax.set(xlabel="angle in degrees", ylabel="triangles", xlim=(0, 180), xticks=range(0, 181, 30))
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.legend(frameon=False)
-    return ax
-
-
-def draw_histograms(
-    bounds: Floats, counts: dict[str, Any], *, ax: Any = None, bound: float | None = None
-) -> Any:
-    """Draw histograms of smallest dihedral angles side by side, on a logarithmic scale.
-
-    Parameters
-    ----------
-    bounds : ndarray of float64, shape (k + 1,)
-        Bounds of the classes in degrees.
-    counts : dict of ndarray of int64, shape (k,)
-        How many tetrahedra are in each class, by what the bars are called.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on new axes.
-    bound : float, optional
-        An angle to be marked.
-
-    Returns
-    -------
-    matplotlib Axes
-        What was drawn on.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plot import draw_histograms
-    >>> counts = {"before": np.array([3, 1]), "after": np.array([0, 4])}
-    >>> draw_histograms(np.array([0.0, 20, 40]), counts, bound=20).get_yscale()
-    'log'
-    """
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
-    wide = np.diff(bounds) / (len(counts) + 0.5)
-    for k, (label, color) in enumerate(zip(counts, ("#d98f3d", "#2f6f9f"), strict=False)):
-        left = bounds[:-1] + wide * (k + 0.25)
-        ax.bar(left, counts[label], wide, align="edge", color=color, label=label)
-    if bound is not None:
-        ax.axvline(bound, color=_RIM, linewidth=1.2, linestyle="--", label=f"goal {bound:g}°")
-    ax.set(xlabel="smallest dihedral angle in degrees", ylabel="tetrahedra", yscale="log")
-    # Room above the bars for the legend.
-    most = max(int(np.max(each, initial=1)) for each in counts.values())
-    ax.set(xlim=(bounds[0], bounds[-1]), ylim=(0.7, 5 * most))
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.legend(frameon=False, ncols=len(counts) + 1, fontsize="small", loc="upper right")
-    return ax
-
-
-def _require_drawable(triangulation: Mesh, heights: Floats | None) -> None:
+def require_drawable(triangulation: Mesh, heights: Floats | None) -> None:
     """Refuse what matplotlib's transforms overflow on, and heights of which nothing shows."""
     if heights is not None and not (finite := np.isfinite(heights)).all():
         rows = np.flatnonzero(~finite)
@@ -351,24 +156,6 @@ def _require_drawable(triangulation: Mesh, heights: Floats | None) -> None:
         )
 
 
-def _numbers(triangulation: Mesh) -> str:
-    numbers = f"{triangulation.npoints:,} points, {triangulation.nsimplex:,} triangles"
-    if isinstance(triangulation, ConstrainedDelaunay):
-        numbers += f", {len(triangulation.input_segments):,} segments"
-    return numbers
-
-
-def _figure_size(triangulation: Mesh, size: float, *, with_bar: bool) -> tuple[float, float]:
-    """Return width and height such that the data fill them, labels and colour bar beside."""
-    width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
-    ratio = min(max(width / height, 0.4), 2.5)
-    beside, above = (1.9 if with_bar else 0.9), 0.9
-    inner = size - max(beside, above)
-    if ratio >= 1:
-        return inner + beside, inner / ratio + above
-    return inner * ratio + beside, inner + above
-
-
 def _pixels(ax: Any, triangulation: Mesh) -> tuple[int, int]:
     """Return the pixels that the data will have across and up."""
     box = ax.get_window_extent()
@@ -379,28 +166,6 @@ def _pixels(ax: Any, triangulation: Mesh) -> tuple[int, int]:
 
 def _is_dense(triangulation: Mesh, pixels: tuple[int, int]) -> bool:
     return pixels[0] * pixels[1] < _VISIBLE * triangulation.nsimplex
-
-
-def _colours(values: Floats, cmap: Any) -> Any:
-    """Return a scale of colours that fits the bulk of the values, and says if some are beyond."""
-    colors = require("matplotlib.colors", extra="plot", what="drawing")
-    cm = require("matplotlib.cm", extra="plot", what="drawing")
-    known = values[np.isfinite(values)]
-    low, high = np.quantile(known, [0.01, 0.99]).tolist()
-    if not low < high:
-        low, high = float(known.min()), float(known.max())
-    if not low < high:
-        low, high = low - 0.5, high + 0.5
-    if cmap is None:
-        palette = _WATER if known.max() <= 0 and low < 0 else _LAND
-        cmap = colors.LinearSegmentedColormap.from_list("heights", palette)
-    return cm.ScalarMappable(norm=colors.Normalize(low, high), cmap=cmap)
-
-
-def _shaded(rgb: Floats, light: Floats) -> Floats:
-    """Darken away from the sun, lighten towards it; flat ground keeps its colour nearly."""
-    strength = (0.30 + 0.95 * light)[..., None]
-    return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
 
 
 def _draw_image(
@@ -417,14 +182,14 @@ def _draw_image(
         _draw_density(ax, triangulation, pixels, cmap, colorbar)
         return
     raster = rasterize(triangulation, z, pixels)
-    colours = _colours(raster.values, cmap)
+    colours = scale(raster.values, cmap)
     rgba = colours.to_rgba(raster.values)
     if shade is not False:
-        rgba[..., :3] = _shaded(rgba[..., :3], relief(raster))
+        rgba[..., :3] = shaded(rgba[..., :3], relief(raster))
     rgba[..., 3] = np.isfinite(raster.values)
     _show(ax, raster, rgba)
     if colorbar:
-        _add_bar(ax, colours, z, "z")
+        add_bar(ax, colours, z, "z")
 
 
 def _draw_density(ax: Any, triangulation: Mesh, pixels: int, cmap: Any, colorbar: bool) -> None:
@@ -469,33 +234,17 @@ def _draw_triangles(
         ax.add_collection(lines, autolim=False)
         return
     means = z[simplices].mean(axis=1)
-    colours = _colours(means, cmap)
+    colours = scale(means, cmap)
     rgba = colours.to_rgba(means)
     if shade or (shade is None and len(simplices) >= 2000):
-        rgba[:, :3] = _shaded(rgba[:, :3], facet_light(points, z, simplices))
+        rgba[:, :3] = shaded(rgba[:, :3], facet_light(points, z, simplices))
     rgba[~np.isfinite(means)] = 0
     facets = collections.PolyCollection(
         points[simplices], facecolors=rgba, edgecolors="#00000055", linewidths=0.5 * thin, zorder=1
     )
     ax.add_collection(facets, autolim=False)
     if colorbar:
-        _add_bar(ax, colours, means, "z")
-
-
-def _add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
-    below = np.nanmin(values) < colours.norm.vmin
-    above = np.nanmax(values) > colours.norm.vmax
-    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
-    bar = ax.figure.colorbar(
-        colours,
-        ax=ax,
-        label=label,
-        extend=extend[int(below), int(above)],
-        shrink=0.75,
-        pad=0.02,
-        aspect=30,
-    )
-    bar.outline.set_visible(False)
+        add_bar(ax, colours, means, "z")
 
 
 def _draw_hull(ax: Any, triangulation: Mesh) -> None:
@@ -578,20 +327,3 @@ def _finish(ax: Any, triangulation: Mesh, circumcircles: bool, title: str | None
         axis.set_major_formatter(formatter)
     if title:
         ax.set_title(title, fontsize="medium")
-
-
-def _axis_names(crs: str | None) -> tuple[str, str]:
-    """Return what the axes are called in a reference system, with the unit."""
-    names = {"east": "x", "north": "y"}
-    if crs is None:
-        return names["east"], names["north"]
-    try:
-        import pyproj
-
-        axes = pyproj.CRS.from_user_input(crs).axis_info
-    except Exception:  # a label is not worth an error
-        return names["east"], names["north"]
-    for axis in axes:
-        if axis.direction in names:
-            names[axis.direction] = f"{axis.name} ({axis.unit_name})"
-    return names["east"], names["north"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.io.extras import require
-from delone.shading import facet_values
+from delone.plot.shading import facet_values
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,7 +57,7 @@ def colour_of_regions(mesh: ConstrainedDelaunay | Mesh) -> Indices:
     Examples
     --------
     >>> from delone import ConstrainedDelaunay
-    >>> from delone.cartography import colour_of_regions
+    >>> from delone.plot.cartography import colour_of_regions
     >>> mesh = ConstrainedDelaunay([(0, 0), (3, 0), (3, 1), (0, 1)], [(0, 2)])
     >>> sorted(colour_of_regions(mesh).tolist())
     [0, 1]

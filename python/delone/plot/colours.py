@@ -1,0 +1,58 @@
+"""Colours of values: a scale that fits the bulk of them, light and shadow on it, and its bar."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["add_bar", "scale", "shaded"]
+
+_LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
+_WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
+
+
+def scale(values: Floats, cmap: Any) -> Any:
+    """Return a scale of colours that fits the bulk of the values, and says if some are beyond."""
+    colors = require("matplotlib.colors", extra="plot", what="drawing")
+    cm = require("matplotlib.cm", extra="plot", what="drawing")
+    known = values[np.isfinite(values)]
+    low, high = np.quantile(known, [0.01, 0.99]).tolist()
+    if not low < high:
+        low, high = float(known.min()), float(known.max())
+    if not low < high:
+        low, high = low - 0.5, high + 0.5
+    if cmap is None:
+        palette = _WATER if known.max() <= 0 and low < 0 else _LAND
+        cmap = colors.LinearSegmentedColormap.from_list("heights", palette)
+    return cm.ScalarMappable(norm=colors.Normalize(low, high), cmap=cmap)
+
+
+def shaded(rgb: Floats, light: Floats) -> Floats:
+    """Darken away from the sun, lighten towards it; flat ground keeps its colour nearly."""
+    strength = (0.30 + 0.95 * light)[..., None]
+    return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
+
+
+def add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
+    """Add the bar of a scale, pointed where values lie beyond."""
+    below = np.nanmin(values) < colours.norm.vmin
+    above = np.nanmax(values) > colours.norm.vmax
+    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
+    bar = ax.figure.colorbar(
+        colours,
+        ax=ax,
+        label=label,
+        extend=extend[int(below), int(above)],
+        shrink=0.75,
+        pad=0.02,
+        aspect=30,
+    )
+    bar.outline.set_visible(False)
