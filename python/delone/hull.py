@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from itertools import pairwise
-from math import fsum
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -41,8 +40,8 @@ class ConvexHull:
         The coordinates.
     simplices : ndarray of int32, shape (h, d)
         Edges or triangles, as rows of `points`: with the hull to the left of edges, triangles
-        counter-clockwise as seen from outside. Each begins with its smallest vertex in space; in
-        the plane they follow each other counter-clockwise.
+        counter-clockwise as seen from outside. In space each begins with its lexicographically
+        smallest point; in the plane they follow each other counter-clockwise.
     neighbors : ndarray of int32, shape (h, d)
         ``neighbors[i, k]`` is the simplex that shares all vertices of simplex i but vertex k.
     vertices : ndarray of int32, shape (v,)
@@ -225,31 +224,40 @@ class ConvexHull:
             normals = space.face_normals(self._points, corners)
         with np.errstate(all="ignore"):
             offsets = -(normals * self._points[corners[:, 0]]).sum(axis=1)
+            # Partial sums may leave the range where the offset does not.
+            far = ~np.isfinite(offsets)
+            quarters = self._points[corners[far, 0]] / 4
+            offsets[far] = -4 * (normals[far] * quarters).sum(axis=1)
         # Adding 0 makes -0 the 0 that it is.
         return sealed(np.column_stack((normals, offsets + 0.0))[self._facet_of])
 
     @property
     @kept
     def volume(self) -> float:
-        """The volume; in the plane, as in SciPy, the area. With a relative error below 1e-13."""
+        """The volume; in the plane, as in SciPy, the area.
+
+        With a relative error below 1e-13; inf, or rounded among the subnormal numbers, where it is
+        beyond the range of doubles.
+        """
         base = int(self._polygons[0])  # the lexicographically smallest, whatever the rows
         if self.ndim == 2:
             fan = np.column_stack((np.full(self.nsimplex, base), self._simplices))
             fan = fan[(self._simplices != base).all(axis=1)]
-            return fsum(plane.areas(self._points, fan))
+            return plane.total(plane.areas(self._points, fan))
         a, b, c = self._simplices.T
         cones = np.column_stack((a, c, b, np.full(self.nsimplex, base)))
         above = predicates.orient3d(*(self._points[cones[:, k]] for k in range(4))) > 0
-        return fsum(space.volumes(self._points, cones[above]))
+        return plane.total(space.volumes(self._points, cones[above]))
 
     @property
     @kept
     def area(self) -> float:
-        """The area of the surface; in the plane, as in SciPy, the perimeter."""
+        """The area of the surface; in the plane, as in SciPy, the perimeter; inf beyond doubles."""
         if self.ndim == 2:
-            along = self._points[self._simplices[:, 1]] - self._points[self._simplices[:, 0]]
-            return fsum(np.hypot(*along.T))
-        return fsum(space.face_areas(self._points, self._simplices))
+            with np.errstate(over="ignore"):
+                along = np.subtract(*self._points[self._simplices.T])
+                return plane.total(np.hypot(*along.T))
+        return plane.total(space.face_areas(self._points, self._simplices))
 
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("points", *_ARRAYS)

@@ -197,6 +197,22 @@ def test_volume_of_a_sliver_is_accurate() -> None:
     assert hull.volume == pytest.approx(float(abs(determinant) / 6), rel=1e-13)
 
 
+@pytest.mark.filterwarnings("error")
+def test_measures_beyond_the_range_are_infinite() -> None:
+    """Sums of finite terms, sides beyond the range, and an offset whose partial sums are."""
+    far = 1e308
+    triangle = ConvexHull([(0, 0), (far, 0), (0, far)])
+    assert (triangle.area, triangle.volume) == (np.inf, np.inf)
+    corner = ConvexHull([(0, 0, 0), (1e154, 0, 0), (0, 1e154, 0), (0, 0, 1e154)])
+    assert (corner.area, corner.volume) == (np.inf, np.inf)
+    assert ConvexHull([(-far, 0), (far, 0), (0, 1)]).area == np.inf
+    most = float(np.finfo(float).max)
+    points = [(-most, -most, most), (1, 1, -most), (1e-300, -1e300, -1e300), (-most, 0, 0)]
+    equations = ConvexHull([*points, (most, 1e300, most)]).equations
+    assert np.isfinite(equations).all()
+    assert equations[0, 3] == pytest.approx(-most / np.sqrt(3), rel=1e-12)
+
+
 def test_attributes_in_the_plane() -> None:
     hull = ConvexHull([(0, 0), (4, 0), (4, 3), (2, 3), (0, 3), (1, 1), (4, 3)])
     assert hull.vertices.tolist() == [0, 1, 2, 4]

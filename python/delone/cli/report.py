@@ -191,10 +191,10 @@ def area(triangulation: Mesh) -> float:
     float
         In the square of the unit of the points.
     """
-    if not _is_whole(triangulation):
-        return math.fsum(triangulation.areas.tolist())
     ring = triangulation.points[triangulation.hull]
     with np.errstate(all="ignore"):
+        if not _is_whole(triangulation):
+            return float(triangulation.areas.sum())
         x, y = (ring - ring[0]).T
         return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 

@@ -7,7 +7,6 @@ one by ``--3d``.
 
 from __future__ import annotations
 
-from math import fsum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -199,6 +198,8 @@ def space_summary(mesh: Delaunay) -> dict[str, Any]:
     """
     n, m, repeats = mesh.npoints, mesh.nsimplex, mesh.coplanar
     distinct, edges, faces = n - len(repeats), len(mesh.edges), len(mesh.faces)
+    with np.errstate(over="ignore"):
+        volume = float(mesh.volumes.sum())
     first = [
         {"row": row, "same_as": same, "x": x, "y": y, "z": z}
         for (row, _, same), (x, y, z) in zip(
@@ -218,7 +219,7 @@ def space_summary(mesh: Delaunay) -> dict[str, Any]:
         "edges": {"count": edges, "expected": None},
         "faces": {"count": faces, "expected": None},
         "mean_degree": 2 * edges / distinct,
-        "volume": finite_or_none(fsum(mesh.volumes.tolist())),
+        "volume": finite_or_none(volume),
         "bounds": [*mesh.min_bound.tolist(), *mesh.max_bound.tolist()],
     }
 

@@ -11,6 +11,7 @@ that are exactly counter-clockwise.
 from __future__ import annotations
 
 from fractions import Fraction
+from math import fsum, inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
     Exact = tuple[Fraction, Fraction]
 
-__all__ = ["areas", "circumcenters", "edge_normals", "transform"]
+__all__ = ["areas", "circumcenters", "edge_normals", "total", "transform"]
 
 # A difference of products that is above this share of their magnitude has lost at most five bits.
 _PLAIN = 2.0**-5
@@ -207,6 +208,32 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
     normals /= np.hypot(normals[:, 0], normals[:, 1])[:, None]
     # Adding 0 makes -0 the 0 that it is.
     return normals + 0.0
+
+
+def total(sizes: Floats) -> float:
+    """Return the sum of sizes, rounded once.
+
+    Parameters
+    ----------
+    sizes : ndarray of float64, shape (m,)
+        Lengths, areas or volumes: none below zero.
+
+    Returns
+    -------
+    float
+        Inf where the sum is beyond the range of doubles.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.plane.geometry import total
+    >>> total(np.array([0.1] * 10)), total(np.array([1e308, 1e308]))
+    (1.0, inf)
+    """
+    try:
+        return fsum(sizes.tolist())
+    except OverflowError:
+        return inf
 
 
 def _apex_last(corners: Floats) -> Floats:
