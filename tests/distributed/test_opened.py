@@ -190,13 +190,44 @@ def flip(columns: dict[str, Any]) -> None:
     pytest.fail("the first triangle has no neighbour there")
 
 
+def twice(columns: dict[str, Any]) -> None:
+    columns |= {name: np.append(values[1:], values[9]) for name, values in columns.items()}
+
+
+def longer(columns: dict[str, Any]) -> None:
+    columns |= {name: np.append(values, values[9]) for name, values in columns.items()}
+
+
+def fold(columns: dict[str, Any]) -> None:
+    columns["b"][0] = columns["a"][0]
+
+
+def steal(columns: dict[str, Any]) -> None:
+    """The number of a point that another tile owns."""
+    columns["id"][0] = columns["id"][~columns["owned"]][0]
+
+
+def disown(columns: dict[str, Any]) -> None:
+    columns["owned"][:] = False
+
+
+def renumber(columns: dict[str, Any]) -> None:
+    columns["id"][0] = columns["id"][1]
+
+
 @pytest.mark.parametrize(
     ("table", "change", "words"),
     [
         ("triangles", drop, "in place of"),
+        ("triangles", longer, "in place of"),
+        ("triangles", twice, "occurs twice"),
         ("triangles", turn, "not counter-clockwise"),
+        ("triangles", fold, "not counter-clockwise"),
         ("triangles", flip, "not Delaunay"),
         ("vertices", move, "tile 0"),
+        ("vertices", steal, "a point of tile"),
+        ("vertices", renumber, "a vertex twice"),
+        ("vertices", disown, "points is 0 in place of"),
     ],
 )
 def test_what_is_wrong_is_found(
@@ -204,10 +235,94 @@ def test_what_is_wrong_is_found(
 ) -> None:
     shutil.copytree(tin.path, tmp_path / "tin")
     spoil(tmp_path / "tin", table, change)
-    report = distributed.open(tmp_path / "tin").validate()
+    spoilt = distributed.open(tmp_path / "tin")
+    report = spoilt.validate()
     assert not report
     assert "is not the file that was written" in str(report)
     assert words in str(report)
+    for use in (spoilt.simplices, lambda: spoilt.find_simplex(SURVEY.points)):
+        try:
+            use()
+        except FileFormatError as error:
+            assert f"{table}/tile=000000.parquet" in error.args[0].replace("\\", "/")
+
+
+def test_rows_are_as_many_as_the_manifest_says(
+    tin: distributed.TiledDelaunay, tmp_path: Path
+) -> None:
+    for change in (drop, longer):
+        shutil.copytree(tin.path, tmp_path / change.__name__)
+        spoil(tmp_path / change.__name__, "triangles", change)
+        with pytest.raises(FileFormatError, match=r"tile=000000\.parquet has \d+ rows; the manif"):
+            distributed.open(tmp_path / change.__name__).simplices()
+
+
+def absent(name: str) -> Callable[[dict[str, Any]], None]:
+    return lambda columns: columns.__delitem__(name)
+
+
+def holding(name: str, value: Any) -> Callable[[dict[str, Any]], None]:
+    """A column whose first row is this, whatever its type becomes."""
+
+    def change(columns: dict[str, Any]) -> None:
+        columns[name] = [value, *columns[name].tolist()[1:]]
+
+    return change
+
+
+def said(name: str) -> Callable[[dict[str, Any]], None]:
+    return lambda columns: columns.__setitem__(name, columns[name].astype(str))
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "words"),
+    [
+        *[("triangles", absent(name), f"no column '{name}'") for name in "abc"],
+        *[("vertices", absent(name), f"no column '{name}'") for name in ("id", "x", "z", "owned")],
+        *[("triangles", said(name), f"column '{name}' holds") for name in "abc"],
+        *[("vertices", said(name), f"column '{name}' holds") for name in ("id", "y", "z", "owned")],
+        ("triangles", holding("a", None), "'a' has gaps"),
+        ("vertices", holding("x", None), "'x' has gaps"),
+        ("vertices", holding("owned", None), "'owned' has gaps"),
+        ("triangles", holding("a", -1), "no row of the vertices"),
+        ("triangles", holding("c", 1 << 40), "no row of the vertices"),
+        ("vertices", holding("x", float("nan")), "not finite"),
+        ("vertices", holding("y", float("inf")), "not finite"),
+        ("vertices", holding("id", len(SURVEY.points)), "no row of the source"),
+        ("vertices", holding("id", -1), "no row of the source"),
+    ],
+)
+def test_tables_of_another_kind_are_refused_by_name(
+    tin: distributed.TiledDelaunay, table: str, change: Any, words: str, tmp_path: Path
+) -> None:
+    shutil.copytree(tin.path, tmp_path / "tin")
+    spoil(tmp_path / "tin", table, change)
+    spoilt = distributed.open(tmp_path / "tin")
+    with pytest.raises(FileFormatError, match=words) as caught:
+        spoilt.simplices()
+    assert f"{table}/tile=000000.parquet" in caught.value.args[0].replace("\\", "/")
+    assert words in str(spoilt.validate())
+
+
+def test_bytes_that_change_in_a_table(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
+    """Whatever they are, they are torn, or hold other numbers, which the hash tells."""
+    shutil.copytree(tin.path, tmp_path / "tin")
+    dice = np.random.default_rng(11)
+    spoilt = distributed.open(tmp_path / "tin")
+    for table in ("vertices", "triangles"):
+        path = tmp_path / "tin" / table / "tile=000001.parquet"
+        whole = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+        for number in range(60):
+            # What Parquet says of its columns stands at the end.
+            changed = whole.copy()
+            low = 0 if number % 2 else len(whole) - 1500
+            changed[dice.integers(low, len(whole), 2)] = dice.integers(0, 256, 2)
+            path.write_bytes(changed[: dice.integers(len(whole))] if number % 5 == 0 else changed)
+            try:
+                spoilt.find_simplex(SURVEY.points[::500])
+            except FileFormatError as error:
+                assert path.name in str(error)
+        path.write_bytes(whole)
 
 
 @pytest.mark.parametrize("left", [0, 200])

@@ -8,9 +8,10 @@ them.
 
 from delone.distributed.api import plan, triangulate
 from delone.distributed.costs import Plan
-from delone.distributed.opened import Tile, TiledDelaunay, open
+from delone.distributed.opened import TiledDelaunay, open
 from delone.distributed.proof import TiledReport
 from delone.distributed.run import Progress
+from delone.distributed.tile import Tile
 
 __all__ = [
     "Plan",

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.atomic import replacing
-from delone.distributed.opened import Tile
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
 from delone.io.extras import require
@@ -24,7 +23,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from delone import _core
     from delone.distributed.opened import TiledDelaunay
+    from delone.distributed.tile import Tile
 
     Floats = NDArray[np.float64]
 
@@ -55,7 +56,8 @@ def write_dem(
         values = _empty_values(waiting, len(x), len(y))
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
-                _fill(tin.tile(number), known["extent"], x, y, values, value)
+                tile = tin.tile(number)
+                _fill(tin._locator(tile), tile, known["extent"], x, y, values, value)
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
         transform = rasterio.Affine(sides[0], 0.0, corner[0], 0.0, -sides[1], corner[1])
         _write(rasterio, beside, values, transform, tin.crs, value)
@@ -88,7 +90,13 @@ def _empty_values(path: Path, columns: int, rows: int) -> NDArray[np.float64]:
 
 
 def _fill(  # noqa: PLR0917
-    tile: Tile, extent: list[float], x: Floats, y: Floats, values: Any, value: str
+    locator: _core.Locator2,
+    tile: Tile,
+    extent: list[float],
+    x: Floats,
+    y: Floats,
+    values: Any,
+    value: str,
 ) -> None:
     """Give the nodes that lie in triangles of the tile, and have no value yet, theirs."""
     columns = slice(*np.searchsorted(x, [extent[0], np.nextafter(extent[2], np.inf)]).tolist())
@@ -96,7 +104,6 @@ def _fill(  # noqa: PLR0917
     width = columns.stop - columns.start
     if width <= 0:
         return
-    locator = tile.locator()
     field = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)[:, None].copy()
     step = max(1, _BLOCK // width)
     for start in range(first, last, step):

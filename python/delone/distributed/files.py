@@ -12,6 +12,8 @@ import json
 import os
 import secrets
 import shutil
+import zipfile
+import zlib
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,6 +48,17 @@ def _explained(path: Path) -> Iterator[None]:
             error.errno,
             "the disk is full; make room and run the same again: it goes on where it stopped",
             str(path),
+        ) from error
+
+
+@contextmanager
+def _torn_is_an_error(path: Path) -> Iterator[None]:
+    """Call an array that cannot be read a fault of its file."""
+    try:
+        yield
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise FileFormatError(
+            f"{path} is torn: {error}; remove the folder of the output and begin again"
         ) from error
 
 
@@ -94,7 +107,8 @@ class Store:
 
     def load(self, name: str, *, mapped: bool = False) -> NDArray[Any]:
         """Read one array, or map it."""
-        array: NDArray[Any] = np.load(self.path(name), mmap_mode="r" if mapped else None)
+        with _torn_is_an_error(self.path(name)):
+            array: NDArray[Any] = np.load(self.path(name), mmap_mode="r" if mapped else None)
         return array
 
     def save_all(self, name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -102,10 +116,10 @@ class Store:
         with self.writing(name) as beside, beside.open("wb") as file:
             np.savez(file, allow_pickle=False, **arrays)
 
-    def load_all(self, name: str) -> dict[str, NDArray[Any]]:
-        """Read arrays by name."""
-        with np.load(self.path(name)) as found:
-            return dict(found)
+    def load_all(self, name: str, *wanted: str) -> dict[str, NDArray[Any]]:
+        """Read arrays by name: some, or all."""
+        with _torn_is_an_error(self.path(name)), np.load(self.path(name)) as found:
+            return {key: found[key] for key in wanted or found.files}
 
     def note(self, name: str, content: Mapping[str, Any]) -> None:
         """Write what JSON can say."""
@@ -115,11 +129,14 @@ class Store:
     def noted(self, name: str) -> Any:
         """Read a note; None where there is none."""
         try:
-            return json.loads(self.path(name).read_text(encoding="utf-8"))
+            found = json.loads(self.path(name).read_text(encoding="utf-8"))
         except FileNotFoundError:
             return None
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise FileFormatError(f"{self.path(name)} is torn: {error}") from error
+        if found is None:
+            raise FileFormatError(f"{self.path(name)} is torn: it says null")
+        return found
 
     def sweep(self, pattern: str) -> None:
         """Remove what killed processes have left beside files."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone import _core
 from delone.distributed.output import tile_names
-from delone.errors import FileFormatError
+from delone.distributed.schema import FORMAT, TIES, check_manifest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -14,10 +14,7 @@ if TYPE_CHECKING:
     from delone.distributed.files import Store
     from delone.distributed.layout import Layout
 
-__all__ = ["FORMAT", "TIES", "assemble", "manifest_of"]
-
-FORMAT = "delone tiles 1"
-TIES = "cocircular points are fanned from the lexicographically smallest"
+__all__ = ["assemble", "manifest_of"]
 
 
 def assemble(
@@ -71,7 +68,7 @@ def manifest_of(store: Store) -> dict[str, Any]:
     FileNotFoundError
         There is no output, or it is not finished.
     FileFormatError
-        The manifest is of another kind.
+        The manifest is torn, of another kind, or wrong in some field.
     """
     found = store.noted("manifest.json")
     if found is None:
@@ -80,6 +77,6 @@ def manifest_of(store: Store) -> dict[str, Any]:
                 f"{store.root} is not finished: run triangulate again with the same arguments"
             )
         raise FileNotFoundError(f"{store.root} holds no triangulation in tiles")
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
-        raise FileFormatError(f"{store.root}/manifest.json is none of {FORMAT!r}")
-    return found
+    check_manifest(found, store.path("manifest.json"))
+    manifest: dict[str, Any] = found
+    return manifest

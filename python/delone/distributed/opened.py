@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core
 from delone._arrays import as_count, as_vectors
 from delone.distributed.files import Store
 from delone.distributed.manifest import manifest_of
 from delone.distributed.output import tile_names
+from delone.distributed.tile import Tile, read_tile
 from delone.distributed.tiles import Tiles
 from delone.errors import FileFormatError, InputError
-from delone.io.extras import require
 
 if TYPE_CHECKING:
     import os
@@ -23,47 +21,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone import _core
     from delone.distributed.proof import TiledReport
 
     Floats = NDArray[np.float64]
     Numbers = NDArray[np.int64]
 
-__all__ = ["Tile", "TiledDelaunay", "open"]
-
-_WHAT = "reading tiles"
-
-
-@dataclass(frozen=True, eq=False)
-class Tile:
-    """One tile in memory.
-
-    Parameters
-    ----------
-    number : int
-        The number of the tile.
-    points : ndarray of float64, shape (n, 2)
-        Its vertices: own points, then points of other tiles.
-    ids : ndarray of int64, shape (n,)
-        Their rows in the source.
-    owned : ndarray of bool, shape (n,)
-        Which are own points.
-    simplices : ndarray of int32, shape (m, 3)
-        Its triangles as rows of `points`, counter-clockwise.
-    attributes : dict of str to ndarray
-        Heights ``z`` and further columns, one value for each vertex.
-    """
-
-    number: int
-    points: Floats
-    ids: Numbers
-    owned: NDArray[np.bool_]
-    simplices: NDArray[np.int32]
-    attributes: dict[str, NDArray[Any]]
-
-    def locator(self) -> _core.Locator2:
-        """Return what finds the triangles that hold points."""
-        neighbors = _core.neighbors2(self.simplices, len(self.points))
-        return _core.Locator2(self.points, self.simplices, neighbors)
+__all__ = ["TiledDelaunay", "open"]
 
 
 def open(output: str | os.PathLike[str]) -> TiledDelaunay:
@@ -84,7 +48,7 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
     FileNotFoundError
         There is none, or it is not finished.
     FileFormatError
-        The manifest is torn or of another kind, or files of tiles are missing.
+        The manifest is torn, of another kind, or wrong in some field; files of tiles are missing.
 
     Examples
     --------
@@ -197,34 +161,30 @@ class TiledDelaunay:
         InputError
             There is no such tile.
         FileFormatError
-            Its files are torn.
+            Its files are lost or torn, lack a column, or hold something else.
         """
         number = as_count(number, name="number")
         if not 0 <= number < self.ntiles:
             raise InputError(f"there are tiles 0 to {self.ntiles - 1}, not {number}")
-        vertices, triangles = (self._table(name) for name in tile_names(number))
-        fixed = ("id", "x", "y", "owned")
-        points = np.stack([vertices["x"], vertices["y"]], axis=1)
-        simplices = np.stack([triangles[name] for name in "abc"], axis=1)
-        if len(simplices) and not 0 <= simplices.min() <= simplices.max() < len(points):
-            raise FileFormatError(f"{self.path}: tile {number} has triangles without vertices")
-        return Tile(
-            number,
-            points,
-            vertices["id"].astype(np.int64),
-            vertices["owned"].astype(bool),
-            simplices.astype(np.int32, copy=False),
-            {name: values for name, values in vertices.items() if name not in fixed},
-        )
+        tile = read_tile(self._store, self.manifest, number)
+        known = self.manifest["tiles"][number]
+        wanted = known["points"] + known["foreign"], known["triangles"]
+        for name, rows, right in zip(
+            tile_names(number), (len(tile.points), len(tile.simplices)), wanted, strict=True
+        ):
+            if rows != right:
+                raise FileFormatError(
+                    f"{self._store.path(name)} has {rows} rows; the manifest says {right}"
+                )
+        return tile
 
-    def _table(self, name: str) -> dict[str, NDArray[Any]]:
-        parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
+    def _locator(self, tile: Tile) -> _core.Locator2:
+        """What finds triangles of a tile, whose file is to blame where they are no mesh."""
         try:
-            with parquet.ParquetFile(self._store.path(name)) as file:
-                table = file.read()
-        except (OSError, ValueError) as error:
-            raise FileFormatError(f"{self._store.path(name)} is torn: {error}") from error
-        return {column: table[column].to_numpy() for column in table.column_names}
+            return tile.locator()
+        except InputError as error:
+            path = self._store.path(tile_names(tile.number)[1])
+            raise FileFormatError(f"{path} holds no mesh: {error}") from error
 
     def tiles(self) -> Iterator[Tile]:
         """Read all tiles, one after another."""
@@ -284,7 +244,7 @@ class TiledDelaunay:
         for number, rows in self._near(queries):
             left = rows[found[rows] < 0]
             if len(left):
-                here = self.tile(number).locator().find(queries[left].copy(), 1)
+                here = self._locator(self.tile(number)).find(queries[left].copy(), 1)
                 found[left[here >= 0]] = self._starts[number] + here[here >= 0]
         return found.reshape(shape)
 
@@ -319,7 +279,8 @@ class TiledDelaunay:
         for number, rows in self._near(queries):
             some = rows[left[rows]]
             if len(some):
-                values, held = _linear(self.tile(number), queries[some], value)
+                tile = self.tile(number)
+                values, held = _linear(self._locator(tile), tile, queries[some], value)
                 found[some[held]] = values[held]
                 left[some[held]] = False
         return found.reshape(shape)
@@ -426,9 +387,10 @@ def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
     return np.ascontiguousarray(queries.reshape(-1, 2)), queries.shape[:-1]
 
 
-def _linear(tile: Tile, queries: Floats, value: str) -> tuple[Floats, NDArray[np.bool_]]:
+def _linear(
+    locator: _core.Locator2, tile: Tile, queries: Floats, value: str
+) -> tuple[Floats, NDArray[np.bool_]]:
     """Values of queries in a tile, and which of them a triangle of it holds."""
-    locator = tile.locator()
     values = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)
     some = np.ascontiguousarray(queries)
     found: Floats = locator.linear(values[:, None].copy(), some, 0, 1).reshape(-1)

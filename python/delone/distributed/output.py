@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Indices = NDArray[np.int32]
 
-__all__ = ["tile_names", "write_tile"]
+__all__ = ["box_of", "tile_names", "write_tile"]
 
 _WHAT = "triangulating in tiles"
 
@@ -72,8 +72,8 @@ def write_tile(  # noqa: PLR0917
         "foreign": len(vertices) - own,
         "triangles": len(triangles),
         # The vertices of triangles may lie far out of the box of the tile's points.
-        "box": _box(points[:own]),
-        "extent": _box(points) if len(triangles) else None,
+        "box": box_of(points[:own]),
+        "extent": box_of(points) if len(triangles) else None,
         "vertices_sha256": vertices_hash,
         "triangles_sha256": triangles_hash,
     }
@@ -142,6 +142,7 @@ def _as_arrow(arrow: Any, column: NDArray[Any]) -> Any:
     return arrow.Array.from_buffers(kind, len(column), [None, arrow.py_buffer(bits)])
 
 
-def _box(points: NDArray[np.float64]) -> list[float]:
+def box_of(points: NDArray[np.float64]) -> list[float]:
+    """Return left, bottom, right and top of points."""
     x, y = points.T
     return [float(x.min()), float(y.min()), float(x.max()), float(y.max())]

@@ -5,25 +5,29 @@ the boundary is one convex cycle: so the triangles tile the hull. There are 2 n 
 n distinct points and h on the boundary: so each point is a vertex. Each inner edge is locally
 Delaunay with ties by coordinates: so all is Delaunay and canonical (B. Delaunay, "Sur la sphère
 vide", 1934). Beside one tile, memory is needed for the edges and vertices that tiles have in
-common.
+common, and a byte for each row of a window of all rows.
+
+What the manifest says is compared with what the files hold: hashes, counts, boxes, numbers.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core
 from delone.distributed.files import digest
-from delone.distributed.output import tile_names
+from delone.distributed.output import box_of, tile_names
+from delone.distributed.tile import read_columns, read_tile
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.distributed.opened import Tile, TiledDelaunay
+    from delone.distributed.opened import TiledDelaunay
+    from delone.distributed.tile import Tile
 
     Floats = NDArray[np.float64]
     Numbers = NDArray[np.int64]
@@ -33,6 +37,8 @@ __all__ = ["TiledReport", "prove"]
 # An edge of a tile that has no other side in it: ends and apex, as rows and as points.
 _EDGE = np.dtype([("ends", "<i8", 2), ("apex", "<i8"), ("tile", "<i8"), ("points", "<f8", (3, 2))])
 _VERTEX = np.dtype([("id", "<i8"), ("point", "<f8", 2), ("tile", "<i8"), ("owner", "<i8")])
+# Rows that are looked at together for points that two tiles own: 256 MB.
+_WINDOW = 1 << 28
 
 
 @dataclass(frozen=True)
@@ -70,33 +76,114 @@ def prove(tin: TiledDelaunay) -> TiledReport:
     faults: list[str] = []
     edges, foreign = [np.empty(0, _EDGE)], [np.empty(0, _VERTEX)]
     tree = tin._tree()
-    distinct = triangles = points = 0
-    for number, known in enumerate(tin.manifest["tiles"]):
-        for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
-            if digest(tin._store.path(name)) != known[f"{key}_sha256"]:
-                faults.append(f"{name} is not the file that was written")
+    sums = _Sums(points=0, triangles=0, distinct=0)
+    spans: dict[int, tuple[int, int]] = {}
+    all_read = True
+    for number in range(tin.ntiles):
+        faults += _hashes(tin, number)
         try:
-            tile = tin.tile(number)
-        except (FileFormatError, KeyError, ValueError) as error:
+            tile = read_tile(tin._store, tin.manifest, number)
+        except FileFormatError as error:
             faults.append(f"tile {number} cannot be read: {error}")
+            all_read = False
             continue
         owner = tree.locate(tile.points).astype(np.int64)
+        faults += _figures(tile, tin.manifest["tiles"][number])
         faults += _inner(tile, owner)
         edges.append(_open_edges(tile))
         foreign.append(_foreign(tile, owner))
-        triangles += len(tile.simplices)
-        points += int(tile.owned.sum())
-        distinct += len(np.unique(tile.points[tile.owned] + 0.0, axis=0))
+        sums.triangles += len(tile.simplices)
+        sums.points += (own := int(tile.owned.sum()))
+        sums.distinct += len(np.unique(tile.points[tile.owned] + 0.0, axis=0))
+        if own:
+            spans[number] = int(tile.ids[tile.owned].min()), int(tile.ids[tile.owned].max())
     boundary = _between(np.concatenate(edges), faults)
-    h = _around(boundary, faults)
-    if points != tin.npoints:
-        faults.append(f"{points} points in place of {tin.npoints}")
-    if triangles != 2 * distinct - 2 - h:
-        faults.append(
-            f"{triangles} triangles in place of {2 * distinct - 2 - h}: a point is missing"
-        )
+    faults += _owned_twice(tin, spans)
     faults += _copies(tin, np.concatenate(foreign))
+    if not all_read:
+        # Nothing follows from what the others sum up to.
+        return TiledReport(tuple(faults))
+    h, corners = _around(boundary, faults)
+    if sums.triangles != 2 * sums.distinct - 2 - h:
+        right = 2 * sums.distinct - 2 - h
+        faults.append(f"{sums.triangles} triangles in place of {right}: a point is missing")
+    faults += _totals(tin.manifest, sums, corners)
     return TiledReport(tuple(faults))
+
+
+@dataclass
+class _Sums:
+    """What all tiles have together."""
+
+    points: int
+    triangles: int
+    distinct: int
+
+
+def _hashes(tin: TiledDelaunay, number: int) -> list[str]:
+    """Which files of a tile are not those that were written."""
+    faults = []
+    for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
+        try:
+            if digest(tin._store.path(name)) != tin.manifest["tiles"][number][f"{key}_sha256"]:
+                faults.append(f"{name} is not the file that was written")
+        except FileNotFoundError:
+            faults.append(f"{name} is lost")
+    return faults
+
+
+def _figures(tile: Tile, known: dict[str, Any]) -> list[str]:
+    """What the manifest says of a tile that its files do not."""
+    own = tile.points[tile.owned]
+    found = {
+        "points": len(own),
+        "foreign": len(tile.points) - len(own),
+        "triangles": len(tile.simplices),
+        "box": box_of(own) if len(own) else None,
+        "extent": box_of(tile.points) if len(tile.simplices) else None,
+    }
+    return [
+        f"tile {tile.number}: {name} is {value} in place of {known[name]} in the manifest"
+        for name, value in found.items()
+        if value != known[name]
+    ]
+
+
+def _totals(manifest: dict[str, Any], sums: _Sums, corners: int) -> list[str]:
+    """What the manifest says of all tiles that they do not."""
+    boxes = np.array([tile["box"] for tile in manifest["tiles"]])
+    found = {
+        "points": sums.points,
+        "triangles": sums.triangles,
+        "duplicates": sums.points - sums.distinct,
+        "hull": corners,
+        "bounds": [*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist()],
+    }
+    if manifest["run"]["classes"] is None:
+        found["rows"] = sums.points + manifest["dropped"]
+    return [
+        f"the manifest says {name} {manifest[name]} in place of {value}"
+        for name, value in found.items()
+        if value != manifest[name]
+    ]
+
+
+def _owned_twice(tin: TiledDelaunay, spans: dict[int, tuple[int, int]]) -> list[str]:
+    """Whether two points are the same row, looking at a window of all rows at a time."""
+    faults = []
+    last = max((high for _, high in spans.values()), default=-1)
+    for start in range(0, last + 1, _WINDOW):
+        inside = {t: s for t, s in spans.items() if s[0] < start + _WINDOW and s[1] >= start}
+        seen = np.zeros(min(_WINDOW, last + 1 - start), dtype=bool)
+        for number in inside:
+            found = read_columns(tin._store.path(tile_names(number)[0]), {"id": "iu", "owned": "b"})
+            ids = found["id"][found["owned"]].astype(np.int64) - start
+            ids = ids[(ids >= 0) & (ids < len(seen))]
+            if seen[ids].any():
+                row = start + int(ids[seen[ids]][0])
+                faults.append(f"row {row} is a point of tile {number} and of another one")
+            seen[ids] = True
+    return faults
 
 
 def _inner(tile: Tile, owner: Numbers) -> list[str]:
@@ -174,13 +261,13 @@ def _between(edges: NDArray[np.void], faults: list[str]) -> NDArray[np.void]:
     return edges[alone]
 
 
-def _around(boundary: NDArray[np.void], faults: list[str]) -> int:
-    """Check that the boundary is one convex cycle; return how many points are on it."""
+def _around(boundary: NDArray[np.void], faults: list[str]) -> tuple[int, int]:
+    """Check that the boundary is one convex cycle; return how many points and corners it has."""
     after = dict(boundary["ends"].tolist())
     at = dict(zip(boundary["ends"][:, 0].tolist(), boundary["points"][:, 0], strict=True))
     if len(after) != len(boundary) or not len(boundary):
         faults.append("the boundary meets itself")
-        return len(boundary)
+        return len(boundary), 0
     start = min(after, key=lambda v: tuple(at[v]))
     cycle, v = [start], after[start]
     while v != start and v in after and len(cycle) <= len(after):
@@ -188,7 +275,7 @@ def _around(boundary: NDArray[np.void], faults: list[str]) -> int:
         v = after[v]
     if v != start or len(cycle) != len(after):
         faults.append("the boundary is no single cycle: there is a hole")
-        return len(boundary)
+        return len(boundary), 0
     points = np.array([at[v] for v in cycle])
     ahead, beyond = np.roll(points, -1, axis=0), np.roll(points, -2, axis=0)
     # One turn in all: x rises once and falls once.
@@ -197,9 +284,10 @@ def _around(boundary: NDArray[np.void], faults: list[str]) -> int:
     rises = [tuple(p) < tuple(q) for p, q in zip(points, ahead, strict=True)]
     if rises != [i < top for i in range(len(points))]:
         faults.append("the boundary turns more than once")
-    if (_core.orient2d(points, ahead, beyond) < 0).any():
+    turns = _core.orient2d(points, ahead, beyond)
+    if (turns < 0).any():
         faults.append("the boundary is not convex")
-    return len(points)
+    return len(points), int((turns > 0).sum())
 
 
 def _foreign(tile: Tile, owner: Numbers) -> NDArray[np.void]:
@@ -214,9 +302,15 @@ def _copies(tin: TiledDelaunay, foreign: NDArray[np.void]) -> list[str]:
     """Check that vertices of other tiles are what their owners say."""
     faults = []
     for number in np.unique(foreign["owner"]).tolist():
-        tile = tin.tile(number)
+        try:
+            tile = read_tile(tin._store, tin.manifest, number)
+        except FileFormatError:
+            # That has been said.
+            continue
         copies = foreign[foreign["owner"] == number]
         ids, points = tile.ids[tile.owned], tile.points[tile.owned]
+        if not len(ids):
+            continue
         order = np.argsort(ids)
         at = order[np.minimum(np.searchsorted(ids, copies["id"], sorter=order), len(ids) - 1)]
         wrong = (ids[at] != copies["id"]) | (points[at] != copies["point"]).any(axis=1)

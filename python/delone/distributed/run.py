@@ -13,8 +13,9 @@ from delone.distributed.files import Store
 from delone.distributed.hull import extreme_rows
 from delone.distributed.layout import Layout, Slices, collect
 from delone.distributed.lock import LOCK, locked
-from delone.distributed.manifest import FORMAT, assemble, manifest_of
+from delone.distributed.manifest import assemble, manifest_of
 from delone.distributed.rows import make_rows, widened
+from delone.distributed.schema import FORMAT, check_settings, check_summary
 from delone.distributed.stages import note_of
 from delone.distributed.tiles import plant, strips
 from delone.errors import DegenerateInputError, InputError, LimitError, NonFiniteError
@@ -116,6 +117,7 @@ class Run:
             return
         looks = self._look()
         layout = self._lay_out(looks)
+        self._say(tiles=len(layout.tiles))
         dealt = self._stage("deal", self._pieces())
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
@@ -159,8 +161,10 @@ class Run:
         """Begin in an empty folder, or go on with the same run in its own."""
         root = self.store.root
         settings = self._settings()
-        begun = self.store.noted("work/run.json")
-        before = manifest_of(self.store)["run"] if self.store.exists("manifest.json") else begun
+        if self.store.exists("manifest.json"):
+            before = manifest_of(self.store)["run"]
+        elif (before := self.store.noted("work/run.json")) is not None:
+            check_settings(before, self.store.path("work/run.json"))
         if before is None:
             self.store.remove("work")
             self.store.note("work/run.json", settings)
@@ -250,7 +254,6 @@ class Run:
                 raise LimitError(
                     f"tile {tile} has {size} points, more than {1 << 28}: choose fewer tile_points"
                 )
-        self._say(tiles=len(slices))
 
     def _ask(self, begun: Summaries) -> tuple[int, int]:
         """Rounds of questions and answers, until no tile asks; how many, and how many points.
@@ -282,8 +285,11 @@ class Run:
         """Do the tasks of a stage that are not done yet; return all summaries."""
         found: Summaries = {}
         for key in tasks:
-            summary = self.store.noted(note_of(stage, key))
+            name = note_of(stage, key)
+            summary = self.store.noted(name)
             if summary is not None:
+                kind, tiles = stage.partition("-")[0], self.progress.tiles
+                check_summary(kind, summary, tiles, self.store.path(name))
                 found[key] = summary
                 self._count(summary)
         todo = {key: arguments for key, arguments in tasks.items() if key not in found}

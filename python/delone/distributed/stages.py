@@ -138,8 +138,8 @@ def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
     points = coordinates(told)
     numbers, is_all = [], []
     for asker in askers:
-        with np.load(store.path(f"work/border/{turn:04}/{asker:06}.npz")) as asked:
-            corners = asked["corners"][asked["tile"] == key]
+        asked = store.load_all(f"work/border/{turn:04}/{asker:06}.npz", "corners", "tile")
+        corners = asked["corners"][asked["tile"] == key]
         _, rows, whole = _core.deepest2(points, corners, MOST, 1)
         numbers.append(np.unique(rows))
         is_all.append(whole.all())
@@ -160,11 +160,11 @@ def proceed(store: Store, key: int, turn: int, asked: Sequence[int]) -> Summary:
     border = Border(found["rows"], found["owner"], found["edges"])
     news, secretive = [], []
     for tile in asked:
-        with np.load(store.path(f"work/answers/{turn:04}/{tile:06}.npz")) as told:
-            place = int(np.flatnonzero(told["askers"] == key)[0])
-            news.append(told["rows"][slice(*told["ends"][place : place + 2])])
-            if not told["all"][place]:
-                secretive.append(tile)
+        told = store.load_all(f"work/answers/{turn:04}/{tile:06}.npz")
+        place = int(np.flatnonzero(told["askers"] == key)[0])
+        news.append(told["rows"][slice(*told["ends"][place : place + 2])])
+        if not told["all"][place]:
+            secretive.append(tile)
     known = layout.known(store, key)
     fresh = np.concatenate(news)
     left, rows, certain, corners, tiles = advance(border, known, fresh, secretive)

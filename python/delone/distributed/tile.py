@@ -1,0 +1,136 @@
+"""One tile in memory, read from its two files.
+
+Parquet tells names and types of its columns; that those are the ones of a tile is checked here, and
+that corners, numbers and coordinates are in their ranges. What tiles say together is for `proof`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone.distributed.output import tile_names
+from delone.errors import FileFormatError
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from delone.distributed.files import Store
+
+    Floats = NDArray[np.float64]
+    Numbers = NDArray[np.int64]
+
+__all__ = ["Tile", "read_columns", "read_tile"]
+
+_WHAT = "reading tiles"
+# Columns that are not attributes, and the kinds of NumPy's types that they have.
+_VERTICES = {"id": "iu", "x": "f", "y": "f", "owned": "b"}
+_TRIANGLES = dict.fromkeys("abc", "iu")
+
+
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """One tile in memory.
+
+    Parameters
+    ----------
+    number : int
+        The number of the tile.
+    points : ndarray of float64, shape (n, 2)
+        Its vertices: own points, then points of other tiles.
+    ids : ndarray of int64, shape (n,)
+        Their rows in the source.
+    owned : ndarray of bool, shape (n,)
+        Which are own points.
+    simplices : ndarray of int32, shape (m, 3)
+        Its triangles as rows of `points`, counter-clockwise.
+    attributes : dict of str to ndarray
+        Heights ``z`` and further columns, one value for each vertex.
+    """
+
+    number: int
+    points: Floats
+    ids: Numbers
+    owned: NDArray[np.bool_]
+    simplices: NDArray[np.int32]
+    attributes: dict[str, NDArray[Any]]
+
+    def locator(self) -> _core.Locator2:
+        """Return what finds the triangles that hold points."""
+        neighbors = _core.neighbors2(self.simplices, len(self.points))
+        return _core.Locator2(self.points, self.simplices, neighbors)
+
+
+def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
+    """Read a tile, whatever the manifest says of its figures.
+
+    Raises
+    ------
+    FileFormatError
+        A file is lost or torn, lacks a column, or holds what no tile holds; it is named.
+    """
+    of_vertices, of_triangles = (store.path(name) for name in tile_names(number))
+    names = [*(["z"] if manifest["heights"] else []), *manifest["attributes"]]
+    vertices = read_columns(of_vertices, _VERTICES | dict.fromkeys(names, "biuf"))
+    triangles = read_columns(of_triangles, _TRIANGLES)
+    points = np.stack([vertices["x"], vertices["y"]], axis=1).astype(np.float64, copy=False)
+    _require(np.isfinite(points), of_vertices, "x or y", "is not finite")
+    ids = vertices["id"]
+    _require((ids >= 0) & (ids < manifest["rows"]), of_vertices, "id", "is no row of the source")
+    simplices = np.stack([triangles[name] for name in "abc"], axis=1)
+    held = (simplices >= 0) & (simplices < len(points))
+    _require(held, of_triangles, "a, b or c", "is no row of the vertices")
+    return Tile(
+        number,
+        points,
+        ids.astype(np.int64),
+        vertices["owned"],
+        simplices.astype(np.int32, copy=False),
+        {name: vertices[name] for name in names},
+    )
+
+
+def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[str, NDArray[Any]]:
+    """Read columns of a Parquet file of the output, each of a kind that NumPy has a letter for.
+
+    Raises
+    ------
+    FileFormatError
+        The file is lost or torn; a column is missing, of another kind or has gaps.
+    """
+    arrow = require("pyarrow", extra="dask", what=_WHAT)
+    parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
+    try:
+        with parquet.ParquetFile(path) as file:
+            names = file.schema_arrow.names
+            if missing := [name for name in wanted if names.count(name) != 1]:
+                raise FileFormatError(f"{path} has no column {missing[0]!r}, or two")
+            table = file.read(columns=list(wanted))
+            columns = {name: table[name].to_numpy() for name in wanted}
+            gaps = [name for name in wanted if table[name].null_count]
+    except FileNotFoundError:
+        raise FileFormatError(f"{path} is lost") from None
+    except (FileFormatError, PermissionError):
+        raise
+    except (OSError, ValueError, arrow.ArrowException) as error:
+        reason = str(error).partition("\n")[0]
+        raise FileFormatError(f"{path} is torn: {reason}") from error
+    for name, kinds in wanted.items():
+        if name in gaps or columns[name].dtype.kind not in kinds:
+            found = "has gaps" if name in gaps else f"holds {columns[name].dtype}"
+            raise FileFormatError(f"{path}: column {name!r} {found}, which no tile does")
+    return columns
+
+
+def _require(right: NDArray[np.bool_], path: Path, column: str, fault: str) -> None:
+    """Refuse a file by its first row that is not right."""
+    if not right.all():
+        rows = np.flatnonzero(~right.reshape(len(right), -1).all(axis=1))
+        raise FileFormatError(f"{path}: {column} of row {rows[0]} {fault}")
