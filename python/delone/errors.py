@@ -115,7 +115,7 @@ class DegenerateInputError(InputError):
         are on none. Empty for coplanar points.
     plane : PlaneTriangulation or None
         Of points in space that lie in one plane and not on one line, three points among them, the
-        Delaunay triangulation of that plane.
+        Delaunay triangulation of that plane; with weights, the regular one.
     """
 
     reason: str

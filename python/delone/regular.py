@@ -14,6 +14,7 @@ from delone import _core
 from delone._arrays import as_vectors
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.plane.triangulation import counted, kept, own_copy, sealed
+from delone.space.plane import plane_of, twins
 from delone.space.spatial import Spatial
 
 if TYPE_CHECKING:
@@ -53,7 +54,8 @@ class RegularTriangulation(Spatial):
     ------
     DegenerateInputError
         Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has those in
-        the plane that are not hidden, in order, in space all. Or points in space lie in one plane.
+        the plane that are not hidden, in order, in space all. Or points in space lie in one plane;
+        ``error.plane`` is its regular triangulation.
     NonFiniteError
         A coordinate or weight is NaN or infinite; ``error.rows`` tells where.
     ShapeError
@@ -199,7 +201,7 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     Raises
     ------
     DegenerateInputError
-        Points in space lie in one plane.
+        Points in space lie in one plane; ``error.plane`` has its triangulation.
     """
     chain = np.empty(0, dtype=np.int32)
     try:
@@ -210,15 +212,16 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     except InternalError as error:
         error.points = np.column_stack((points, weights))
         raise
-    doubled = np.flatnonzero(
-        (stands_for != np.arange(len(points))) & (weights == weights[stands_for])
-    )
+    except DegenerateInputError as error:
+        if error.reason == "coplanar" or len(error.chain) == 3:
+            error.plane = plane_of(points, weights=weights)
+        raise
     arrays: dict[str, NDArray[Any]] = {
         "points": points,
         "weights": weights,
         "simplices": simplices,
         "neighbors": neighbors,
-        "duplicates": np.column_stack((doubled, stands_for[doubled])).astype(np.int32),
+        "duplicates": twins(stands_for, weights),
     }
     return arrays, chain
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import pickle
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
-from delone import ConvexHull, DegenerateInputError, Delaunay, Voronoi, datasets
+from delone import (
+    ConvexHull,
+    DegenerateInputError,
+    Delaunay,
+    RegularTriangulation,
+    Voronoi,
+    datasets,
+)
 from delone.testing import same_triangles, triangle_set
 
 PLANES = [
@@ -109,3 +117,94 @@ def test_circumcentres_are_the_vertices_of_the_diagram_of_the_plane(scale: float
     assert radii == pytest.approx(np.repeat(radii[:, :1], 3, axis=1), rel=1e-9)
     upright = (centers @ (1, 2, -1)) / scale
     assert np.abs(upright).max() < 1e-6 * np.abs(centers / scale).max()
+
+
+def dot(p: Any, q: Any) -> Any:
+    return sum(x * y for x, y in zip(p, q, strict=True))
+
+
+def weighted_plane(points: Any, weights: Any) -> Any:
+    with pytest.raises(DegenerateInputError) as caught:
+        RegularTriangulation(points, weights)
+    assert caught.value.reason == "coplanar"
+    return caught.value.plane
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0**-500, 2.0**480])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_weighted_coordinate_planes_are_regular_as_the_plane_is(axis: int, scale: float) -> None:
+    rng = np.random.default_rng(5)
+    flat = rng.integers(0, 9, (90, 2)).astype(float)
+    weights = rng.integers(0, 12, 90).astype(float)
+    points = np.full((90, 3), 5.0)
+    points[:, [(axis + 1) % 3, (axis + 2) % 3]] = flat
+    plane = weighted_plane(points * scale, weights * scale**2)
+    wanted = RegularTriangulation(flat, weights)
+    assert len(wanted.hidden) > 10 and len(wanted.coplanar)
+    assert same_triangles(plane.simplices, wanted.simplices)
+    assert plane.hidden.tolist() == wanted.hidden.tolist()
+    assert plane.duplicates.tolist() == wanted.coplanar[:, [0, 2]].tolist()
+    assert sorted(plane.convex_hull.tolist()) == sorted(wanted.convex_hull.tolist())
+    for t, row in enumerate(plane.neighbors.tolist()):
+        for k, beyond in enumerate(row):
+            if beyond >= 0:
+                shared = set(plane.simplices[t].tolist()) & set(plane.simplices[beyond].tolist())
+                assert shared == set(plane.simplices[t].tolist()) - {int(plane.simplices[t, k])}
+
+
+@pytest.mark.parametrize(("u", "v"), PLANES)
+def test_weighted_triangles_of_tilted_planes_have_empty_spheres(u: Any, v: Any) -> None:
+    """In the plane each triangle has a centre to which no site has less power than its corners."""
+    rng = np.random.default_rng(6)
+    a, b = rng.integers(0, 30, (2, 40, 1))
+    points = (a * u + b * v + (1, 2, 3)).astype(np.float64)
+    weights = rng.integers(0, 60, 40).astype(float)
+    plane = weighted_plane(points, weights)
+    assert len(plane.hidden)
+    at = [tuple(map(Fraction, p)) for p in points.tolist()]
+    heavy = [Fraction(w) for w in weights.tolist()]
+    for t, triangle in enumerate(plane.simplices.tolist()):
+        o, p, q = triangle
+        e, f = ([x - y for x, y in zip(at[i], at[o], strict=True)] for i in (p, q))
+        # The centre o + r e + s f has equal power to all three.
+        right = [(dot(g, g) + heavy[o] - heavy[i]) / 2 for g, i in ((e, p), (f, q))]
+        ee, ef, ff = dot(e, e), dot(e, f), dot(f, f)
+        det = ee * ff - ef * ef
+        r, s = (right[0] * ff - right[1] * ef) / det, (right[1] * ee - right[0] * ef) / det
+        center = [c + r * x + s * y for c, x, y in zip(at[o], e, f, strict=True)]
+        away = [[x - c for x, c in zip(i, center, strict=True)] for i in at]
+        power = [dot(d, d) - w for d, w in zip(away, heavy, strict=True)]
+        assert power[o] == power[p] == power[q] == min(power)
+        assert plane.circumcenters[t] == pytest.approx([float(c) for c in center], abs=1e-9)
+
+
+def test_equal_weights_are_none_and_order_leaves_no_trace() -> None:
+    a, b = np.random.default_rng(0).integers(0, 5, (2, 40, 1))
+    points = (a * (1, 0, 1) + b * (0, 1, 2)).astype(np.float64)
+    wanted = error_of(points).plane
+    found = weighted_plane(points, np.full(40, 3.5))
+    assert same_triangles(found.simplices, wanted.simplices)
+    assert found.duplicates.tolist() == wanted.duplicates.tolist()
+    weights = np.random.default_rng(1).integers(0, 4, 40).astype(float)
+    one = weighted_plane(points, weights)
+    order = np.random.default_rng(2).permutation(40)
+    other = weighted_plane(points[order], weights[order])
+    _, rank = np.unique(points, axis=0, return_inverse=True)
+    rank = rank.reshape(-1)
+    left, right = rank[one.simplices], rank[order][other.simplices]
+    assert triangle_set(left) == triangle_set(right)
+
+
+def test_three_weighted_points_have_their_triangle() -> None:
+    with pytest.raises(DegenerateInputError) as caught:
+        RegularTriangulation([(0, 0, 0), (4, 0, 0), (0, 4, 0)], [0, 1, 2])
+    assert caught.value.reason == "too few points"
+    assert triangle_set(caught.value.plane.simplices) == {(0, 1, 2)}
+    with pytest.raises(DegenerateInputError) as caught:
+        Voronoi([(0, 0, 1), (4, 0, 1), (4, 4, 1), (0, 4, 1), (2, 2, 1)], weights=[0, 0, 0, 0, 4])
+    centers = caught.value.plane.circumcenters
+    expected = [(-1, 2, 1), (2, -1, 1), (2, 5, 1), (5, 2, 1)]
+    assert sorted(map(tuple, centers.tolist())) == expected
+    with pytest.raises(DegenerateInputError) as caught:
+        RegularTriangulation([(0, 0, 0), (1, 1, 1), (2, 2, 2), (3, 3, 3)], [0, 0, 0, 0])
+    assert caught.value.reason == "collinear" and caught.value.plane is None

@@ -2,7 +2,9 @@
 
 In-circle tests in a tilted plane have no exact coordinates of the plane to work with. So the points
 are joined with one more off the plane and triangulated in space: spheres cut the plane in circles,
-hence the tetrahedra are cones over the Delaunay triangles, and ties go by the same rule.
+hence the tetrahedra are cones over the Delaunay triangles, and ties go by the same rule. Weights
+change nothing in that: in the plane, lifted heights differ from those of coordinates of its own by
+a linear function, and the apex, a corner of the hull, is never hidden.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ _PROJECTIONS = ((2, (0, 1)), (1, (2, 0)), (0, (1, 2)))
 
 @dataclass(frozen=True, eq=False)
 class PlaneTriangulation:
-    """The Delaunay triangulation of points of one plane in space.
+    """The Delaunay triangulation of points of one plane in space; the regular one, with weights.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ class PlaneTriangulation:
         The triangle opposite each vertex, -1 outside.
     duplicates : ndarray of int32, shape (k, 2)
         Rows that repeat earlier ones, and these.
+    weights : ndarray of float64, shape (n,), optional
+        The weights of the points.
 
     Examples
     --------
@@ -60,10 +64,12 @@ class PlaneTriangulation:
     simplices: Indices
     neighbors: Indices
     duplicates: Indices
+    weights: Floats | None = None
 
     def __post_init__(self) -> None:
-        for array in (self.points, self.simplices, self.neighbors, self.duplicates):
-            array.flags.writeable = False
+        for array in (self.points, self.simplices, self.neighbors, self.duplicates, self.weights):
+            if array is not None:
+                array.flags.writeable = False
 
     @cached_property
     def convex_hull(self) -> Indices:
@@ -71,11 +77,19 @@ class PlaneTriangulation:
         return topology.boundary_edges(self.simplices, self.neighbors)
 
     @cached_property
+    def hidden(self) -> Indices:
+        """The rows that are neither vertices nor duplicates of vertices, ascending."""
+        seen = np.zeros(len(self.points), dtype=bool)
+        seen[self.simplices] = True
+        seen[self.duplicates[:, 0]] = seen[self.duplicates[:, 1]]
+        return np.flatnonzero(~seen).astype(np.int32)
+
+    @cached_property
     def circumcenters(self) -> Floats:
         """Centres of the circles of triangles, (m, 3): the vertices of the plane's Voronoi diagram.
 
-        In the plane up to rounding; those of thin triangles are far away, and infinite beyond the
-        range of doubles.
+        With weights, where the three vertices have equal power. In the plane up to rounding; those
+        of thin triangles are far away, and infinite beyond the range of doubles.
         """
         a, b, c = (self.points[self.simplices[:, k]] for k in range(3))
         with np.errstate(all="ignore"):
@@ -85,21 +99,29 @@ class PlaneTriangulation:
             u, v = u / unit, v / unit
             normal = np.cross(u, v)
             uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+            if self.weights is not None:
+                heavy = self.weights[self.simplices] / 2
+                lift = (heavy[:, :1] - heavy[:, 1:]) / unit / unit / 2
+                uu, vv = uu + lift[:, 0], vv + lift[:, 1]
             across = np.cross(uu[:, None] * v - vv[:, None] * u, normal)
             way = across / (2 * (normal * normal).sum(axis=1))[:, None]
             found: Floats = a + 2 * unit * way
         return found
 
 
-def plane_of(points: Floats, workers: int) -> PlaneTriangulation | None:
+def plane_of(
+    points: Floats, workers: int = 1, weights: Floats | None = None
+) -> PlaneTriangulation | None:
     """Triangulate points of one plane.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 3)
         Finite points, all in one plane.
-    workers : int
-        How many threads may work.
+    workers : int, optional
+        How many threads may work; with weights there is one.
+    weights : ndarray of float64, shape (n,), optional
+        Finite weights of the points.
 
     Returns
     -------
@@ -111,7 +133,13 @@ def plane_of(points: Floats, workers: int) -> PlaneTriangulation | None:
         return None
     axis, pair, first = corners
     extended = np.concatenate((points, _apex(points, first[0], axis)))
-    simplices, neighbors, duplicates, _ = _core.triangulate3(extended, workers)
+    if weights is None:
+        simplices, neighbors, duplicates, _ = _core.triangulate3(extended, workers)
+    else:
+        # The weight of the apex is of no account; one of the others' keeps exponents together.
+        own = np.append(weights, weights[first[0]])
+        simplices, neighbors, stands_for = _core.regular3(extended, own)
+        duplicates = twins(stands_for, own)
     # Three columns of each row: those of the base, which is opposite the apex.
     rows, corner = np.nonzero(simplices == len(points))
     order = np.array(FACES)[corner]
@@ -120,8 +148,32 @@ def plane_of(points: Floats, workers: int) -> PlaneTriangulation | None:
     if predicates.orient2d(*points[triangles[0]][:, pair]) < 0:
         triangles, beyond = triangles[:, [0, 2, 1]], beyond[:, [0, 2, 1]]
     return PlaneTriangulation(
-        points.view(), np.ascontiguousarray(triangles), np.ascontiguousarray(beyond), duplicates
+        points.view(),
+        np.ascontiguousarray(triangles),
+        np.ascontiguousarray(beyond),
+        duplicates,
+        None if weights is None else weights.view(),
     )
+
+
+def twins(stands_for: Indices, weights: Floats) -> Indices:
+    """List rows that repeat others, weights included.
+
+    Parameters
+    ----------
+    stands_for : ndarray of int32, shape (n,)
+        For each row the first of the heaviest ones with its coordinates.
+    weights : ndarray of float64, shape (n,)
+        The weights.
+
+    Returns
+    -------
+    ndarray of int32, shape (k, 2)
+        The rows, and those that they repeat.
+    """
+    other = stands_for != np.arange(len(weights))
+    rows = np.flatnonzero(other & (weights == weights[stands_for]))
+    return np.column_stack((rows, stands_for[rows])).astype(np.int32)
 
 
 def _corners(points: Floats) -> tuple[int, list[int], tuple[int, int, int]] | None:

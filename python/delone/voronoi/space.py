@@ -86,8 +86,9 @@ class SpaceVoronoi(Voronoi):
     ------
     DegenerateInputError
         All points lie in one plane, or there are fewer than four; the error is that of
-        `delone.Delaunay`. Without weights ``error.plane`` has the triangulation of the plane, and
-        its ``circumcenters`` are the vertices of the diagram there.
+        `delone.Delaunay`, or of `delone.RegularTriangulation` where there are weights:
+        ``error.plane`` has the triangulation of the plane, and its ``circumcenters`` are the
+        vertices of the diagram there.
     NonFiniteError
         A coordinate is NaN or infinite; ``error.rows`` tells where.
     ShapeError, DtypeError
