@@ -439,6 +439,49 @@ def test_the_ends_of_the_range_are_no_exception(scale: float) -> None:
     assert np.isfinite(diagram.vertices).all()
 
 
+@pytest.mark.parametrize(
+    ("power", "weighted"),
+    [(p, False) for p in (-1000, -530, -400, 400, 530, 900)] + [(p, True) for p in (-400, 400)],
+)
+@pytest.mark.filterwarnings("error")
+def test_a_power_of_two_changes_no_neighbour(power: int, weighted: bool) -> None:
+    """Areas and volumes beyond the range are infinite, and below it not 0; faces remain."""
+    scale = 2.0**power
+    points = np.concatenate((uniform(60, 3) - 0.5, GRID[:27] / 4))
+    weights = np.random.default_rng(4).random(87) / 16 if weighted else None
+    heavier = None if weights is None else weights * scale**2
+    low, high = np.array((-0.4, -0.6, -0.5)), np.array((0.6, 0.5, 0.25))
+    for box in (None, (low, high)):
+        plain = Voronoi(points, weights=weights, clip=box)
+        scaled = None if box is None else (low * scale, high * scale)
+        found = Voronoi(points * scale, weights=heavier, clip=scaled)
+        assert found.neighbors.indptr.tolist() == plain.neighbors.indptr.tolist()
+        assert found.neighbors.indices.tolist() == plain.neighbors.indices.tolist()
+        with np.errstate(all="ignore"):
+            least = np.nextafter(0, 1)
+            for name, times in (("volumes", 3), ("areas", 2)):
+                wanted = getattr(plain, f"cell_{name}")
+                expected = wanted.copy()
+                for _ in range(times):
+                    expected *= scale
+                expected = np.where(wanted > 0, np.maximum(expected, least), 0)
+                assert getattr(found, f"cell_{name}") == pytest.approx(
+                    expected, rel=1e-12, abs=4e-322
+                )
+            areas = plain.neighbors.areas * scale * scale
+        assert found.neighbors.areas == pytest.approx(
+            np.maximum(areas, least), rel=1e-12, abs=4e-322
+        )
+        centroids = found.cell_centroids / scale
+        assert centroids == pytest.approx(plain.cell_centroids, abs=1e-13, nan_ok=True)
+        for site in range(0, len(points), 9):
+            one, other = plain.cell(site), found.cell(site)
+            assert sorted(one.beyond.tolist()) == sorted(other.beyond.tolist())
+            size = np.ptp(one.vertices, axis=0) if len(one.vertices) else np.zeros(3)
+            wide = np.ptp(other.vertices, axis=0) if len(other.vertices) else np.zeros(3)
+            assert wide == pytest.approx(size * scale, rel=1e-11)
+
+
 def test_a_vertex_beyond_the_range_is_a_ray() -> None:
     points = [(0, 0, 0), (1, 0, 5e-324), (-1, 1, 5e-324), (-1, -1, 5e-324), (0, 0, -1.0)]
     diagram = Voronoi(points)

@@ -160,8 +160,9 @@ class Bodies:
             face = dual["entries"][first:last]
             faces.append(face if dual["sites"][ridge, 0] == dual["site"][cell] else face[::-1])
         used = np.unique(np.concatenate([*faces, np.empty(0, dtype=np.int32)]))
+        is_open = not faces or int(used[0]) < 0
         used = used[used >= 0].astype(np.int64)
-        if not np.isfinite(self.volumes[cell]):
+        if is_open:
             return dual["vertices"][used], (), np.empty(0, dtype=np.int32)
         renamed = tuple(np.searchsorted(used, face).astype(np.int32) for face in faces)
         return dual["vertices"][used], renamed, ridges

@@ -107,7 +107,8 @@ class SpaceVoronoi(Voronoi):
     In a `clip`, volumes, areas, centroids, neighbours and cells are those of what is left; the
     attributes listed above remain those of the whole diagram. Cells whose vertices all lie inside
     stay as they are; the others are the polyhedron, cut by the planes of their neighbours one after
-    the other.
+    the other. An area or a volume beyond the range of doubles is infinite; below it, the smallest
+    double.
 
     See Also
     --------

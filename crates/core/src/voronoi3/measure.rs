@@ -113,43 +113,120 @@ pub(super) fn length(v: Point3) -> f64 {
     most * dot(scaled, scaled).sqrt()
 }
 
-/// Twice the vector area of a polygon, and the sum of twice its triangles times their centroids, these
-/// times three and as seen from its first corner; the weights are components along `n`.
-fn fan(corners: &[Point3], n: Point3) -> (f64, Point3) {
+/// A point as seen from another.
+#[inline]
+pub(super) fn seen(p: Point3, o: Point3) -> Point3 {
+    [p[0] - o[0], p[1] - o[1], p[2] - o[2]]
+}
+
+/// The exponent of a number; 0 for zero and infinity.
+#[inline]
+pub(super) fn exponent(x: f64) -> i32 {
+    if x.is_normal() {
+        (x.to_bits() >> 52 & 0x7ff) as i32 - 1023
+    } else if x == 0.0 || !x.is_finite() {
+        0
+    } else {
+        x.abs().to_bits().ilog2() as i32 - 1074
+    }
+}
+
+/// A number times a power of two: infinite beyond the range of doubles, and below it not 0, unless
+/// the number is.
+#[inline]
+pub(super) fn by_power(x: f64, power: i32) -> f64 {
+    let of = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
+    let (mut y, mut rest) = (x, power);
+    // Powers are sums of a few exponents: this ends after some steps.
+    while rest.abs() > 1000 {
+        let step = rest.clamp(-1000, 1000);
+        y *= of(step);
+        rest -= step;
+    }
+    y *= of(rest);
+    if y == 0.0 && x != 0.0 {
+        f64::from_bits(1).copysign(x)
+    } else {
+        y
+    }
+}
+
+/// A unit for each axis, by which the largest of some coordinates is 1 to 2, and its exponents. Boxes may be of
+/// any shape, so one unit for all would lose the short axis of some.
+#[derive(Clone, Copy)]
+pub(super) struct Units {
+    of: Point3,
+    pub powers: [i32; 3],
+}
+
+impl Units {
+    /// The units of vectors.
+    #[inline]
+    pub fn of(vectors: impl Iterator<Item = Point3>) -> Self {
+        let most = vectors.fold([0.0; 3], |most: Point3, v| {
+            [0, 1, 2].map(|k| most[k].max(v[k].abs()))
+        });
+        Self {
+            of: most.map(power_below),
+            powers: most.map(exponent),
+        }
+    }
+
+    /// A vector in these units.
+    #[inline]
+    pub fn scaled(&self, v: Point3) -> Point3 {
+        [v[0] / self.of[0], v[1] / self.of[1], v[2] / self.of[2]]
+    }
+
+    /// A coordinate out of them.
+    #[inline]
+    pub fn back(&self, k: usize, x: f64) -> f64 {
+        x * self.of[k]
+    }
+}
+
+/// A ridge as measured: its area times a power of two.
+#[derive(Clone, Copy)]
+struct Face {
+    area: f64,
+    power: i32,
+    center: Point3,
+}
+
+/// Measures a convex polygon, counter-clockwise about the unit vector `n`, by its shadow along the largest
+/// component of that.
+fn polygon(corners: &[Point3], n: Point3) -> Face {
     let o = corners[0];
+    let units = Units::of(corners.iter().map(|&p| seen(p, o)));
+    let k = (1..3).fold(0, |k, i| if n[i].abs() > n[k].abs() { i } else { k });
+    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+    // Twice the shadow, and the sum of twice its triangles times their centroids, these times three.
     let (mut twice, mut moment) = (0.0, [0.0; 3]);
     let mut last = [0.0; 3];
-    for p in &corners[1..] {
-        let here = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
-        let cross = [
-            last[1] * here[2] - last[2] * here[1],
-            last[2] * here[0] - last[0] * here[2],
-            last[0] * here[1] - last[1] * here[0],
-        ];
-        let part = dot(cross, n);
+    for &p in &corners[1..] {
+        let here = units.scaled(seen(p, o));
+        let part = (last[i] * here[j] - last[j] * here[i]) / n[k];
         twice += part;
-        for k in 0..3 {
-            moment[k] += part * (last[k] + here[k]);
+        for (axis, sum) in moment.iter_mut().enumerate() {
+            *sum += part * (last[axis] + here[axis]);
         }
         last = here;
     }
-    (twice, moment)
-}
-
-/// The area and the centroid of a convex polygon, counter-clockwise about the unit vector `n`.
-pub(super) fn polygon(corners: &[Point3], n: Point3) -> (f64, Point3) {
-    let o = corners[0];
-    let (twice, moment) = fan(corners, n);
     if twice > 0.0 {
-        return (
-            twice / 2.0,
-            [0, 1, 2].map(|k| o[k] + moment[k] / twice / 3.0),
-        );
+        return Face {
+            area: twice / 2.0,
+            power: units.powers[i] + units.powers[j],
+            center: [0, 1, 2].map(|k| o[k] + units.back(k, moment[k] / twice / 3.0)),
+        };
     }
     // As thin as rounding allows: the middle of the corners stands for the centre.
     let share = 1.0 / corners.len() as f64;
     let mean = |k: usize| o[k] + corners.iter().map(|p| (p[k] - o[k]) * share).sum::<f64>();
-    (0.0, [0, 1, 2].map(mean))
+    Face {
+        area: 0.0,
+        power: 0,
+        center: [0, 1, 2].map(mean),
+    }
 }
 
 /// Measures all cells and ridges.
@@ -162,7 +239,7 @@ pub fn measures(cells: Cells, workers: usize) -> Result<Measures> {
             .map(|r| face(cells, r, &mut corners))
             .collect::<Vec<_>>()
     });
-    let mut all: Vec<(f64, Point3)> = with_room(cells.sites.len())?;
+    let mut all: Vec<Face> = with_room(cells.sites.len())?;
     faces.into_iter().for_each(|part| all.extend(part));
     let n = cells.site.len();
     let tasks = shares(n).collect();
@@ -175,7 +252,8 @@ pub fn measures(cells: Cells, workers: usize) -> Result<Measures> {
         areas: with_room(n)?,
         centroids: filled(n, [f64::NAN; 3])?,
     };
-    out.ridge_areas.extend(all.iter().map(|f| f.0));
+    out.ridge_areas
+        .extend(all.iter().map(|f| by_power(f.area, f.power)));
     for (slot, (volume, area, centroid)) in
         out.centroids.iter_mut().zip(bodies.into_iter().flatten())
     {
@@ -186,11 +264,15 @@ pub fn measures(cells: Cells, workers: usize) -> Result<Measures> {
     Ok(out)
 }
 
-/// The area and the centroid of a ridge.
-fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> (f64, Point3) {
+/// Measures a ridge; its area is infinite where it is open.
+fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> Face {
     let entries = cells.entries_of(ridge);
     if entries.iter().any(|&v| v < 0) {
-        return (f64::INFINITY, [f64::NAN; 3]);
+        return Face {
+            area: f64::INFINITY,
+            power: 0,
+            center: [f64::NAN; 3],
+        };
     }
     corners.clear();
     corners.extend(entries.iter().map(|&v| cells.vertices[v as usize]));
@@ -199,30 +281,42 @@ fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> (f64, Point3) 
     polygon(corners, d.map(|x| x / size))
 }
 
-/// Volume, surface and centroid of a cell.
-fn body(cells: Cells, cell: usize, faces: &[(f64, Point3)]) -> (f64, f64, Point3) {
+/// Volume, surface and centroid of a cell. Sums are of numbers with a common power of two beside them, so
+/// that a cell whose volume or surface is beyond the range of doubles has its centroid.
+fn body(cells: Cells, cell: usize, faces: &[Face]) -> (f64, f64, Point3) {
     let site = cells.site[cell];
     let p = cells.points[site as usize];
-    let (mut volume, mut surface, mut moment) = (0.0, 0.0, [0.0; 3]);
-    for &ridge in cells.ridges_of(cell) {
-        let (area, center) = faces[ridge as usize];
-        let (d, h) = cells.plane(ridge as usize, site);
-        let part = area * (h / length(d)) / 3.0;
-        volume += part;
-        surface += area;
-        for k in 0..3 {
-            moment[k] += part * (center[k] - p[k]) * 0.75;
-        }
-    }
-    if surface.is_infinite() || cells.ridges_of(cell).is_empty() {
+    let mine = || cells.ridges_of(cell).iter().map(|&r| &faces[r as usize]);
+    if mine().next().is_none() || mine().any(|face| face.area.is_infinite()) {
         return (f64::INFINITY, f64::INFINITY, [f64::NAN; 3]);
     }
+    let height = |ridge: &i32| {
+        let (d, h) = cells.plane(*ridge as usize, site);
+        h / length(d)
+    };
+    let heights = || cells.ridges_of(cell).iter().map(height);
+    let there = |face: &&Face| face.area > 0.0;
+    let wide = mine()
+        .filter(there)
+        .map(|face| face.power)
+        .max()
+        .unwrap_or(0);
+    let tall = heights().fold(0.0, |most: f64, h| most.max(h.abs()));
+    let high = exponent(tall);
+    let (mut volume, mut surface, mut moment) = (0.0, 0.0, [0.0; 3]);
+    for (face, h) in mine().zip(heights()) {
+        let area = by_power(face.area, face.power - wide);
+        let part = area * by_power(h, -high) / 3.0;
+        volume += part;
+        surface += area;
+        for (k, sum) in moment.iter_mut().enumerate() {
+            *sum += part * (face.center[k] - p[k]) * 0.75;
+        }
+    }
+    let surface = by_power(surface, wide);
     if volume > 0.0 {
-        return (
-            volume,
-            surface,
-            [0, 1, 2].map(|k| p[k] + moment[k] / volume),
-        );
+        let center = [0, 1, 2].map(|k| p[k] + moment[k] / volume);
+        return (by_power(volume, wide + high), surface, center);
     }
     (0.0, surface, p)
 }

@@ -6,7 +6,7 @@
 
 use delone_predicates::Point3;
 
-use super::measure::{dot, length};
+use super::measure::{Units, by_power, dot, exponent, length, seen};
 
 /// Corners, and faces counter-clockwise from outside.
 #[derive(Clone, Debug, Default)]
@@ -194,26 +194,30 @@ impl Polyhedron {
         (self.points, self.starts, self.corners, self.labels) = (points, starts, corners, labels);
     }
 
-    /// The vector area of a face, whose length is its area.
-    fn vector_area(&self, f: usize) -> Point3 {
+    /// The area of a face: infinite beyond the range of doubles, and not 0 below it.
+    pub fn area(&self, f: usize) -> f64 {
         let face = self.face(f);
         let o = self.points[face[0] as usize];
+        let units = Units::of(face.iter().map(|&v| seen(self.points[v as usize], o)));
         let (mut sum, mut last) = ([0.0; 3], [0.0; 3]);
         for &v in &face[1..] {
-            let p = self.points[v as usize];
-            let here = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
+            let here = units.scaled(seen(self.points[v as usize], o));
             for (k, s) in sum.iter_mut().enumerate() {
                 let (x, y) = ((k + 1) % 3, (k + 2) % 3);
                 *s += (last[x] * here[y] - last[y] * here[x]) / 2.0;
             }
             last = here;
         }
-        sum
-    }
-
-    /// The area of a face.
-    pub fn area(&self, f: usize) -> f64 {
-        length(self.vector_area(f))
+        // The components of the vector area each have a power of their own.
+        let [x, y, z] = units.powers;
+        let powers = [y + z, z + x, x + y];
+        let there = (0..3).filter(|&k| sum[k] != 0.0);
+        let most = there.map(|k| powers[k] + exponent(sum[k])).max();
+        let most = most.unwrap_or(0);
+        by_power(
+            length([0, 1, 2].map(|k| by_power(sum[k], powers[k] - most))),
+            most,
+        )
     }
 
     /// The volume, and the centre of gravity.
@@ -221,13 +225,11 @@ impl Polyhedron {
         let Some(&o) = self.points.first() else {
             return (0.0, [f64::NAN; 3]);
         };
+        let units = Units::of(self.points.iter().map(|&p| seen(p, o)));
         let (mut volume, mut moment) = (0.0, [0.0; 3]);
         for f in 0..self.labels.len() {
             let face = self.face(f);
-            let seen = |v: u32| {
-                let p = self.points[v as usize];
-                [p[0] - o[0], p[1] - o[1], p[2] - o[2]]
-            };
+            let seen = |v: u32| units.scaled(seen(self.points[v as usize], o));
             let a = seen(face[0]);
             for w in face[1..].windows(2) {
                 let (b, c) = (seen(w[0]), seen(w[1]));
@@ -243,8 +245,9 @@ impl Polyhedron {
             }
         }
         if volume > 0.0 {
-            let center = [0, 1, 2].map(|k| o[k] + moment[k] / volume / 4.0);
-            return (volume / 6.0, center);
+            let center = [0, 1, 2].map(|k| o[k] + units.back(k, moment[k] / volume / 4.0));
+            let power = units.powers.iter().sum();
+            return (by_power(volume / 6.0, power), center);
         }
         (0.0, o)
     }
