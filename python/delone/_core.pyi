@@ -192,6 +192,9 @@ class Locator3:
         neighbors: NDArray[np.int32],
     ) -> Locator3: ...
     def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
+    def within(
+        self, xi: NDArray[np.float64], workers: int
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
     def locate(
         self, xi: NDArray[np.float64], workers: int
     ) -> tuple[

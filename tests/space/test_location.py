@@ -135,3 +135,52 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
         assert place.barycentric.shape == (*shape[:-1], 4)
         assert place.nearest.shape == place.face.shape == place.shares.shape == shape
         assert place.at(np.array([], dtype=int)).face.size == 0 if shape[:-1] else True
+
+
+def brute(mesh: Any, queries: Any) -> Any:
+    """The first tetrahedron that holds each query, of all."""
+    found = np.full(len(queries), -1)
+    for t in reversed(range(len(mesh.simplices))):
+        corners = mesh.points[mesh.simplices[t]]
+        inside = np.ones(len(queries), dtype=bool)
+        for k in range(4):
+            with_query = [queries if j == k else corners[j] for j in range(4)]
+            inside &= orient3d(*with_query) >= 0
+        found[inside] = t
+    return found
+
+
+def check_turns(mesh: Any, near: Any, far: Any) -> None:
+    turns = np.stack((near, far), axis=1).reshape(-1, 3)
+    for queries in (near, far, turns, turns[np.lexsort(turns.T)], far[:7]):
+        expected = brute(mesh, queries)
+        assert mesh.find_simplex(queries).tolist() == expected.tolist()
+        assert (expected < 0).sum() > 0
+        for row in range(0, len(queries), 41):
+            assert mesh.find_simplex(queries[row]) == expected[row]
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_what_is_outside_is_told_whatever_was_asked_before(scale: float) -> None:
+    """Faces that proved one query to be outside are asked again: inside and out come in turns."""
+    rng = np.random.default_rng(8)
+    mesh = Delaunay(rng.integers(-9, 10, (40, 3)) * scale)
+    near = rng.integers(-11, 12, (300, 3)) * scale
+    check_turns(mesh, near, rng.integers(-15, 16, (300, 3)) * scale)
+
+
+def test_holes_are_outside_and_prove_nothing() -> None:
+    rng = np.random.default_rng(8)
+    near = 0.5 + 0.6 * (rng.random((300, 3)) - 0.5)
+    check_turns(with_a_hole(0), near, rng.random((300, 3)) * 3 - 1)
+
+
+def test_linear_asks_no_more_than_it_needs() -> None:
+    rng = np.random.default_rng(9)
+    points = rng.random((200, 3))
+    mesh, queries = Delaunay(points), rng.random((400, 3)) * 3 - 1
+    place = mesh.locate(queries)
+    values = delone.interpolate.Linear(mesh, points @ (1, 2, 3))(queries)
+    assert np.array_equal(np.isnan(values), place.simplex < 0)
+    inside = place.simplex >= 0
+    assert values[inside] == pytest.approx(queries[inside] @ (1, 2, 3), rel=1e-12)

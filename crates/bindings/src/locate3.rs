@@ -3,7 +3,7 @@
 use delone_core::Point3;
 use delone_core::error::{Error, Result};
 use delone_core::interpolate3::natural;
-use delone_core::locate3::{Batch, Kept, Locator, Tetrahedra, coordinates, find, nearest};
+use delone_core::locate3::{Batch, Kept, Locator, Tetrahedra, coordinates, find, nearest, within};
 use delone_core::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -126,6 +126,19 @@ impl Locator3 {
         let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
         let found = self.batch(py, queries, workers, find)?;
         Ok(column(py, found))
+    }
+
+    /// Tetrahedra with barycentric coordinates.
+    fn within(
+        &self,
+        py: Python<'_>,
+        xi: PyReadonlyArray2<'_, f64>,
+        workers: usize,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.batch(py, queries, workers, within)?;
+        let weights = shaped(py, found.weights, [queries.len(), 4])?;
+        Ok((column(py, found.simplex), weights))
     }
 
     /// Tetrahedra with barycentric coordinates, and outside the nearest boundary point.

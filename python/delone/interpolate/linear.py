@@ -91,7 +91,7 @@ class Linear(Interpolator):
         """Values, or slopes, in the tetrahedra that hold queries."""
         mesh = self._mesh
         index: Any = mesh._locator
-        simplex, weights, *_ = index.locate(queries, as_workers(self._workers))
+        simplex, weights = index.within(queries, as_workers(self._workers))
         known = np.flatnonzero(simplex >= 0)
         corners = mesh.simplices[simplex[known]]
         shape = (len(queries), columns.shape[1])

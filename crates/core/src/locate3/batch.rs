@@ -94,13 +94,16 @@ impl Batch<'_> {
     }
 }
 
-/// Walks from query to query; where the next one is far, from the tree of starts.
+/// Walks from query to query; where the next one is far, from the tree of starts. What is outside is mostly
+/// told without a walk: beyond the box of all points, or beyond the boundary face where the last walk
+/// has left a convex body, which is as good a proof for each point on that side of its plane.
 struct Walker<'a> {
     locator: &'a Locator<'a>,
     star: Star,
     near: usize,
     last: Point3,
     reach: f64,
+    beyond: Option<Side>,
 }
 
 impl<'a> Walker<'a> {
@@ -111,20 +114,25 @@ impl<'a> Walker<'a> {
             near: 0,
             last: [f64::NAN; 3],
             reach: 0.0,
+            beyond: None,
         }
     }
 
     #[inline]
     fn go(&mut self, q: Point3) -> Result<Located> {
+        let beyond = |side| self.locator.is_beyond(side, q);
+        if self.locator.is_far(q) || self.beyond.is_some_and(beyond) {
+            return Ok(Located::Outside(self.beyond));
+        }
         // False for NaN, at first and where squares overflow: then the tree knows the start.
         let close = squared(q, self.last) <= self.reach;
         if !close {
             self.near = self.locator.near(q);
         }
         let at = self.locator.locate_from(self.near, q, &mut self.star)?;
-        self.near = match at {
-            Located::Inside(place) => place.simplex,
-            Located::Outside(Side { simplex, .. }) => simplex,
+        (self.near, self.beyond) = match at {
+            Located::Inside(place) => (place.simplex, None),
+            Located::Outside(side) => (side.map_or(self.near, |side| side.simplex), side),
         };
         let [a, b, ..] = self.locator.given.corners(self.near);
         (self.last, self.reach) = (q, REACH * squared(a, b));

@@ -1,4 +1,5 @@
-//! Tetrahedra with barycentric coordinates, and outside the nearest point of the boundary.
+//! Tetrahedra with barycentric coordinates, and outside, where that is asked for, the nearest point of the
+//! boundary.
 
 use super::{Batch, Located, barycentric};
 use crate::error::Result;
@@ -17,6 +18,37 @@ pub struct Coordinates {
     pub face: Vec<i32>,
     /// How they share in the nearest point; else NaN.
     pub shares: Vec<f64>,
+}
+
+/// What is told of queries that are inside.
+#[derive(Debug)]
+pub struct Within {
+    /// The first tetrahedron that holds the query, or -1.
+    pub simplex: Vec<i32>,
+    /// The weights of its corners, four a row; NaN outside.
+    pub weights: Vec<f64>,
+}
+
+/// Locates queries, and says no more of those that are outside.
+pub fn within(batch: &Batch) -> Result<Within> {
+    let n = batch.queries.len();
+    let given = &batch.locator.given;
+    let simplex = Output::filled(n, -1)?;
+    let weights = Output::filled(4 * n, f64::NAN)?;
+    batch.each(
+        || (),
+        |(), row, q, at| {
+            if let Located::Inside(place) = at {
+                simplex.set(row, place.simplex as i32);
+                weights.set_all(4 * row, &barycentric(given, &place, q));
+            }
+            Ok(())
+        },
+    )?;
+    Ok(Within {
+        simplex: simplex.into_vec(),
+        weights: weights.into_vec(),
+    })
 }
 
 /// Locates queries; those that are not finite are nowhere.

@@ -16,11 +16,11 @@ mod walk;
 
 use std::sync::OnceLock;
 
-use delone_predicates::{Point3, Sign};
+use delone_predicates::{Point3, Sign, orient3d};
 
 pub use barycentric::barycentric;
 pub use batch::Batch;
-pub use coordinates::{Coordinates, coordinates};
+pub use coordinates::{Coordinates, Within, coordinates, within};
 pub use nearest::nearest;
 pub use star::{Place, Star};
 pub use tiling::{FACES, Side, Tetrahedra};
@@ -35,6 +35,8 @@ use walk::{Found, walk};
 /// What is kept between calls for one triangulation.
 #[derive(Debug)]
 pub struct Kept {
+    /// All points: beyond it there is no tetrahedron.
+    extent: Extent<3>,
     start: Start<3>,
     boundary: OnceLock<Boundary>,
     boxes: OnceLock<Boxes<3>>,
@@ -46,6 +48,7 @@ impl Kept {
     pub fn of(given: &Tetrahedra) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
+            extent: Extent::of(given.points.iter().copied()),
             start: Start::of(given.simplices.len(), first)?,
             boundary: OnceLock::new(),
             boxes: OnceLock::new(),
@@ -67,8 +70,8 @@ pub struct Locator<'a> {
 pub enum Located {
     /// In a tetrahedron.
     Inside(Place),
-    /// Outside of all, strictly beyond this boundary face where the boundary is convex.
-    Outside(Side),
+    /// Outside of all; where a walk has met a boundary face with the point strictly beyond, by this one.
+    Outside(Option<Side>),
 }
 
 impl<'a> Locator<'a> {
@@ -83,6 +86,20 @@ impl<'a> Locator<'a> {
         self.kept.start.near(q)
     }
 
+    /// Whether one comparison tells that `q` is outside of all.
+    #[inline]
+    pub fn is_far(&self, q: Point3) -> bool {
+        let Extent { min, max } = self.kept.extent;
+        (0..3).any(|k| q[k] < min[k] || q[k] > max[k])
+    }
+
+    /// Whether `q` is strictly beyond a boundary face, and thereby outside of all.
+    #[inline]
+    pub fn is_beyond(&self, side: Side, q: Point3) -> bool {
+        let [a, b, c] = self.given.face(side).map(|v| self.given.point(v));
+        self.boundary().convex && orient3d(a, b, c, q) == Sign::Positive
+    }
+
     /// Where `q` is, on the way from tetrahedron `from`.
     #[inline]
     pub fn locate_from(&self, from: usize, q: Point3, star: &mut Star) -> Result<Located> {
@@ -95,15 +112,15 @@ impl<'a> Locator<'a> {
                 }
                 Ok(Located::Inside(first.place))
             }
-            Some(Found::Beyond(side)) if self.boundary().convex => Ok(Located::Outside(side)),
+            Some(Found::Beyond(side)) if self.boundary().convex => Ok(Located::Outside(Some(side))),
             Some(Found::Beyond(side)) => {
                 let found = self.first_of_all(q)?;
-                Ok(found.map_or(Located::Outside(side), Located::Inside))
+                Ok(found.map_or(Located::Outside(Some(side)), Located::Inside))
             }
-            None => Ok(match self.first_of_all(q)? {
-                Some(place) => Located::Inside(place),
-                None => Located::Outside(self.given.beyond_which(q)),
-            }),
+            None => {
+                let found = self.first_of_all(q)?;
+                Ok(found.map_or(Located::Outside(None), Located::Inside))
+            }
         }
     }
 
@@ -111,6 +128,9 @@ impl<'a> Locator<'a> {
     pub fn locate(&self, q: Point3) -> Result<Option<Located>> {
         if !is_finite(q) || self.given.simplices.is_empty() {
             return Ok(None);
+        }
+        if self.is_far(q) {
+            return Ok(Some(Located::Outside(None)));
         }
         let located = self.locate_from(self.near(q), q, &mut Star::default())?;
         Ok(Some(located))

@@ -86,13 +86,4 @@ impl Tetrahedra<'_> {
             outer.map(move |corner| Side { simplex, corner })
         })
     }
-
-    /// Some boundary face that `q` is strictly beyond; any face where there is none.
-    pub fn beyond_which(&self, q: Point3) -> Side {
-        let beyond = |side: &Side| self.sides(side.simplex, q)[side.corner] == Sign::Negative;
-        self.boundary().find(beyond).unwrap_or(Side {
-            simplex: 0,
-            corner: 0,
-        })
-    }
 }
