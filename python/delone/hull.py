@@ -325,10 +325,12 @@ def _in_space(points: Floats) -> dict[str, NDArray[Any]] | None:
     if found is None:
         return None
     simplices, neighbors, facet_of, polygons, starts, duplicates = found
+    extreme = np.zeros(len(points), dtype=bool)
+    extreme[polygons] = True
     return {
         "simplices": simplices,
         "neighbors": neighbors,
-        "vertices": np.unique(polygons),
+        "vertices": np.flatnonzero(extreme).astype(np.int32),
         "facet_of": facet_of,
         "polygons": polygons,
         "starts": starts,

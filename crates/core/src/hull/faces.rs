@@ -42,7 +42,7 @@ pub fn polygons(points: &[Point3], facets: &[Facet]) -> Result<Polygons> {
         if std::mem::replace(&mut met[seed], true) {
             continue;
         }
-        let plane = facets[seed].corners.map(|v| points[v as usize]);
+        let plane = facets[seed].corners;
         rim.clear();
         open.push(seed);
         while let Some(i) = open.pop() {
@@ -65,10 +65,13 @@ pub fn polygons(points: &[Point3], facets: &[Facet]) -> Result<Polygons> {
     Ok(found)
 }
 
-fn lies_in(points: &[Point3], [a, b, c]: [Point3; 3], corners: [u32; 3]) -> bool {
+/// Whether a triangle lies in the plane of another. Of what they have in common it need not be asked, which
+/// is worth much: a predicate goes through all of its stages before it says zero.
+fn lies_in(points: &[Point3], plane: [u32; 3], corners: [u32; 3]) -> bool {
+    let [a, b, c] = plane.map(|v| points[v as usize]);
     corners
         .iter()
-        .all(|&v| orient3d(a, b, c, points[v as usize]) == Sign::Zero)
+        .all(|v| plane.contains(v) || orient3d(a, b, c, points[*v as usize]) == Sign::Zero)
 }
 
 /// Adds the cycle of a rim, without the vertices in the middle of an edge.
@@ -80,7 +83,8 @@ fn add_corners(points: &[Point3], rim: &[u32], after: &[u32], found: &mut Polygo
     for step in 0..rim.len() {
         let next = after[v as usize];
         let next_but_one = after[next as usize];
-        if !in_line(at(v), at(next), at(next_but_one)) {
+        // No triangle is flat.
+        if rim.len() == 3 || !in_line(at(v), at(next), at(next_but_one)) {
             found.vertices.push(next);
         }
         v = next;

@@ -60,6 +60,10 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
     let mut triangles = with_room(surface.facets.len())?;
     for (i, ends) in (0u32..).zip(starts.windows(2)) {
         let polygon = &vertices[ends[0] as usize..ends[1] as usize];
+        if let &[a, b, c] = polygon {
+            triangles.push(([a, b, c], i));
+            continue;
+        }
         let made = polygon::triangulate(&at, polygon, surface.first)?;
         triangles.extend(made.into_iter().map(|t| (turned(t), i)));
     }
@@ -98,23 +102,26 @@ fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Verti
         }
     }
     order.sort_unstable_by(|&u, &v| lexicographic(points[u as usize], points[v as usize]));
-    let mut place = HashMap::with_capacity(order.len());
     for (i, &v) in (0u32..).zip(&order) {
         rank[v as usize] = i;
-        place.insert(key(v), i);
     }
-    let mut first = filled(order.len(), u32::MAX)?;
-    let mut duplicates = Vec::new();
-    for &row in rows {
-        if let Some(&i) = place.get(&key(row)) {
-            let first = &mut first[i as usize];
-            if *first == u32::MAX {
-                *first = row;
-            } else {
-                duplicates.push([row, *first]);
-            }
-        }
+    // Of rows with the same coordinates any may be the vertex of the surface.
+    let others = || rows.iter().filter(|&&row| rank[row as usize] == u32::MAX);
+    let mut place = HashMap::new();
+    if others().next().is_some() {
+        place.extend((0u32..).zip(&order).map(|(i, &v)| (key(v), i)));
     }
+    let twins = others().filter_map(|&row| Some((*place.get(&key(row))?, row)));
+    let mut found: Vec<(u32, u32)> = twins.collect();
+    let mut first = order.clone();
+    for &(i, row) in &found {
+        first[i as usize] = first[i as usize].min(row);
+    }
+    found.extend((0u32..).zip(order));
+    found.retain(|&(i, row)| first[i as usize] != row);
+    let mut duplicates: Vec<[u32; 2]> = with_room(found.len())?;
+    duplicates.extend(found.iter().map(|&(i, row)| [row, first[i as usize]]));
+    duplicates.sort_unstable();
     Ok(Vertices {
         rows: first,
         rank,
