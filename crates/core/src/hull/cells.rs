@@ -1,6 +1,7 @@
-//! What is surely inside of a hull, told by one look into a table.
+//! Directions in cells: which points go farthest in each, and what is surely inside of a hull.
 //!
-//! Seen from the inner point o, directions are cells on the six sides of a cube. For each corner of the
+//! Seen from the inner point o, directions are cells on the six sides of a cube. The deepest point of each cell
+//! is most likely at the hull, and so are few others. Once these are inserted, for each corner of the
 //! cells one point on its ray is known to be in the hull; so is the pyramid from o to the four points of
 //! a cell, and in it all of the cell up to the depth of the least deep of them.
 //!
@@ -17,8 +18,11 @@ use delone_predicates::{Point3, Sign};
 use super::inner::Inner;
 use super::insertion::{Hull, Towards};
 
-/// Cells along each edge of the cube: as many corners as a walk each is worth beside a million points.
-const CELLS: usize = 32;
+/// Points for each cell: its walks, to one point and one corner, are then worth a small part of what walks to
+/// all points would be.
+const POINTS: usize = 16;
+/// Cells along each edge of the cube: with more, what they add is less than what they cost.
+const MOST: usize = 32;
 /// Share of a cell, and of a depth, that rounding stays below by far.
 const MARGIN: f64 = 1e-6;
 /// Planes that are met from outside before a corner is given up.
@@ -26,53 +30,34 @@ const TRIES: usize = 16;
 /// Sizes of hulls whose planes are computed without over- or underflow.
 const SAFE: std::ops::Range<f64> = 1e-90..1e90;
 
-/// Depths by side of the cube and cell.
-pub struct Cells {
+/// Cells of directions from a point.
+#[derive(Clone, Copy)]
+pub struct Grid {
     o: Point3,
-    depths: Vec<f64>,
+    /// Cells along each edge of the cube.
+    cells: usize,
 }
 
-impl Cells {
-    /// The cells of a hull; nothing where its inner point or its size is beyond doubles.
-    pub fn of(hull: &Hull) -> Option<Self> {
+/// Where a grid has a point.
+struct Place {
+    cell: usize,
+    depth: f64,
+    /// Whether rounding cannot have brought it here from another cell.
+    sure: bool,
+}
+
+impl Grid {
+    /// A grid for so many points around the inner point of a hull; nothing where that is beyond doubles.
+    pub fn of(hull: &Hull, points: usize) -> Option<Self> {
         let Inner::At(o) = hull.inner else {
             return None;
         };
-        let (size, most) = hull.reach(o);
-        if !SAFE.contains(&size) || !most.is_finite() {
-            return None;
-        }
-        // What a coordinate is rounded by, over the share of a depth that is little enough.
-        let least = most * f64::EPSILON / (MARGIN / 100.0 / CELLS as f64);
-        let mut near = hull.near();
-        let mut depths = vec![0.0; 6 * CELLS * CELLS];
-        let mut corners = vec![0.0; (CELLS + 1) * (CELLS + 1)];
-        for side in 0..6 {
-            let of = |i: usize| 2.0 * i as f64 / CELLS as f64 - 1.0;
-            for (at, depth) in corners.iter_mut().enumerate() {
-                let (i, j) = (at / (CELLS + 1), at % (CELLS + 1));
-                let mut way = [0.0; 3];
-                way[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
-                way[(side / 2 + 1) % 3] = of(i);
-                way[(side / 2 + 2) % 3] = of(j);
-                let found = depth_along(hull, o, way, 2.0 * size, &mut near);
-                *depth = if found > least { found } else { 0.0 };
-            }
-            for i in 0..CELLS {
-                for j in 0..CELLS {
-                    let at = i * (CELLS + 1) + j;
-                    let four = [at, at + 1, at + CELLS + 1, at + CELLS + 2].map(|at| corners[at]);
-                    let least = four.into_iter().fold(f64::INFINITY, f64::min);
-                    depths[(side * CELLS + i) * CELLS + j] = least * (1.0 - MARGIN);
-                }
-            }
-        }
-        Some(Self { o, depths })
+        let cells = (points / (6 * POINTS)).isqrt().clamp(1, MOST);
+        Some(Self { o, cells })
     }
 
-    /// Whether `p` is surely in the hull, and no extreme point of it.
     #[inline]
-    pub fn holds(&self, p: Point3) -> bool {
+    fn place(&self, p: Point3) -> Place {
         let way = [0, 1, 2].map(|k| p[k] - self.o[k]);
         let size = way.map(f64::abs);
         let axis = if size[0] >= size[1] && size[0] >= size[2] {
@@ -82,16 +67,90 @@ impl Cells {
         } else {
             2
         };
-        let cell = |k: usize| {
-            let place = (way[(axis + k) % 3] / size[axis] + 1.0) * (CELLS as f64 / 2.0);
+        let (half, last) = (self.cells as f64 / 2.0, self.cells - 1);
+        let along = |k: usize| {
+            let place = (way[(axis + k) % 3] / size[axis] + 1.0) * half;
             // NaN, at o itself, becomes zero, and then is within no margin.
-            let whole = (place as usize).min(CELLS - 1);
+            let whole = (place as usize).min(last);
             let rest = place - whole as f64;
             (whole, rest > MARGIN && rest < 1.0 - MARGIN)
         };
-        let ((i, apart), (j, too)) = (cell(1), cell(2));
+        let ((i, apart), (j, too)) = (along(1), along(2));
         let side = 2 * axis + usize::from(way[axis] < 0.0);
-        apart && too && size[axis] <= self.depths[(side * CELLS + i) * CELLS + j]
+        Place {
+            cell: (side * self.cells + i) * self.cells + j,
+            depth: size[axis],
+            sure: apart && too,
+        }
+    }
+
+    /// The deepest point of each cell that has one.
+    pub fn deepest(&self, points: &[Point3]) -> Vec<u32> {
+        let mut most = vec![(0.0, u32::MAX); 6 * self.cells * self.cells];
+        for (row, &p) in (0u32..).zip(points) {
+            let Place { cell, depth, .. } = self.place(p);
+            if depth > most[cell].0 {
+                most[cell] = (depth, row);
+            }
+        }
+        let found = most.into_iter().map(|(_, row)| row);
+        found.filter(|&row| row != u32::MAX).collect()
+    }
+}
+
+/// Depths by side of the cube and cell.
+pub struct Cells {
+    grid: Grid,
+    depths: Vec<f64>,
+}
+
+impl Cells {
+    /// The depths of a hull; nothing where its size is beyond doubles.
+    pub fn of(hull: &Hull, grid: Grid) -> Option<Self> {
+        let Grid { o, cells } = grid;
+        let (size, most) = hull.reach(o);
+        if !SAFE.contains(&size) || !most.is_finite() {
+            return None;
+        }
+        // What a coordinate is rounded by, over the share of a depth that is little enough.
+        let least = most * f64::EPSILON / (MARGIN / 100.0 / cells as f64);
+        let mut near = hull.near();
+        let mut depths = vec![0.0; 6 * cells * cells];
+        let mut corners = vec![0.0; (cells + 1) * (cells + 1)];
+        for side in 0..6 {
+            let of = |i: usize| 2.0 * i as f64 / cells as f64 - 1.0;
+            for (at, depth) in corners.iter_mut().enumerate() {
+                let (i, j) = (at / (cells + 1), at % (cells + 1));
+                // To and fro, so that each walk is short.
+                let j = if i % 2 == 0 { j } else { cells - j };
+                let mut way = [0.0; 3];
+                way[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
+                way[(side / 2 + 1) % 3] = of(i);
+                way[(side / 2 + 2) % 3] = of(j);
+                let found = depth_along(hull, o, way, 2.0 * size, &mut near);
+                *depth = if found > least { found } else { 0.0 };
+            }
+            let corner = |i: usize, j: usize| {
+                let j = if i % 2 == 0 { j } else { cells - j };
+                corners[i * (cells + 1) + j]
+            };
+            for i in 0..cells {
+                for j in 0..cells {
+                    let four = [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)];
+                    let depths_of = four.into_iter().map(|(i, j)| corner(i, j));
+                    let least = depths_of.fold(f64::INFINITY, f64::min);
+                    depths[(side * cells + i) * cells + j] = least * (1.0 - MARGIN);
+                }
+            }
+        }
+        Some(Self { grid, depths })
+    }
+
+    /// Whether `p` is surely in the hull, and no extreme point of it.
+    #[inline]
+    pub fn holds(&self, p: Point3) -> bool {
+        let Place { cell, depth, sure } = self.grid.place(p);
+        sure && depth <= self.depths[cell]
     }
 }
 

@@ -4,8 +4,8 @@
 //! (1989): points come in random order; the facets that a point *sees*, being strictly beyond their
 //! planes, go, and a cone of new ones comes, from the point to their rim. In place of lists of conflicts
 //! there is a walk: seen from an inner point o, the facets tile the sphere, and a point that is outside
-//! sees the facet towards which it lies. A sample comes first; what its hull has inside is left out by
-//! `Cells` without a walk, and without being looked at again.
+//! sees the facet towards which it lies. Points that go farthest come first; what their hull has inside is
+//! left out by `Cells` without a walk, and without being looked at again.
 //!
 //! # Points in the planes of facets
 //!
@@ -28,7 +28,7 @@
 
 use delone_predicates::{Point3, Sign, orient2d, orient3d};
 
-use super::cells::Cells;
+use super::cells::{Cells, Grid};
 use super::inner::Inner;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
@@ -39,9 +39,11 @@ use crate::watch::Watch;
 const WATCH_EVERY: usize = 1024;
 /// Directions along which extreme points are taken first, on a spiral over the sphere.
 const DIRECTIONS: usize = 40;
-/// Points of which a sample comes before the others, and how many there are for each in the sample.
-const MANY: usize = 1 << 13;
-const SHARE: u64 = 32;
+/// Points of a sample that is enough for them, and the most that there are for each in the sample.
+const SAMPLE: usize = 1 << 10;
+const SHARE: usize = 32;
+/// Points from which on cells of directions save more walks than they take.
+const MANY: usize = 1 << 8;
 /// No facet.
 const NONE: u32 = u32::MAX;
 
@@ -71,28 +73,32 @@ pub struct Facet {
 pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
     let mut rows = with_room(points.len())?;
     rows.extend(0..points.len() as u32);
-    let many = points.len() > MANY;
-    let is_early = |&row: &u32| random(row).is_multiple_of(SHARE);
-    let early: Vec<u32> = if many {
-        rows.iter().copied().filter(is_early).collect()
-    } else {
-        rows.clone()
-    };
+    let share = (points.len() / SAMPLE).clamp(1, SHARE) as u64;
+    let is_early = |&row: &u32| random(row).is_multiple_of(share);
+    let early: Vec<u32> = rows.iter().copied().filter(is_early).collect();
     let extreme = extreme_points(points, &early);
     let Some(first) = first_tetrahedron(points, &extreme, &rows) else {
         return Ok(None);
     };
     let mut hull = Hull::start(points, first)?;
     hull.insert_all(&extreme, watch)?;
-    hull.insert_all(&rounds(points, early)?, watch)?;
-    if many {
-        if let Some(cells) = Cells::of(&hull) {
+    let mut done = filled(points.len(), false)?;
+    let mut note = |rows: &[u32]| rows.iter().for_each(|&row| done[row as usize] = true);
+    note(&extreme);
+    note(&first);
+    if points.len() > MANY
+        && let Some(grid) = Grid::of(&hull, points.len())
+    {
+        let deepest = grid.deepest(points);
+        note(&deepest);
+        hull.insert_all(&rounds(points, deepest)?, watch)?;
+        if let Some(cells) = Cells::of(&hull, grid) {
             rows.retain(|&row| !cells.holds(points[row as usize]));
         }
         watch.check()?;
-        let late = rows.iter().copied().filter(|row| !is_early(row)).collect();
-        hull.insert_all(&rounds(points, late)?, watch)?;
     }
+    let late = rows.iter().copied().filter(|&row| !done[row as usize]);
+    hull.insert_all(&rounds(points, late.collect())?, watch)?;
     Ok(Some(Surface {
         facets: living(&hull.facets),
         first: first.map(|v| points[v as usize]),
