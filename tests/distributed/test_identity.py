@@ -9,6 +9,7 @@ import pytest
 
 from delone import Delaunay, datasets, distributed
 from delone.datasets import ahn3, baja
+from delone.errors import DegenerateInputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -94,3 +95,35 @@ def test_few_points(points: Any, tmp_path: Path, canonical: Callable[[Any], Any]
     right = Delaunay(np.array(points, float))
     assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
     assert tin.validate(), str(tin.validate())
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [5, 40])
+def test_the_corpus_in_tiles(
+    corpus_case: Any, size: int, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    # The proof of doubts that reach every tile takes its time; a part is as hard as the whole.
+    points = corpus_case.points[:200]
+    try:
+        right = Delaunay(points)
+    except DegenerateInputError:
+        pytest.skip("its first points span no area")
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=size)
+    assert np.array_equal(canonical(tin.simplices()), canonical(right.simplices))
+    assert tin.validate(), str(tin.validate())
+    inside = np.abs(points).max(axis=1) < 1e300
+    assert (tin.find_simplex(points[inside]) >= 0).all()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [3, 17])
+def test_the_whole_range_of_doubles(
+    size: int, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    """Strips and sides of tiles are beyond the range, without a word of it."""
+    dice = np.random.default_rng(1)
+    points = (dice.random((60, 2)) * 2 - 1) * 1.7e308
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=size)
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(points).simplices))
+    assert tin.validate(), str(tin.validate())
+    assert (tin.find_simplex(points) >= 0).all()

@@ -144,6 +144,8 @@ def _cut(points: Floats, count: int) -> tuple[int, float] | None:
     return None
 
 
+# Beyond the range of doubles a strip is infinite, and holds what it says all the same.
+@np.errstate(over="ignore")
 def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
     """Return the box that each tile knows at first: its cell, and a strip along each side.
 
