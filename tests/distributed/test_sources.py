@@ -195,6 +195,47 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
         distributed.triangulate(points, tmp_path / "third", nan="ignore")
 
 
+def test_heights_that_are_not_finite_are_no_points(
+    tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    z = np.arange(900.0)
+    z[[5, 600]] = np.nan
+    z[31] = np.inf
+    path = table(tmp_path / "points.parquet", POINTS, z=z)
+    for source in (path, np.column_stack([POINTS, z])):
+        with pytest.raises(NonFiniteError, match="height") as caught:
+            distributed.triangulate(source, tmp_path / "tin", tile_points=300)
+        assert caught.value.rows.tolist() == [5, 31, 600]
+    tin = distributed.triangulate(path, tmp_path / "tin", tile_points=300, nan="drop")
+    assert (tin.manifest["dropped"], tin.npoints) == (3, 897)
+    kept = np.flatnonzero(np.isfinite(z))
+    assert np.array_equal(
+        canonical(tin.simplices()), canonical(kept[Delaunay(POINTS[kept]).simplices])
+    )
+    inside = POINTS[kept][tin.find_simplex(POINTS[kept]) >= 0]
+    assert np.isfinite(tin.interpolate(inside)).all()
+    assert tin.validate(), str(tin.validate())
+
+
+def test_attributes_that_are_not_finite_are_carried(
+    tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    value = np.arange(900.0)
+    value[[5, 600]] = np.nan
+    value[31] = np.inf
+    path = table(tmp_path / "points.parquet", POINTS, value=value, height=value)
+    tin = distributed.triangulate(
+        path, tmp_path / "tin", tile_points=300, attributes=["value", "height"], columns=["x", "y"]
+    )
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+    for tile in tin.tiles():
+        assert np.array_equal(tile.attributes["value"], value[tile.ids], equal_nan=True)
+        assert np.array_equal(tile.attributes["height"], value[tile.ids], equal_nan=True)
+    # In triangles with such a corner there is no value.
+    assert np.isnan(tin.interpolate(POINTS[[5, 600]], value="value")).all()
+    assert tin.validate(), str(tin.validate())
+
+
 @pytest.mark.parametrize(
     ("points", "reason"),
     [

@@ -213,7 +213,7 @@ class Run:
         if bad and self.nan == "raise":
             worst = [row for key in sorted(looks) for row in looks[key]["bad"]]
             raise NonFiniteError(
-                f"{bad} points have NaN or infinity; nan='drop' leaves them out",
+                f"{bad} points have NaN or infinity for x, y or height; nan='drop' leaves them out",
                 rows=worst,
                 count=bad,
             )

@@ -74,8 +74,10 @@ def look(store: Store, key: int, piece: Piece, choice: Choice, share: float) -> 
 
 
 def _finite(rows: Any) -> tuple[Any, Any]:
-    """Rows with finite coordinates, and the numbers of the others."""
+    """Rows with finite coordinates and heights, and the numbers of the others."""
     finite = np.isfinite(rows["x"]) & np.isfinite(rows["y"])
+    if "z" in rows.dtype.names:
+        finite &= np.isfinite(rows["z"])
     return (rows, rows["id"][:0]) if finite.all() else (rows[finite], rows["id"][~finite])
 
 
