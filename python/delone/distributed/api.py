@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from delone._arrays import as_count
+import numpy as np
+
+from delone._arrays import as_choice, as_count
+from delone.distributed.arguments import as_callback, as_classes, as_flag, as_names, as_path
 from delone.distributed.costs import Plan, estimate
 from delone.distributed.executors import Executor, Processes, Serial
 from delone.distributed.files import Store
@@ -16,9 +21,12 @@ from delone.io.extras import require
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
 __all__ = ["plan", "triangulate"]
+
+# Numbers of rows are stored in 64 bits, and read back with a sign.
+_ROWS = (1 << 63) - 1
 
 
 def triangulate(
@@ -55,7 +63,9 @@ def triangulate(
     columns, classes, attributes
         As in `delone.io.read_points`; attributes, which must be numbers, go to the vertices.
     nan : {"raise", "drop"}, optional
-        What to do with rows whose coordinates are NaN or infinite.
+        What to do with rows whose x, y or height is NaN or infinite: refuse them by number, or
+        leave them out. Attributes are carried as they are, NaN included; so are heights that come
+        as an attribute.
     progress : callable, optional
         Is told how far the run is, as `Progress`.
 
@@ -69,8 +79,11 @@ def triangulate(
     InputError
         An argument is none of its choices; the output holds something else; files have different
         reference systems.
+    DtypeError
+        An argument is of the wrong type.
     NonFiniteError
-        Coordinates are NaN or infinite, and `nan` is ``"raise"``; ``error.rows`` has the first.
+        Coordinates or heights are NaN or infinite, and `nan` is ``"raise"``; ``error.rows`` has
+        the first.
     DegenerateInputError
         The points span no area.
     FileFormatError, FileNotFoundError
@@ -110,20 +123,22 @@ def triangulate(
     ...     same_triangles(tin.simplices(), Delaunay(points).simplices)
     True
     """
-    if nan not in ("raise", "drop"):
-        raise InputError(f"nan must be 'raise' or 'drop', got {nan!r}")
+    nan = as_choice(nan, ("raise", "drop"), name="nan")
+    folder = as_path(output, name="output")
+    tell = as_callback(progress, name="progress") or _silent
+    go_on = as_flag(resume, name="resume")
     require("pyarrow", extra="dask", what="triangulating in tiles")
     size = _tile_points(tile_points)
     worker = _executor(executor)
     choice = _choice(columns, classes, attributes)
     found = find(source, choice)
-    run = Run(Store(output), found, choice, size, nan, worker, progress or _silent)
+    run = Run(Store(folder), found, choice, size, nan, worker, tell)
     try:
-        run.go(resume)
+        run.go(go_on)
     finally:
         if isinstance(worker, Processes):
             worker.close()
-    return open(output)
+    return open(folder)
 
 
 def plan(
@@ -165,10 +180,16 @@ def plan(
     500000
     """
     size = _tile_points(tile_points)
-    if isinstance(source, int):
-        return estimate(as_count(source, name="source"), size, workers, len(attributes))
-    found = find(source, _choice(columns, classes, attributes))
-    return estimate(found.count, size, workers, len(attributes))
+    if as_count(workers, name="workers") < 1:
+        raise InputError(f"workers must be at least 1, got {workers}")
+    choice = _choice(columns, classes, attributes)
+    if isinstance(source, int | np.integer):
+        count = as_count(int(source) if isinstance(source, np.integer) else source, name="source")
+        if count > _ROWS:
+            raise InputError(f"source must be at most {_ROWS} points, which 63 bits number")
+    else:
+        count = find(source, choice).count
+    return estimate(count, size, workers, len(choice.attributes))
 
 
 def _choice(
@@ -176,13 +197,14 @@ def _choice(
     classes: Sequence[int] | None,
     attributes: Sequence[str],
 ) -> Choice:
-    clash = sorted({"id", "x", "y", "z", "owned"} & set(attributes))
+    names = as_names(attributes, name="attributes")
+    clash = sorted({"id", "x", "y", "z", "owned"} & set(names))
     if clash:
         raise InputError(f"{clash[0]!r} is a column of its own, not to be named among attributes")
     return Choice(
-        None if columns is None else tuple(columns),
-        None if classes is None else tuple(classes),
-        tuple(attributes),
+        None if columns is None else as_names(columns, name="columns", places=True),
+        None if classes is None else as_classes(classes),
+        names,
     )
 
 
@@ -193,16 +215,20 @@ def _tile_points(tile_points: int) -> int:
     return size
 
 
+_EXECUTORS: dict[str, Callable[[], Executor]] = {"serial": Serial, "processes": Processes}
+
+
 def _executor(executor: Any) -> Executor:
     if isinstance(executor, Serial | Processes):
         return executor
-    if executor == "serial":
-        return Serial()
-    if executor == "processes":
-        return Processes()
-    if isinstance(executor, str):
+    if isinstance(executor, str) and executor in _EXECUTORS:
+        return _EXECUTORS[executor]()
+    # Who has a client has imported its library.
+    library = sys.modules.get("distributed")
+    if library is None or not isinstance(executor, library.Client):
         raise InputError(
-            f"executor must be 'serial', 'processes' or a dask.distributed.Client, got {executor!r}"
+            f"executor must be {' or '.join(map(repr, _EXECUTORS))} or a dask.distributed.Client, "
+            f"got {executor!r:.60}"
         )
     from delone.distributed.dask import DaskExecutor
 

@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import errno
 import shutil
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone.atomic import replacing
+from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
 from delone.io.extras import require
 
 if TYPE_CHECKING:
     import os
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -44,7 +45,7 @@ def write_dem(
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     tin._require(value)
-    target = Path(out)
+    target = as_path(out, name="out")
     if target.suffix.lower() not in (".tif", ".tiff"):
         raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
     left, bottom, right, top = tin.bounds

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._arrays import as_count, as_vectors
+from delone.distributed.arguments import as_path
 from delone.distributed.files import Store
 from delone.distributed.manifest import manifest_of
 from delone.distributed.output import tile_names
@@ -18,6 +18,7 @@ from delone.errors import FileFormatError, InputError
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator
+    from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -59,8 +60,9 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
     ...     distributed.open(folder + "/tin")
     <TiledDelaunay of 400 points: 722 triangles in 4 tiles>
     """
-    store = Store(output)
-    if not Path(output).is_dir():
+    folder = as_path(output, name="output")
+    store = Store(folder)
+    if not folder.is_dir():
         raise FileNotFoundError(f"{output}: no such folder")
     manifest = manifest_of(store)
     for tile in range(len(manifest["tiles"])):

@@ -17,7 +17,7 @@ import numpy as np
 
 from delone._arrays import as_points
 from delone.distributed.rows import make_rows
-from delone.errors import DtypeError, FileFormatError, InputError, ShapeError
+from delone.errors import FileFormatError, InputError
 from delone.io import PointSet, las, parquet, read_points
 
 if TYPE_CHECKING:
@@ -219,17 +219,11 @@ def _mappable(path: Path, choice: Choice) -> tuple[int, int] | None:
 def _of_array(source: Any, choice: Choice) -> Source:
     if choice.columns is not None or choice.classes is not None or choice.attributes:
         raise InputError("columns, classes and attributes are for files, not for arrays")
-    shape = np.shape(source)
-    if len(shape) == 2 and shape[1] == 3:
-        given = np.asarray(source)
-        if given.dtype.kind not in "iuf":
-            raise DtypeError(f"points must be real numbers, got {given.dtype}")
-        points = np.column_stack([as_points(given[:, :2], ndim=2), given[:, 2].astype(np.float64)])
-    elif len(shape) == 2:
-        points = as_points(source, ndim=2)
-    else:
-        raise ShapeError(f"points must have shape (n, 2) or (n, 3), got {shape}")
-    identity = {"array": hashlib.sha256(points.tobytes()).hexdigest(), "shape": list(points.shape)}
+    points = as_points(source)
+    identity = {
+        "array": hashlib.sha256(points.reshape(-1).view(np.uint8).data).hexdigest(),
+        "shape": list(points.shape),
+    }
     n = len(points)
     pieces = tuple(Piece("", "array", i, min(i + PIECE, n), 0) for i in range(0, n, PIECE))
     return Source(pieces, n, None, identity, points)

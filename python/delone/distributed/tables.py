@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._arrays import as_choice
+from delone.distributed.arguments import as_path
 from delone.errors import InputError
 from delone.io.extras import require
 
@@ -21,8 +23,7 @@ __all__ = ["dask_frame", "write_geoparquet"]
 
 def dask_frame(tin: TiledDelaunay, table: str) -> Any:
     """Return a Dask data frame; see `TiledDelaunay.to_dask_dataframe`."""
-    if table not in ("triangles", "vertices"):
-        raise InputError(f"table must be 'triangles' or 'vertices', got {table!r}")
+    as_choice(table, ("triangles", "vertices"), name="table")
     frames = require("dask.dataframe", extra="dask", what="a Dask data frame")
     folder = str(tin.path.absolute())
     meta = partition(0, folder, table).iloc[:0]
@@ -47,7 +48,7 @@ def write_geoparquet(tin: TiledDelaunay, folder: str | os.PathLike[str]) -> None
     """Write triangles as polygons; see `TiledDelaunay.to_geoparquet`."""
     geopandas = require("geopandas", extra="geo", what="writing GeoParquet")
     shapely = require("shapely", extra="geo", what="writing GeoParquet")
-    target = Path(folder)
+    target = as_path(folder, name="folder")
     if target.exists():
         raise InputError(f"{target} is there already: choose another folder")
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,103 @@
+"""What callers pass beside points: paths, names, numbers of classes, callbacks. Refused by name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_count
+from delone.errors import DtypeError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["as_callback", "as_classes", "as_flag", "as_names", "as_path"]
+
+
+def as_path(path: Any, *, name: str) -> Path:
+    """Return a path.
+
+    Raises
+    ------
+    DtypeError
+        It is none.
+    """
+    if isinstance(path, str | os.PathLike) and isinstance(os.fspath(path), str):
+        return Path(path)
+    raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
+
+
+def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
+    """Return names of columns, or, where these are allowed, their numbers from 0.
+
+    Raises
+    ------
+    DtypeError
+        They are none; a text alone is no sequence of texts.
+    InputError
+        A column is named twice, or its number is below 0.
+    """
+    wanted = f"{name} must be a sequence of names of columns" + (" or numbers" if places else "")
+    found = tuple(_sequence(names, wanted))
+    for one in found:
+        if places and not isinstance(one, str):
+            as_count(one, name=f"{name}: a number of a column")
+        elif not isinstance(one, str):
+            raise DtypeError(f"{wanted}, got {one!r:.60} among them")
+        if found.count(one) > 1:
+            raise InputError(f"{name}: {one!r} is named twice")
+    return tuple(one if isinstance(one, str) else int(one) for one in found)
+
+
+def as_classes(classes: Any) -> tuple[int, ...]:
+    """Return numbers of classes.
+
+    Raises
+    ------
+    DtypeError, InputError
+        They are none, or none of LAS files, which have 0 to 255.
+    """
+    wanted = "classes must be a sequence of integers from 0 to 255"
+    found = tuple(as_count(one, name="a class") for one in _sequence(classes, wanted))
+    if not found or max(found) > 255:
+        raise InputError(f"{wanted}, got {list(found)}")
+    return found
+
+
+def _sequence(values: Any, wanted: str) -> Sequence[Any]:
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if not isinstance(values, Sequence) or isinstance(values, str | bytes):
+        raise DtypeError(f"{wanted}, got {values!r:.60}")
+    return values
+
+
+def as_flag(flag: Any, *, name: str) -> bool:
+    """Return a truth value; a text such as ``"no"`` is none.
+
+    Raises
+    ------
+    DtypeError
+        It is none.
+    """
+    if isinstance(flag, bool | np.bool_):
+        return bool(flag)
+    raise DtypeError(f"{name} must be True or False, got {flag!r:.60}")
+
+
+def as_callback(function: Any, *, name: str) -> Callable[..., Any] | None:
+    """Return a function, or None.
+
+    Raises
+    ------
+    DtypeError
+        It cannot be called.
+    """
+    if function is None or callable(function):
+        found: Callable[..., Any] | None = function
+        return found
+    raise DtypeError(f"{name} must be callable or None, got {function!r:.60}")
