@@ -15,14 +15,15 @@ import scipy.spatial
 
 from delone import ConvexHull, Delaunay, datasets
 
-# A call that takes longer is not repeated.
+# A call that takes longer is not repeated, and short ones until they have taken so long together.
 SLOW = 5.0
+ENOUGH = 0.1
 
 
 def median(call: Callable[[], Any], runs: int) -> float:
     """Seconds of a call, the median of some runs; of one where it is slow."""
     times: list[float] = []
-    for _ in range(runs):
+    while len(times) < runs or sum(times) < ENOUGH:
         start = time.perf_counter()
         call()
         times.append(time.perf_counter() - start)
@@ -33,24 +34,22 @@ def median(call: Callable[[], Any], runs: int) -> float:
 
 def line(name: str, ours: float, theirs: float) -> None:
     """Print one row of a table."""
-    print(f"{name:38} {ours:10.3f} {theirs:10.3f} {theirs / ours:12.2f}")
+    print(f"{name:38} {ours:10.5f} {theirs:10.5f} {theirs / ours:12.2f}")
 
 
 def hulls(n: int, runs: int) -> None:
-    """Points inside, all on the hull, in the plane and in space."""
+    """Points inside, all on the hull, in the plane and in space; few and many."""
     space = datasets.GENERATORS3
-    sets = {
-        "hull, uniform square": datasets.uniform(n),
-        "hull, circle": datasets.circle(n // 10),
-        "hull, uniform cube": space["uniform"](n),
-        "hull, uniform ball": ball(n),
-        "hull, grid": space["grid"](n),
-        "hull, sphere": space["sphere"](n // 10),
-    }
+    flat = {"uniform square": datasets.uniform(n), "circle": datasets.circle(n // 10)}
+    sets = {f"hull, {name}, {len(points):,}": points for name, points in flat.items()}
+    sizes = sorted({size for size in (2_000, 20_000, n // 10, n) if size <= n})
+    for name, some in {"cube": space["uniform"], "ball": ball, "sphere": space["sphere"]}.items():
+        sets |= {f"hull, {name}, {size:,}": some(size) for size in sizes}
+    sets[f"hull, grid, {n:,}"] = space["grid"](n)
     for name, points in sets.items():
         ours = median(lambda points=points: ConvexHull(points), runs)
         theirs = median(lambda points=points: scipy.spatial.ConvexHull(points), runs)
-        line(f"{name}, {len(points):,}", ours, theirs)
+        line(name, ours, theirs)
 
 
 def ball(n: int) -> Any:

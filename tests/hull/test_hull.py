@@ -120,6 +120,44 @@ def test_it_is_the_boundary_of_the_triangulation_of_its_vertices(
     assert hull.volume == pytest.approx(whole.sum(), rel=1e-12)
 
 
+def in_ball(n: int, seed: int) -> NDArray[np.float64]:
+    rng = np.random.default_rng(seed)
+    ways = rng.normal(size=(n, 3))
+    return ways * (rng.random(n) ** (1 / 3) / np.linalg.norm(ways, axis=1))[:, None]
+
+
+def layered() -> NDArray[np.float64]:
+    """Two shells a few units in the last place apart, and all points twice."""
+    ball = in_ball(150, 3)
+    shell = ball / np.linalg.norm(ball, axis=1)[:, None]
+    both = np.concatenate((shell, np.nextafter(shell, 0), shell * (1 - 2.0**-50), ball))
+    return np.concatenate((both, both[::-1]))
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        pytest.param(in_ball(1000, 0), id="ball"),
+        pytest.param(in_ball(600, 1) * (1, 1e-4, 1e5) + (1e3, 0, 0), id="flattened"),
+        pytest.param(in_ball(600, 1) + 1e12, id="far-away"),
+        pytest.param(in_ball(600, 2) * 2.0**-1040, id="subnormal"),
+        pytest.param(in_ball(600, 2) * 2.0**1020, id="huge"),
+        pytest.param(np.repeat(in_ball(200, 4), 3, axis=0), id="thrice"),
+        pytest.param(layered(), id="layered"),
+        pytest.param(np.round(in_ball(900, 5) * 6), id="rounded"),
+        pytest.param(np.round(in_ball(900, 6) * 40) * (1, 0, 0) + in_ball(900, 7) ** 9, id="spine"),
+    ],
+)
+def test_what_cells_leave_out_is_inside(points: NDArray[np.float64]) -> None:
+    """So many points that most are told to be inside by their direction and depth."""
+    hull = check(points)
+    order = np.random.default_rng(0).permutation(len(points))
+    other = check(points[order])
+    assert sorted(map(tuple, points[hull.vertices].tolist())) == sorted(
+        map(tuple, points[order][other.vertices].tolist())
+    )
+
+
 @given(st.integers(2, 3).flatmap(lambda d: st.lists(st.tuples(*[SMALL] * d), max_size=16)))
 @settings(max_examples=150, deadline=None)
 def test_small_integers(points: list[Any]) -> None:

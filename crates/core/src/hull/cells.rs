@@ -114,6 +114,11 @@ impl Cells {
         }
         // What a coordinate is rounded by, over the share of a depth that is little enough.
         let least = most * f64::EPSILON / (MARGIN / 100.0 / cells as f64);
+        // In turns, so that each walk is short.
+        let to_and_fro = |i: usize, j: usize| match i & 1 {
+            0 => j,
+            _ => cells - j,
+        };
         let mut near = hull.near();
         let mut depths = vec![0.0; 6 * cells * cells];
         let mut corners = vec![0.0; (cells + 1) * (cells + 1)];
@@ -121,19 +126,14 @@ impl Cells {
             let of = |i: usize| 2.0 * i as f64 / cells as f64 - 1.0;
             for (at, depth) in corners.iter_mut().enumerate() {
                 let (i, j) = (at / (cells + 1), at % (cells + 1));
-                // To and fro, so that each walk is short.
-                let j = if i % 2 == 0 { j } else { cells - j };
                 let mut way = [0.0; 3];
                 way[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
                 way[(side / 2 + 1) % 3] = of(i);
-                way[(side / 2 + 2) % 3] = of(j);
+                way[(side / 2 + 2) % 3] = of(to_and_fro(i, j));
                 let found = depth_along(hull, o, way, 2.0 * size, &mut near);
                 *depth = if found > least { found } else { 0.0 };
             }
-            let corner = |i: usize, j: usize| {
-                let j = if i % 2 == 0 { j } else { cells - j };
-                corners[i * (cells + 1) + j]
-            };
+            let corner = |i: usize, j: usize| corners[i * (cells + 1) + to_and_fro(i, j)];
             for i in 0..cells {
                 for j in 0..cells {
                     let four = [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)];

@@ -39,9 +39,8 @@ use crate::watch::Watch;
 const WATCH_EVERY: usize = 1024;
 /// Directions along which extreme points are taken first, on a spiral over the sphere.
 const DIRECTIONS: usize = 40;
-/// Points of a sample that is enough for them, and the most that there are for each in the sample.
-const SAMPLE: usize = 1 << 10;
-const SHARE: usize = 32;
+/// Points of a sample that is enough for them.
+const SAMPLE: usize = 1 << 9;
 /// Points from which on cells of directions save more walks than they take.
 const MANY: usize = 1 << 8;
 /// No facet.
@@ -73,7 +72,7 @@ pub struct Facet {
 pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
     let mut rows = with_room(points.len())?;
     rows.extend(0..points.len() as u32);
-    let share = (points.len() / SAMPLE).clamp(1, SHARE) as u64;
+    let share = (points.len() / SAMPLE).max(1) as u64;
     let is_early = |&row: &u32| random(row).is_multiple_of(share);
     let early: Vec<u32> = rows.iter().copied().filter(is_early).collect();
     let extreme = extreme_points(points, &early);
@@ -159,7 +158,7 @@ fn extreme_points(points: &[Point3], rows: &[u32]) -> Vec<u32> {
         .chain([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         .chain([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
         .collect();
-    let few = (rows.len() >> 6).clamp(12, directions.len());
+    let few = (rows.len() >> 5).clamp(12, directions.len());
     let directions = &directions[directions.len() - few..];
     let mut most = vec![(f64::NEG_INFINITY, NONE); few];
     for row in rows {

@@ -12,8 +12,6 @@ mod insertion;
 mod plane;
 mod polygon;
 
-use std::collections::HashMap;
-
 use delone_predicates::{Point3, lexicographic};
 
 pub use plane::hull2;
@@ -92,8 +90,6 @@ struct Vertices {
 
 /// Puts vertices of a surface in order; `rows`, which ascend, are those that may be at one.
 fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Vertices> {
-    // Adding zero makes -0.0 the same key as 0.0.
-    let key = |row: u32| points[row as usize].map(|x| (x + 0.0).to_bits());
     let mut rank = filled(points.len(), u32::MAX)?;
     let mut order: Vec<u32> = with_room(vertices.len())?;
     for &v in vertices {
@@ -107,12 +103,12 @@ fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Verti
     }
     // Of rows with the same coordinates any may be the vertex of the surface.
     let others = || rows.iter().filter(|&&row| rank[row as usize] == u32::MAX);
-    let mut place = HashMap::new();
-    if others().next().is_some() {
-        place.extend((0u32..).zip(&order).map(|(i, &v)| (key(v), i)));
-    }
-    let twins = others().filter_map(|&row| Some((*place.get(&key(row))?, row)));
-    let mut found: Vec<(u32, u32)> = twins.collect();
+    let place = |row: u32| {
+        let p = points[row as usize];
+        let found = order.binary_search_by(|&v| lexicographic(points[v as usize], p));
+        found.ok().map(|i| (i as u32, row))
+    };
+    let mut found: Vec<(u32, u32)> = others().filter_map(|&row| place(row)).collect();
     let mut first = order.clone();
     for &(i, row) in &found {
         first[i as usize] = first[i as usize].min(row);
