@@ -1,14 +1,26 @@
 //! The boundary of a tiling: whether it is convex, and its nearest point.
+//!
+//! On a convex one that is exact. From a face that the query does not lie behind, a walk goes on to faces with
+//! nearer points: where the foot is on an edge, to the face across if the query is on that face's side
+//! of the edge; where it is a corner x, to a face there, not to be behind, along one of whose edges the query q lies
+//! ahead. Distances fall, so it ends. Where it ends the point is the nearest one of the body: otherwise some d
+//! from x into the body has d . (q - x) > 0; as q - x does not lead inside, the way from d in that direction
+//! leaves the cone of the body at x through a face that q is not behind, in a d' with d' . (q - x) > 0; and d'
+//! lies between two edges of that face, one of which would have been taken.
 
 use std::sync::OnceLock;
 
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::face::on_face;
+use super::foot::{Foot, Triangle};
 use super::tiling::{FACES, Side, Tetrahedra};
 use crate::error::Result;
 use crate::locate::{Boxes, kept};
 use crate::points::Extent;
+
+/// Root of how many sizes of the boundary away rounded distances still tell one face from another.
+const REMOTE: f64 = 1024.0;
 
 /// The boundary faces of a tiling.
 #[derive(Debug)]
@@ -18,6 +30,9 @@ pub struct Boundary {
     /// Whether the tetrahedra fill one convex body, so that nothing lies beyond what is strictly
     /// outside.
     pub convex: bool,
+    /// Of a convex body: the face across each edge, first that from the first corner to the next.
+    across: Vec<[u32; 3]>,
+    extent: Extent<3>,
     /// The faces by place, for the nearest one.
     boxes: OnceLock<Boxes<3>>,
 }
@@ -26,47 +41,137 @@ impl Boundary {
     /// Reads the boundary off the arrays.
     pub fn of(given: &Tetrahedra) -> Self {
         let sides: Vec<Side> = given.boundary().collect();
+        let across = across_edges(given, &sides);
+        let corners = sides.iter().flat_map(|&side| given.face(side));
         Self {
-            convex: is_convex(given, &sides),
+            extent: Extent::of(corners.map(|v| given.point(v))),
+            convex: across.is_some(),
+            across: across.unwrap_or_default(),
             sides,
             boxes: OnceLock::new(),
         }
     }
 
-    /// The boundary face with the nearest point to `q`, and how its corners share in that; `last` is the
-    /// one before, of a query near by.
+    /// The boundary face with the nearest point to `q`, of several the first, and how its corners share in
+    /// that; `last` is the one before, of a query near by.
     pub fn nearest(
         &self,
         given: &Tetrahedra,
         q: Point3,
         last: &mut Option<usize>,
     ) -> Result<Option<(Side, [f64; 3])>> {
+        let in_front = |&i: &usize| self.turn(given, i, q) != Sign::Negative;
+        let beyond = |&i: &usize| self.turn(given, i, q) == Sign::Positive;
+        let mut start = last.filter(|i| self.convex && in_front(i));
+        let mut found = None;
+        if start.is_none() && !(self.convex && self.is_remote(q)) {
+            found = self.by_boxes(given, q, *last)?;
+            start = found.map(|(i, _)| i).filter(in_front);
+        }
+        if self.convex {
+            start = start.or_else(|| (0..self.sides.len()).find(beyond));
+            found = start.map(|i| self.walk(given, i, q)).or(found);
+        }
+        *last = found.map(|(i, _)| i);
+        Ok(found.map(|(i, shares)| (self.sides[i], shares)))
+    }
+
+    /// The same by rounded distances, of any boundary.
+    fn by_boxes(
+        &self,
+        given: &Tetrahedra,
+        q: Point3,
+        last: Option<usize>,
+    ) -> Result<Option<(usize, [f64; 3])>> {
         let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
         let boxes = kept(&self.boxes, || {
             Boxes::over(self.sides.len(), |i| Extent::of(corners(i)))
         })?;
-        let found = boxes.nearest(q, *last, |i, unit| on_face(corners(i), q, unit));
-        *last = found.map(|(i, _)| i);
-        Ok(found.map(|(i, shares)| (self.sides[i], shares)))
+        Ok(boxes.nearest(q, last, |i, unit| on_face(corners(i), q, unit)))
+    }
+
+    /// Whether `q` is so far away that rounded distances tell nothing of the boundary.
+    fn is_remote(&self, q: Point3) -> bool {
+        let Extent { min, max } = self.extent;
+        let size = |k: usize| max[k] / REMOTE - min[k] / REMOTE;
+        let size = (0..3).fold(0.0, |most: f64, k| most.max(size(k)));
+        (0..3).any(|k| (q[k] / 4.0 - min[k] / 4.0).abs() > size * (REMOTE / 4.0 * REMOTE))
+    }
+
+    /// On which side of a face `q` lies; positive is outside.
+    fn turn(&self, given: &Tetrahedra, i: usize, q: Point3) -> Sign {
+        let [a, b, c] = given.face(self.sides[i]).map(|v| given.point(v));
+        orient3d(a, b, c, q)
+    }
+
+    /// The face with the nearest point of a convex body, on the way from one that `q` is not behind.
+    fn walk(&self, given: &Tetrahedra, start: usize, q: Point3) -> (usize, [f64; 3]) {
+        let triangle = |i: usize| {
+            let face = given.face(self.sides[i]);
+            Triangle::new(face.map(|v| given.point(v)), q)
+        };
+        let mut here = start;
+        let first = loop {
+            let (foot, first) = match triangle(here).foot() {
+                Foot::Face => (None, here),
+                Foot::Edge(k) => {
+                    let (next, edge) = self.beyond(given, here, k);
+                    let nearer = triangle(next).side(edge) == Sign::Positive;
+                    (nearer.then_some(next), here.min(next))
+                }
+                Foot::Corner(k) => {
+                    let mut around = (here, k);
+                    let mut first = here;
+                    let nearer = loop {
+                        let (i, k) = around;
+                        let face = triangle(i);
+                        let ahead = |to: usize| face.along(k, (k + to) % 3) == Sign::Positive;
+                        if (ahead(1) || ahead(2)) && self.turn(given, i, q) != Sign::Negative {
+                            break Some(i);
+                        }
+                        first = first.min(i);
+                        let (next, edge) = self.beyond(given, i, k);
+                        around = (next, (edge + 1) % 3);
+                        if next == here {
+                            break None;
+                        }
+                    };
+                    (nearer, first)
+                }
+            };
+            match foot {
+                Some(next) => here = next,
+                None => break first,
+            }
+        };
+        let face = triangle(first);
+        (first, face.shares(face.foot()))
+    }
+
+    /// The face across edge `k` of another, and which of its edges that is.
+    fn beyond(&self, given: &Tetrahedra, i: usize, k: usize) -> (usize, usize) {
+        let next = self.across[i][k] as usize;
+        let start = given.face(self.sides[i])[(k + 1) % 3];
+        let face = given.face(self.sides[next]);
+        let edge = face.iter().position(|&v| v == start).unwrap_or(0);
+        (next, edge)
     }
 }
 
-/// Whether the boundary faces are one surface that is convex at each edge: then it is the convex hull
-/// (Tietze's theorem), and all other tetrahedra are inside of it.
-fn is_convex(given: &Tetrahedra, sides: &[Side]) -> bool {
-    let Some(&first) = sides.first() else {
-        return false;
-    };
+/// The faces across the edges of all boundary faces, where these are one surface that is convex at
+/// each edge: then it is the convex hull (Tietze's theorem), and all other tetrahedra are inside of it.
+fn across_edges(given: &Tetrahedra, sides: &[Side]) -> Option<Vec<[u32; 3]>> {
+    sides.first()?;
+    let mut across = vec![[0; 3]; sides.len()];
     let mut met = vec![false; sides.len()];
-    let mut open = vec![first];
+    let mut open = vec![0];
     met[0] = true;
     let mut count = 1;
-    while let Some(side) = open.pop() {
+    while let Some(here) = open.pop() {
+        let side = sides[here];
         let [a, b, c] = FACES[side.corner].map(|corner| Side { corner, ..side });
-        for (u, v, w) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let Some(next) = around_edge(given, side, w) else {
-                return false;
-            };
+        for (k, (u, v, w)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
+            let next = around_edge(given, side, w)?;
             let [u, v, w] = [u, v, w].map(|s| given.point(given.vertex(s)));
             let shared = given.simplices[side.simplex];
             for corner in FACES[next.corner] {
@@ -74,20 +179,19 @@ fn is_convex(given: &Tetrahedra, sides: &[Side]) -> bool {
                 // Seen from outside, faces are counter-clockwise; what is positive is beyond.
                 let beyond = orient3d(u, v, w, given.point(far));
                 if !shared.contains(&far) && beyond == Sign::Positive {
-                    return false;
+                    return None;
                 }
             }
-            let Ok(i) = sides.binary_search(&next) else {
-                return false;
-            };
+            let i = sides.binary_search(&next).ok()?;
+            across[here][k] = i as u32;
             if !met[i] {
                 met[i] = true;
                 count += 1;
-                open.push(next);
+                open.push(i);
             }
         }
     }
-    count == sides.len()
+    (count == sides.len()).then_some(across)
 }
 
 /// The boundary face on the other side of the edge of `side` opposite its corner `w`, through the

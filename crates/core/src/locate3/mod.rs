@@ -9,6 +9,7 @@ mod batch;
 mod boundary;
 mod coordinates;
 mod face;
+mod foot;
 mod nearest;
 mod star;
 mod tiling;
