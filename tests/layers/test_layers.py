@@ -148,7 +148,7 @@ CORE: dict[str, set[str]] = {
     "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
-    "interpolate3": {"interpolate", "locate", "locate3", "delone_predicates"} | GROUND,
+    "interpolate3": {"interpolate", "locate", "locate3", "wide", "delone_predicates"} | GROUND,
 }
 # The crates that each crate may need.
 NEEDS = {

@@ -3,7 +3,8 @@
 Everything here computes with Python's unbounded integers and `fractions.Fraction`, so that no
 answer depends on rounding, and follows the textbook word for word where the fast core does not. It
 is the oracle of the package's tests and a place to read; no other module of the package uses it.
-`bowyer_watson` also triangulates space, with the signs of `space`; the rest is two-dimensional.
+`bowyer_watson` also triangulates space, with the signs of `space`, and `natural_weights` knows
+Laplace's weights there; the rest is two-dimensional.
 
 The five points that every textbook draws, a rectangle and one point inside:
 

@@ -5,7 +5,7 @@ for each site; what a site loses to it is cut out of the cell by the half-planes
 share of the area lost is Sibson's weight (R. Sibson, "A vector identity for the Dirichlet
 tessellation", 1980). The length of the edge between query and site over their distance is Laplace's
 (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random lattice",
-1982). Both are rational. Time is O(n²) for each query.
+1982). Both are rational. Time is O(n²) for each query. In space see `natural_space`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone.errors import InputError
 from delone.reference.exact import exact_point
+from delone.reference.natural_space import laplace_in_space
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,12 +33,12 @@ def natural_weights(
 
     Parameters
     ----------
-    points : sequence of points, shape (n, 2)
+    points : sequence of points, shape (n, 2) or (n, 3)
         Distinct sites.
-    query : sequence of two numbers
+    query : sequence of two or three numbers
         A point strictly inside of their convex hull.
     kind : {"sibson", "laplace"}, optional
-        Shares of area, or of length over distance.
+        Shares of area, or of length over distance; in space ``"laplace"``: of area over distance.
 
     Returns
     -------
@@ -48,7 +49,7 @@ def natural_weights(
     ------
     InputError
         The query is not strictly inside of the hull, so that its cell has no end; or `kind` is
-        unknown.
+        unknown, or ``"sibson"`` in space.
 
     Examples
     --------
@@ -59,6 +60,10 @@ def natural_weights(
     """
     if kind not in ("sibson", "laplace"):
         raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r}")
+    if len(query) == 3:
+        if kind != "laplace":
+            raise InputError("in space natural neighbours count by kind='laplace'")
+        return laplace_in_space(points, query)
     sites = [_fractions(point) for point in points]
     q = _fractions(query)
     if q in sites:

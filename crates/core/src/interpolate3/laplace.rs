@@ -18,31 +18,58 @@
 //! integral, over |v|, is the area that the query takes from v in the plane. Hence the limit on the
 //! hull are Sibson's weights in the plane (see `interpolate::weights` for their formula), and on an
 //! edge between two planes the interpolant is linear.
+//!
+//! # What rounding takes
+//!
+//! Near a plane of the hull centres are far away. One such does not matter: areas are as large. Of
+//! two, side by side, the cross product goes by the product of their distances, and cancels. So with
+//! each sum goes the sum of the sizes of its terms, and where that is too much, integers give
+//! the weights (see `exact`).
 
-use delone_predicates::arithmetic::Pair;
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::cavity::{Cavity, Face};
+use super::center::{Center, cross, dot, minus, plus};
+use super::exact;
 use crate::error::Result;
 use crate::interpolate::{Part, Rows};
 use crate::locate::Output;
 use crate::locate3::{Batch, Located, Place, Side, Tetrahedra, barycentric};
 
-/// Magnitude of the products over volume above which plain floating point does not do: it leaves
-/// about 1e-14.
-const THIN: f64 = 32.0;
+/// Size of all terms over their sum above which too many digits are lost: about 1e-13 is left. It is
+/// 10 to 200 among spread points.
+const LOST: f64 = 4096.0;
+/// The square of an area below which it may have lost digits at the lower end of the range.
+const LEAST: f64 = 1e-250;
 
 /// What a thread computes with.
 #[derive(Debug, Default)]
 struct Room {
     cavity: Cavity,
-    /// The neighbours as seen from the query, in the unit.
+    /// The neighbours.
+    sites: Vec<Point3>,
+    /// The same as seen from the query, in the unit.
     seen: Vec<Point3>,
+    /// The unit of length.
+    unit: f64,
     /// The centre of each face of the rim, likewise.
-    centers: Vec<Point3>,
+    centers: Vec<Center>,
     /// Rim edges: both ends, the smaller first; the face; whether it has the edge that way round.
     edges: Vec<(u32, u32, u32, bool)>,
+    /// The faces of the cell of the query.
+    walls: Vec<Wall>,
     weights: Vec<f64>,
+    /// The sum of the sizes of all terms.
+    size: f64,
+}
+
+/// The face of the cell towards a neighbour.
+#[derive(Debug, Clone, Copy, Default)]
+struct Wall {
+    /// Twice its area, in its direction.
+    area: Point3,
+    /// The sizes of the terms of that.
+    size: Point3,
 }
 
 /// The weights of each query, as sparse rows, empty outside; and the tetrahedron that holds it, or -1.
@@ -82,52 +109,65 @@ impl Room {
     fn compute(&mut self, given: &Tetrahedra, place: &Place, q: Point3) -> Result<bool> {
         let on = place.on.contains(&true);
         self.cavity.find(given, place.simplex, on, q)?;
-        self.weights.clear();
-        self.weights.resize(self.cavity.vertices.keys().len(), 0.0);
         self.look(given, q);
-        let there = if self.cavity.rim.iter().any(|face| face.flat) {
-            self.in_plane(given)
-        } else {
-            self.in_space(given, q)
-        };
-        Ok(there && self.normalise())
+        self.size = 0.0;
+        if self.cavity.rim.iter().any(|face| face.flat) {
+            if !self.is_in_one_plane() {
+                return Ok(false);
+            }
+            self.in_plane();
+            return Ok(self.normalise() || self.exactly_in_plane(q));
+        }
+        self.in_space(q);
+        Ok(self.normalise() || self.exactly_in_space(q))
     }
 
     /// Neighbours as seen from `q`, in a unit in which the farthest coordinate is 1 to 2.
     fn look(&mut self, given: &Tetrahedra, q: Point3) {
-        let seen = |&v: &i32| {
-            let p = given.point(v);
-            [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-        };
+        let keys = self.cavity.vertices.keys();
+        self.sites.clear();
+        self.sites.extend(keys.iter().map(|&v| given.point(v)));
         self.seen.clear();
-        self.seen
-            .extend(self.cavity.vertices.keys().iter().map(seen));
+        self.seen.extend(self.sites.iter().map(|&p| minus(p, q)));
         let far = |most: f64, x: &f64| most.max(x.abs());
         let most = self.seen.as_flattened().iter().fold(0.0, far);
         // A power of two, so that nothing is rounded; none where that is no double.
         let unit = f64::from_bits(most.to_bits() & !((1 << 52) - 1));
+        self.unit = 1.0;
         if unit.is_normal() && (1.0 / unit).is_normal() {
+            self.unit = unit;
             for x in self.seen.as_flattened_mut() {
                 *x /= unit;
             }
         }
     }
 
-    fn in_space(&mut self, given: &Tetrahedra, q: Point3) -> bool {
+    /// The weights inside; not a number where some centre is not known.
+    fn in_space(&mut self, q: Point3) {
+        self.weights.clear();
         self.centers.clear();
         for face in &self.cavity.rim {
-            let corners = face.corners.map(|i| self.seen[i as usize]);
-            let center = plain(corners).or_else(|| {
-                let keys = self.cavity.vertices.keys();
-                let points = face.corners.map(|i| given.point(keys[i as usize]));
-                let size = corners[0].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-                let most = (0..3).fold(0.0, |m: f64, k| m.max((points[0][k] - q[k]).abs()));
-                paired(points, q, size / most)
+            let center = Center::plain(face.corners.map(|i| self.seen[i as usize])).or_else(|| {
+                let corners = face.corners.map(|i| self.sites[i as usize]);
+                Center::paired(corners, q, self.unit)
             });
-            let Some(center) = center else { return false };
+            let Some(center) = center else { return };
             self.centers.push(center);
         }
+        self.add_walls();
+        for (wall, &v) in self.walls.iter().zip(&self.seen) {
+            let square = dot(v, v);
+            self.weights.push(dot(wall.area, v) / square);
+            self.size += dot(wall.size, v.map(f64::abs)) / square;
+        }
+    }
+
+    /// Each segment between the centres of two faces adds to the cell's faces towards both ends of
+    /// their edge.
+    fn add_walls(&mut self) {
         self.pair_edges(|_| true);
+        self.walls.clear();
+        self.walls.resize(self.seen.len(), Wall::default());
         for pair in self.edges.chunks_exact(2) {
             let &[(v, w, one, forward), (.., other, _)] = pair else {
                 continue;
@@ -135,10 +175,15 @@ impl Room {
             // Seen from outside, the face that has v -> w lies left of it.
             let (left, right) = if forward { (one, other) } else { (other, one) };
             let (l, r) = (self.centers[left as usize], self.centers[right as usize]);
-            self.weights[v as usize] += share(r, l, self.seen[v as usize]);
-            self.weights[w as usize] += share(l, r, self.seen[w as usize]);
+            let area = cross(r.at, l.at);
+            let size = doubt(&l, &r);
+            let wall = &mut self.walls[v as usize];
+            wall.area = plus(wall.area, area);
+            wall.size = plus(wall.size, size);
+            let wall = &mut self.walls[w as usize];
+            wall.area = minus(wall.area, area);
+            wall.size = plus(wall.size, size);
         }
-        true
     }
 
     /// Lists the edges of some faces, those of two faces side by side.
@@ -153,147 +198,146 @@ impl Room {
         self.edges.sort_unstable();
     }
 
-    /// The weights on a plane of the hull; false on an edge between two.
-    fn in_plane(&mut self, given: &Tetrahedra) -> bool {
-        let keys = self.cavity.vertices.keys();
-        let at = |i: u32| given.point(keys[i as usize]);
+    /// Whether all faces that have the query in their plane are in one; if not, it is on an edge.
+    fn is_in_one_plane(&self) -> bool {
+        let at = |i: u32| self.sites[i as usize];
         let mut flat = self.cavity.rim.iter().filter(|face| face.flat);
         let Some(first) = flat.next() else {
             return false;
         };
         let [a, b, c] = first.corners.map(at);
-        let in_its_plane =
-            |face: &Face| (face.corners.iter()).all(|&i| orient3d(a, b, c, at(i)) == Sign::Zero);
-        if !flat.all(in_its_plane) {
-            return false;
-        }
+        flat.all(|face| (face.corners.iter()).all(|&i| orient3d(a, b, c, at(i)) == Sign::Zero))
+    }
+
+    /// The weights on a plane of the hull.
+    fn in_plane(&mut self) {
+        self.weights.clear();
+        self.weights.resize(self.seen.len(), 0.0);
+        let way = |i: u32, j: u32| {
+            let way = minus(self.sites[j as usize], self.sites[i as usize]);
+            way.map(|x| x / self.unit)
+        };
         for face in self.cavity.rim.iter().filter(|face| face.flat) {
-            let corners = face.corners.map(|i| self.seen[i as usize]);
-            for (&i, area) in face.corners.iter().zip(parts(corners)) {
+            let [a, b, c] = face.corners;
+            let (areas, size) = parts([way(b, c), way(c, a), way(a, b)]);
+            for (&i, area) in face.corners.iter().zip(areas) {
                 self.weights[i as usize] += area;
             }
+            self.size += size;
         }
         self.pair_edges(|face| face.flat);
-        for i in 0..self.edges.len() {
-            let (u, v, ..) = self.edges[i];
-            let same = |j: usize| {
-                let edge = self.edges.get(j);
-                edge.is_some_and(|e| (e.0, e.1) == (u, v))
-            };
-            // An edge of two triangles lies inside of the cavity.
-            if same(i + 1) || (i > 0 && same(i - 1)) {
-                continue;
-            }
+        for [u, v] in outer(&self.edges) {
             let (p, r) = (self.seen[u as usize], self.seen[v as usize]);
-            let [_, at_u, at_v] = parts([[0.0; 3], p, r]);
+            let way = minus(self.sites[v as usize], self.sites[u as usize]);
+            let sides = [way.map(|x| x / self.unit), r.map(|x| -x), p];
+            let ([_, at_u, at_v], size) = parts(sides);
             self.weights[u as usize] -= at_u;
             self.weights[v as usize] -= at_v;
+            self.size += size;
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exactly_in_space(&mut self, q: Point3) -> bool {
+        let found = exact::in_space(&self.sites, &self.cavity.rim, q);
+        self.take(found)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exactly_in_plane(&mut self, q: Point3) -> bool {
+        let flat = self.cavity.rim.iter().filter(|face| face.flat);
+        let faces: Vec<[u32; 3]> = flat.map(|face| face.corners).collect();
+        let edges: Vec<[u32; 2]> = outer(&self.edges).collect();
+        let found = exact::in_plane(&self.sites, &faces, &edges, q);
+        self.take(found)
+    }
+
+    fn take(&mut self, found: Option<Vec<f64>>) -> bool {
+        let known = found.is_some();
+        self.weights = found.unwrap_or_default();
+        known
+    }
+
+    /// Makes the sum 1; false where it is not certain.
+    fn normalise(&mut self) -> bool {
+        // Below zero is rounding alone; what is no number stays so.
+        for w in &mut self.weights {
+            if *w < 0.0 {
+                *w = 0.0;
+            }
+        }
+        let sum: f64 = self.weights.iter().sum();
+        if !(sum * LOST >= self.size && sum > 0.0 && sum.is_finite()) {
+            return false;
+        }
+        self.weights.iter_mut().for_each(|w| *w /= sum);
         true
     }
-
-    /// Makes the sum 1; false where arithmetic gives none.
-    fn normalise(&mut self) -> bool {
-        // Below zero is rounding alone.
-        self.weights.iter_mut().for_each(|w| *w = w.max(0.0));
-        let sum: f64 = self.weights.iter().sum();
-        self.weights.iter_mut().for_each(|w| *w /= sum);
-        sum > 0.0 && sum.is_finite()
-    }
 }
 
-/// Twice the area that the segment from one centre to another adds to the face towards the neighbour
-/// `v`, over its distance.
-fn share(from: Point3, to: Point3, v: Point3) -> f64 {
-    let middle = v.map(|x| x / 2.0);
-    dot(cross(minus(from, middle), minus(to, middle)), v) / dot(v, v)
-}
-
-fn dot(p: Point3, q: Point3) -> f64 {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-fn minus(p: Point3, q: Point3) -> Point3 {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-fn cross(p: Point3, q: Point3) -> Point3 {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
-}
-
-/// The area of a triangle that lies nearest to each corner, counted with its sign, times 8.
-fn parts(corners: [Point3; 3]) -> [f64; 3] {
-    let [a, b, c] = corners;
-    let sides = [minus(c, b), minus(a, c), minus(b, a)];
-    let turn = cross(sides[0], sides[1]);
-    let size = dot(turn, turn).sqrt();
-    let cotangent = |k: usize| -dot(sides[(k + 1) % 3], sides[(k + 2) % 3]) / size;
+/// The sizes of the terms of the cross product of two centres, in roundings of them.
+#[inline]
+fn doubt(l: &Center, r: &Center) -> Point3 {
+    let [at_l, at_r] = [l, r].map(|center| center.at.map(f64::abs));
     [0, 1, 2].map(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        dot(sides[i], sides[i]) * cotangent(i) + dot(sides[j], sides[j]) * cotangent(j)
+        let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+        let plus = at_l[x] * r.doubt[y] + l.doubt[x] * at_r[y];
+        let minus = at_l[y] * r.doubt[x] + l.doubt[y] * at_r[x];
+        plus + minus
     })
 }
 
-/// The centre of the sphere through the origin and three points; nothing where the four are too nearly
-/// in one plane.
-#[inline]
-fn plain([a, b, c]: [Point3; 3]) -> Option<Point3> {
-    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-    let det = dot(a, bc);
-    let size = |k: usize| {
-        let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-        a[k].abs() * ((b[x] * c[y]).abs() + (b[y] * c[x]).abs())
+/// The edges of one face alone, which has them on its left.
+fn outer(edges: &[(u32, u32, u32, bool)]) -> impl Iterator<Item = [u32; 2]> {
+    let same = |i: usize, j: usize| {
+        let ends = |e: &(u32, u32, u32, bool)| (e.0, e.1);
+        edges.get(j).map(ends) == edges.get(i).map(ends)
     };
-    if det.is_nan() || det <= 0.0 || det * THIN < size(0) + size(1) + size(2) {
-        return None;
-    }
-    let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-    let center = |k: usize| (aa * bc[k] + bb * ca[k] + cc * ab[k]) / (2.0 * det);
-    Some([0, 1, 2].map(center))
+    let alone = move |i: &usize| !(same(*i, i + 1) || (*i > 0 && same(*i, i - 1)));
+    (0..edges.len()).filter(alone).map(|i| {
+        let (u, v, _, forward) = edges[i];
+        if forward { [u, v] } else { [v, u] }
+    })
 }
 
-/// The same of three points as seen from `q`, in pairs of doubles, times `scale`.
-#[cold]
-#[inline(never)]
-fn paired(corners: [Point3; 3], q: Point3, scale: f64) -> Option<Point3> {
-    let [a, b, c] = corners.map(|p| [0, 1, 2].map(|k| Pair::difference(p[k], q[k])));
-    let cross = |p: [Pair; 3], q: [Pair; 3]| {
-        [0, 1, 2].map(|k| {
-            let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-            p[x] * q[y] - p[y] * q[x]
-        })
-    };
-    let dot = |p: [Pair; 3], q: [Pair; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-    let det = dot(a, bc).hi;
-    let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-    let center = |k: usize| (aa * bc[k] + bb * ca[k] + cc * ab[k]).hi / (2.0 * det) * scale;
-    let found = [0, 1, 2].map(center);
-    (det > 0.0 && found.iter().all(|x| x.is_finite())).then_some(found)
+/// The area of a triangle with these sides that lies nearest to the corner opposite each, counted with
+/// its sign, times 8; and the size of the terms, not a number where they are not certain.
+fn parts(sides: [Point3; 3]) -> ([f64; 3], f64) {
+    let squares = sides.map(|side| dot(side, side));
+    let longest = (1..3).fold(0, |i, k| if squares[k] > squares[i] { k } else { i });
+    let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
+    let turn = cross(sides[i], sides[j]);
+    let area = dot(turn, turn);
+    if area.is_nan() || area < LEAST {
+        return ([0.0; 3], f64::NAN);
+    }
+    let one = 1.0 / area.sqrt();
+    // By the sine of the largest angle.
+    let doubt = (squares[i] * squares[j]).sqrt() * one;
+    let terms = [0, 1, 2].map(|k| {
+        let cotangent = -dot(sides[(k + 1) % 3], sides[(k + 2) % 3]) * one;
+        squares[k] * cotangent
+    });
+    let [a, b, c] = terms;
+    let size = a.abs() + b.abs() + c.abs() + squares.iter().sum::<f64>();
+    ([b + c, a + c, a + b], 2.0 * size * doubt)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_parts_of_a_triangle_are_all_of_it() {
-        let found = parts([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 2.0]]);
-        assert_eq!(found, [16.0, 8.0, 8.0]);
-        let obtuse = parts([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-1.0, 1.0, 0.0]]);
-        assert!((obtuse.iter().sum::<f64>() - 16.0).abs() < 1e-14);
+    fn of(a: Point3, b: Point3, c: Point3) -> [f64; 3] {
+        parts([minus(c, b), minus(a, c), minus(b, a)]).0
     }
 
     #[test]
-    fn the_center_is_as_far_from_all() {
-        let corners = [[2.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 6.0]];
-        assert_eq!(plain(corners), Some([1.0, 2.0, 3.0]));
-        assert_eq!(paired(corners, [0.0; 3], 1.0), Some([1.0, 2.0, 3.0]));
-        let flat = [[1.0, 1.0, 1.0], [1.0, 2.0, 3.0], [2.0, 3.0, 4.0 + 1e-9]];
-        assert_eq!(plain(flat), None);
+    fn the_parts_of_a_triangle_are_all_of_it() {
+        let found = of([0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 2.0]);
+        assert_eq!(found, [16.0, 8.0, 8.0]);
+        let obtuse = of([0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [-1.0, 1.0, 0.0]);
+        assert!((obtuse.iter().sum::<f64>() - 16.0).abs() < 1e-14);
     }
 }

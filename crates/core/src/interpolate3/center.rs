@@ -1,0 +1,153 @@
+//! Centres of spheres through the query and three of its neighbours, and how sure they are.
+
+use delone_predicates::Point3;
+use delone_predicates::arithmetic::Pair;
+
+/// Magnitude of the products over volume above which plain floating point does not do.
+const THIN: f64 = 32.0;
+/// What a rounding in pairs of doubles is of one in doubles, and a little more.
+const REST: f64 = 1.0 / (1u64 << 48) as f64;
+/// The square of a product of three distances, each at most 4, below which products may lose digits at
+/// the lower end of the range.
+const LEAST: f64 = 1e-280;
+
+/// A centre as seen from the query.
+#[derive(Debug, Clone, Copy)]
+pub struct Center {
+    /// Where it is.
+    pub at: Point3,
+    /// By how many roundings of 1 each coordinate is off, about: no less than that of itself.
+    pub doubt: Point3,
+}
+
+/// A cross product with the sizes of its terms.
+struct Turn {
+    value: Point3,
+    size: Point3,
+}
+
+impl Turn {
+    #[inline]
+    fn of(p: Point3, q: Point3) -> Self {
+        let terms = [0, 1, 2].map(|k| {
+            let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+            (p[x] * q[y], p[y] * q[x])
+        });
+        Self {
+            value: terms.map(|(plus, minus)| plus - minus),
+            size: terms.map(|(plus, minus)| plus.abs() + minus.abs()),
+        }
+    }
+}
+
+impl Center {
+    /// The centre of the sphere through the origin and three points, positively oriented, none of
+    /// whose coordinates is beyond 2; nothing where the four are too nearly in one plane.
+    #[inline]
+    pub fn plain([a, b, c]: [Point3; 3]) -> Option<Self> {
+        let (bc, ca, ab) = (Turn::of(b, c), Turn::of(c, a), Turn::of(a, b));
+        let det = dot(a, bc.value);
+        let size = dot(a.map(f64::abs), bc.size);
+        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+        let sure = det * THIN >= size && aa * bb * cc > LEAST;
+        if !sure {
+            return None;
+        }
+        let half = 0.5 / det;
+        let thin = size / det;
+        let at = [0, 1, 2].map(|k| (aa * bc.value[k] + bb * ca.value[k] + cc * ab.value[k]) * half);
+        let doubt = [0, 1, 2].map(|k| {
+            let terms = aa * bc.size[k] + bb * ca.size[k] + cc * ab.size[k];
+            terms * half + at[k].abs() * thin
+        });
+        Some(Self { at, doubt })
+    }
+
+    /// The same of three points as seen from `q`, in pairs of doubles; coordinates are divided by `unit`.
+    #[cold]
+    #[inline(never)]
+    pub fn paired(corners: [Point3; 3], q: Point3, unit: f64) -> Option<Self> {
+        let seen = |p: f64, q: f64| {
+            let Pair { hi, lo } = Pair::difference(p, q);
+            Pair {
+                hi: hi / unit,
+                lo: lo / unit,
+            }
+        };
+        let [a, b, c] = corners.map(|p| [0, 1, 2].map(|k| seen(p[k], q[k])));
+        let cross = |p: [Pair; 3], q: [Pair; 3]| {
+            [0, 1, 2].map(|k| {
+                let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+                p[x] * q[y] - p[y] * q[x]
+            })
+        };
+        let dot = |p: [Pair; 3], q: [Pair; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+        let det = dot(a, bc).hi;
+        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+        let product = aa.hi * bb.hi * cc.hi;
+        let rest = product.sqrt() / det * REST;
+        let sure = det > 0.0 && rest < 1.0 && product > LEAST;
+        if !sure {
+            return None;
+        }
+        let at = [0, 1, 2].map(|k| (aa * bc[k] + bb * ca[k] + cc * ab[k]).hi / (2.0 * det));
+        let radius = at.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let doubt = at.map(|x| x.abs() + radius * rest);
+        Some(Self { at, doubt })
+    }
+}
+
+/// The dot product.
+#[inline]
+pub fn dot(p: Point3, q: Point3) -> f64 {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+/// The sum.
+#[inline]
+pub fn plus(p: Point3, q: Point3) -> Point3 {
+    [p[0] + q[0], p[1] + q[1], p[2] + q[2]]
+}
+
+/// The difference.
+#[inline]
+pub fn minus(p: Point3, q: Point3) -> Point3 {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+/// The cross product.
+#[inline]
+pub fn cross(p: Point3, q: Point3) -> Point3 {
+    [
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_center_is_as_far_from_all() {
+        let corners = [[0.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.5]];
+        let found = [
+            Center::plain(corners),
+            Center::paired(corners, [0.0; 3], 1.0),
+        ];
+        for center in found {
+            assert_eq!(center.map(|c| c.at), Some([0.25, 0.5, 0.75]));
+        }
+        let flat = [[1.0, 1.0, 1.0], [1.0, 1.5, 2.0], [1.5, 1.75, 2.0 + 1e-9]];
+        assert!(Center::plain(flat).is_none());
+        let tiny = corners.map(|p| p.map(|x| x * 1e-60));
+        assert!(Center::plain(tiny).is_none());
+        assert!(Center::paired(tiny, [0.0; 3], 1.0).is_none());
+        let unit = 2f64.powi(-200);
+        let tiny = corners.map(|p| p.map(|x| x * unit));
+        let center = Center::paired(tiny, [0.0; 3], unit);
+        assert_eq!(center.map(|c| c.at), Some([0.25, 0.5, 0.75]));
+    }
+}

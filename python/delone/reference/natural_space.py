@@ -1,0 +1,124 @@
+"""Laplace weights in space by their definition: the faces of a Voronoi cell, in exact arithmetic.
+
+The face between the cells of a query and a site is cut out of a rectangle in the plane half-way
+between them, by one half-space for each other site. Its area over the distance of the two is the
+weight (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random
+lattice", 1982). An area on an inclined plane is not rational, but with legs u and v x u for the
+rectangle the area over |v| is. Time is O(n³) for each query at most.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from delone.errors import InputError
+from delone.reference.exact import exact_number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Vector: TypeAlias = tuple[int, int, int]
+Place: TypeAlias = tuple[Fraction, Fraction]
+
+__all__ = ["laplace_in_space"]
+
+
+def laplace_in_space(points: Sequence[Sequence[Any]], query: Sequence[Any]) -> dict[int, Fraction]:
+    """Return how much each natural neighbour of a query in space counts by Laplace's weights.
+
+    Parameters
+    ----------
+    points : sequence of points, shape (n, 3)
+        Distinct sites.
+    query : sequence of three numbers
+        A point strictly inside of their convex hull.
+
+    Returns
+    -------
+    dict of int to Fraction
+        Rows of the sites whose weight is above 0, ascending; the weights sum to 1.
+
+    Raises
+    ------
+    InputError
+        The query is not strictly inside of the hull, so that its cell has no end.
+
+    Examples
+    --------
+    >>> from delone.reference.natural_space import laplace_in_space
+    >>> cube = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
+    >>> found = laplace_in_space([*cube, (2, 2, 3)], (2, 2, 2))
+    >>> str(found[0]), str(found[1]), str(found[8])
+    ('9/97', '11/388', '50/97')
+    """
+    seen = _seen_from(query, points)
+    here = [row for row, v in enumerate(seen) if not any(v)]
+    if here:
+        return {here[0]: Fraction(1)}
+    parts = {row: _shared(seen, row) for row in range(len(seen))}
+    total = sum(parts.values())
+    return {row: part / total for row, part in parts.items() if part > 0}
+
+
+def _seen_from(query: Sequence[Any], points: Sequence[Sequence[Any]]) -> list[Vector]:
+    """Points as seen from the query, as integers, exactly, up to one common factor."""
+    q = [exact_number(x) for x in query]
+    rows = [[exact_number(x) - o for x, o in zip(p, q, strict=True)] for p in points]
+    scale = lcm(*(Fraction(x).denominator for row in rows for x in row))
+    return [(int(x * scale), int(y * scale), int(z * scale)) for x, y, z in rows]
+
+
+def _shared(seen: list[Vector], row: int) -> Fraction:
+    """The area of the face between the cells of the query and a site, over their distance."""
+    v = seen[row]
+    # A leg across v, from the axis that is least along it, and one across both.
+    axis = min(range(3), key=lambda k: abs(v[k]))
+    u = _cross(v, tuple(int(k == axis) for k in range(3)))
+    w = _cross(v, u)
+    # Corners of the cell are quotients of determinants, and nearer than this.
+    size = Fraction(1 + 100 * max(abs(x) for p in seen for x in p) ** 6)
+    face = [(-size, -size), (size, -size), (size, size), (-size, size)]
+    for other in seen:
+        if other != v:
+            # Nearer to the query than to the other site, on v / 2 + s u + t w.
+            room = Fraction(_dot(other, other) - _dot(v, other), 2)
+            face = _half(face, _dot(u, other), _dot(w, other), room)
+    if any(abs(x) == size for place in face for x in place):
+        raise InputError("the query is not strictly inside of the convex hull of the points")
+    return _dot(u, u) * _area(face)
+
+
+def _half(polygon: list[Place], a: int, b: int, room: Fraction) -> list[Place]:
+    """The part of a convex polygon where a s + b t is at most what there is room for."""
+    depths = [room - a * s - b * t for s, t in polygon]
+    kept: list[Place] = []
+    for i, (corner, depth) in enumerate(zip(polygon, depths, strict=True)):
+        before, above = polygon[i - 1], depths[i - 1]
+        if (depth > 0 > above) or (depth < 0 < above):
+            share = above / (above - depth)
+            s, t = (p + share * (r - p) for p, r in zip(before, corner, strict=True))
+            kept.append((s, t))
+        if depth >= 0:
+            kept.append(corner)
+    return kept
+
+
+def _area(polygon: list[Place]) -> Fraction:
+    turns = (
+        p[0] * r[1] - p[1] * r[0] for p, r in zip(polygon, polygon[1:] + polygon[:1], strict=True)
+    )
+    return sum(turns, Fraction(0)) / 2
+
+
+def _dot(p: Sequence[int], q: Sequence[int]) -> int:
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+
+
+def _cross(p: Sequence[int], q: Sequence[int]) -> Vector:
+    return (
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    )
