@@ -1,7 +1,7 @@
 """Convex polyhedra that cells of space are cut to: boxes, half-spaces, hulls of points.
 
-The core takes corners, faces and planes. A box has them as they are; half-spaces are cut out of a
-cube that grows until it is large enough; the faces of a hull are the triangles of its boundary.
+The core takes corners, faces and planes. A box has them as they are; those of half-spaces are found
+exactly (`halfspaces`) and rounded once; the faces of a hull are the triangles of its boundary.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core
 from delone._arrays import as_vectors
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DeloneError, InputError
 from delone.space.geometry import face_normals
+from delone.voronoi.halfspaces import common_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,8 +28,6 @@ __all__ = ["Polyhedron", "as_polyhedron"]
 # The corners of a box by the bits of their numbers, and its faces counter-clockwise from outside:
 # x low, x high, y low, and so on.
 _FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
-# How often the cube around half-spaces grows, and by which factor: past any that double can tell.
-_ROUNDS, _GROWTH = 12, 2.0**16
 _CHOICES = (
     "clip must be 'box', a box ((xmin, ymin, zmin), (xmax, ymax, zmax)), half-spaces (k, 4), "
     "points (k, 3) or a convex hull"
@@ -100,18 +98,19 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
         return _box(np.stack((points.min(axis=0), points.max(axis=0))))
     if hasattr(clip, "simplices") and hasattr(clip, "points"):
         clip = np.asarray(clip.points)[np.unique(clip.simplices)]
-    shape = np.shape(clip)
     try:
+        # Rows of unequal length have no shape.
+        shape = np.shape(clip)
         array = as_vectors(clip, shape[-1] if shape else 0, name="clip")
-    except DeloneError as error:
+    except (DeloneError, ValueError) as error:
         raise InputError(f"{_CHOICES}; {error}") from error
     if not np.isfinite(array).all():
         raise InputError("clip must be finite")
     if shape in ((2, 3), (6,)):
         return _box(array.reshape(2, 3))
-    if array.ndim == 2 and shape[1] == 4:
+    if len(shape) == 2 and shape[1] == 4:
         return _common(array)
-    if array.ndim == 2 and shape[1] == 3:
+    if len(shape) == 2 and shape[1] == 3:
         return _hull(array)
     raise InputError(f"{_CHOICES}; got an array of shape {shape}")
 
@@ -157,45 +156,28 @@ def _hull(points: Floats) -> Polyhedron:
 
 def _common(halfspaces: Floats) -> Polyhedron:
     """The polyhedron where all of n @ x + d <= 0."""
-    largest = np.abs(halfspaces[:, :3]).max(axis=1, keepdims=True)
+    largest = np.abs(halfspaces[:, :3]).max(axis=1)
     if not (largest > 0).all():
         row = int(largest.argmin())
         raise InputError(f"row {row} of clip is no half-space: its normal is zero")
-    # In a unit of each first, so that no square leaves the range of doubles.
-    with np.errstate(over="ignore"):
-        planes = halfspaces / largest
-        planes /= np.linalg.norm(planes[:, :3], axis=1)[:, None]
-    if not np.isfinite(planes).all():
-        row = int(np.flatnonzero(~np.isfinite(planes).all(axis=1))[0])
-        raise InputError(f"row {row} of clip is a half-space beyond the range of doubles")
+    points, faces, rows = common_part(halfspaces)
+    try:
+        Delaunay(points)
+    except DegenerateInputError:
+        raise InputError(
+            "what the half-spaces of clip have in common is so thin that its corners, rounded to "
+            "doubles, span no volume"
+        ) from None
+    # By powers of two, so that planes are as they were given; components of at most 1/4 keep their
+    # products with corners within the range of doubles.
+    power = np.frexp(largest[rows])[1] + 2
+    planes = np.ldexp(halfspaces[rows], -power[:, None])
     planes[:, 3] *= -1
-    size = 2.0 * float(np.abs(planes[:, 3]).max()) or 1.0
-    for _ in range(_ROUNDS):
-        points, starts, corners, labels = _core.halfspaces3(np.ascontiguousarray(planes), size)
-        if not len(labels):
-            raise InputError("the half-spaces of clip have no volume in common")
-        if (labels >= 0).all():
-            points = _corrected(points, starts, corners, planes[labels])
-            return Polyhedron(
-                points=points,
-                starts=starts,
-                corners=corners,
-                planes=np.ascontiguousarray(planes[labels]),
-                name="a convex polyhedron",
-            )
-        size *= _GROWTH
-    raise InputError("the half-spaces of clip have no bounded part in common")
-
-
-def _corrected(points: Floats, starts: Indices, corners: Indices, planes: Floats) -> Floats:
-    """The corners where their planes meet, without the roundings of the cuts."""
-    face = np.repeat(np.arange(len(planes)), np.diff(starts))
-    found = points.copy()
-    for corner in range(len(points)):
-        mine = planes[face[corners == corner]]
-        shift, _, rank, _ = np.linalg.lstsq(
-            mine[:, :3], mine[:, 3] - mine[:, :3] @ points[corner], rcond=None
-        )
-        if rank == 3:
-            found[corner] += shift
-    return found
+    starts = np.cumsum([0, *map(len, faces)])
+    return Polyhedron(
+        points=points,
+        starts=starts.astype(np.int32),
+        corners=np.concatenate(faces).astype(np.int32),
+        planes=planes,
+        name="a convex polyhedron",
+    )

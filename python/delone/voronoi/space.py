@@ -94,7 +94,7 @@ class SpaceVoronoi(Voronoi):
     ShapeError, DtypeError
         `points` is no array of real points in space, or there are not as many weights.
     InputError
-        `clip` has no volume or no end; or there are periods.
+        `clip` has no volume or no end, judged exactly; or there are periods.
 
     Notes
     -----
@@ -109,6 +109,9 @@ class SpaceVoronoi(Voronoi):
     stay as they are; the others are the polyhedron, cut by the planes of their neighbours one after
     the other. An area or a volume beyond the range of doubles is infinite; below it, the smallest
     double.
+
+    Half-spaces are judged exactly, whatever their exponents, and the corners of what they have in
+    common are rounded once: O(k^2) expected time for k of them, about half a second for 300.
 
     See Also
     --------

@@ -1,0 +1,301 @@
+"""What half-spaces have in common, exactly: whether it has volume and an end, and its corners.
+
+A half-space a x + b y + c z + d <= 0 becomes a half-space through the origin of four dimensions,
+with a coordinate t beside x, y and z, and what they have in common, with t >= 0, a cone. Its
+extreme rays with t > 0 are the corners, those with t = 0 the directions in which there is no end.
+The rays come from the double description method (T. S. Motzkin, H. Raiffa, G. L. Thompson and R. M.
+Thrall, "The double description method", in: Contributions to the Theory of Games II, 1953; K.
+Fukuda and A. Prodon, "Double description method revisited", 1996), in integers, which doubles times
+powers of two are.
+
+Half-spaces come in one shuffled order, so that k of them expect to make and remove O(k) rays; each
+is held against all rays, O(k^2) in all, most in floating point. Many planes through one corner cost
+more: O(k^3) at worst.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Row = tuple[int, ...]
+
+__all__ = ["common_part"]
+
+# Of values of at most 8 in all: what is larger has its sign in floating point.
+_CERTAIN = 1e-14
+# The number of the half-space t >= 0; those of the others count from 0.
+_END = -1
+_AXES: list[Row] = [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)]
+
+
+@dataclass(slots=True)
+class _Ray:
+    """A vector of coprime integers, and the half-spaces on whose boundary it lies."""
+
+    at: Row
+    on: frozenset[int]
+
+
+def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]:
+    """Return corners and faces of what half-spaces have in common.
+
+    Parameters
+    ----------
+    halfspaces : ndarray of float64, shape (k, 4)
+        Rows (a, b, c, d) for ``a x + b y + c z + d <= 0``, finite; a, b, c are not all zero.
+
+    Returns
+    -------
+    corners : ndarray of float64, shape (p, 3)
+        The corners, ascending, each coordinate the double nearest to the true one.
+    faces : list of list of int
+        The corners of each face, counter-clockwise from outside, the first one first.
+    rows : list of int
+        The row of each face, ascending; the first one of equal half-spaces.
+
+    Raises
+    ------
+    InputError
+        There is no point, no volume or no end; or a corner is beyond the range of doubles.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.halfspaces import common_part
+    >>> rows = [(-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, -1, 0), (1, 1, 1, -1)]
+    >>> corners, faces, rows = common_part(np.array(rows, dtype=float))
+    >>> corners.tolist()
+    [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+    >>> faces, rows
+    ([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], [0, 1, 2, 3])
+    """
+    first: dict[Row, int] = {}
+    for number, row in enumerate(halfspaces.tolist()):
+        first.setdefault(_integers(row), number)
+    rows = {number: row for row, number in first.items()}
+    rays = _rays(rows)
+    ends = [ray for ray in rays if ray.at[3]]
+    if not ends:
+        raise InputError("the half-spaces of clip have no point in common")
+    if frozenset.intersection(*(ray.on for ray in rays)):
+        raise InputError("the half-spaces of clip have no volume in common: it is flat")
+    free = [ray.at for ray in rays if not ray.at[3]]
+    if free:
+        largest = max(map(abs, free[0]))
+        way = ", ".join(f"{x / largest:.6g}" for x in free[0][:3])
+        raise InputError(
+            f"what the half-spaces of clip have in common has no end in the direction ({way})"
+        )
+    return _polyhedron(rows, ends)
+
+
+def _integers(row: Iterable[float]) -> Row:
+    """The coprime integers of which the numbers of a row are one multiple."""
+    parts = [x.as_integer_ratio() for x in row]
+    unit = max(below for _, below in parts)
+    return _coprime(above * (unit // below) for above, below in parts)
+
+
+def _coprime(numbers: Iterable[int]) -> Row:
+    found = tuple(numbers)
+    common = math.gcd(*found)
+    return tuple(x // common for x in found)
+
+
+def _product(row: Row, at: Row) -> int:
+    return sum(x * y for x, y in zip(row, at, strict=True))
+
+
+def _normal(a: Row, b: Row, c: Row) -> Row:
+    """The vector of four dimensions that is upright on three, zero where these hang together."""
+    found = []
+    for k in range(4):
+        (a0, a1, a2), (b0, b1, b2), (c0, c1, c2) = (v[:k] + v[k + 1 :] for v in (a, b, c))
+        minor = a0 * (b1 * c2 - b2 * c1) - a1 * (b0 * c2 - b2 * c0) + a2 * (b0 * c1 - b1 * c0)
+        found.append(-minor if k % 2 else minor)
+    return tuple(found)
+
+
+def _rays(halfspaces: dict[int, Row]) -> list[_Ray]:
+    """The extreme rays of the cone.
+
+    Where normals do not span space, the cone has lines in it, and no rays; half-spaces of axes
+    beside them halve these. That changes nothing of whether there are points or volume, and leaves
+    a direction without end.
+    """
+    rows: dict[int, Row] = {_END: (0, 0, 0, -1)} | halfspaces
+    rows |= {-2 - k: row for k, row in enumerate(_AXES[:3])}
+    basis: list[int] = []
+    # The end comes first, and axes only where nothing else is left.
+    for number in [_END, *halfspaces, -2, -3, -4]:
+        if len(basis) < 4 and _independent([rows[i] for i in (*basis, number)]):
+            basis.append(number)
+    cone = _Cone()
+    for number in basis:
+        others = [i for i in basis if i != number]
+        way = _normal(*(rows[i] for i in others))
+        away = _product(rows[number], way) > 0
+        cone.add(_Ray(_coprime(-x if away else x for x in way), frozenset(others)))
+    order = [number for number in halfspaces if number not in basis]
+    random.Random(0).shuffle(order)
+    for number in order:
+        cone.cut(number, rows[number])
+    return cone.left()
+
+
+def _independent(rows: list[Row]) -> bool:
+    """Whether up to four vectors, of which all but the last are independent, are."""
+    for fill in combinations(_AXES, 4 - len(rows)):
+        a, b, c, d = rows + list(fill)
+        if _product(d, _normal(a, b, c)):
+            return True
+    return False
+
+
+class _Cone:
+    """Extreme rays, and which of them lie on the boundary of each half-space."""
+
+    def __init__(self) -> None:
+        self._rays: list[_Ray | None] = []
+        self._near: Floats = np.zeros((64, 4))
+        self._of: dict[int, set[int]] = {}
+
+    def left(self) -> list[_Ray]:
+        return [ray for ray in self._rays if ray is not None]
+
+    def add(self, ray: _Ray) -> None:
+        number = len(self._rays)
+        self._rays.append(ray)
+        if number == len(self._near):
+            self._near = np.concatenate((self._near, np.zeros_like(self._near)))
+        self._near[number] = _unit(ray.at)
+        for i in ray.on:
+            self._of.setdefault(i, set()).add(number)
+
+    def cut(self, number: int, row: Row) -> None:
+        """Removes what lies beyond a half-space."""
+        near = self._near[: len(self._rays)] @ _unit(row)
+        within: set[int] = set(np.flatnonzero(near < -_CERTAIN).tolist())
+        beyond: list[int] = np.flatnonzero(near > _CERTAIN).tolist()
+        for i in np.flatnonzero(np.abs(near) <= _CERTAIN).tolist():
+            ray = self._rays[i]
+            if ray is None:
+                continue
+            value = _product(row, ray.at)
+            if value < 0:
+                within.add(i)
+            elif value > 0:
+                beyond.append(i)
+            else:
+                ray.on |= {number}
+                self._of.setdefault(number, set()).add(i)
+        new = [
+            self._between(number, row, i, j) for j in beyond for i in self._beside(j) if i in within
+        ]
+        for j in beyond:
+            for i in self._ray(j).on:
+                self._of[i].discard(j)
+            self._rays[j] = None
+            self._near[j] = 0
+        for ray in new:
+            self.add(ray)
+
+    def _ray(self, i: int) -> _Ray:
+        ray = self._rays[i]
+        assert ray is not None
+        return ray
+
+    def _beside(self, j: int) -> list[int]:
+        """The rays that span an edge of the cone with one: no other ray is on all that both are."""
+        on = self._ray(j).on
+        seen: dict[int, int] = {}
+        for i in on:
+            for other in self._of[i]:
+                seen[other] = seen.get(other, 0) + 1
+        found = []
+        for i, times in seen.items():
+            if i == j or times < 2:
+                continue
+            both = on & self._ray(i).on
+            fewest = min((self._of[k] for k in both), key=len)
+            if not any(k not in (i, j) and both <= self._ray(k).on for k in fewest):
+                found.append(i)
+        return found
+
+    def _between(self, number: int, row: Row, i: int, j: int) -> _Ray:
+        within, beyond = self._ray(i), self._ray(j)
+        v, w = -_product(row, within.at), _product(row, beyond.at)
+        at = _coprime(w * x + v * y for x, y in zip(within.at, beyond.at, strict=True))
+        return _Ray(at, (within.on & beyond.on) | {number})
+
+
+def _unit(numbers: Row) -> list[float]:
+    """A vector in doubles, its largest component 1."""
+    largest = max(map(abs, numbers))
+    return [x / largest for x in numbers]
+
+
+def _polyhedron(
+    rows: dict[int, Row], rays: list[_Ray]
+) -> tuple[Floats, list[list[int]], list[int]]:
+    """Corners and faces of a body with volume, out of its rays."""
+    named = sorted(
+        ((tuple(Fraction(x, ray.at[3]) for x in ray.at[:3]), ray) for ray in rays), key=_at
+    )
+    exact = [at for at, _ in named]
+    try:
+        corners = np.array([[x / ray.at[3] for x in ray.at[:3]] for _, ray in named]) + 0.0
+    except OverflowError:
+        raise InputError("a corner of clip is beyond the range of doubles") from None
+    of: dict[int, set[int]] = {number: set() for number in rows}
+    for corner, (_, ray) in enumerate(named):
+        for number in ray.on:
+            of[number].add(corner)
+    # Half-spaces that touch no more than an edge make no face.
+    made = {number: mine for number, mine in sorted(of.items()) if len(mine) > 2}
+    faces = []
+    for number, mine in made.items():
+        beside = {i for corner in mine for i in named[corner][1].on} & made.keys() - {number}
+        turn = _around([mine & made[i] for i in beside])
+        a, b, c = (exact[i] for i in turn[:3])
+        p, q = ([y - x for x, y in zip(a, to, strict=True)] for to in (b, c))
+        upright = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+        outward = sum(x * y for x, y in zip(rows[number][:3], upright, strict=True)) > 0
+        faces.append(turn if outward else [turn[0], *turn[:0:-1]])
+    return corners, faces, list(made)
+
+
+def _at(named: tuple[tuple[Fraction, ...], _Ray]) -> tuple[Fraction, ...]:
+    return named[0]
+
+
+def _around(edges: list[set[int]]) -> list[int]:
+    """The turn of edges, pairs of corners; what is no pair is a corner alone."""
+    beside: dict[int, list[int]] = {}
+    for edge in edges:
+        if len(edge) == 2:
+            p, q = edge
+            beside.setdefault(p, []).append(q)
+            beside.setdefault(q, []).append(p)
+    start = min(beside)
+    turn, now = [start], beside[start][0]
+    while now != start:
+        turn.append(now)
+        p, q = beside[now]
+        now = q if p == turn[-2] else p
+    return turn
