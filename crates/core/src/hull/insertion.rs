@@ -301,8 +301,9 @@ impl<'a> Hull<'a> {
     pub fn towards(&self, p: Point3, near: u32) -> Towards {
         let mut facet = near;
         let mut from = NONE;
-        // Far more than walks have between neighbours on the curve.
-        for step in 0..64 + self.facets.len().isqrt() {
+        // Far more than walks have between neighbours on the curve, but where thin facets stand side by
+        // side; and fewer than asking all facets is worth.
+        for step in 0..64 + self.facets.len() / 8 {
             if self.side(p, facet) == Sign::Positive {
                 return Towards::Beyond(facet);
             }

@@ -174,13 +174,17 @@ fn across(simplices: &[[u32; 3]], n: usize) -> Result<Vec<[u32; 3]>> {
             *slot += 1;
         }
     }
+    let of = |v: usize| starts[v] as usize..starts[v + 1] as usize;
+    // A vertex may have very many.
+    (0..n).for_each(|v| heads[of(v)].sort_unstable());
     let mut beyond = with_room(simplices.len())?;
     for t in simplices {
         let mut row = [0; 3];
         for (other, (u, v)) in row.iter_mut().zip(edges(t)) {
-            let of = &heads[starts[v as usize] as usize..starts[v as usize + 1] as usize];
-            let back = of.iter().find(|[head, _]| *head == u);
-            *other = back.ok_or_else(|| Error::Internal("the hull is not closed".into()))?[1];
+            let heads = &heads[of(v as usize)];
+            let back = heads.binary_search_by_key(&u, |[head, _]| *head);
+            let back = back.map_err(|_| Error::Internal("the hull is not closed".into()))?;
+            *other = heads[back][1];
         }
         beyond.push(row);
     }
