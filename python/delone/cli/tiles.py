@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import sys
 import time
 from dataclasses import asdict
@@ -142,6 +143,9 @@ def _executor(scheduler: str | None, workers: int) -> Iterator[Any]:
         yield Processes(workers) if workers > 1 else "serial"
         return
     library = require("distributed", extra="dask", what="--scheduler")
+    # What becomes of the scheduler is said in one line, not in a trace.
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = library.Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:
