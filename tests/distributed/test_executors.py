@@ -113,8 +113,10 @@ def test_a_missing_extra_is_one_clear_line(missing: str, tmp_path: Path) -> None
 import sys
 sys.modules[{missing!r}] = None
 from delone import distributed, MissingExtraError
+from delone.distributed.dask import DaskExecutor
 try:
-    distributed.triangulate([(0, 0), (1, 0), (0, 1)], {str(tmp_path / "tin")!r}, executor=7)
+    distributed.triangulate([(0, 0), (1, 0), (0, 1)], {str(tmp_path / "tin")!r})
+    DaskExecutor(7)
 except MissingExtraError as error:
     print(error.extra, str(error))
 """

@@ -17,7 +17,7 @@ import pytest
 from delone import Delaunay, datasets, distributed
 from delone.distributed import files
 from delone.distributed.lock import LOCK, locked
-from delone.errors import BusyError, InputError
+from delone.errors import BusyError, InputError, NonFiniteError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -168,6 +168,35 @@ def test_a_folder_named_work_of_somebody_else_is_left_alone(tmp_path: Path) -> N
         run(tmp_path)
     assert theirs.read_text() == "years of work"
     assert [p.name for p in (tmp_path / "tin").iterdir()] == ["work"]
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() == 0, reason="root may write anywhere")
+def test_what_is_finished_needs_no_writing(tmp_path: Path) -> None:
+    run(tmp_path)
+    (tmp_path / "tin").chmod(0o555)
+    assert run(tmp_path).npoints == len(POINTS)
+    (tmp_path / "tin").chmod(0o755)
+
+
+def test_what_is_finished_is_not_locked(tmp_path: Path) -> None:
+    run(tmp_path)
+    with locked(tmp_path / "tin"):
+        assert run(tmp_path).npoints == len(POINTS)
+    with pytest.raises(InputError, match="differ"):
+        run(tmp_path, nan="drop")
+
+
+def test_a_mistake_does_not_hold_its_folder(tmp_path: Path) -> None:
+    spoilt = np.concatenate([POINTS, [[np.nan, 0.0]]])
+    with pytest.raises(NonFiniteError):
+        distributed.triangulate(spoilt, tmp_path / "tin", tile_points=SIZE)
+    assert not (tmp_path / "tin").exists()
+    assert run(tmp_path).npoints == len(POINTS)
+    # A folder that was there stays.
+    (tmp_path / "mine").mkdir()
+    with pytest.raises(NonFiniteError):
+        distributed.triangulate(spoilt, tmp_path / "mine", tile_points=SIZE)
+    assert not list((tmp_path / "mine").iterdir())
 
 
 def test_two_runs_do_not_write_at_a_time(tmp_path: Path) -> None:

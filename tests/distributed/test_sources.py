@@ -10,7 +10,13 @@ import pytest
 
 from delone import Delaunay, datasets, distributed
 from delone.distributed import sources
-from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
+from delone.errors import (
+    DegenerateInputError,
+    DtypeError,
+    FileFormatError,
+    InputError,
+    NonFiniteError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -193,6 +199,72 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
     assert np.array_equal(canonical(tin.simplices()), canonical(right))
     with pytest.raises(InputError, match="nan must be"):
         distributed.triangulate(points, tmp_path / "third", nan="ignore")
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"k": ["a"] * 900}, "holds no numbers"),
+        ({"k": [None, *range(1, 900)]}, None),
+        ({"k": [None, *range(1 << 60, (1 << 60) + 899)]}, r"beyond the 2\*\*53"),
+        ({"K": range(900)}, None),
+        ({"K": range(900), "k": range(900)}, None),
+        ({"x": range(1 << 60, (1 << 60) + 900), "k": range(900)}, r"column 'x' .* 2\*\*53"),
+        ({"z": [None, *range(1 << 60, (1 << 60) + 899)], "k": range(900)}, r"column 'z'"),
+    ],
+)
+def test_columns_are_carried_whole_or_refused(columns: Any, words: Any, tmp_path: Path) -> None:
+    path = table(tmp_path / "points.parquet", POINTS, **columns)
+    options: dict[str, Any] = {"tile_points": 300, "attributes": ["k"]}
+    if words is not None:
+        with pytest.raises(FileFormatError, match=words) as caught:
+            distributed.triangulate(path, tmp_path / "tin", **options)
+        assert "points.parquet" in str(caught.value)
+        # Nothing is left that other arguments could not go on from.
+        assert not (tmp_path / "tin").exists()
+        return
+    tin = distributed.triangulate(path, tmp_path / "tin", **options)
+    right = np.array(columns.get("k", columns.get("K")), dtype=float)
+    for tile in tin.tiles():
+        assert np.array_equal(tile.attributes["k"], right[tile.ids], equal_nan=True)
+
+
+@pytest.mark.parametrize("other", [np.arange(450.0), np.arange(450, dtype=np.uint64)])
+def test_files_whose_attributes_have_other_types(other: Any, tmp_path: Path) -> None:
+    table(tmp_path / "0.parquet", POINTS[:450], k=np.arange(450))
+    table(tmp_path / "1.parquet", POINTS[450:], k=other)
+    source = str(tmp_path / "*.parquet")
+    tin = distributed.triangulate(source, tmp_path / "tin", tile_points=300, attributes=["k"])
+    for tile in tin.tiles():
+        assert np.array_equal(tile.attributes["k"], tile.ids % 450)
+    table(tmp_path / "0.parquet", POINTS[:450], k=np.arange(450) + (1 << 53))
+    with pytest.raises(DtypeError, match=r"attribute 'k' .* of row 1 is beyond the 2\*\*53"):
+        distributed.triangulate(source, tmp_path / "tin2", tile_points=300, attributes=["k"])
+    assert not (tmp_path / "tin2").exists()
+
+
+def test_why_there_are_no_points(tmp_path: Path) -> None:
+    with pytest.raises(DegenerateInputError, match="no points but 9 with NaN"):
+        distributed.triangulate(np.full((9, 2), np.nan), tmp_path / "tin", nan="drop")
+    pytest.importorskip("laspy")
+    pytest.importorskip("lazrs")
+    with pytest.raises(DegenerateInputError, match="no points of class 9 or 12"):
+        distributed.triangulate(LIDAR, tmp_path / "tin", classes=[9, 12])
+    assert not (tmp_path / "tin").exists()
+
+
+def test_folders_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = tmp_path / "a home of Émile"
+    home.mkdir()
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("USERPROFILE", str(home))
+    monkeypatch.chdir(tmp_path)
+    table(home / "points [1].parquet", POINTS)
+    for source in ("~/points [1].parquet", "~/*.parquet"):
+        tin = distributed.triangulate(source, "~/tin", tile_points=300)
+        assert tin.path == home / "tin"
+    assert distributed.open("~/tin").npoints == 900
+    assert sorted(p.name for p in tmp_path.iterdir()) == [home.name]
 
 
 def test_heights_that_are_not_finite_are_no_points(

@@ -27,7 +27,8 @@ def as_path(path: Any, *, name: str) -> Path:
         It is none.
     """
     if isinstance(path, str | os.PathLike) and isinstance(os.fspath(path), str):
-        return Path(path)
+        # Folders are made where they are missing, one called ~ nobody wants.
+        return Path(path).expanduser()
     raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
 
 
@@ -39,7 +40,7 @@ def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
     DtypeError
         They are none; a text alone is no sequence of texts.
     InputError
-        A column is named twice, or its number is below 0.
+        A name is empty or there twice, or a number is below 0.
     """
     wanted = f"{name} must be a sequence of names of columns" + (" or numbers" if places else "")
     found = tuple(_sequence(names, wanted))
@@ -48,6 +49,8 @@ def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
             as_count(one, name=f"{name}: a number of a column")
         elif not isinstance(one, str):
             raise DtypeError(f"{wanted}, got {one!r:.60} among them")
+        elif not one:
+            raise InputError(f"{wanted}, none of them empty")
         if found.count(one) > 1:
             raise InputError(f"{name}: {one!r} is named twice")
     return tuple(one if isinstance(one, str) else int(one) for one in found)

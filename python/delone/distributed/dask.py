@@ -77,7 +77,7 @@ class DaskExecutor:
         queue = iter(list(tasks.items()))
         room = AHEAD * self.workers
         waiting = self._distributed.as_completed()
-        keys: dict[str, int] = {}
+        keys: dict[str, tuple[int, Any]] = {}
         try:
             while True:
                 while len(keys) < room:
@@ -85,7 +85,7 @@ class DaskExecutor:
                     if task is None:
                         break
                     future = self._submit(root, stage, *task)
-                    keys[future.key] = task[0]
+                    keys[future.key] = task[0], future
                     waiting.add(future)
                 if not keys:
                     return
@@ -93,7 +93,12 @@ class DaskExecutor:
                 future = next(waiting)
                 if future.status == "cancelled":
                     raise self._distributed.CancelledError(future.key)
-                yield keys.pop(future.key), future.result()
+                key, _ = keys.pop(future.key)
+                yield key, future.result()
+        except DeloneError:
+            # What others are at is let end, so that nobody writes when the run is over.
+            self._distributed.wait([future for _, future in keys.values()])
+            raise
         finally:
             waiting.clear()
 

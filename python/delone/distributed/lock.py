@@ -6,6 +6,7 @@ stands in the file, and two runs that find such a file cannot both take it.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import platform
@@ -35,7 +36,7 @@ def locked(root: Path) -> Iterator[None]:
     BusyError
         Another run is at work there.
     """
-    root.mkdir(parents=True, exist_ok=True)
+    made = not root.exists()
     path = root / LOCK
     file = _taken(path)
     try:
@@ -47,12 +48,21 @@ def locked(root: Path) -> Iterator[None]:
         # Removed while it is held: who waits for this file sees that it is not there any more.
         path.unlink(missing_ok=True)
         file.close()
+        if made:
+            # Nothing has come of it, if it is empty still.
+            with contextlib.suppress(OSError):
+                root.rmdir()
 
 
 def _taken(path: Path) -> IO[str]:
-    """Open the file and lock it."""
+    """Make the folder, open the file and lock it."""
     while True:
-        file = path.open("a+", encoding="utf-8")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            file = path.open("a+", encoding="utf-8")
+        except FileNotFoundError:
+            # Whoever made the folder has just removed it.
+            continue
         try:
             _lock(file)
             # Between opening and locking, the run that had it may have ended and removed it.

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.errors import DtypeError
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -18,9 +20,11 @@ if TYPE_CHECKING:
 
     Rows = NDArray[np.void]
 
-__all__ = ["coordinates", "first_of_each", "make_rows", "record", "widened"]
+__all__ = ["coordinates", "first_of_each", "make_rows", "record", "widen", "widened"]
 
 _FIXED = ("id", "x", "y", "z")
+# Up to here a double holds every integer.
+_EXACT = 1 << 53
 
 
 def record(attributes: Mapping[str, str], *, heights: bool) -> np.dtype[np.void]:
@@ -56,6 +60,28 @@ def widened(types: Sequence[np.dtype[np.void]]) -> np.dtype[np.void]:
         name: np.result_type(*{t[name] for t in types}).str for name in names if name not in _FIXED
     }
     return record(kinds, heights="z" in names)
+
+
+def widen(rows: Rows, kind: np.dtype[np.void]) -> Rows:
+    """Return rows of a type that `widened` has found.
+
+    Raises
+    ------
+    DtypeError
+        An attribute is an integer in some files and a float in others, or has gaps, and a value is
+        no double.
+    """
+    for name in kind.names or ():
+        if rows.dtype[name].kind in "iu" and kind[name].kind == "f":
+            values = rows[name]
+            lost = np.flatnonzero((values > _EXACT) | (values.astype(np.float64) < -_EXACT))
+            if len(lost):
+                raise DtypeError(
+                    f"attribute {name!r} holds integers in some files and floats or gaps in "
+                    f"others; {values[lost[0]]} of row {rows['id'][lost[0]]} is beyond the 2**53 "
+                    "up to which a float holds every integer"
+                )
+    return rows.astype(kind)
 
 
 def coordinates(rows: Rows) -> NDArray[np.float64]:

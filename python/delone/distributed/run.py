@@ -14,11 +14,17 @@ from delone.distributed.hull import extreme_rows
 from delone.distributed.layout import Layout, Slices, collect
 from delone.distributed.lock import LOCK, locked
 from delone.distributed.manifest import assemble, manifest_of
-from delone.distributed.rows import make_rows, widened
+from delone.distributed.rows import make_rows, widen, widened
 from delone.distributed.schema import FORMAT, check_settings, check_summary
 from delone.distributed.stages import note_of
 from delone.distributed.tiles import plant, strips
-from delone.errors import DegenerateInputError, InputError, LimitError, NonFiniteError
+from delone.errors import (
+    DegenerateInputError,
+    FileFormatError,
+    InputError,
+    LimitError,
+    NonFiniteError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -101,16 +107,21 @@ class Run:
     def go(self, resume: bool) -> None:
         """Do all that is not done yet."""
         self._refuse_others()
+        if self.store.exists("manifest.json") and not self.store.exists("work"):
+            # Nothing is left to do, not even where nothing can be written.
+            self._enter(resume)
+            return
         with locked(self.store.root):
+            self._enter(resume)
             try:
-                self._go(resume)
-            except (NonFiniteError, DegenerateInputError):
+                self._go()
+            except (InputError, FileFormatError):
                 # No call with these arguments gets further: nothing is kept for one.
-                self.store.remove("work")
+                if not self.store.exists("work/done/begin"):
+                    self.store.remove("work")
                 raise
 
-    def _go(self, resume: bool) -> None:
-        self._enter(resume)
+    def _go(self) -> None:
         if self.store.exists("manifest.json"):
             # An earlier run was stopped after its last word.
             self.store.remove("work")
@@ -237,14 +248,25 @@ class Run:
             hulls.append(found["hull"])
         if hulls:
             kind = widened([hull.dtype for hull in hulls])
-            hulls = [extreme_rows(np.concatenate([part.astype(kind) for part in hulls]))]
-        if not hulls or len(hulls[0]) < 3:
-            _refuse_degenerate(hulls[0]["id"].tolist() if hulls else [])
+            hulls = [extreme_rows(np.concatenate([widen(part, kind) for part in hulls]))]
+        if not sum(summary["rows"] for summary in looks.values()):
+            self._refuse_nothing(sum(summary["bad_count"] for summary in looks.values()))
+        if len(hulls[0]) < 3:
+            _refuse_degenerate(hulls[0]["id"].tolist())
         sample = np.concatenate(samples)
         tiles = plant(sample, self._tiles())
         layout = Layout(tiles, strips(tiles, sample, self.source.count), hulls[0])
         layout.save(self.store)
         return layout
+
+    def _refuse_nothing(self, bad: int) -> None:
+        """Say why there are no points at all."""
+        words = "there are no points"
+        if self.choice.classes is not None:
+            words += f" of class {' or '.join(map(str, self.choice.classes))}"
+        if bad:
+            words += f" but {bad} with NaN or infinity, which are left out"
+        raise DegenerateInputError(words, reason="too few points", chain=[])
 
     def _check_sizes(self, slices: Sequence[Slices]) -> None:
         """Refuse a tile whose vertices 32 bits cannot number: more equal points than that."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.distributed.rows import coordinates
+from delone.distributed.rows import coordinates, widen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,7 +28,8 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
         ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top
         of each run of own rows.
     """
-    rows = rows.astype(layout.type, copy=False)
+    if rows.dtype != layout.type:
+        rows = widen(rows, layout.type)
     tile = layout.tiles.locate(coordinates(rows))
     # A radix sort, for as long as numbers of tiles fit in 16 bits.
     narrow = tile.astype(np.uint16) if len(layout.tiles) <= 1 << 16 else tile

@@ -168,14 +168,14 @@ def _paths(source: Given) -> list[Path] | None:
 
 
 def _matching(part: str | os.PathLike[str]) -> list[Path]:
-    path = Path(part)
+    path = Path(part).expanduser()
     if path.is_dir():
         found = sorted(p for p in path.rglob("*.parquet") if not p.name.startswith((".", "_")))
         if not found:
             raise InputError(f"{path} holds no Parquet files; name files of other kinds by a glob")
         return found
-    if glob.has_magic(str(part)) and not path.exists():
-        found = sorted(Path(name) for name in glob.glob(str(part), recursive=True))
+    if glob.has_magic(str(path)) and not path.exists():
+        found = sorted(Path(name) for name in glob.glob(str(path), recursive=True))
         if not found:
             raise InputError(f"no file matches {part}")
         return found
@@ -185,8 +185,10 @@ def _matching(part: str | os.PathLike[str]) -> list[Path]:
 def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
     """Kind, rows and reference system of a file, and whether it has heights."""
     suffix = path.suffix.lower()
-    if not path.is_file():
+    if not path.exists():
         raise FileNotFoundError(f"{path}: no such file")
+    if not path.is_file():
+        raise FileFormatError(f"{path} is a pipe or device; write what it gives to a file first")
     if path.stat().st_size == 0:
         raise FileFormatError(f"{path} is empty")
     if suffix in _LAS:
@@ -231,7 +233,10 @@ def _of_array(source: Any, choice: Choice) -> Source:
 
 def _number(found: PointSet, name: str) -> NDArray[Any]:
     """An attribute, whose values must be numbers: records are of fixed size."""
-    values = np.asarray(found.attributes[name])
+    names = [other for other in found.attributes if other.casefold() == name.casefold()]
+    if name not in found.attributes and len(names) != 1:
+        raise FileFormatError(f"{found.source} has no column {name!r}; attributes go by name")
+    values = np.asarray(found.attributes[name if name in found.attributes else names[0]])
     if values.dtype.kind not in "biuf" or values.ndim != 1:
         raise FileFormatError(f"{found.source}: {name!r} holds no numbers ({values.dtype})")
     return values

@@ -173,6 +173,9 @@ def _known(schema: Any, attributes: Sequence[str], path: Path) -> list[str]:
 
 def _from_table(table: Any, kept: list[str], attributes: list[str], source: str) -> PointSet:
     x, y, *z = (_column(table, name) for name in kept)
+    for name in attributes:
+        if table.column(name).null_count:
+            _refuse_large_integers(table.column(name), name)
     return PointSet(
         points=as_points(np.column_stack((x, y))),
         z=as_values(z[0], len(x)) if z else None,
@@ -182,10 +185,22 @@ def _from_table(table: Any, kept: list[str], attributes: list[str], source: str)
 
 
 def _column(table: Any, name: str) -> NDArray[Any]:
-    """Return a column as numbers; what is missing is NaN, so that it is refused by its row."""
+    """Return a column as doubles; what is missing is NaN, so that it is refused by its row."""
     column = table.column(name)
-    decimal = str(column.type).startswith("decimal")
-    if decimal:
+    _refuse_large_integers(column, name)
+    if str(column.type).startswith("decimal"):
         column = column.cast("float64")
     values: NDArray[Any] = column.to_numpy()
-    return values
+    return values.astype(np.float64, copy=False)
+
+
+def _refuse_large_integers(column: Any, name: str) -> None:
+    """Refuse integers beyond 2**53 where they become doubles: for coordinates, and beside gaps."""
+    types = require("pyarrow.types", extra="geo", what="reading tables")
+    if not types.is_integer(column.type):
+        return
+    values = column.drop_null().to_numpy()
+    if len(values) and (int(values.max()) > 1 << 53 or int(values.min()) < -(1 << 53)):
+        raise InputError(
+            f"column {name!r} holds integers beyond the 2**53 up to which a float holds every one"
+        )
