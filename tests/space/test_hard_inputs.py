@@ -69,6 +69,9 @@ def test_what_follows_is_there(points: Any) -> None:
     quality = mesh.quality()
     assert (quality.edge_ratio >= 1).all()
     assert np.isfinite(quality.smallest_dihedral).all()
+    for simplex, found in zip(mesh.simplices, quality.volume, strict=True):
+        size = float(min(volume(points, simplex), Fraction(2) ** 1023))
+        assert min(found, 2.0**1023) == pytest.approx(size, rel=1e-13, abs=5e-324)
     assert (mesh.locate(points).simplex >= 0).all()
     assert np.array_equal(mesh.nearest(points), mesh.duplicate_of)
     better = delone.improve(mesh)
