@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -204,7 +205,7 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
-        ({"k": ["a"] * 900}, "holds no numbers"),
+        ({"k": ["a"] * 900}, "holds no single numbers"),
         ({"k": [None, *range(1, 900)]}, None),
         ({"k": [None, *range(1 << 60, (1 << 60) + 899)]}, r"beyond the 2\*\*53"),
         ({"K": range(900)}, None),
@@ -241,6 +242,27 @@ def test_files_whose_attributes_have_other_types(other: Any, tmp_path: Path) -> 
     with pytest.raises(DtypeError, match=r"attribute 'k' .* of row 1 is beyond the 2\*\*53"):
         distributed.triangulate(source, tmp_path / "tin2", tile_points=300, attributes=["k"])
     assert not (tmp_path / "tin2").exists()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("scale", [float("inf"), float("nan"), 1e308])
+def test_scales_of_a_header_beyond_the_range(scale: float, tmp_path: Path) -> None:
+    laspy = pytest.importorskip("laspy")
+    las = laspy.LasData(laspy.LasHeader(version="1.4", point_format=6))
+    las.header.scales = np.full(3, 0.01)
+    las.x, las.y = np.round(POINTS.T, 2)
+    las.add_extra_dim(laspy.ExtraBytesParams(name="normal", type="3f4"))
+    path = tmp_path / "points.las"
+    las.write(str(path))
+    with pytest.raises(FileFormatError, match=r"'normal' holds no single numbers \(float32, sev"):
+        distributed.triangulate(path, tmp_path / "tin", attributes=["normal"])
+    whole = bytearray(path.read_bytes())
+    whole[131:139] = struct.pack("<d", scale)
+    path.write_bytes(whole)
+    with pytest.raises(NonFiniteError, match="points have NaN") as caught:
+        distributed.triangulate(path, tmp_path / "tin")
+    assert caught.value.count > 800
+    assert not (tmp_path / "tin").exists()
 
 
 def test_why_there_are_no_points(tmp_path: Path) -> None:

@@ -238,5 +238,6 @@ def _number(found: PointSet, name: str) -> NDArray[Any]:
         raise FileFormatError(f"{found.source} has no column {name!r}; attributes go by name")
     values = np.asarray(found.attributes[name if name in found.attributes else names[0]])
     if values.dtype.kind not in "biuf" or values.ndim != 1:
-        raise FileFormatError(f"{found.source}: {name!r} holds no numbers ({values.dtype})")
+        what = f"{values.dtype}, several a row" if values.ndim > 1 else values.dtype
+        raise FileFormatError(f"{found.source}: {name!r} holds no single numbers ({what})")
     return values

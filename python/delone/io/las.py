@@ -96,9 +96,15 @@ def read_range(path: Path, start: int, stop: int, *, attributes: Sequence[str]) 
             block = file.read_points(stop - start)
         if len(block) != stop - start:
             raise FileFormatError(f"{path} has no records {start + len(block)} to {stop}")
-        points = np.column_stack([np.asarray(block.x), np.asarray(block.y)])
+        x, y, z = _scaled(block)
         further = {name: np.array(block[name]) for name in attributes}
-        return PointSet(points=points, z=np.asarray(block.z), attributes=further, source=str(path))
+        return PointSet(points=np.column_stack([x, y]), z=z, attributes=further, source=str(path))
+
+
+def _scaled(block: Any) -> tuple[NDArray[np.float64], ...]:
+    """Coordinates of records; what scales of a header make infinite or NaN is refused later."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.asarray(block.x), np.asarray(block.y), np.asarray(block.z)
 
 
 def _has_chunks_of_any_size(header: Any) -> bool:
@@ -276,11 +282,9 @@ def _read(
         keep: Any = slice(None)
         if classes is not None:
             keep = np.isin(np.asarray(block["classification"]), list(classes))
-        x = np.asarray(block.x)[keep]
+        x, y, heights = (values[keep] for values in _scaled(block))
         start, end = end, end + len(x)
-        points[start:end, 0] = x
-        points[start:end, 1] = np.asarray(block.y)[keep]
-        z[start:end] = np.asarray(block.z)[keep]
+        points[start:end, 0], points[start:end, 1], z[start:end] = x, y, heights
         for name, parts in further.items():
             parts.append(np.array(block[name])[keep])
     if classes is None and end != count:
