@@ -16,28 +16,10 @@ const LEAST: f64 = 1e-280;
 pub struct Center {
     /// Where it is.
     pub at: Point3,
-    /// By how many roundings of 1 each coordinate is off, about: no less than that of itself.
-    pub doubt: Point3,
-}
-
-/// A cross product with the sizes of its terms.
-struct Turn {
-    value: Point3,
-    size: Point3,
-}
-
-impl Turn {
-    #[inline]
-    fn of(p: Point3, q: Point3) -> Self {
-        let terms = [0, 1, 2].map(|k| {
-            let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-            (p[x] * q[y], p[y] * q[x])
-        });
-        Self {
-            value: terms.map(|(plus, minus)| plus - minus),
-            size: terms.map(|(plus, minus)| plus.abs() + minus.abs()),
-        }
-    }
+    /// How far away.
+    pub radius: f64,
+    /// By how many roundings of the radius it is off, about: at least 1.
+    pub doubt: f64,
 }
 
 impl Center {
@@ -45,22 +27,38 @@ impl Center {
     /// whose coordinates is beyond 2; nothing where the four are too nearly in one plane.
     #[inline]
     pub fn plain([a, b, c]: [Point3; 3]) -> Option<Self> {
-        let (bc, ca, ab) = (Turn::of(b, c), Turn::of(c, a), Turn::of(a, b));
-        let det = dot(a, bc.value);
-        let size = dot(a.map(f64::abs), bc.size);
+        let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+        let det = dot(a, bc);
         let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-        let sure = det * THIN >= size && aa * bb * cc > LEAST;
+        let product = aa * bb * cc;
+        let sure = det * THIN >= dot(sizes(a), terms(b, c)) && product > LEAST;
         if !sure {
             return None;
         }
-        let half = 0.5 / det;
-        let thin = size / det;
-        let at = [0, 1, 2].map(|k| (aa * bc.value[k] + bb * ca.value[k] + cc * ab.value[k]) * half);
-        let doubt = [0, 1, 2].map(|k| {
-            let terms = aa * bc.size[k] + bb * ca.size[k] + cc * ab.size[k];
-            terms * half + at[k].abs() * thin
-        });
-        Some(Self { at, doubt })
+        let one = 1.0 / det;
+        let half = 0.5 * one;
+        let at = [0, 1, 2].map(|k| (aa * bc[k] + bb * ca[k] + cc * ab[k]) * half);
+        let radius = dot(at, at).sqrt();
+        let doubt = product.sqrt() * one;
+        Some(Self { at, radius, doubt })
+    }
+
+    /// By how many roundings of 1 each coordinate is off, about: no less than that of itself.
+    /// `corners` are those of which `plain` has made it, or of which it has made none.
+    pub fn doubts(&self, [a, b, c]: [Point3; 3]) -> Point3 {
+        let (bc, ca, ab) = (terms(b, c), terms(c, a), terms(a, b));
+        let det = dot(a, cross(b, c));
+        let size = dot(sizes(a), bc);
+        let sure = det * THIN >= size;
+        if !sure {
+            let rest = self.radius * (self.doubt - 1.0);
+            return self.at.map(|x| x.abs() + rest);
+        }
+        let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+        [0, 1, 2].map(|k| {
+            let terms = aa * bc[k] + bb * ca[k] + cc * ab[k];
+            (0.5 * terms + self.at[k].abs() * size) / det
+        })
     }
 
     /// The same of three points as seen from `q`, in pairs of doubles; coordinates are divided by `unit`.
@@ -93,9 +91,25 @@ impl Center {
         }
         let at = [0, 1, 2].map(|k| (aa * bc[k] + bb * ca[k] + cc * ab[k]).hi / (2.0 * det));
         let radius = at.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let doubt = at.map(|x| x.abs() + radius * rest);
-        Some(Self { at, doubt })
+        let doubt = 1.0 + rest;
+        Some(Self { at, radius, doubt })
     }
+}
+
+/// The sizes of coordinates.
+#[inline]
+pub fn sizes(p: Point3) -> Point3 {
+    p.map(f64::abs)
+}
+
+/// The sizes of the terms of a cross product.
+#[inline]
+pub fn terms(p: Point3, q: Point3) -> Point3 {
+    [
+        (p[1] * q[2]).abs() + (p[2] * q[1]).abs(),
+        (p[2] * q[0]).abs() + (p[0] * q[2]).abs(),
+        (p[0] * q[1]).abs() + (p[1] * q[0]).abs(),
+    ]
 }
 
 /// The dot product.

@@ -23,13 +23,13 @@
 //!
 //! Near a plane of the hull centres are far away. One such does not matter: areas are as large. Of
 //! two, side by side, the cross product goes by the product of their distances, and cancels. So with
-//! each sum goes the sum of the sizes of its terms, and where that is too much, integers give
-//! the weights (see `exact`).
+//! each sum goes the sum of the sizes of its terms, and where that is too much, by distances and
+//! then by coordinates, integers give the weights (see `exact`).
 
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::cavity::{Cavity, Face};
-use super::center::{Center, cross, dot, minus, plus};
+use super::center::{Center, cross, dot, minus, plus, sizes, terms};
 use super::exact;
 use crate::error::Result;
 use crate::interpolate::{Part, Rows};
@@ -68,8 +68,8 @@ struct Room {
 struct Wall {
     /// Twice its area, in its direction.
     area: Point3,
-    /// The sizes of the terms of that.
-    size: Point3,
+    /// The size of the terms of that.
+    size: f64,
 }
 
 /// The weights of each query, as sparse rows, empty outside; and the tetrahedron that holds it, or -1.
@@ -118,8 +118,16 @@ impl Room {
             self.in_plane();
             return Ok(self.normalise() || self.exactly_in_plane(q));
         }
-        self.in_space(q);
-        Ok(self.normalise() || self.exactly_in_space(q))
+        if self.in_space(q) {
+            if self.normalise() {
+                return Ok(true);
+            }
+            self.resize();
+            if self.normalise() {
+                return Ok(true);
+            }
+        }
+        Ok(self.exactly_in_space(q))
     }
 
     /// Neighbours as seen from `q`, in a unit in which the farthest coordinate is 1 to 2.
@@ -142,8 +150,8 @@ impl Room {
         }
     }
 
-    /// The weights inside; not a number where some centre is not known.
-    fn in_space(&mut self, q: Point3) {
+    /// The weights inside; false where some centre is not known.
+    fn in_space(&mut self, q: Point3) -> bool {
         self.weights.clear();
         self.centers.clear();
         for face in &self.cavity.rim {
@@ -151,15 +159,16 @@ impl Room {
                 let corners = face.corners.map(|i| self.sites[i as usize]);
                 Center::paired(corners, q, self.unit)
             });
-            let Some(center) = center else { return };
+            let Some(center) = center else { return false };
             self.centers.push(center);
         }
         self.add_walls();
         for (wall, &v) in self.walls.iter().zip(&self.seen) {
             let square = dot(v, v);
             self.weights.push(dot(wall.area, v) / square);
-            self.size += dot(wall.size, v.map(f64::abs)) / square;
+            self.size += wall.size / square.sqrt();
         }
+        true
     }
 
     /// Each segment between the centres of two faces adds to the cell's faces towards both ends of
@@ -174,16 +183,40 @@ impl Room {
             };
             // Seen from outside, the face that has v -> w lies left of it.
             let (left, right) = if forward { (one, other) } else { (other, one) };
-            let (l, r) = (self.centers[left as usize], self.centers[right as usize]);
+            let (l, r) = (&self.centers[left as usize], &self.centers[right as usize]);
             let area = cross(r.at, l.at);
-            let size = doubt(&l, &r);
+            let size = l.radius * r.radius * (l.doubt + r.doubt);
             let wall = &mut self.walls[v as usize];
             wall.area = plus(wall.area, area);
-            wall.size = plus(wall.size, size);
+            wall.size += size;
             let wall = &mut self.walls[w as usize];
             wall.area = minus(wall.area, area);
-            wall.size = plus(wall.size, size);
+            wall.size += size;
         }
+    }
+
+    /// The size of all terms once more, by axes: sheets and boxes do not look worse than they are.
+    #[cold]
+    #[inline(never)]
+    fn resize(&mut self) {
+        let doubts = |(face, center): (&Face, &Center)| {
+            let corners = face.corners.map(|i| self.seen[i as usize]);
+            center.doubts(corners)
+        };
+        let rim = self.cavity.rim.iter();
+        let doubts: Vec<Point3> = rim.zip(&self.centers).map(doubts).collect();
+        let mut sizes_of = vec![[0.0; 3]; self.seen.len()];
+        for pair in self.edges.chunks_exact(2) {
+            let [l, r] = [pair[0].2 as usize, pair[1].2 as usize];
+            let (at_l, at_r) = (self.centers[l].at, self.centers[r].at);
+            let size = plus(terms(at_l, doubts[r]), terms(doubts[l], at_r));
+            for end in [pair[0].0, pair[0].1] {
+                let sum = &mut sizes_of[end as usize];
+                *sum = plus(*sum, size);
+            }
+        }
+        let size = |(size, &v): (&Point3, &Point3)| dot(*size, sizes(v)) / dot(v, v);
+        self.size = sizes_of.iter().zip(&self.seen).map(size).sum();
     }
 
     /// Lists the edges of some faces, those of two faces side by side.
@@ -275,18 +308,6 @@ impl Room {
         self.weights.iter_mut().for_each(|w| *w /= sum);
         true
     }
-}
-
-/// The sizes of the terms of the cross product of two centres, in roundings of them.
-#[inline]
-fn doubt(l: &Center, r: &Center) -> Point3 {
-    let [at_l, at_r] = [l, r].map(|center| center.at.map(f64::abs));
-    [0, 1, 2].map(|k| {
-        let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-        let plus = at_l[x] * r.doubt[y] + l.doubt[x] * at_r[y];
-        let minus = at_l[y] * r.doubt[x] + l.doubt[y] * at_r[x];
-        plus + minus
-    })
 }
 
 /// The edges of one face alone, which has them on its left.
