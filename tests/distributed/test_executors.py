@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets, distributed
-from delone.errors import DeloneError, InputError
+from delone.errors import DeloneError, FileFormatError, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -75,6 +75,27 @@ def test_errors_of_tasks_come_through(cluster: Any, tmp_path: Path) -> None:
     ):
         line = [(i, i) for i in range(50)]
         distributed.triangulate(np.array(line, float), tmp_path / "tin", executor=client)
+
+
+def test_a_file_that_fails_leaves_nothing_behind(cluster: Any, tmp_path: Path) -> None:
+    library = pytest.importorskip("distributed")
+    import pyarrow
+    import pyarrow.parquet
+
+    for number in range(9):
+        some = POINTS[300 * number : 300 * number + 300]
+        kind: Any = ["rock"] * 300 if number == 2 else range(300)
+        columns = {"x": some[:, 0], "y": some[:, 1], "kind": kind}
+        pyarrow.parquet.write_table(pyarrow.table(columns), tmp_path / f"{number}.parquet")
+    source = str(tmp_path / "*.parquet")
+    with library.Client(cluster) as client:
+        with pytest.raises(FileFormatError, match=r"2\.parquet: 'kind' holds no single numbers"):
+            distributed.triangulate(
+                source, tmp_path / "tin", attributes=["kind"], executor=client, tile_points=300
+            )
+        assert not (tmp_path / "tin").exists()
+        tin = distributed.triangulate(source, tmp_path / "tin", executor=client, tile_points=300)
+    assert tin.npoints == 2700
 
 
 def test_a_scheduler_that_goes_away_is_named(

@@ -7,6 +7,7 @@ scheduler holds names and small summaries alone.
 
 from __future__ import annotations
 
+import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ __all__ = ["DaskExecutor"]
 
 # Seconds that a client may be without a scheduler, and between two looks at it.
 _PATIENCE, _GLANCE = 5.0, 0.005
+# Seconds for tasks at work to end, when one has failed: those of large tiles take some.
+_LONGEST = 120.0
 
 
 class DaskExecutor:
@@ -97,7 +100,9 @@ class DaskExecutor:
                 yield key, future.result()
         except DeloneError:
             # What others are at is let end, so that nobody writes when the run is over.
-            self._distributed.wait([future for _, future in keys.values()])
+            with contextlib.suppress(*self._lost()):
+                others = [future for _, future in keys.values()]
+                self._distributed.wait(others, timeout=_LONGEST)
             raise
         finally:
             waiting.clear()
