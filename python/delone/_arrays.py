@@ -475,6 +475,41 @@ def as_number(value: float, *, name: str) -> float:
     raise DtypeError(f"{name} must be a real number, got {value!r:.60}")
 
 
+def as_flag(flag: bool, *, name: str) -> bool:
+    """Return a truth value as that of Python.
+
+    Parameters
+    ----------
+    flag : bool
+        True or False, of Python or NumPy; nothing else that counts as one of them.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    bool
+        The value.
+
+    Raises
+    ------
+    DtypeError
+        It is none.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_flag
+    >>> as_flag(True, name="flips")
+    True
+    >>> as_flag(None, name="flips")
+    Traceback (most recent call last):
+    ...
+    delone.errors.DtypeError: flips must be True or False, got None
+    """
+    if isinstance(flag, bool | np.bool_):
+        return bool(flag)
+    raise DtypeError(f"{name} must be True or False, got {flag!r:.60}")
+
+
 def as_workers(workers: int | None) -> int:
     """Return how many threads to use.
 

@@ -432,11 +432,23 @@ def test_what_is_no_mesh_is_refused(given: Any, error: type[Exception], message:
         ({"fixed": [0.5]}, DtypeError),
         ({"fixed": [[1]]}, ShapeError),
         ({"progress": 3}, DtypeError),
+        ({"flips": "a"}, DtypeError),
+        ({"flips": None}, DtypeError),
+        ({"smooth": 1}, DtypeError),
+        ({"exude": "no"}, DtypeError),
     ],
 )
 def test_options_are_checked(options: dict[str, Any], error: type[Exception]) -> None:
     with pytest.raises(error):
         delone.improve((CORNER, [(0, 1, 2, 3)]), **options)
+
+
+def test_passes_may_be_any_number() -> None:
+    given = (CORNER, [(0, 1, 2, 3)])
+    assert delone.improve(given, max_passes=10**30).report.passes == (
+        delone.improve(given).report.passes
+    )
+    assert delone.improve(given, flips=np.False_).nsimplex == 1
 
 
 def test_tetrahedra_that_overlap_at_a_vertex_are_refused() -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 
 from delone import ConvexHull, improve
-from delone.errors import DtypeError
+from delone.errors import DtypeError, InputError
 from delone.space.quality import dihedral_angles, measured
 
 REGULAR = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
@@ -79,6 +80,25 @@ def test_the_summary_and_the_histogram_count_all() -> None:
     assert str(quality).startswith("2 tetrahedra")
     with pytest.raises(ValueError, match="read-only"):
         quality.volume[0] = 1
+
+
+@pytest.mark.parametrize("width", [0, -1, 1e-300, 1e-7, 180.5, np.inf, np.nan, "a", None, True])
+def test_classes_have_a_width(width: Any) -> None:
+    quality = measured(CORNER, ONE)
+    with pytest.raises(
+        InputError if isinstance(width, int | float) and width is not True else DtypeError,
+        match="width",
+    ):
+        quality.histogram(width)
+
+
+def test_classes_hold_all_whatever_their_width() -> None:
+    quality = measured(REGULAR, SWAPPED)
+    best = float(quality.smallest_dihedral[0])
+    for width in (0.001, 5, 180, best, best / 3, np.nextafter(best, 0)):
+        counts, bounds = quality.histogram(width)
+        assert counts.sum() == 1
+        assert len(bounds) == len(counts) + 1
 
 
 def test_what_has_no_tetrahedra_is_refused() -> None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count
-from delone.distributed.arguments import as_callback, as_classes, as_flag, as_names, as_path
+from delone._arrays import as_choice, as_count, as_flag
+from delone.distributed.arguments import as_callback, as_classes, as_names, as_path
 from delone.distributed.costs import Plan, estimate
 from delone.distributed.executors import Executor, Processes, Serial
 from delone.distributed.files import Store

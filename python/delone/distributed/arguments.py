@@ -15,7 +15,7 @@ from delone.errors import DtypeError, InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["as_callback", "as_classes", "as_flag", "as_names", "as_path"]
+__all__ = ["as_callback", "as_classes", "as_names", "as_path"]
 
 
 def as_path(path: Any, *, name: str) -> Path:
@@ -77,19 +77,6 @@ def _sequence(values: Any, wanted: str) -> Sequence[Any]:
     if not isinstance(values, Sequence) or isinstance(values, str | bytes):
         raise DtypeError(f"{wanted}, got {values!r:.60}")
     return values
-
-
-def as_flag(flag: Any, *, name: str) -> bool:
-    """Return a truth value; a text such as ``"no"`` is none.
-
-    Raises
-    ------
-    DtypeError
-        It is none.
-    """
-    if isinstance(flag, bool | np.bool_):
-        return bool(flag)
-    raise DtypeError(f"{name} must be True or False, got {flag!r:.60}")
 
 
 def as_callback(function: Any, *, name: str) -> Callable[..., Any] | None:

@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_count, as_number, as_points, as_simplices, require_finite
+from delone._arrays import (
+    as_choice,
+    as_count,
+    as_flag,
+    as_number,
+    as_points,
+    as_simplices,
+    require_finite,
+)
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.improve import report
 from delone.improve.tetmesh import TetMesh
@@ -31,7 +39,7 @@ __all__ = ["BOUNDARIES", "improve"]
 BOUNDARIES = ("faces", "surface")
 # The smallest angle of the regular tetrahedron, acos(1/3).
 _MOST = 70.528
-_INDEX_MAX = np.iinfo(np.int32).max
+_INDEX_MAX = int(np.iinfo(np.int32).max)
 
 
 def improve(
@@ -134,9 +142,14 @@ def improve(
     labels = _labels(region, own, len(simplices))
     held = _mask(fixed, len(points))
     goal = _angle(min_angle)
-    kinds = bool(flips), bool(smooth), bool(exude)
+    kinds = (
+        as_flag(flips, name="flips"),
+        as_flag(smooth, name="smooth"),
+        as_flag(exude, name="exude"),
+    )
     turn = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
-    passes = as_count(max_passes, name="max_passes")
+    # More than the core counts are as many as it likes.
+    passes = min(as_count(max_passes, name="max_passes"), _INDEX_MAX)
     if progress is not None and not callable(progress):
         raise DtypeError(f"progress must be callable, got {progress!r}")
     try:

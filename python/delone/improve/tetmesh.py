@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 import numpy as np
 
 from delone import _core
+from delone._arrays import as_number
 from delone.plane.triangulation import counted, kept, sealed
 from delone.space import location as places
 from delone.space import topology
@@ -300,7 +301,7 @@ class TetMesh:
         """
         from delone.io import exchange
 
-        bound = self._report.min_angle if below is None else float(below)
+        bound = self._report.min_angle if below is None else as_number(below, name="below")
         return exchange.draw_tetrahedra(self, plotter, bound)
 
     def __reduce__(self) -> tuple[Any, ...]:

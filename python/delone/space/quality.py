@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from delone._arrays import as_number
+from delone.errors import InputError
 from delone.space.stages import Exact, Measure, Vectors, cross, dot, staged
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 # These faces.
 _BESIDE = tuple(tuple(c for c in range(4) if c not in edge) for edge in EDGES)
+# Classes of a histogram in degrees: narrower ones are a mistake, and would fill the memory.
+_NARROWEST = 0.001
 _PERCENTILES = (1, 10, 50, 90, 99)
 
 
@@ -111,7 +115,7 @@ class TetQuality:
         Parameters
         ----------
         width : float, optional
-            The width of a class in degrees, above 0.
+            The width of a class in degrees, from 0.001 to 180.
 
         Returns
         -------
@@ -120,6 +124,11 @@ class TetQuality:
         bounds : ndarray of float64, shape (k + 1,)
             The bounds of the classes, from 0 to above 70.53 degrees.
 
+        Raises
+        ------
+        InputError
+            `width` is no number, or not within these bounds.
+
         Examples
         --------
         >>> import delone
@@ -127,9 +136,13 @@ class TetQuality:
         >>> delone.improve(corner).quality().histogram(25)
         (array([0, 0, 1]), array([ 0., 25., 50., 75.]))
         """
+        step = as_number(width, name="width")
+        if not _NARROWEST <= step <= 180:
+            raise InputError(f"width must be from {_NARROWEST} to 180 degrees, got {width!r}")
         most = np.degrees(np.arccos(1 / 3))
-        bounds: Floats = float(width) * np.arange(int(np.ceil(most / width)) + 1, dtype=np.float64)
-        counts, _ = np.histogram(self.smallest_dihedral, bounds)
+        bounds: Floats = step * np.arange(int(np.ceil(most / step)) + 1, dtype=np.float64)
+        # That of the regular one may be rounded to above the last bound.
+        counts, _ = np.histogram(np.minimum(self.smallest_dihedral, bounds[-1]), bounds)
         return counts.astype(np.int64), bounds
 
     def __str__(self) -> str:
