@@ -62,6 +62,15 @@ def test_find_simplex(tin: distributed.TiledDelaunay) -> None:
     assert tin.find_simplex([[[np.nan, 0.0]]]).tolist() == [[-1]]
 
 
+def test_a_relative_folder_stays_where_it_is(
+    tin: distributed.TiledDelaunay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tin.path.parent)
+    again = distributed.open(tin.path.name)
+    monkeypatch.chdir("/")
+    assert np.array_equal(again.simplices(), tin.simplices())
+
+
 def test_interpolate(tin: distributed.TiledDelaunay) -> None:
     asked = queries()
     right = Linear(SURVEY.points, SURVEY.z, duplicates="first")(asked)

@@ -60,7 +60,8 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
     ...     distributed.open(folder + "/tin")
     <TiledDelaunay of 400 points: 722 triangles in 4 tiles>
     """
-    folder = as_path(output, name="output")
+    # Tiles are read later, from wherever the process is then.
+    folder = as_path(output, name="output").absolute()
     store = Store(folder)
     if not folder.is_dir():
         raise FileNotFoundError(f"{output}: no such folder")
