@@ -348,3 +348,12 @@ def test_every_generator_exactly(name: str) -> None:
     rows = np.random.default_rng(8).integers(0, len(points), (40, 2))
     mesh = triangulated(Drawing(points, rows))
     assert_constrained_delaunay(mesh, rows, split=True)
+
+
+def test_rows_led_around_bent_pieces_may_bend() -> None:
+    """Row 2 is crossed and bends at vertex 2, across row 0, which no segment crosses."""
+    e = 2.0**-52
+    points = [(0, 1 - e / 2), (1 + e, e), (3, 1 + e), (2, 3), (1, 3), (3, 1)]
+    mesh = ConstrainedDelaunay(points, [(3, 5), (0, 3), (5, 4)], crossing="split")
+    assert mesh.validate().ok
+    assert mesh.report.steiner.tolist() == [[0, 2], [2, 2]]

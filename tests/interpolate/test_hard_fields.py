@@ -111,3 +111,14 @@ def test_beyond_the_corners_of_the_largest_square(method: str, extrapolate: str)
         made = NaturalNeighbor(points, values, kind=method, extrapolate=extrapolate)
     found = made([(1.1 * far, 0), (0, -1.1 * far), (1.1 * far, 1.1 * far)])
     np.testing.assert_allclose(found, [2.5, 1.5, 3.0], atol=0.3)
+
+
+@pytest.mark.parametrize("kind", ["sibson", "laplace", "sibson1", "farin"])
+def test_inside_there_is_a_value_where_magnitudes_are_mixed(kind: Any) -> None:
+    """Squares of distances to one site are beyond the range; its tangent plane was NaN."""
+    for points, query in (
+        ([(1, 1), (0, 0), (1e-300, 0), (0, 1e300)], (0.5, 0.5)),
+        ([(1e-300, 1e-300), (0, 1e300), (0, 1e-300), (0, 0)], (5e-301, 1e-300)),
+    ):
+        field = NaturalNeighbor(points, [2.0] * 4, kind=kind)
+        assert field(query) == pytest.approx(2, rel=1e-15)

@@ -57,8 +57,8 @@ class ConstrainedReport(ValidationReport):
         Rows of segments whose subsegments are no way from the one end to the other.
     bent : ndarray of int, shape (k, 2)
         Rows of segments and vertices on their way that are not exactly on the row. Rows that run
-        through crossings or added vertices may bend, because those are rounded, and so may all rows
-        of a conforming triangulation.
+        through crossings or added vertices may bend, because those are rounded; so may rows where
+        such a one has bent across them, and all rows of a conforming triangulation.
 
     Attributes
     ----------
@@ -164,7 +164,11 @@ def _pair(row: NDArray[np.integer], vertex: Indices, npoints: int) -> NDArray[np
 
 
 def _bent(found: Mapping[str, NDArray[Any]], ends: Indices) -> Indices:
-    """Vertices off their row, of rows without crossings and added vertices."""
+    """Vertices off their row, of rows that have no reason to bend.
+
+    Reasons are a crossing, an added vertex, and a row that has one and bends at the same vertex:
+    bent pieces may cross rows which their segments do not meet.
+    """
     points = found["points"]
     row, tail, head = _directed(found)
     first, last = ends[row, 0], ends[row, 1]
@@ -177,5 +181,10 @@ def _bent(found: Mapping[str, NDArray[Any]], ends: Indices) -> Indices:
     # A crossing may have been rounded to a vertex that was there.
     may_bend[found["crossings"][:, :2]] = True
     may_bend[row[np.maximum(tail, head) >= len(points) - len(found["added"])]] = True
+    count = -1
+    while count < (count := int(may_bend.sum())):
+        met = np.zeros(len(points), dtype=bool)
+        met[tail[may_bend[row]]] = met[head[may_bend[row]]] = True
+        may_bend[row[off & met[head]]] = True
     off &= ~may_bend[row]
     return np.unique(np.column_stack((row[off], head[off])), axis=0)

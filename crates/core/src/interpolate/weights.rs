@@ -138,10 +138,21 @@ impl<T: Number> Weights<T> {
             Kind::Farin => self.cubic(unit),
             Kind::Sibson | Kind::Laplace => {}
         }
+        if kind.is_smooth() && !self.is_finite() {
+            // What tangent planes say is beyond the range; what values say is not.
+            let there = self.compute(Kind::Sibson, cavity, q);
+            self.slopes.resize(self.values.len(), [T::constant(0.0); 2]);
+            return there;
+        }
         if unit != 1.0 {
             self.in_units(unit);
         }
         true
+    }
+
+    fn is_finite(&self) -> bool {
+        let all = self.values.iter().chain(self.slopes.as_flattened());
+        all.into_iter().all(|x| x.value().is_finite())
     }
 
     /// The vertices from the query, and the unit of length.
