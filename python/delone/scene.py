@@ -164,11 +164,12 @@ def draw(path: str | os.PathLike[str], shape: Delaunay | ConvexHull, **options: 
     MissingExtraError
         pyvista is not installed.
     """
-    plotter = _aimed(plot(shape, off_screen=True, **options))
-    try:
-        plotter.screenshot(str(path))
-    finally:
-        plotter.close()
+    with _quiet():
+        plotter = _aimed(plot(shape, off_screen=True, **options))
+        try:
+            plotter.screenshot(str(path))
+        finally:
+            plotter.close()
 
 
 def image(shape: Delaunay | ConvexHull, **options: Any) -> NDArray[np.uint8]:
@@ -199,12 +200,18 @@ def image(shape: Delaunay | ConvexHull, **options: Any) -> NDArray[np.uint8]:
     >>> scene.image(ConvexHull(datasets.uniform(50, ndim=3))).shape
     (760, 900, 3)
     """
-    plotter = _aimed(plot(shape, off_screen=True, **options))
-    try:
-        picture: NDArray[np.uint8] = np.array(plotter.screenshot(return_img=True))
-    finally:
-        plotter.close()
+    with _quiet():
+        plotter = _aimed(plot(shape, off_screen=True, **options))
+        try:
+            picture: NDArray[np.uint8] = np.array(plotter.screenshot(return_img=True))
+        finally:
+            plotter.close()
     return picture
+
+
+def _quiet() -> Any:
+    """Let VTK not warn that there is no screen: none is needed."""
+    return require("pyvista", extra="pyvista", what="drawing in space").vtk_verbosity("error")
 
 
 def _aimed(plotter: Any) -> Any:

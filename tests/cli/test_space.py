@@ -83,6 +83,28 @@ def test_wrong_tetrahedra_are_named(tmp_path, command):
     assert "not positively oriented" in out
 
 
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian"])
+def test_files_without_points_are_files(form, tmp_path, command):
+    head = f"ply\nformat {form} 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+    path = tmp_path / "empty.ply"
+    path.write_text(f"{head}property float z\nend_header\n")
+    for option, noun in (((), "tetrahedron"), (("--2d",), "triangle")):
+        code, _, err = command("triangulate", path, *option)
+        assert (code, err.startswith(f"delone: 0 distinct points are too few for a {noun}")) == (
+            4,
+            True,
+        )
+    code, _, err = command("check", path)
+    assert (code, err) == (3, f"delone: {path} holds no points\n")
+
+
+def test_pictures_need_no_screen(tmp_path, monkeypatch, capfd):
+    pytest.importorskip("pyvista")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    write_mesh(tmp_path / "mesh.png", Delaunay(cloud()))
+    assert capfd.readouterr() == ("", "")
+
+
 def test_pictures(tmp_path):
     pytest.importorskip("pyvista")
     path = tmp_path / "mesh.png"
@@ -117,3 +139,5 @@ def test_only_tetrahedra_are_improved(tmp_path, command):
     assert (code, ".vtu" in err) == (2, True)
     assert not target.exists()
     assert command("triangulate", source, "--3d", "--improve", "--min-angle", "90")[0] != 0
+    code, _, err = command("triangulate", source, "--3d", "--min-angle", "10")
+    assert (code, "--improve" in err) == (2, True)

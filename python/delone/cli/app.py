@@ -166,9 +166,11 @@ def triangulate(
         typer.Option("--improve", help="In space: remove slivers; points inside may move."),
     ] = False,
     min_angle: Annotated[
-        float,
-        typer.Option(metavar="DEGREES", help="The goal of --improve for dihedral angles."),
-    ] = 20.0,
+        float | None,
+        typer.Option(
+            metavar="DEGREES", help="The goal of --improve for dihedral angles; 20 by default."
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -177,6 +179,8 @@ def triangulate(
     Lines and the sides of polygons become edges of the triangulation. Heights are values over the
     plane, or with --3d a third coordinate: then tetrahedra go to .vtu, .msh, .npz and .png.
     """
+    if min_angle is not None and not better:
+        raise Failure("--min-angle is the goal of --improve: give that, too", Exit.USAGE)
     with writing():
         spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
@@ -207,7 +211,7 @@ def triangulate(
                 raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
             say("improving")
             with watch.stage("improve"):
-                tetrahedra = improved(mesh, writers, min_angle)
+                tetrahedra = improved(mesh, writers, 20.0 if min_angle is None else min_angle)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         _write(writers, written, {"z": z, "crs": crs, "edges": edges}, watch, say)
         say("reporting")

@@ -51,7 +51,7 @@ def read_points(
     missing = [name for name in attributes if name not in mesh.point_data]
     if missing:
         raise FileFormatError(f"{path} has no values {missing[0]!r} of points")
-    points, z = _coordinates(mesh, path)
+    points, z = _coordinates(mesh, path, least=0)
     further = {name: np.asarray(mesh.point_data[name]) for name in attributes}
     return PointSet(points=points, z=z, attributes=further, source=str(path))
 
@@ -92,9 +92,11 @@ def _tetrahedra(mesh: Any, path: Path) -> MeshFile:
     return MeshFile(points=points, simplices=simplices, source=str(path))
 
 
-def _coordinates(mesh: Any, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+def _coordinates(
+    mesh: Any, path: Path, *, least: int = 1
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     points = np.asarray(mesh.points)
-    if points.ndim != 2 or points.shape[1] not in (2, 3) or not len(points):
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) < least:
         raise FileFormatError(f"{path} holds no points")
     try:
         plane = as_points(np.ascontiguousarray(points[:, :2]))
@@ -106,10 +108,13 @@ def _coordinates(mesh: Any, path: Path) -> tuple[NDArray[np.float64], NDArray[np
 
 def _read(path: Path) -> Any:
     suffix = path.suffix.lower()
-    require("meshio", extra="mesh", what=f"reading {suffix}")
+    meshio = require("meshio", extra="mesh", what=f"reading {suffix}")
     # The module of the format: the general reader prints, and ends the interpreter on an error.
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     _check_claim(path, suffix)
+    if suffix == ".ply" and _is_empty(path):
+        # meshio reads no such file as text; and nothing else can be in it.
+        return meshio.Mesh(np.empty((0, 3)), [])
     try:
         # meshio speaks to the user itself, by rich, where it should raise or warn.
         quiet = io.StringIO()
@@ -125,6 +130,14 @@ def _read(path: Path) -> Any:
     except (Exception, SystemExit) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise FileFormatError(f"{path} is torn or no {suffix} file: {reason}") from error
+
+
+def _is_empty(path: Path) -> bool:
+    """Tell whether a PLY file announces no vertices."""
+    with path.open("rb") as file:
+        head, end, _ = file.read(_HEAD).partition(b"end_header")
+    announced = re.search(rb"^element +vertex +(\d+) *\r?$", head, re.MULTILINE)
+    return bool(head.startswith(b"ply") and end and announced and int(announced[1]) == 0)
 
 
 def _absolute(path: Path) -> Path | IO[str]:
