@@ -148,6 +148,49 @@ fn several_blocks_are_one_triangulation_for_any_number_of_workers() {
     }
 }
 
+/// Bowyer-Watson and divide and conquer agree on `points`, and their triangles are valid.
+fn cut_as_inserted(points: &[Point2]) {
+    let [inserted, cut] = [Method::BowyerWatson, Method::DivideConquer].map(|m| made(points, m, 1));
+    assert_eq!(findings(points, &cut), Findings::default());
+    assert_eq!(triangles(points, &inserted), triangles(points, &cut));
+}
+
+#[test]
+fn cells_within_cells_are_cut() {
+    // Clusters of 30 points at 30 places, 300 times smaller each time: all in one cell of the first key.
+    let mut points = Vec::new();
+    for (i, p) in (0i32..).zip(scattered(30, 1.0)) {
+        let scale = 300f64.powi(-i);
+        let own = scattered(30 + i as u64, 0.3 * scale).into_iter();
+        points.extend(own.map(|q| [p[0] * scale + q[0], p[1] * scale + q[1]]));
+    }
+    cut_as_inserted(&points);
+    // Each point halves the cell that is left: deeper than cells are followed.
+    let halves = (0..900).map(|i| 0.5f64.powi(i));
+    cut_as_inserted(&halves.clone().map(|x| [x, x * x]).collect::<Vec<_>>());
+    let thirds = halves.flat_map(|x| [[x, x / 3.0], [x / 3.0, x], [-x, x]]);
+    cut_as_inserted(&thirds.collect::<Vec<_>>());
+}
+
+#[test]
+fn cuts_hold_at_the_ends_of_the_range_and_in_lattices() {
+    for scale in [1e-320, 1e-160, 1e-61, 1e60, 1e76, 1e150, 1e307] {
+        cut_as_inserted(&scattered(2000, scale));
+        let lattice = scattered(2000, 17.0).into_iter();
+        let lattice: Vec<_> = lattice.map(|p| p.map(|x| x.floor() * scale)).collect();
+        cut_as_inserted(&lattice);
+    }
+    // Doubled rows move the border between keys that are coarse and fine.
+    let points = scattered(40_000, 1.0);
+    cut_as_inserted(&points.iter().chain(&points).copied().collect::<Vec<_>>());
+    // Columns of equal x, and small sets of each number.
+    for n in 3..70 {
+        cut_as_inserted(&scattered(n, 1.0));
+        let columns = scattered(n, 4.0).into_iter().map(|[x, y]| [x.floor(), y]);
+        cut_as_inserted(&columns.chain([[0.5, 9.0]]).collect::<Vec<_>>());
+    }
+}
+
 #[test]
 fn blocks_of_duplicates_and_of_lines_are_merged() {
     // A block of one point, blocks that are collinear, and a few points beside.

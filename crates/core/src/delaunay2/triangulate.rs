@@ -8,7 +8,6 @@ use delone_predicates::Point2;
 use super::merge::merge;
 use super::{bowyer_watson, divide_conquer, incremental, lifting, sweep};
 use crate::error::Result;
-use crate::memory::with_room;
 use crate::mesh2::{Code, Mesh2, Patch, export};
 use crate::order::{Arranged, arrange};
 use crate::watch::Watch;
@@ -225,9 +224,7 @@ fn block(
     if let Some(ghost) = ghost {
         return Ok(ghost);
     }
-    let mut vertices: Vec<u32> = with_room(block.len())?;
-    vertices.extend(block);
-    divide_conquer::build(points, &mut vertices, &mut mesh, watch)
+    divide_conquer::build(points, block, mesh, watch)
 }
 
 /// Times the stages one after the other.

@@ -1,7 +1,8 @@
 //! The ring of ghosts round a mesh. A ghost is held by the code of its infinite corner; its finite
 //! edge runs clockwise on the hull, from `head` to `tail`: the hull edge runs `tail` to `head`.
 
-use super::{Code, Patch, next, prev};
+use super::storage::OPPOSITE;
+use super::{Code, Patch, next, prev, triangle};
 
 impl Patch<'_> {
     /// Where the hull edge of ghost `g` ends.
@@ -28,32 +29,44 @@ impl Patch<'_> {
         next(self.opposite(next(g)))
     }
 
+    /// Turns the record of ghost `g` so that its infinite corner is the first.
+    pub fn turn(&mut self, g: Code) -> Code {
+        let turned = [g, next(g), prev(g)];
+        let corners = turned.map(|e| self.vertex(e));
+        let across = turned.map(|e| self.opposite(e));
+        let t = triangle(g);
+        self.set(t, corners);
+        for (e, o) in (8 * t..).zip(across) {
+            self.link(e, o);
+        }
+        8 * t
+    }
+
     /// Takes the triangle behind the hull edge of ghost `g` out of the mesh: two ghosts take the
-    /// place of it and `g`. Ghost `g` keeps its head; the other, returned, has its tail.
-    pub fn peel(&mut self, g: Code) -> Code {
+    /// place of it and `g`. Ghost `g` keeps its head; the other, returned, has its tail, and what is
+    /// before it is for the caller to link. The infinite corner of both is the first.
+    #[inline]
+    pub fn peel(&mut self, g: u32) -> u32 {
         //        inf                  inf
         //      /  g  \              / | \           The edge tail head goes, the edges
         //   tail --- head   ->  tail  |  head       tail x and x head are hull edges now.
         //      \     /              \ | /
         //         x                   x
-        let inside = self.opposite(g);
-        let (head, tail, x) = (self.head(g), self.tail(g), self.vertex(inside));
-        debug_assert!(self.vertex(prev(inside)) == head && self.vertex(next(inside)) == tail);
-        let (beyond_head, beyond_tail) = (self.opposite(next(inside)), self.opposite(prev(inside)));
-        let before = self.opposite(next(g));
-        let other = inside;
-        let infinite = self.infinite();
-        self.set_vertex(other, infinite);
-        self.set_vertex(next(other), x);
-        self.set_vertex(prev(other), tail);
-        self.set_vertex(prev(g), x);
-        self.link(g, beyond_head);
-        self.link(other, beyond_tail);
-        // In a merge the ghost before may have become a triangle, which no longer points here.
-        if self.opposite(before) == next(g) {
-            self.link(next(other), before);
-        }
-        self.link(prev(other), next(g));
+        let &[infinite, _, tail, _, inside, ..] = self.record(g);
+        let other = triangle(inside);
+        let behind = *self.record(other);
+        let k = inside & 3;
+        let x = behind[k as usize];
+        let beyond = |e: Code| behind[OPPOSITE + (e & 3) as usize];
+        let (beyond_head, beyond_tail) = (beyond(next(k)), beyond(prev(k)));
+        let r = self.record_mut(g);
+        r[2] = x;
+        [r[OPPOSITE], r[OPPOSITE + 1]] = [beyond_head, 8 * other + 2];
+        let r = self.record_mut(other);
+        [r[0], r[1], r[2]] = [infinite, x, tail];
+        [r[OPPOSITE], r[OPPOSITE + 2]] = [beyond_tail, 8 * g + 1];
+        self.set_opposite(beyond_head, 8 * g);
+        self.set_opposite(beyond_tail, 8 * other);
         other
     }
 }
@@ -67,8 +80,9 @@ mod tests {
         let mut mesh = Mesh2::with_vertices(3).unwrap();
         let mut patch = mesh.patch();
         let g = patch.triangle([0, 1, 2]);
-        let (head, tail) = (patch.head(g), patch.tail(g));
-        let other = patch.peel(g);
+        let (head, tail, before) = (patch.head(g), patch.tail(g), patch.opposite(g + 1));
+        let other = 8 * patch.peel(g >> 3);
+        patch.link(other + 1, before);
         patch.check(4).unwrap();
         assert_eq!((patch.head(g), patch.tail(other)), (head, tail));
         assert_eq!(patch.after(other), g);
@@ -77,5 +91,23 @@ mod tests {
             .collect();
         assert_eq!(patch.after(ring[3]), g);
         assert!(ring.iter().all(|&g| patch.vertex(g) == 3));
+    }
+
+    #[test]
+    fn a_turned_ghost_is_linked_as_before() {
+        let mut mesh = Mesh2::with_vertices(3).unwrap();
+        let mut patch = mesh.patch();
+        let g = patch.triangle([0, 1, 2]);
+        let (head, tail) = (patch.head(g), patch.tail(g));
+        let across = [0, 1, 2].map(|k| patch.opposite(g + k));
+        patch.set(g >> 3, [tail, 3, head]);
+        for k in 0..3 {
+            patch.link(g + (k + 1) % 3, across[k as usize]);
+        }
+        patch.check(4).unwrap();
+        assert_eq!(patch.turn(g + 1), g);
+        patch.check(4).unwrap();
+        assert_eq!([0, 1, 2].map(|k| patch.opposite(g + k)), across);
+        assert_eq!((patch.head(g), patch.tail(g)), (head, tail));
     }
 }

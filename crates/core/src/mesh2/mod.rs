@@ -17,4 +17,4 @@ pub mod import;
 mod marks;
 mod storage;
 
-pub use storage::{Code, Mesh2, Patch, next, prev, triangle};
+pub use storage::{Code, Mesh2, OPPOSITE, Patch, RECORD, next, prev, triangle};

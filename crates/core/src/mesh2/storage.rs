@@ -6,8 +6,10 @@ use crate::memory::zeroed;
 /// A half-edge: `8 t + k` for the edge opposite corner k of triangle t.
 pub type Code = u32;
 
-pub(super) const RECORD: usize = 8;
-pub(super) const OPPOSITE: usize = 4;
+/// Words of a record.
+pub const RECORD: usize = 8;
+/// Where the codes across begin in a record.
+pub const OPPOSITE: usize = 4;
 
 /// Records that a vertex brings: as many as a mesh has a vertex, but for two of the mesh.
 const PER_VERTEX: usize = 2;
@@ -180,6 +182,24 @@ impl<'a> Patch<'a> {
         self.records[self.index(e) + OPPOSITE]
     }
 
+    /// Triangle `t` as it lies in memory: corners in words 0 to 2, the codes across in 4 to 6.
+    #[inline]
+    pub fn record(&self, t: u32) -> &[u32; RECORD] {
+        &self.records.as_chunks().0[(t - triangle(self.base)) as usize]
+    }
+
+    /// The same to write.
+    #[inline]
+    pub fn record_mut(&mut self, t: u32) -> &mut [u32; RECORD] {
+        &mut self.records.as_chunks_mut().0[(t - triangle(self.base)) as usize]
+    }
+
+    /// The same of `count` triangles from `t` on.
+    #[inline]
+    pub fn records_mut(&mut self, t: u32, count: usize) -> &mut [[u32; RECORD]] {
+        &mut self.records.as_chunks_mut().0[(t - triangle(self.base)) as usize..][..count]
+    }
+
     /// Takes the next record that was never used.
     #[inline]
     pub fn fresh(&mut self) -> u32 {
@@ -217,6 +237,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Says what lies across `e`, from this side alone.
+    #[inline]
     pub fn set_opposite(&mut self, e: Code, across: Code) {
         let i = self.index(e);
         self.records[i + OPPOSITE] = across;

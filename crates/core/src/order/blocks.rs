@@ -34,10 +34,11 @@ impl Axis {
         }
     }
 
-    /// Whether `p` comes before `q` along the axis.
+    /// Whether `p` comes before `q` along the axis, without a branch.
     #[inline]
     pub fn before(self, p: Point2, q: Point2) -> bool {
-        lexicographic(self.turned(p), self.turned(q)).is_lt()
+        let (p, q) = (self.turned(p), self.turned(q));
+        (p[0] < q[0]) | (p[0] == q[0]) & (p[1] < q[1])
     }
 }
 

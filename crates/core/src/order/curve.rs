@@ -57,6 +57,20 @@ pub fn along_curve(
     Ok((to.len(), duplicates))
 }
 
+/// The keys of points that `along_curve` has put in order, as a whole block, or as a crowded cell
+/// of one: they do not fall.
+pub fn keys(points: &[Point2], block: bool) -> impl Iterator<Item = u32> {
+    let cells = Cells::of(&Extent::of(points.iter().copied()));
+    let low_bit = if block {
+        32 - fine_bits(points.len())
+    } else {
+        0
+    };
+    points
+        .iter()
+        .map(move |&p| (cells.key(p) >> 32) as u32 >> low_bit << low_bit)
+}
+
 fn collect(
     points: &[Point2],
     rows: &[u32],
