@@ -232,7 +232,7 @@ const fn kind(signs: usize, [a, b, c, d]: [usize; 4]) -> usize {
         // The diagonal is right where the last point is not in the circle of the others.
         let odd = ((a > b) as u8 + (a > c) as u8 + (a > d) as u8)
             + ((b > c) as u8 + (b > d) as u8 + (c > d) as u8);
-        if (signs >> 4 & 1 == 1) == (odd % 2 == 0) {
+        if (signs >> 4 & 1 == 1) != (odd % 2 == 1) {
             2
         } else {
             1

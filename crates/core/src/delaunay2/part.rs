@@ -122,9 +122,8 @@ impl Part {
     fn joined(points: &[Point2], [a, b]: [&Self; 2]) -> Self {
         let end = |i: usize, axis: Axis| {
             let (p, q) = (a.ends[i], b.ends[i]);
-            // First ends are at even places, and the one before is chosen.
-            let swapped = i % 2 == 0;
-            let (p, q) = if swapped { (p, q) } else { (q, p) };
+            // Last ends are at odd places, where the one before is not chosen.
+            let (p, q) = if i % 2 == 1 { (q, p) } else { (p, q) };
             Corner::choose(before(points, axis, p, q), a.ends[i], b.ends[i])
         };
         Self {
