@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, Given3, validate};
+use delone_core::arrays::Given;
+use delone_core::delaunay3::validate::{Findings3, validate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use delone_fuzz::Coordinates;
@@ -42,7 +43,7 @@ fn read(bytes: &mut Unstructured) -> Result<Vec<Point3>> {
 fn tetrahedra(points: &[Point3]) -> BTreeSet<[[u64; 3]; 4]> {
     match triangulate(points, 1, &Watch::idle()) {
         Ok(made) => {
-            let given = Given3 {
+            let given = Given {
                 points,
                 simplices: &made.arrays.simplices,
                 neighbors: &made.arrays.neighbors,

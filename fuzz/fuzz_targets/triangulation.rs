@@ -5,7 +5,8 @@
 use std::collections::BTreeSet;
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::{Findings, Given, validate};
+use delone_core::arrays::Given;
+use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;

@@ -121,8 +121,9 @@ PYTHON: dict[str, set[str]] = {
 }
 
 # What each module of the core may use, of the core and of other crates.
-GROUND = {"error", "memory", "watch"}
+GROUND = {"arrays", "error", "memory", "watch"}
 CORE: dict[str, set[str]] = {
+    "arrays": set(),
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
@@ -138,7 +139,7 @@ CORE: dict[str, set[str]] = {
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "improve": {"delone_predicates"} | GROUND,
-    "locate": {"delaunay2", "order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "locate3": {"locate", "order", "parallel", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
@@ -146,7 +147,7 @@ CORE: dict[str, set[str]] = {
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
-    "voronoi3": {"regular3", "parallel", "wide", "delone_predicates"} | GROUND,
+    "voronoi3": {"regular3", "voronoi", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "wide", "delone_predicates"} | GROUND,
 }

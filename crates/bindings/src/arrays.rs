@@ -41,6 +41,22 @@ pub fn in_range<const D: usize>(
     }
 }
 
+/// Checks that every entry lies in `from..to`.
+pub fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()> {
+    in_range(values.as_chunks::<1>().0, from, to, name)
+}
+
+/// Checks that `starts` cuts `length` entries into pieces.
+pub fn are_starts(starts: &[i32], length: usize) -> Result<()> {
+    let right =
+        starts.first() == Some(&0) && starts.last() == Some(&(length as i32)) && starts.is_sorted();
+    if right {
+        Ok(())
+    } else {
+        Err(Error::Shape(format!("starts do not cut {length} entries")))
+    }
+}
+
 /// A vector of rows as an `(n, D)` array that owns it.
 pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> PyResult<Py<PyAny>> {
     let shape = [rows.len(), D];
@@ -83,4 +99,15 @@ pub fn shaped<T: Element, S: IntoDimension>(
 ) -> PyResult<Py<PyAny>> {
     let array = PyArray1::from_vec(py, values).reshape(shape)?;
     Ok(array.into_any().unbind())
+}
+
+/// A list of numbers as an array.
+pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Py<PyAny> {
+    column(py, numbers.into_iter().map(|v| v as i32).collect())
+}
+
+/// Rows of numbers as an array.
+pub fn number_rows<const D: usize>(py: Python<'_>, rows: Vec<[u32; D]>) -> PyResult<Py<PyAny>> {
+    let signed: Vec<[i32; D]> = rows.into_iter().map(|row| row.map(|v| v as i32)).collect();
+    table(py, signed)
 }

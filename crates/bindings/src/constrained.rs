@@ -11,9 +11,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, frozen, in_range, rows, table};
+use crate::arrays::{column, frozen, in_range, number_rows, numbers, rows, table};
 use crate::errors::raise;
-use crate::triangulation::{methods2, watched};
+use crate::signals::watched;
+use crate::triangulation::methods2;
 
 /// The constrained triangulation of points and segments, by name.
 #[pyfunction]
@@ -55,24 +56,20 @@ fn pairs(segments: &PyReadonlyArray2<'_, i32>, n: usize) -> Result<Vec<[u32; 2]>
 }
 
 fn by_name(py: Python<'_>, made: Constrained) -> PyResult<Bound<'_, PyDict>> {
-    fn signed<const D: usize>(rows: Vec<[u32; D]>) -> Vec<[i32; D]> {
-        rows.into_iter().map(|r| r.map(|v| v as i32)).collect()
-    }
     let out = PyDict::new(py);
     let sub = made.subsegments;
     out.set_item("added", table(py, made.added)?)?;
     out.set_item("simplices", table(py, made.arrays.simplices)?)?;
     out.set_item("neighbors", table(py, made.arrays.neighbors)?)?;
     out.set_item("constrained", table(py, made.constrained)?)?;
-    out.set_item("duplicates", table(py, signed(made.duplicates))?)?;
+    out.set_item("duplicates", number_rows(py, made.duplicates)?)?;
     out.set_item("segments", table(py, sub.ends)?)?;
     out.set_item("source_start", column(py, sub.start))?;
     out.set_item("source", column(py, sub.source))?;
     out.set_item("forward", column(py, sub.forward))?;
-    let zero = made.zero.into_iter().map(|row| row as i32).collect();
-    out.set_item("zero", column::<i32>(py, zero))?;
-    out.set_item("through", table(py, signed(made.through))?)?;
-    out.set_item("crossings", table(py, signed(made.crossings))?)?;
+    out.set_item("zero", numbers(py, made.zero))?;
+    out.set_item("through", number_rows(py, made.through)?)?;
+    out.set_item("crossings", number_rows(py, made.crossings)?)?;
     let stages = made.stages.iter();
     let stages: Vec<_> = stages.map(|(name, t)| (*name, t.as_secs_f64())).collect();
     out.set_item("stages", stages)?;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{column, in_range, rows, table};
 use crate::errors::{detached, raise};
-use crate::triangulation::watched;
+use crate::signals::watched;
 
 /// Centre and radius of disks that hold the closed circumdisks; an infinite radius is the plane.
 #[pyfunction]

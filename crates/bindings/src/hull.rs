@@ -4,9 +4,9 @@ use delone_core::hull::{self, Hull3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, rows, table};
+use crate::arrays::{number_rows, numbers, rows};
 use crate::errors::{detached, raise};
-use crate::triangulation::watched;
+use crate::signals::watched;
 
 /// `(vertices, duplicates)`.
 type Chain = (Py<PyAny>, Py<PyAny>);
@@ -16,10 +16,7 @@ type Chain = (Py<PyAny>, Py<PyAny>);
 pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chain> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let (vertices, duplicates) = detached(py, || Ok(hull::hull2(points)))?;
-    Ok((
-        column(py, vertices.into_iter().map(|v| v as i32).collect()),
-        table::<i32, 2>(py, signed(duplicates))?,
-    ))
+    Ok((numbers(py, vertices), number_rows(py, duplicates)?))
 }
 
 /// `(simplices, neighbors, facet, polygons, starts, duplicates)`.
@@ -47,17 +44,12 @@ pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Opti
         starts,
         duplicates,
     } = found;
-    let numbers = |rows: Vec<u32>| column(py, rows.into_iter().map(|v| v as i32).collect());
     Ok(Some((
-        table::<i32, 3>(py, signed(simplices))?,
-        table::<i32, 3>(py, signed(neighbors))?,
-        numbers(facet),
-        numbers(polygons),
-        numbers(starts),
-        table::<i32, 2>(py, signed(duplicates))?,
+        number_rows(py, simplices)?,
+        number_rows(py, neighbors)?,
+        numbers(py, facet),
+        numbers(py, polygons),
+        numbers(py, starts),
+        number_rows(py, duplicates)?,
     )))
-}
-
-fn signed<const D: usize>(rows: Vec<[u32; D]>) -> Vec<[i32; D]> {
-    rows.into_iter().map(|row| row.map(|v| v as i32)).collect()
 }

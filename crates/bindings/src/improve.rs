@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{column, flat, in_range, rows, table};
 use crate::errors::raise;
-use crate::triangulation::watched;
+use crate::signals::watched;
 
 /// Better tetrahedra, by name. `progress` is called after each pass with its number and how many
 /// tetrahedra are below the bound.

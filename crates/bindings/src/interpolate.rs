@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{column, flat, rows, shaped};
 use crate::errors::raise;
-use crate::locate::Locator2;
-use crate::triangulation::watched;
+use crate::locator::Locator2;
+use crate::signals::watched;
 
 /// Columns of values.
 pub type Values<'py> = PyReadonlyArray2<'py, f64>;
@@ -120,7 +120,7 @@ pub fn smooth_of(
     if slopes.is_none() & kind.is_none_or(Kind::is_smooth) {
         return Err(PyValueError::new_err("this kind needs gradients"));
     }
-    let barrier = barrier_of(given.barrier, locator.triangles(py)).map_err(fail)?;
+    let barrier = barrier_of(given.barrier, locator.held.count(py)).map_err(fail)?;
     let workers = given.workers;
     let found = locator.batch(py, queries, workers, |batch| {
         let field = Field::new(&batch.locator.given, items, slopes, columns)?;
@@ -142,7 +142,7 @@ pub fn corner_weights_of(
 ) -> PyResult<(Array, Array, Array)> {
     let fail = |e: Error| raise(py, &e);
     let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
-    let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
+    let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
     let n = queries.len();
     let found = locator.batch(py, queries, workers, |batch| {
         clough_tocher_weights(batch, barrier)
@@ -169,7 +169,7 @@ pub fn natural_of(
     let kind = kind_of(kind)?;
     let fail = |e: Error| raise(py, &e);
     let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
-    let barrier = barrier_of(barrier, locator.triangles(py)).map_err(fail)?;
+    let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
     let (found, triangle) =
         locator.batch(py, queries, workers, |batch| natural(batch, kind, barrier))?;
     let entries = found.indices.len();

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{in_range, rows, table};
 use crate::errors::{detached, raise};
-use crate::triangulation::watched;
+use crate::signals::watched;
 
 /// Borrowed triangles whose vertices have been checked.
 fn checked<'a>(simplices: &'a PyReadonlyArray2<'_, i32>, points: usize) -> Result<&'a [[i32; 3]]> {

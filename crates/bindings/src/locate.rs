@@ -1,103 +1,22 @@
 //! Point location on arrays.
 
-use delone_core::Point2;
-use delone_core::delaunay2::validate::Given;
-use delone_core::error::{Error, Result};
+use delone_core::error::Error;
 use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
-use delone_core::watch::Watch;
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{column, rows, shaped};
-use crate::errors::{attached, detached, raise};
+use crate::errors::{detached, raise};
+use crate::given::{Held, checked};
 use crate::interpolate::{
     Closed, Gradients, Neighbours, Points, Smooth, Values, corner_weights_of, leave_one_out_of,
     linear_of, natural_of, smooth_of,
 };
-use crate::triangulation::{checked, watched};
-
-/// Queries below which a call keeps the GIL: it is over before another thread could run.
-const FEW: usize = 16;
-
-/// A triangulation for many calls: its arrays, which never change, and a tree of starts.
-#[pyclass(frozen, module = "delone._core")]
-pub struct Locator2 {
-    points: Py<PyArray2<f64>>,
-    simplices: Py<PyArray2<i32>>,
-    neighbors: Py<PyArray2<i32>>,
-    kept: Kept,
-}
-
-/// The arrays of a locator, borrowed from Python for one call.
-pub struct Borrowed<'py> {
-    points: PyReadonlyArray2<'py, f64>,
-    simplices: PyReadonlyArray2<'py, i32>,
-    neighbors: PyReadonlyArray2<'py, i32>,
-}
-
-impl Borrowed<'_> {
-    /// The arrays; the constructor has checked them.
-    pub fn given(&self) -> Result<Given<'_>> {
-        Ok(Given {
-            points: rows(&self.points, "points")?,
-            simplices: rows(&self.simplices, "simplices")?,
-            neighbors: rows(&self.neighbors, "neighbors")?,
-        })
-    }
-}
+use crate::locator::Locator2;
+use crate::signals::watched;
 
 /// `(triangle, weights, beside, edge, along)`.
 type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
-
-impl Locator2 {
-    /// Borrows the arrays.
-    pub fn borrow<'py>(&self, py: Python<'py>) -> PyResult<Borrowed<'py>> {
-        Ok(Borrowed {
-            points: self.points.bind(py).try_readonly()?,
-            simplices: self.simplices.bind(py).try_readonly()?,
-            neighbors: self.neighbors.bind(py).try_readonly()?,
-        })
-    }
-
-    /// The number of triangles.
-    pub fn triangles(&self, py: Python<'_>) -> usize {
-        self.simplices.bind(py).shape()[0]
-    }
-
-    /// Calls `work` with a locator for `count` queries, without the GIL unless they are few.
-    pub fn run<T: Send>(
-        &self,
-        py: Python<'_>,
-        count: usize,
-        work: impl FnOnce(&Locator, &Watch) -> Result<T> + Send,
-    ) -> PyResult<T> {
-        let borrowed = self.borrow(py)?;
-        let given = borrowed.given().map_err(|e| raise(py, &e))?;
-        let locator = Locator::new(given, &self.kept);
-        if count <= FEW {
-            return attached(py, || work(&locator, &Watch::idle()));
-        }
-        watched(py, |watch| work(&locator, watch))
-    }
-
-    /// Calls `work` with a batch of queries.
-    pub fn batch<T: Send>(
-        &self,
-        py: Python<'_>,
-        queries: &[Point2],
-        workers: usize,
-        work: impl FnOnce(&Batch) -> Result<T> + Send,
-    ) -> PyResult<T> {
-        self.run(py, queries.len(), |locator, watch| {
-            work(&Batch {
-                locator: *locator,
-                queries,
-                workers,
-                watch,
-            })
-        })
-    }
-}
 
 #[pymethods]
 impl Locator2 {
@@ -111,9 +30,7 @@ impl Locator2 {
         let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
         let kept = detached(py, || Kept::of(&given))?;
         Ok(Self {
-            points: (*points).clone().unbind(),
-            simplices: (*simplices).clone().unbind(),
-            neighbors: (*neighbors).clone().unbind(),
+            held: Held::new(&points, &simplices, &neighbors),
             kept,
         })
     }

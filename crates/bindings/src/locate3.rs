@@ -1,26 +1,21 @@
 //! Point location on arrays of tetrahedra.
 
 use delone_core::Point3;
-use delone_core::error::{Error, Result};
+use delone_core::error::Result;
 use delone_core::interpolate3::natural;
-use delone_core::locate3::{Batch, Kept, Locator, Tetrahedra, coordinates, find, nearest, within};
+use delone_core::locate3::{Batch, Kept, Locator, coordinates, find, nearest, within};
 use delone_core::watch::Watch;
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, in_range, rows, shaped};
-use crate::errors::{attached, detached, raise};
-use crate::triangulation::watched;
-
-/// Queries below which a call keeps the GIL: it is over before another thread could run.
-const FEW: usize = 16;
+use crate::arrays::{column, rows, shaped};
+use crate::errors::{detached, raise};
+use crate::given::{Held, answered, checked};
 
 /// A triangulation in space for many calls: its arrays, which never change, and a tree of starts.
 #[pyclass(frozen, module = "delone._core")]
 pub struct Locator3 {
-    points: Py<PyArray2<f64>>,
-    simplices: Py<PyArray2<i32>>,
-    neighbors: Py<PyArray2<i32>>,
+    held: Held,
     kept: Kept,
 }
 
@@ -30,35 +25,6 @@ type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 /// `(indptr, indices, weights, simplex)`.
 type Neighbours3 = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
-/// Borrowed arrays whose indices have been checked, which takes a look at each.
-pub fn checked3<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Tetrahedra<'a>> {
-    let given = borrowed(points, simplices, neighbors)?;
-    if given.neighbors.len() != given.simplices.len() {
-        return Err(Error::Shape(
-            "neighbors and simplices differ in length".into(),
-        ));
-    }
-    in_range(given.simplices, 0, given.points.len(), "simplices")?;
-    in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
-    Ok(given)
-}
-
-fn borrowed<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Tetrahedra<'a>> {
-    Ok(Tetrahedra {
-        points: rows(points, "points")?,
-        simplices: rows(simplices, "simplices")?,
-        neighbors: rows(neighbors, "neighbors")?,
-    })
-}
-
 impl Locator3 {
     /// Calls `work` with a locator for `count` queries, without the GIL unless they are few.
     pub fn run<T: Send>(
@@ -67,15 +33,10 @@ impl Locator3 {
         count: usize,
         work: impl FnOnce(&Locator, &Watch) -> Result<T> + Send,
     ) -> PyResult<T> {
-        let points = self.points.bind(py).try_readonly()?;
-        let simplices = self.simplices.bind(py).try_readonly()?;
-        let neighbors = self.neighbors.bind(py).try_readonly()?;
-        let given = borrowed(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+        let lent = self.held.lend(py)?;
+        let given = lent.given().map_err(|e| raise(py, &e))?;
         let locator = Locator::new(given, &self.kept);
-        if count <= FEW {
-            return attached(py, || work(&locator, &Watch::idle()));
-        }
-        watched(py, |watch| work(&locator, watch))
+        answered(py, count, |watch| work(&locator, watch))
     }
 
     /// Calls `work` with a batch of queries.
@@ -106,12 +67,10 @@ impl Locator3 {
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
     ) -> PyResult<Self> {
-        let given = checked3(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
+        let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
         let kept = detached(py, || Kept::of(&given))?;
         Ok(Self {
-            points: (*points).clone().unbind(),
-            simplices: (*simplices).clone().unbind(),
-            neighbors: (*neighbors).clone().unbind(),
+            held: Held::new(&points, &simplices, &neighbors),
             kept,
         })
     }

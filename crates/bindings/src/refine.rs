@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{column, in_range, rows, table};
 use crate::errors::raise;
-use crate::triangulation::watched;
+use crate::signals::watched;
 
 /// A vector of one entry for each of `n` things.
 fn each<'a, T: Element>(

@@ -4,13 +4,30 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use delone_core::error::Result;
+use delone_core::watch::Watch;
 use pyo3::prelude::*;
+
+use crate::errors::detached;
 
 /// Least time between two looks at Python's signals: a look takes the GIL.
 const BETWEEN: Duration = Duration::from_millis(50);
 
+/// Runs `work` without the GIL under a watch on Python's signals.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
+    let signals = Signals::new();
+    let outcome = detached(py, || work(&Watch::new(&|| signals.stop())));
+    match signals.exception() {
+        Some(signal) => Err(signal),
+        None => outcome,
+    }
+}
+
 /// Looks at Python's pending signals now and then and remembers that one has come.
-pub struct Signals {
+struct Signals {
     looked: Mutex<Instant>,
     stopped: AtomicBool,
     pending: Mutex<Option<PyErr>>,
@@ -18,7 +35,7 @@ pub struct Signals {
 
 impl Signals {
     /// Nothing has come yet.
-    pub fn new() -> Self {
+    fn new() -> Self {
         Self {
             looked: Mutex::new(Instant::now()),
             stopped: AtomicBool::new(false),
@@ -27,7 +44,7 @@ impl Signals {
     }
 
     /// Whether the call should end. Where another thread looks at this moment, its look counts.
-    pub fn stop(&self) -> bool {
+    fn stop(&self) -> bool {
         if let Ok(mut looked) = self.looked.try_lock()
             && looked.elapsed() >= BETWEEN
         {
@@ -44,7 +61,7 @@ impl Signals {
     }
 
     /// The exception of the signal that stopped the call, where one did.
-    pub fn exception(self) -> Option<PyErr> {
+    fn exception(self) -> Option<PyErr> {
         self.pending.into_inner().ok().flatten()
     }
 }

@@ -1,16 +1,17 @@
 //! Triangulations of points in space as arrays.
 
 use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, Given3, validate};
-use delone_core::error::Error;
+use delone_core::delaunay3::validate::{Findings3, validate};
 use delone_core::skeleton3;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
-use crate::errors::raise;
-use crate::triangulation::{Made, watched};
+use crate::arrays::{in_range, number_rows, numbers, rows, table};
+use crate::errors::{attached, raise};
+use crate::given::checked;
+use crate::signals::watched;
+use crate::triangulation::Made;
 
 /// The triangulation of the points as arrays.
 #[pyfunction]
@@ -21,13 +22,11 @@ pub fn triangulate3(
 ) -> PyResult<Made> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| triangulate(points, workers, watch))?;
-    let duplicates = made.duplicates.iter();
-    let duplicates = duplicates.map(|pair| pair.map(|v| v as i32)).collect();
     let stages = made.stages.iter();
     Ok((
         table(py, made.arrays.simplices)?,
         table(py, made.arrays.neighbors)?,
-        table::<i32, 2>(py, duplicates)?,
+        number_rows(py, made.duplicates)?,
         stages.map(|(name, t)| (*name, t.as_secs_f64())).collect(),
     ))
 }
@@ -60,44 +59,19 @@ pub fn validate3<'py>(
         ("repeats", repeats),
     ];
     for (name, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
-        let rows = rows.into_iter().map(|v| v as i32).collect();
-        report.set_item(name, column(py, rows))?;
+        report.set_item(name, numbers(py, rows))?;
     }
     for (name, rows) in [("facets", facets), ("hull", hull)] {
         if !rows.is_empty() {
-            report.set_item(name, table(py, signed(rows))?)?;
+            report.set_item(name, number_rows(py, rows)?)?;
         }
     }
     for (name, rows) in [("delaunay", delaunay), ("ties", ties)] {
         if !rows.is_empty() {
-            report.set_item(name, table(py, signed(rows))?)?;
+            report.set_item(name, number_rows(py, rows)?)?;
         }
     }
     Ok(report)
-}
-
-fn signed<const D: usize>(rows: Vec<[u32; D]>) -> Vec<[i32; D]> {
-    rows.into_iter().map(|row| row.map(|v| v as i32)).collect()
-}
-
-/// Borrowed arrays whose indices have been checked.
-fn checked<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Given3<'a>, Error> {
-    let given = Given3 {
-        points: rows(points, "points")?,
-        simplices: rows(simplices, "simplices")?,
-        neighbors: rows(neighbors, "neighbors")?,
-    };
-    if given.neighbors.len() != given.simplices.len() {
-        let message = "neighbors and simplices differ in length";
-        return Err(Error::Shape(message.into()));
-    }
-    in_range(given.simplices, 0, given.points.len(), "simplices")?;
-    in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
-    Ok(given)
 }
 
 /// Every edge once: the smaller vertex first, rows ascending.
@@ -108,12 +82,11 @@ pub fn edges3(
     npoints: usize,
     workers: usize,
 ) -> PyResult<Py<PyAny>> {
-    let simplices = (|| {
+    let simplices = attached(py, || {
         let simplices = rows(&simplices, "simplices")?;
         in_range(simplices, 0, npoints, "simplices")?;
-        Ok::<_, Error>(simplices)
-    })()
-    .map_err(|e| raise(py, &e))?;
+        Ok(simplices)
+    })?;
     let found = watched(py, |watch| {
         skeleton3::edges(simplices, npoints, workers, watch)
     })?;
@@ -129,15 +102,14 @@ pub fn faces3(
     npoints: usize,
     workers: usize,
 ) -> PyResult<Py<PyAny>> {
-    let (simplices, neighbors) = (|| {
+    let (simplices, neighbors) = attached(py, || {
         let (simplices, neighbors) = (
             rows(&simplices, "simplices")?,
             rows(&neighbors, "neighbors")?,
         );
         in_range(simplices, 0, npoints, "simplices")?;
-        Ok::<_, Error>((simplices, neighbors))
-    })()
-    .map_err(|e| raise(py, &e))?;
+        Ok((simplices, neighbors))
+    })?;
     let found = watched(py, |watch| {
         skeleton3::faces(simplices, neighbors, npoints, workers, watch)
     })?;

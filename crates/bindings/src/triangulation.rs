@@ -1,30 +1,16 @@
 //! Triangulations as arrays.
 
-use delone_core::delaunay2::validate::{Findings, Given, validate};
+use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::delaunay2::{Method, triangulate};
-use delone_core::error::{Error, Result};
-use delone_core::watch::Watch;
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
-use crate::errors::{detached, raise};
-use crate::signals::Signals;
-
-/// Runs `work` without the GIL under a watch on Python's signals.
-pub fn watched<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce(&Watch) -> Result<T> + Send,
-) -> PyResult<T> {
-    let signals = Signals::new();
-    let outcome = detached(py, || work(&Watch::new(&|| signals.stop())));
-    match signals.exception() {
-        Some(signal) => Err(signal),
-        None => outcome,
-    }
-}
+use crate::arrays::{number_rows, numbers, rows, table};
+use crate::errors::raise;
+use crate::given::checked;
+use crate::signals::watched;
 
 /// Names of the methods of `triangulate2`.
 #[pyfunction]
@@ -51,51 +37,15 @@ pub fn triangulate2(
     })?;
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
-    let duplicates = made
-        .duplicates
-        .iter()
-        .map(|pair| pair.map(|v| v as i32))
-        .collect();
     Ok((
         table(py, made.arrays.simplices)?,
         table(py, made.arrays.neighbors)?,
-        table::<i32, 2>(py, duplicates)?,
+        number_rows(py, made.duplicates)?,
         made.stages
             .iter()
             .map(|(name, time)| (*name, time.as_secs_f64()))
             .collect(),
     ))
-}
-
-/// Borrowed arrays. An index in them that is out of range is an `InternalError` when it is used.
-fn given<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Given<'a>> {
-    let given = Given {
-        points: rows(points, "points")?,
-        simplices: rows(simplices, "simplices")?,
-        neighbors: rows(neighbors, "neighbors")?,
-    };
-    if given.neighbors.len() != given.simplices.len() {
-        return Err(Error::Shape(
-            "neighbors and simplices differ in length".into(),
-        ));
-    }
-    Ok(given)
-}
-
-/// Borrowed arrays whose indices have been checked, which takes a look at each.
-pub fn checked<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Given<'a>> {
-    let given = given(points, simplices, neighbors)?;
-    in_range(given.simplices, 0, given.points.len(), "simplices")?;
-    in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
-    Ok(given)
 }
 
 /// What is wrong with a triangulation, by kind; empty where nothing is.
@@ -127,10 +77,7 @@ pub fn validate2<'py>(
         ("repeats", repeats),
     ];
     for (name, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
-        report.set_item(
-            name,
-            column(py, rows.into_iter().map(|v| v as i32).collect()),
-        )?;
+        report.set_item(name, numbers(py, rows))?;
     }
     let tables = [
         ("edges", edges),
@@ -140,11 +87,7 @@ pub fn validate2<'py>(
         ("count", count),
     ];
     for (name, pairs) in tables.into_iter().filter(|(_, pairs)| !pairs.is_empty()) {
-        let pairs = pairs
-            .into_iter()
-            .map(|pair| pair.map(|v| v as i32))
-            .collect();
-        report.set_item(name, table::<i32, 2>(py, pairs)?)?;
+        report.set_item(name, number_rows(py, pairs)?)?;
     }
     Ok(report)
 }

@@ -3,51 +3,60 @@
 use delone_core::error::{Error, Result};
 use delone_core::regular;
 use delone_core::voronoi::{self, Cells, Given};
-use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
-use crate::errors::{detached, raise};
-use crate::triangulation::watched;
+use crate::arrays::{are_starts, column, each_in_range, flat, in_range, numbers, rows, table};
+use crate::errors::{attached, detached, raise};
+use crate::given::checked;
+use crate::signals::watched;
 
-/// The entries of a C-contiguous array.
-pub(crate) fn entries<'a, T: Element>(
-    array: &'a PyReadonlyArray1<'_, T>,
-    name: &str,
-) -> Result<&'a [T]> {
-    array
-        .as_slice()
-        .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
+/// What is wrong with arrays that do not fit together.
+pub(crate) fn unequal() -> Error {
+    Error::Shape("arrays that belong together differ in length".into())
 }
 
-/// Checks that every entry lies in `from..to`.
-pub(crate) fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result<()> {
-    in_range(values.as_chunks::<1>().0, from, to, name)
-}
-
-/// Weights of `n` points, all finite; none where nothing is given.
-fn finite_weights<'a>(
+/// Weights of `n` points; none where nothing is given.
+pub(crate) fn weights_of<'a>(
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
     n: usize,
 ) -> Result<&'a [f64]> {
     let Some(given) = weights else { return Ok(&[]) };
-    let found = entries(given, "weights")?;
-    if found.len() == n && found.iter().all(|w| w.is_finite()) {
+    let found = flat(given, "weights")?;
+    if found.len() == n {
         return Ok(found);
     }
-    Err(Error::Shape("each point needs one finite weight".into()))
+    Err(unequal())
 }
 
-/// Checks that `starts` cuts `length` entries into pieces.
-pub(crate) fn are_starts(starts: &[i32], length: usize) -> Result<()> {
-    let right =
-        starts.first() == Some(&0) && starts.last() == Some(&(length as i32)) && starts.is_sorted();
-    if right {
-        Ok(())
-    } else {
-        Err(Error::Shape(format!("starts do not cut {length} entries")))
+/// The same, and all of them finite.
+pub(crate) fn finite_weights<'a>(
+    weights: Option<&'a PyReadonlyArray1<'_, f64>>,
+    n: usize,
+) -> Result<&'a [f64]> {
+    let wrong = || Error::Shape("each point needs one finite weight".into());
+    let found = weights_of(weights, n).map_err(|_| wrong())?;
+    if found.iter().all(|w| w.is_finite()) {
+        return Ok(found);
     }
+    Err(wrong())
+}
+
+/// A triangulation whose dual is wanted.
+pub(crate) fn given<'a, const D: usize, const N: usize>(
+    points: &'a PyReadonlyArray2<'_, f64>,
+    weights: Option<&'a PyReadonlyArray1<'_, f64>>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    neighbors: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<Given<'a, D, N>> {
+    let found = checked(points, simplices, neighbors)?;
+    Ok(Given {
+        points: found.points,
+        weights: weights_of(weights, found.points.len())?,
+        simplices: found.simplices,
+        neighbors: found.neighbors,
+    })
 }
 
 /// The diagram of a triangulation; of the regular one, where there are weights.
@@ -60,27 +69,9 @@ pub fn voronoi2<'py>(
     neighbors: PyReadonlyArray2<'py, i32>,
     workers: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let given = (|| {
-        let given = Given {
-            points: rows(&points, "points")?,
-            weights: weights
-                .as_ref()
-                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
-            simplices: rows(&simplices, "simplices")?,
-            neighbors: rows(&neighbors, "neighbors")?,
-        };
-        in_range(given.simplices, 0, given.points.len(), "simplices")?;
-        in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
-        let same = given.neighbors.len() == given.simplices.len();
-        let weighed = weights.is_none() || given.weights.len() == given.points.len();
-        if same && weighed {
-            return Ok(given);
-        }
-        Err(Error::Shape(
-            "arrays that belong together differ in length".into(),
-        ))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    let given = attached(py, || {
+        given(&points, weights.as_ref(), &simplices, &neighbors)
+    })?;
     let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
     let out = PyDict::new(py);
     out.set_item("vertices", table(py, made.vertices)?)?;
@@ -120,21 +111,20 @@ pub fn voronoi_clip2<'py>(
     let (sites, ends) = (codes("sites")?, codes("ends")?);
     let (site, starts) = (list("site")?, list("starts")?);
     let (region_vertices, region_ridges) = (list("region_vertices")?, list("region_ridges")?);
-    let cells = (|| {
+    let cells = attached(py, || {
+        let points = rows(&points, "points")?;
         let cells = Cells {
-            points: rows(&points, "points")?,
-            weights: weights
-                .as_ref()
-                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            points,
+            weights: weights_of(weights.as_ref(), points.len())?,
             vertices: rows(&vertices, "vertices")?,
             sites: rows(&sites, "sites")?,
             ends: rows(&ends, "ends")?,
             rays: rows(&rays, "rays")?,
             beyond: rows(&beyond, "beyond")?,
-            site: entries(&site, "site")?,
-            starts: entries(&starts, "starts")?,
-            entry_vertices: entries(&region_vertices, "region_vertices")?,
-            entry_ridges: entries(&region_ridges, "region_ridges")?,
+            site: flat(&site, "site")?,
+            starts: flat(&starts, "starts")?,
+            entry_vertices: flat(&region_vertices, "region_vertices")?,
+            entry_ridges: flat(&region_ridges, "region_ridges")?,
         };
         in_range(cells.sites, 0, cells.points.len(), "sites")?;
         are_starts(cells.starts, cells.entry_vertices.len())?;
@@ -146,13 +136,10 @@ pub fn voronoi_clip2<'py>(
         )?;
         each_in_range(cells.entry_ridges, 0, cells.sites.len(), "region_ridges")?;
         if cells.ends.len() != cells.sites.len() || cells.starts.len() != cells.site.len() + 1 {
-            return Err(Error::Shape(
-                "arrays that belong together differ in length".into(),
-            ));
+            return Err(unequal());
         }
         Ok(cells)
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let [left, bottom, right, top] = bounds;
     let made = watched(py, |watch| {
         voronoi::clip(cells, [left, bottom], [right, top], workers, watch)
@@ -181,12 +168,11 @@ pub fn measures2(
     corners: PyReadonlyArray2<'_, f64>,
     workers: usize,
 ) -> PyResult<Cut> {
-    let (starts, corners) = (|| {
-        let (starts, corners) = (entries(&starts, "starts")?, rows(&corners, "corners")?);
+    let (starts, corners) = attached(py, || {
+        let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
         are_starts(starts, corners.len())?;
         Ok((starts, corners))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let made = detached(py, || voronoi::measures(starts, corners, workers))?;
     Ok((
         column(py, made.areas),
@@ -204,16 +190,15 @@ pub fn touched2(
     ridges: PyReadonlyArray1<'_, i32>,
     segments: PyReadonlyArray2<'_, f64>,
 ) -> PyResult<(Py<PyAny>, usize)> {
-    let (starts, corners, ridges, segments) = (|| {
-        let (starts, corners) = (entries(&starts, "starts")?, rows(&corners, "corners")?);
+    let (starts, corners, ridges, segments) = attached(py, || {
+        let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
         are_starts(starts, corners.len())?;
-        let ridges = entries(&ridges, "ridges")?;
+        let ridges = flat(&ridges, "ridges")?;
         if ridges.len() != corners.len() {
             return Err(Error::Shape("ridges and corners differ in length".into()));
         }
         Ok((starts, corners, ridges, rows(&segments, "segments")?))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let (groups, count) = detached(py, || voronoi::touched(starts, corners, ridges, segments))?;
     Ok((column(py, groups), count))
 }
@@ -228,19 +213,15 @@ pub fn regular2(
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
 ) -> PyResult<Weighed> {
-    let (points, weights) = (|| {
-        let (points, weights) = (rows(&points, "points")?, entries(&weights, "weights")?);
-        if points.len() == weights.len() && weights.iter().all(|w| w.is_finite()) {
-            return Ok((points, weights));
-        }
-        Err(Error::Shape("each point needs one finite weight".into()))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    let (points, weights) = attached(py, || {
+        let points = rows(&points, "points")?;
+        Ok((points, finite_weights(Some(&weights), points.len())?))
+    })?;
     let made = watched(py, |watch| regular::regular(points, weights, watch))?;
     Ok((
         table(py, made.triangles.simplices)?,
         table(py, made.triangles.neighbors)?,
-        column(py, made.chain.into_iter().map(|v| v as i32).collect()),
+        numbers(py, made.chain),
         column(py, made.stands_for),
     ))
 }
@@ -259,7 +240,7 @@ pub fn periodic2(
     periods: [f64; 2],
     taken: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<Repeated> {
-    let (points, heavy, taken) = (|| {
+    let (points, heavy, taken) = attached(py, || {
         let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
         let heavy = finite_weights(weights.as_ref(), points.len())?;
         let right = |t: &[i32; 3]| {
@@ -273,15 +254,14 @@ pub fn periodic2(
         Err(Error::Shape(
             "copies are rows and periods of -1, 0 or 1".into(),
         ))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let made = watched(py, |watch| {
         regular::periodic(points, heavy, periods, taken, watch)
     })?;
     Ok((
         table(py, made.triangles.simplices)?,
         table(py, made.triangles.neighbors)?,
-        column(py, made.chain.into_iter().map(|v| v as i32).collect()),
+        numbers(py, made.chain),
         column(py, made.rows),
         table(py, made.moved)?,
     ))
@@ -299,7 +279,7 @@ pub fn periodic_centers2(
     apexes: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-    let (points, heavy, corners, apexes) = (|| {
+    let (points, heavy, corners, apexes) = attached(py, || {
         let points = rows(&points, "points")?;
         let heavy = finite_weights(weights.as_ref(), points.len())?;
         let (corners, apexes) = (
@@ -320,8 +300,7 @@ pub fn periodic_centers2(
         Err(Error::Shape(
             "copies are rows and small numbers of periods".into(),
         ))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let (centers, shared) = watched(py, |watch| {
         voronoi::centers(points, heavy, periods, corners, apexes, workers, watch)
     })?;

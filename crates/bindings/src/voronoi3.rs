@@ -1,16 +1,16 @@
 //! Voronoi and power diagrams of space, their measures, and cells cut to a polyhedron, as arrays.
 
-use delone_core::error::{Error, Result};
+use delone_core::error::Result;
 use delone_core::regular3::regular;
-use delone_core::voronoi3::{self as dual, Cells, Clip, Given, Measures};
+use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
-use crate::errors::{detached, raise};
-use crate::triangulation::watched;
-use crate::voronoi::{are_starts, each_in_range, entries, item};
+use crate::arrays::{are_starts, column, each_in_range, flat, in_range, rows, table};
+use crate::errors::{attached, detached, raise};
+use crate::signals::watched;
+use crate::voronoi::{finite_weights, given, item, unequal, weights_of};
 
 /// The diagram of a triangulation; of the regular one, where there are weights.
 #[pyfunction]
@@ -22,25 +22,9 @@ pub fn voronoi3<'py>(
     neighbors: PyReadonlyArray2<'py, i32>,
     workers: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let given = (|| {
-        let given = Given {
-            points: rows(&points, "points")?,
-            weights: weights
-                .as_ref()
-                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
-            simplices: rows(&simplices, "simplices")?,
-            neighbors: rows(&neighbors, "neighbors")?,
-        };
-        in_range(given.simplices, 0, given.points.len(), "simplices")?;
-        in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
-        let same = given.neighbors.len() == given.simplices.len();
-        let weighed = weights.is_none() || given.weights.len() == given.points.len();
-        if same && weighed {
-            return Ok(given);
-        }
-        Err(unequal())
-    })()
-    .map_err(|e| raise(py, &e))?;
+    let given = attached(py, || {
+        given(&points, weights.as_ref(), &simplices, &neighbors)
+    })?;
     let made = watched(py, |watch| dual::diagram(given, workers, watch))?;
     let out = PyDict::new(py);
     out.set_item("vertices", table(py, made.vertices)?)?;
@@ -56,10 +40,6 @@ pub fn voronoi3<'py>(
     out.set_item("region_ridge_starts", column(py, made.regions.ridge_starts))?;
     out.set_item("region_ridges", column(py, made.regions.ridges))?;
     Ok(out)
-}
-
-fn unequal() -> Error {
-    Error::Shape("arrays that belong together differ in length".into())
 }
 
 /// The arrays of a diagram, borrowed.
@@ -95,19 +75,17 @@ impl<'py> Borrowed<'py> {
     }
 
     fn cells(&self) -> Result<Cells<'_>> {
+        let points = rows(&self.points, "points")?;
         let cells = Cells {
-            points: rows(&self.points, "points")?,
-            weights: self
-                .weights
-                .as_ref()
-                .map_or(Ok(&[][..]), |w| entries(w, "weights"))?,
+            points,
+            weights: weights_of(self.weights.as_ref(), points.len())?,
             vertices: rows(&self.vertices, "vertices")?,
             sites: rows(&self.sites, "sites")?,
-            starts: entries(&self.starts, "starts")?,
-            entries: entries(&self.entries, "entries")?,
-            site: entries(&self.site, "site")?,
-            ridge_starts: entries(&self.ridge_starts, "region_ridge_starts")?,
-            ridges: entries(&self.ridges, "region_ridges")?,
+            starts: flat(&self.starts, "starts")?,
+            entries: flat(&self.entries, "entries")?,
+            site: flat(&self.site, "site")?,
+            ridge_starts: flat(&self.ridge_starts, "region_ridge_starts")?,
+            ridges: flat(&self.ridges, "region_ridges")?,
         };
         in_range(cells.sites, 0, cells.points.len(), "sites")?;
         are_starts(cells.starts, cells.entries.len())?;
@@ -115,9 +93,7 @@ impl<'py> Borrowed<'py> {
         each_in_range(cells.entries, i32::MIN, cells.vertices.len(), "entries")?;
         each_in_range(cells.site, 0, cells.points.len(), "site")?;
         each_in_range(cells.ridges, 0, cells.sites.len(), "region_ridges")?;
-        let weighed = self.weights.is_none() || cells.weights.len() == cells.points.len();
-        if weighed
-            && cells.starts.len() == cells.sites.len() + 1
+        if cells.starts.len() == cells.sites.len() + 1
             && cells.ridge_starts.len() == cells.site.len() + 1
         {
             return Ok(cells);
@@ -166,11 +142,11 @@ pub fn voronoi_clip3<'py>(
     workers: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let borrowed = Borrowed::new(points, weights, diagram)?;
-    let (cells, clip) = (|| {
+    let (cells, clip) = attached(py, || {
         let clip = Clip {
             points: rows(&clip_points, "clip_points")?,
-            starts: entries(&clip_starts, "clip_starts")?,
-            corners: entries(&clip_corners, "clip_corners")?,
+            starts: flat(&clip_starts, "clip_starts")?,
+            corners: flat(&clip_corners, "clip_corners")?,
             planes: rows(&clip_planes, "clip_planes")?,
         };
         are_starts(clip.starts, clip.corners.len())?;
@@ -180,8 +156,7 @@ pub fn voronoi_clip3<'py>(
             return Ok((borrowed.cells()?, clip));
         }
         Err(unequal())
-    })()
-    .map_err(|e| raise(py, &e))?;
+    })?;
     let made = watched(py, |watch| dual::clip(cells, clip, workers, watch))?;
     let out = measured(py, made.measures)?;
     out.set_item("cut", column(py, made.cut))?;
@@ -224,14 +199,10 @@ pub fn regular3(
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
 ) -> PyResult<Weighed> {
-    let (points, weights) = (|| {
-        let (points, weights) = (rows(&points, "points")?, entries(&weights, "weights")?);
-        if points.len() == weights.len() && weights.iter().all(|w| w.is_finite()) {
-            return Ok((points, weights));
-        }
-        Err(Error::Shape("each point needs one finite weight".into()))
-    })()
-    .map_err(|e| raise(py, &e))?;
+    let (points, weights) = attached(py, || {
+        let points = rows(&points, "points")?;
+        Ok((points, finite_weights(Some(&weights), points.len())?))
+    })?;
     let made = watched(py, |watch| regular(points, weights, watch))?;
     Ok((
         table(py, made.tetrahedra.simplices)?,

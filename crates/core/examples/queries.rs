@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::Given;
+use delone_core::arrays::Given;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Locator, find, nearest};
 use delone_core::memory::with_room;

@@ -5,7 +5,8 @@
 use std::time::Instant;
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::{Given, validate};
+use delone_core::arrays::Given;
+use delone_core::delaunay2::validate::validate;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::watch::Watch;
 

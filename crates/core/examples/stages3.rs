@@ -5,8 +5,9 @@
 use std::time::Instant;
 
 use delone_core::Point3;
+use delone_core::arrays::Given;
 use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, Given3, validate};
+use delone_core::delaunay3::validate::{Findings3, validate};
 use delone_core::watch::Watch;
 
 fn main() {
@@ -63,7 +64,7 @@ fn stages(points: &[Point3], workers: usize) -> Vec<(&'static str, f64)> {
 
 fn check(points: &[Point3], workers: usize) {
     let made = triangulate(points, workers, &Watch::idle()).expect("a triangulation");
-    let given = Given3 {
+    let given = Given {
         points,
         simplices: &made.arrays.simplices,
         neighbors: &made.arrays.neighbors,

@@ -3,6 +3,7 @@
 //! Knows nothing of Python. Data flows one way: `points` and `order` feed `delaunay2`, which fills a
 //! `mesh2`; consumers read that mesh and hand arrays out.
 
+pub mod arrays;
 pub mod constrained;
 pub mod delaunay2;
 pub mod delaunay3;

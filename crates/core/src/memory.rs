@@ -73,18 +73,10 @@ mod zero {
     unsafe impl super::Zero for u64 {}
     // SAFETY: an integer.
     unsafe impl super::Zero for i32 {}
-    // SAFETY: integers without padding.
-    unsafe impl super::Zero for [i32; 2] {}
-    // SAFETY: integers without padding.
-    unsafe impl super::Zero for [i32; 3] {}
-    // SAFETY: integers without padding.
-    unsafe impl super::Zero for [i32; 4] {}
     // SAFETY: a double, whose zero bytes are 0.0.
     unsafe impl super::Zero for f64 {}
-    // SAFETY: doubles, whose zero bytes are 0.0, without padding.
-    unsafe impl super::Zero for [f64; 2] {}
-    // SAFETY: doubles, whose zero bytes are 0.0, without padding.
-    unsafe impl super::Zero for [f64; 3] {}
+    // SAFETY: items of which zero bytes are a value, without padding between them.
+    unsafe impl<T: super::Zero, const N: usize> super::Zero for [T; N] {}
 }
 
 /// A vector of `n` zeros that touches no page: each is touched first by the thread that fills it.

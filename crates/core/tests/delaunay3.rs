@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
-use delone_core::delaunay3::validate::{Findings3, Given3, validate};
+use delone_core::arrays::Given;
+use delone_core::delaunay3::validate::{Findings3, validate};
 use delone_core::delaunay3::{Triangulation3, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
@@ -15,7 +16,7 @@ fn made(points: &[Point3], workers: usize) -> Triangulation3 {
 
 fn findings(points: &[Point3], made: &Triangulation3) -> Findings3 {
     let (simplices, neighbors) = (&made.arrays.simplices, &made.arrays.neighbors);
-    let given = Given3 {
+    let given = Given {
         points,
         simplices,
         neighbors,
@@ -305,7 +306,7 @@ fn validation_tells_ties_from_faults() {
     let ring = [[0, 2], [2, 1], [1, 3], [3, 0]];
     let simplices = ring.map(|[a, b]| [4, 5, a, b]);
     let neighbors = [1, 2, 3, 4].map(|i| [-1, -1, i % 4, (i + 2) % 4]);
-    let given = Given3 {
+    let given = Given {
         points: &points,
         simplices: &simplices,
         neighbors: &neighbors,

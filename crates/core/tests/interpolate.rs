@@ -1,7 +1,7 @@
 //! Interpolation against what it must reproduce, at every scale.
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::Given;
+use delone_core::arrays::Triangles;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::interpolate::{
     Field, Kind, Method as Left, Order, Table, clough_tocher, leave_one_out, linear, natural,
@@ -23,7 +23,7 @@ impl Made {
     fn of(points: Vec<Point2>) -> Option<Self> {
         let made = triangulate(&points, Method::Auto, 1, &Watch::idle()).ok()?;
         let (simplices, neighbors) = (made.arrays.simplices, made.arrays.neighbors);
-        let given = Given {
+        let given = Triangles {
             points: &points,
             simplices: &simplices,
             neighbors: &neighbors,
@@ -37,8 +37,8 @@ impl Made {
         })
     }
 
-    fn given(&self) -> Given<'_> {
-        Given {
+    fn given(&self) -> Triangles<'_> {
+        Triangles {
             points: &self.points,
             simplices: &self.simplices,
             neighbors: &self.neighbors,

@@ -1,7 +1,7 @@
 //! Point location against its definition, on triangulations of every kind.
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::Given;
+use delone_core::arrays::Given;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Located, Locator, along, coordinates, find, nearest};
 use delone_core::watch::Watch;

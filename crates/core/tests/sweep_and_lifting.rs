@@ -2,7 +2,8 @@
 //! at once, fronts as long as the input, circles that end together, stars of high degree.
 
 use delone_core::Point2;
-use delone_core::delaunay2::validate::{Findings, Given, validate};
+use delone_core::arrays::Given;
+use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;

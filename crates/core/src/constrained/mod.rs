@@ -8,6 +8,7 @@ mod components;
 pub(crate) mod conforming;
 mod edges;
 pub mod intersection;
+mod laid;
 pub(crate) mod marked;
 pub mod pairs;
 mod polygon;
@@ -25,10 +26,12 @@ pub use self::polygon::{Filled, Rule, polygon};
 pub use self::ring::simple_ring;
 pub use self::subsegments::Subsegments;
 
+use self::laid::Laid;
 use self::marked::Marked;
 use self::present::mark_present;
 use self::segment::{Cavity, Step};
 use self::split::Splitter;
+use crate::arrays::Arrays;
 use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
@@ -63,7 +66,7 @@ pub struct Constrained {
     /// Vertices that the input does not have.
     pub added: Vec<Point2>,
     /// Triangles and their neighbours; they tile the hull.
-    pub arrays: export::Arrays,
+    pub arrays: Arrays<3>,
     /// For each triangle and corner, whether the edge opposite is a subsegment.
     pub constrained: Vec<[bool; 3]>,
     /// `[row, first row of the same point]`, ascending.
@@ -78,20 +81,6 @@ pub struct Constrained {
     pub crossings: Vec<[u32; 3]>,
     /// Where the time went.
     pub stages: Vec<Stage>,
-}
-
-/// What becomes of the segments, in vertices of the mesh.
-#[derive(Debug, Default)]
-struct Laid {
-    /// Subsegments as vertices, each with a row that covers it and directed as that; an edge once for
-    /// each of its rows.
-    pieces: Vec<([u32; 2], u32)>,
-    /// Whether they go by row and along it.
-    sorted: bool,
-    /// Whether an edge may come more than once.
-    repeated: bool,
-    through: Vec<[u32; 2]>,
-    crossings: Vec<[u32; 3]>,
 }
 
 /// The constrained Delaunay triangulation of `input` with the `segments`, pairs of its rows.

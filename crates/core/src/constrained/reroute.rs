@@ -13,11 +13,12 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::edges::{Edges, edge};
+use super::laid::Laid;
 use super::marked::{Marked, turn};
 use super::pairs::overlap;
 use super::segment::{Cavity, Step};
 use super::split::{passes, way};
-use super::{Crossings, Laid, Work, pairs};
+use super::{Crossings, Work, pairs};
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
 use crate::mesh2::{next, prev, triangle};

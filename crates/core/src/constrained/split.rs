@@ -24,8 +24,8 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point2, lexicographic, orient2d};
 
-use super::Laid;
 use super::intersection::intersection;
+use super::laid::Laid;
 use super::marked::Marked;
 use super::segment::{Cavity, Step};
 use crate::error::{Error, Result};

@@ -18,7 +18,8 @@
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
-use super::validate::{Findings, Given, validate};
+use super::validate::{Findings, validate};
+use crate::arrays::{Arrays, Triangles};
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 use crate::mesh2::{Code, Mesh2, Patch, export, import, next, prev, triangle};
@@ -33,7 +34,7 @@ const WATCH_EVERY: usize = 1 << 14;
 #[derive(Debug)]
 pub struct Flipped {
     /// Triangles, each in the place of one of the triangles given.
-    pub arrays: export::Arrays,
+    pub arrays: Arrays<3>,
     /// How many edges were flipped.
     pub flips: usize,
     /// `[u, v, p, q]` for each flip where it was recorded: the edge u v, with p on its left and q
@@ -60,7 +61,7 @@ pub fn lawson(
         )));
     }
     let neighbors = import::adjacency(simplices, points.len())?;
-    let given = Given {
+    let given = Triangles {
         points,
         simplices,
         neighbors: &neighbors,

@@ -7,6 +7,7 @@ use delone_predicates::Point2;
 
 use super::merge::merge;
 use super::{bowyer_watson, divide_conquer, incremental, lifting, sweep};
+use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::mesh2::{Code, Mesh2, Patch, export};
 use crate::order::{Arranged, arrange};
@@ -62,7 +63,7 @@ pub type Stage = (&'static str, Duration);
 #[derive(Debug)]
 pub struct Triangulation {
     /// Triangles and their neighbours.
-    pub arrays: export::Arrays,
+    pub arrays: Arrays<3>,
     /// `[row, first row of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
     /// Where the time went.

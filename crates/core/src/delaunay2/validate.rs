@@ -6,8 +6,9 @@
 //! tiling whose inner edges are all locally Delaunay is Delaunay (B. Delaunay, "Sur la sphère
 //! vide", 1934).
 
-use delone_predicates::{Point2, Sign, incircle, lexicographic, orient2d, tie_flips};
+use delone_predicates::{Sign, incircle, lexicographic, orient2d, tie_flips};
 
+use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::memory::filled;
 use crate::order::{Arranged, arrange};
@@ -40,22 +41,7 @@ pub struct Findings {
     pub count: Vec<[u32; 2]>,
 }
 
-/// Arrays as a caller holds them. Vertices must be rows of `points`, neighbours triangles or -1.
-#[derive(Clone, Copy)]
-pub struct Given<'a> {
-    /// Rows of coordinates, finite.
-    pub points: &'a [Point2],
-    /// Three rows a triangle.
-    pub simplices: &'a [[i32; 3]],
-    /// The triangle opposite each corner, -1 outside.
-    pub neighbors: &'a [[i32; 3]],
-}
-
-impl Given<'_> {
-    fn at(&self, v: i32) -> Point2 {
-        self.points[v as usize]
-    }
-
+impl Triangles<'_> {
     /// The ends of edge k of triangle t, counter-clockwise.
     fn edge(&self, t: usize, k: usize) -> [i32; 2] {
         let s = self.simplices[t];
@@ -70,7 +56,7 @@ impl Given<'_> {
 }
 
 /// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
-pub fn validate(given: Given, watch: &Watch) -> Result<Findings> {
+pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, 1, watch)?;
     let mut found = Findings {
@@ -97,8 +83,8 @@ pub fn validate(given: Given, watch: &Watch) -> Result<Findings> {
 }
 
 /// One triangle: its turn, its neighbours, the circles across its edges.
-fn triangle(given: Given, t: usize, found: &mut Findings, boundary: &mut Vec<[i32; 2]>) {
-    let [a, b, c] = given.simplices[t].map(|v| given.at(v));
+fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec<[i32; 2]>) {
+    let [a, b, c] = given.simplices[t].map(|v| given.point(v));
     if orient2d(a, b, c) != Sign::Positive {
         found.orientation.push(t as u32);
     }
@@ -116,11 +102,13 @@ fn triangle(given: Given, t: usize, found: &mut Findings, boundary: &mut Vec<[i3
         };
         if t < other {
             let apex = given.simplices[other][j];
-            let [u, v] = given.edge(t, k).map(|v| given.at(v));
+            let [u, v] = given.edge(t, k).map(|v| given.point(v));
             let pair = [t as u32, other as u32];
-            match incircle(a, b, c, given.at(apex)) {
+            match incircle(a, b, c, given.point(apex)) {
                 Sign::Positive => found.delaunay.push(pair),
-                Sign::Zero if tie_flips(u, v, given.at(given.simplices[t][k]), given.at(apex)) => {
+                Sign::Zero
+                    if tie_flips(u, v, given.point(given.simplices[t][k]), given.point(apex)) =>
+                {
                     found.ties.push(pair);
                 }
                 _ => {}
@@ -133,7 +121,7 @@ fn triangle(given: Given, t: usize, found: &mut Findings, boundary: &mut Vec<[i3
 }
 
 /// Directed edges that occur twice, by a counting sort of the ends by origin.
-fn repeated_edges(given: Given) -> Result<Vec<[u32; 2]>> {
+fn repeated_edges(given: Triangles) -> Result<Vec<[u32; 2]>> {
     let mut start = filled(given.points.len() + 1, 0u32)?;
     for s in given.simplices {
         for &v in s {
@@ -168,7 +156,7 @@ fn repeated_edges(given: Given) -> Result<Vec<[u32; 2]>> {
 }
 
 /// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
-fn missing(given: Given, ordered: &Arranged, found: &mut Findings) -> Result<()> {
+fn missing(given: Triangles, ordered: &Arranged, found: &mut Findings) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
     for &v in given.simplices.iter().flatten() {
         used[v as usize] = true;
@@ -191,9 +179,9 @@ fn missing(given: Given, ordered: &Arranged, found: &mut Findings) -> Result<()>
 
 /// The boundary must be one cycle that goes lexicographically up and down once and never turns
 /// right: then it is the convex hull, with the points on its edges.
-fn hull(given: Given, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
+fn hull(given: Triangles, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
     boundary.sort_unstable();
-    let up = |[u, v]: [i32; 2]| lexicographic(given.at(u), given.at(v)).is_lt();
+    let up = |[u, v]: [i32; 2]| lexicographic(given.point(u), given.point(v)).is_lt();
     let Some(&first) = boundary.first() else {
         return;
     };
@@ -207,7 +195,11 @@ fn hull(given: Given, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
             found.hull.push(edge.map(|v| v as u32));
             return;
         };
-        let turn = orient2d(given.at(edge[0]), given.at(edge[1]), given.at(after[1]));
+        let turn = orient2d(
+            given.point(edge[0]),
+            given.point(edge[1]),
+            given.point(after[1]),
+        );
         summits += usize::from(up(edge) && !up(after));
         let back = turn == Sign::Zero && up(edge) != up(after);
         if turn == Sign::Negative || back {

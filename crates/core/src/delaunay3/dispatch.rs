@@ -8,7 +8,7 @@
 use delone_predicates::Point3;
 
 use super::cavity::Kernel;
-use super::insertion::insert_all;
+use super::rounds::insert_all;
 use crate::error::Result;
 use crate::watch::Watch;
 

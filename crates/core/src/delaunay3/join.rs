@@ -3,6 +3,7 @@
 //! made, and no page is touched anew.
 
 use super::seam::{Block, Joint, SOUND, Seam};
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh3::{Code, Records, corner, tetrahedron};
@@ -13,15 +14,6 @@ const SHARE: usize = 1 << 14;
 
 /// No tetrahedron.
 const NONE: u32 = u32::MAX;
-
-/// The finite tetrahedra of a triangulation.
-#[derive(Debug, Default)]
-pub struct Arrays {
-    /// Four vertices a tetrahedron, positively oriented.
-    pub simplices: Vec<[i32; 4]>,
-    /// The tetrahedron opposite each vertex, -1 outside.
-    pub neighbors: Vec<[i32; 4]>,
-}
 
 /// A seam with what of it belongs to the whole, and its joints with the blocks.
 pub struct Fitted {
@@ -87,7 +79,7 @@ pub fn join(
     blocks: &[Block],
     fitted: Option<&Fitted>,
     workers: usize,
-) -> Result<Arrays> {
+) -> Result<Arrays<4>> {
     let starts: Vec<usize> = rooms
         .iter()
         .scan(0, |end, room| Some(std::mem::replace(end, *end + room)))

@@ -9,10 +9,10 @@ mod dispatch;
 mod insertion;
 mod join;
 mod lattice;
+mod rounds;
 mod seam;
 mod sphere;
 mod triangulate;
 pub mod validate;
 
-pub use join::Arrays;
 pub use triangulate::{Stage, Triangulation3, triangulate};

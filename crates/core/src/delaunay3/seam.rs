@@ -22,8 +22,8 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
-use super::join::Arrays;
 use super::sphere::{Sphere, reach};
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
@@ -173,7 +173,7 @@ pub struct Seam {
     /// For each of its vertices, the block and the vertex there.
     pub vertices: Vec<[u32; 2]>,
     /// Its tetrahedra.
-    pub arrays: Arrays,
+    pub arrays: Arrays<4>,
 }
 
 impl Seam {

@@ -9,8 +9,9 @@ use delone_predicates::Point3;
 
 use super::cavity::Room;
 use super::insertion;
-use super::join::{Arrays, Fitted, join};
+use super::join::{Fitted, join};
 use super::seam::{Block, Seam, Surroundings, joints, rest};
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{is_plausible, with_room};
 use crate::mesh3::{LIMIT, Mesh3, Records};
@@ -59,7 +60,7 @@ pub type Stage = (&'static str, Duration);
 #[derive(Debug)]
 pub struct Triangulation3 {
     /// Tetrahedra and their neighbours.
-    pub arrays: Arrays,
+    pub arrays: Arrays<4>,
     /// `[row, first row of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
     /// Where the time went.
@@ -109,7 +110,7 @@ fn in_blocks(
 }
 
 /// Tetrahedra, and rows of points that others have, too.
-type Made = (Arrays, Vec<[u32; 2]>);
+type Made = (Arrays<4>, Vec<[u32; 2]>);
 
 /// Records of all blocks, the room of each, and what is sound in it.
 type Built = (Records, Vec<usize>, Vec<Block>);
@@ -291,7 +292,7 @@ impl Task<'_> {
 
     /// The tetrahedra of a seam: in at most as many blocks as made it, where it is large enough for them, and has at
     /// most half of the points, so that a seam of seams ends.
-    fn seam(self, points: &[Point3], whole: usize, blocks: usize) -> Result<Option<Arrays>> {
+    fn seam(self, points: &[Point3], whole: usize, blocks: usize) -> Result<Option<Arrays<4>>> {
         let mut clock = Clock::start();
         let least = match blocks {
             2 => self.sizes.slab,
@@ -351,7 +352,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::delaunay3::validate::{Findings3, Given3, validate};
+    use crate::arrays::Given;
+    use crate::delaunay3::validate::{Findings3, validate};
 
     /// The tetrahedra in blocks of some sizes, valid and all the same.
     fn same_in_blocks(points: &[Point3]) {
@@ -366,7 +368,7 @@ mod tests {
                 sparse: 1,
             };
             let made = in_blocks(points, sizes, 2, &Watch::idle()).unwrap();
-            let given = Given3 {
+            let given = Given {
                 points,
                 simplices: &made.arrays.simplices,
                 neighbors: &made.arrays.neighbors,

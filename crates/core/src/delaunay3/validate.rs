@@ -18,6 +18,7 @@ use std::collections::HashMap;
 use delone_predicates::{Point3, Sign, insphere, insphere_canonical, lexicographic};
 use delone_predicates::{orient2d, orient3d};
 
+use crate::arrays::Tetrahedra;
 use crate::error::Result;
 use crate::memory::{filled, push};
 use crate::mesh3::FACETS;
@@ -49,22 +50,7 @@ pub struct Findings3 {
     pub ties: Vec<[u32; 2]>,
 }
 
-/// Arrays as a caller holds them. Vertices must be rows of `points`, neighbours tetrahedra or -1.
-#[derive(Clone, Copy)]
-pub struct Given3<'a> {
-    /// Rows of coordinates, finite.
-    pub points: &'a [Point3],
-    /// Four rows a tetrahedron.
-    pub simplices: &'a [[i32; 4]],
-    /// The tetrahedron opposite each corner, -1 outside.
-    pub neighbors: &'a [[i32; 4]],
-}
-
-impl Given3<'_> {
-    fn at(&self, v: i32) -> Point3 {
-        self.points[v as usize]
-    }
-
+impl Tetrahedra<'_> {
     /// The facet opposite corner k of tetrahedron t, outward, from its smallest row on.
     fn facet(&self, t: usize, k: usize) -> [i32; 3] {
         let [a, b, c] = FACETS[k].map(|i| self.simplices[t][i]);
@@ -90,7 +76,7 @@ fn smallest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
 }
 
 /// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
-pub fn validate(given: Given3, watch: &Watch) -> Result<Findings3> {
+pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, watch)?;
     let mut found = Findings3 {
@@ -111,12 +97,12 @@ pub fn validate(given: Given3, watch: &Watch) -> Result<Findings3> {
 
 /// One tetrahedron: its orientation, its neighbours, the spheres across its facets.
 fn tetrahedron(
-    given: Given3,
+    given: Tetrahedra,
     t: usize,
     found: &mut Findings3,
     boundary: &mut Vec<[i32; 3]>,
 ) -> Result<()> {
-    let [a, b, c, d] = given.simplices[t].map(|v| given.at(v));
+    let [a, b, c, d] = given.simplices[t].map(|v| given.point(v));
     if orient3d(a, b, c, d) != Sign::Positive {
         found.orientation.push(t as u32);
     }
@@ -133,7 +119,7 @@ fn tetrahedron(
             continue;
         };
         if t < other {
-            let apex = given.at(given.simplices[other][j]);
+            let apex = given.point(given.simplices[other][j]);
             let pair = [t as u32, other as u32];
             match insphere(a, b, c, d, apex) {
                 Sign::Positive => found.delaunay.push(pair),
@@ -151,7 +137,7 @@ fn tetrahedron(
 }
 
 /// Oriented facets that occur twice, by a counting sort by their smallest vertex.
-fn repeated_facets(given: Given3, watch: &Watch) -> Result<Vec<[u32; 3]>> {
+fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
     let facets = || (0..given.simplices.len()).flat_map(|t| (0..4).map(move |k| given.facet(t, k)));
     let mut start = filled(given.points.len() + 1, 0usize)?;
     for [a, ..] in facets() {
@@ -182,7 +168,7 @@ fn repeated_facets(given: Given3, watch: &Watch) -> Result<Vec<[u32; 3]>> {
 }
 
 /// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
-fn missing(given: Given3, ordered: &Arranged3, found: &mut Findings3) -> Result<()> {
+fn missing(given: Tetrahedra, ordered: &Arranged3, found: &mut Findings3) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
     for &v in given.simplices.iter().flatten() {
         used[v as usize] = true;
@@ -220,12 +206,12 @@ fn before(a: Point3, b: Point3) -> bool {
 
 /// Checks that the outward facets of the boundary are the border of a convex body, see the head of
 /// the file.
-fn hull(given: Given3, boundary: &[[i32; 3]], found: &mut Findings3) {
+fn hull(given: Tetrahedra, boundary: &[[i32; 3]], found: &mut Findings3) {
     let mut across = HashMap::with_capacity(3 * boundary.len());
     let upper: Vec<bool> = boundary
         .iter()
         .map(|f| {
-            let [a, b, c] = f.map(|v| given.at(v));
+            let [a, b, c] = f.map(|v| given.point(v));
             turn(a, b, c) == Sign::Positive
         })
         .collect();
@@ -237,14 +223,14 @@ fn hull(given: Given3, boundary: &[[i32; 3]], found: &mut Findings3) {
     }
     let mut silhouette = HashMap::new();
     for (i, &[a, b, c]) in boundary.iter().enumerate() {
-        let [pa, pb, pc] = [a, b, c].map(|v| given.at(v));
+        let [pa, pb, pc] = [a, b, c].map(|v| given.point(v));
         for [u, v] in [[a, b], [b, c], [c, a]] {
             let Some(&(other, apex)) = across.get(&[v, u]) else {
                 wrong[i] = true;
                 continue;
             };
             // Outward facets have the body on their negative side.
-            let side = orient3d(pa, pb, pc, given.at(apex));
+            let side = orient3d(pa, pb, pc, given.point(apex));
             let folded = side == Sign::Zero && upper[i] != upper[other];
             wrong[i] |= side == Sign::Positive || folded;
             if upper[i] && !upper[other] {
@@ -261,7 +247,7 @@ fn hull(given: Given3, boundary: &[[i32; 3]], found: &mut Findings3) {
 }
 
 /// The silhouette must be one cycle that goes up and down once and never turns right.
-fn cycle(given: Given3, silhouette: &HashMap<i32, (i32, usize)>, wrong: &mut [bool]) {
+fn cycle(given: Tetrahedra, silhouette: &HashMap<i32, (i32, usize)>, wrong: &mut [bool]) {
     let Some((&first, &(_, facet))) = silhouette.iter().min() else {
         if let Some(wrong) = wrong.first_mut() {
             *wrong = true;
@@ -279,7 +265,7 @@ fn cycle(given: Given3, silhouette: &HashMap<i32, (i32, usize)>, wrong: &mut [bo
             wrong[i] = true;
             return;
         };
-        let [a, b, c] = [u, v, w].map(|v| given.at(v));
+        let [a, b, c] = [u, v, w].map(|v| given.point(v));
         let (up, up_after) = (before(a, b), before(b, c));
         summits += usize::from(up && !up_after);
         let turn = turn(a, b, c);

@@ -3,8 +3,8 @@
 use delone_predicates::{Point3, Sign, lexicographic, orient3d};
 
 use super::store::{Corners, NONE, Store};
+use super::task::{Improved, Task};
 use super::work::Work;
-use super::{Improved, Task};
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 

@@ -10,7 +10,7 @@
 
 use delone_predicates::{Point2, Sign, incircle};
 
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 use crate::locate::{Side, next, prev};
 
@@ -47,7 +47,7 @@ impl Cavity {
     /// where there is such, and at no vertex.
     pub fn find(
         &mut self,
-        given: &Given,
+        given: &Triangles,
         barrier: Barrier,
         seed: usize,
         on: Option<usize>,

@@ -16,7 +16,7 @@ use super::Order;
 use super::cavity::{Barrier, is_closed};
 use super::field::Field;
 use super::number::{Jet, Number};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::{
     Batch, Located, Output, Place, Side, barycentric, cross, next, prev, seen_from,
@@ -38,7 +38,7 @@ struct Frame {
 const OBLIQUE: f64 = 1e5;
 
 impl Frame {
-    fn of(given: &Given, barrier: Barrier, triangle: usize) -> Self {
+    fn of(given: &Triangles, barrier: Barrier, triangle: usize) -> Self {
         let corners = given.corners(triangle);
         let way = |from: usize, to: usize| [0, 1].map(|k| corners[to][k] - corners[from][k]);
         let across = |k| {
@@ -190,7 +190,7 @@ struct Last {
 }
 
 impl Last {
-    fn visit(&mut self, given: &Given, barrier: Barrier, field: &Field, triangle: usize) {
+    fn visit(&mut self, given: &Triangles, barrier: Barrier, field: &Field, triangle: usize) {
         if self.triangle == Some(triangle) {
             return;
         }
@@ -207,7 +207,7 @@ impl Last {
 }
 
 /// Barycentric coordinates as functions of the place.
-fn jets(given: &Given, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
+fn jets(given: &Triangles, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
     let corners = given.corners(triangle);
     let ([u, v], unit) = seen_from(corners[0], [corners[1], corners[2]]);
     let area = if unit == 1.0 {
@@ -306,7 +306,7 @@ pub fn clough_tocher_weights(batch: &Batch, barrier: Barrier) -> Result<CornerWe
 
 /// Values of the nine functions with one value or derivative 1 and all others 0.
 fn basis(
-    given: &Given,
+    given: &Triangles,
     barrier: Barrier,
     last: &mut Option<(usize, [Ordinates; 9])>,
     place: &Place,

@@ -12,8 +12,8 @@ use delone_predicates::arithmetic::decode_odd;
 use num_bigint::{BigInt, Sign};
 
 use super::cavity::Cavity;
+use super::kind::Kind;
 use super::number::Number;
-use super::weights::Kind;
 use crate::wide::{lowest, ratio, scaled};
 
 /// Binary places of a term.

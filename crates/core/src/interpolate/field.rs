@@ -1,6 +1,6 @@
 //! Values at the vertices, and sums of them.
 
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 
 /// Columns of values at the vertices, with gradients where there are some.
@@ -15,7 +15,7 @@ pub struct Field<'a> {
 impl<'a> Field<'a> {
     /// Rows of `columns` values, and of as many gradients.
     pub fn new(
-        given: &Given,
+        given: &Triangles,
         values: &'a [f64],
         gradients: Option<&'a [f64]>,
         columns: usize,

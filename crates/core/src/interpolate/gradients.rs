@@ -2,9 +2,10 @@
 
 use delone_predicates::Point2;
 
+use super::adjacency::Adjacency;
 use super::field::Field;
 use super::hubs::Hubs;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::locate::{Output, in_unit, unit_of};
 use crate::memory::{filled, with_room};
 use crate::parallel;
@@ -17,46 +18,6 @@ const SHARE: usize = 1 << 12;
 /// of two values makes a slope between them, the larger the nearer they are; and the nearer they are,
 /// the more they would count. So about 1e-11 of the values over the distances is left of that.
 const NEAR: f64 = 1e-5;
-
-/// Which vertices share an edge, in compressed rows.
-#[derive(Debug, Clone, Copy)]
-pub struct Adjacency<'a> {
-    indptr: &'a [i32],
-    indices: &'a [i32],
-}
-
-impl<'a> Adjacency<'a> {
-    /// Checks that the rows are those of `vertices` vertices.
-    pub fn new(vertices: usize, indptr: &'a [i32], indices: &'a [i32]) -> Result<Self> {
-        let n = indices.len();
-        let fits = indptr.len() == vertices + 1
-            && indptr.is_sorted()
-            && indptr.first() == Some(&0)
-            && indptr.last().is_some_and(|&end| end as usize == n);
-        let inside = |&v: &i32| v >= 0 && (v as usize) < vertices;
-        if !fits || !indices.iter().all(inside) {
-            return Err(Error::Shape(format!(
-                "indptr and indices are no rows of {vertices} vertices"
-            )));
-        }
-        Ok(Self { indptr, indices })
-    }
-
-    #[inline]
-    pub(super) fn vertices(&self) -> usize {
-        self.indptr.len() - 1
-    }
-
-    #[inline]
-    fn range(&self, v: usize) -> std::ops::Range<usize> {
-        self.indptr[v] as usize..self.indptr[v + 1] as usize
-    }
-
-    #[inline]
-    pub(super) fn neighbours(&self, v: usize) -> &'a [i32] {
-        &self.indices[self.range(v)]
-    }
-}
 
 /// An edge from a vertex.
 #[derive(Debug, Clone, Copy)]

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-use super::gradients::Adjacency;
+use super::adjacency::Adjacency;
 
 /// Neighbours above which a vertex is a hub. Among spread points none has half as many.
 const MANY: usize = 32;

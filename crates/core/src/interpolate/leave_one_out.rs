@@ -11,9 +11,10 @@ use delone_predicates::{Point2, Sign, incircle_canonical, nearer, orient2d};
 
 use super::Rows;
 use super::cavity::Cavity;
-use super::natural::Part;
-use super::weights::{Kind, Weights};
-use crate::delaunay2::validate::Given;
+use super::kind::Kind;
+use super::rows::Part;
+use super::weights::Weights;
+use crate::arrays::Triangles;
 use crate::delaunay2::{self, triangulate};
 use crate::error::Result;
 use crate::locate::{Kept, Located, Locator, Side, barycentric_weights, next, prev};
@@ -52,7 +53,12 @@ impl Method {
 
 /// For each vertex the weights of the others; empty for corners of the hull and for rows that are no
 /// vertex. The triangulation must be Delaunay.
-pub fn leave_one_out(given: Given, method: Method, workers: usize, watch: &Watch) -> Result<Rows> {
+pub fn leave_one_out(
+    given: Triangles,
+    method: Method,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Rows> {
     let n = given.points.len();
     let mut stars = filled(n, None)?;
     for (triangle, vertices) in given.simplices.iter().enumerate() {
@@ -93,7 +99,7 @@ struct Hole {
 impl Hole {
     /// The ring around the vertex at a corner, counter-clockwise; on the hull from boundary to
     /// boundary.
-    fn open(&mut self, given: &Given, side: Side) {
+    fn open(&mut self, given: &Triangles, side: Side) {
         self.vertex = given.vertex(side);
         let mut first = side;
         self.is_outer = given.around(side, |_| true);
@@ -124,7 +130,7 @@ impl Hole {
         cavity.ring.extend(0..cavity.vertices.len() as u32);
     }
 
-    fn weigh(&mut self, given: &Given, method: Method, part: &mut Part) -> Result<()> {
+    fn weigh(&mut self, given: &Triangles, method: Method, part: &mut Part) -> Result<()> {
         let q = given.point(self.vertex);
         if method == Method::Nearest {
             part.entry(self.nearest(q), 1.0, [0.0; 2]);
@@ -234,7 +240,7 @@ impl Hole {
         let idle = Watch::idle();
         let ring = self.cavity.points.clone();
         let made = triangulate(&ring, delaunay2::Method::Auto, 1, &idle)?;
-        let given = Given {
+        let given = Triangles {
             points: &ring,
             simplices: &made.arrays.simplices,
             neighbors: &made.arrays.neighbors,

@@ -4,7 +4,7 @@ use delone_predicates::Point2;
 
 use super::Order;
 use super::field::Field;
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::{Batch, Located, Output, Place, barycentric, cross, seen_from};
 
@@ -38,7 +38,13 @@ pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
 
 /// Vertices of no weight are not read, so that what is missing there stays there.
 #[inline]
-fn value(given: &Given, field: &Field, place: &Place, q: Point2, mut set: impl FnMut(usize, f64)) {
+fn value(
+    given: &Triangles,
+    field: &Field,
+    place: &Place,
+    q: Point2,
+    mut set: impl FnMut(usize, f64),
+) {
     let vertices = given.simplices[place.triangle];
     if let Some(corner) = place.site() {
         for (column, &z) in field.row(vertices[corner]).iter().enumerate() {
@@ -60,7 +66,7 @@ fn value(given: &Given, field: &Field, place: &Place, q: Point2, mut set: impl F
 }
 
 /// The slope of the plane over a triangle.
-pub fn gradient(given: &Given, field: &Field, triangle: usize, column: usize) -> [f64; 2] {
+pub fn gradient(given: &Triangles, field: &Field, triangle: usize, column: usize) -> [f64; 2] {
     let [p, q, r] = given.corners(triangle);
     let ([a, b], unit) = seen_from(p, [q, r]);
     let area = if unit == 1.0 {

@@ -3,12 +3,14 @@
 //! `linear` in each triangle, `clough_tocher` on each split in three, `natural` by the cavity that a
 //! query would leave. All are linear in the values (and gradients), so weights serve many fields.
 
+mod adjacency;
 mod cavity;
 mod clough_tocher;
 mod exact;
 mod field;
 mod gradients;
 mod hubs;
+mod kind;
 mod leave_one_out;
 mod linear;
 mod natural;
@@ -16,15 +18,16 @@ mod number;
 mod rows;
 mod weights;
 
+pub use adjacency::Adjacency;
 pub use cavity::Barrier;
 pub use clough_tocher::{clough_tocher, clough_tocher_weights};
 pub use field::Field;
-pub use gradients::{Adjacency, global_gradients, local_gradients};
+pub use gradients::{global_gradients, local_gradients};
+pub use kind::Kind;
 pub use leave_one_out::{Method, leave_one_out};
 pub use linear::linear;
-pub use natural::{Part, natural, natural_values};
-pub use rows::{Rows, Table};
-pub use weights::Kind;
+pub use natural::{natural, natural_values};
+pub use rows::{Part, Rows, Table};
 
 /// What of an interpolant is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,12 +2,14 @@
 
 use delone_predicates::Point2;
 
+use super::Order;
 use super::cavity::{Barrier, Cavity};
 use super::field::Field;
+use super::kind::Kind;
 use super::number::{Jet, Number};
-use super::weights::{Kind, Weights};
-use super::{Order, Rows};
-use crate::delaunay2::validate::Given;
+use super::rows::{Part, Rows};
+use super::weights::Weights;
+use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::{Batch, Located, Output, Place, Side, barycentric};
 
@@ -24,7 +26,7 @@ impl<T: Number> Room<T> {
     fn compute(
         &mut self,
         kind: Kind,
-        given: &Given,
+        given: &Triangles,
         barrier: Barrier,
         place: &Place,
         q: Point2,
@@ -68,48 +70,6 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
     let count = batch.queries.len();
     let rows = Rows::of_parts(count, &parts, kind.is_smooth(), batch.workers)?;
     Ok((rows, triangles.into_vec()))
-}
-
-/// Rows in the order in which a thread has met them.
-#[derive(Debug, Default)]
-pub struct Part {
-    /// The row in the query, and where its entries end.
-    pub ends: Vec<(usize, usize)>,
-    /// The vertices.
-    pub indices: Vec<i32>,
-    /// The weights of their values.
-    pub weights: Vec<f64>,
-    /// The weights of their gradients, where there are some.
-    pub slopes: Vec<[f64; 2]>,
-    sloped: bool,
-}
-
-impl Part {
-    /// No row yet; with weights of gradients or without.
-    pub fn with_slopes(sloped: bool) -> Self {
-        Self {
-            sloped,
-            ..Self::default()
-        }
-    }
-
-    /// Adds an entry, unless it is nothing.
-    #[inline]
-    pub fn entry(&mut self, vertex: i32, weight: f64, slope: [f64; 2]) {
-        if weight != 0.0 || slope != [0.0; 2] {
-            self.indices.push(vertex);
-            self.weights.push(weight);
-            if self.sloped {
-                self.slopes.push(slope);
-            }
-        }
-    }
-
-    /// Ends a row.
-    #[inline]
-    pub fn close(&mut self, row: usize) {
-        self.ends.push((row, self.indices.len()));
-    }
 }
 
 /// Values, gradients or Hessians at the queries, a row each; NaN outside.

@@ -1,7 +1,6 @@
 //! Sparse rows of weights, and what they make of values.
 
 use super::field::Field;
-use super::natural::Part;
 use crate::error::{Error, Result};
 use crate::locate::Output;
 use crate::memory::{filled, zeroed};
@@ -10,6 +9,48 @@ use crate::watch::Watch;
 
 /// Rows that a thread takes at once.
 const SHARE: usize = 1 << 13;
+
+/// Rows in the order in which a thread has met them.
+#[derive(Debug, Default)]
+pub struct Part {
+    /// The row in the query, and where its entries end.
+    pub ends: Vec<(usize, usize)>,
+    /// The vertices.
+    pub indices: Vec<i32>,
+    /// The weights of their values.
+    pub weights: Vec<f64>,
+    /// The weights of their gradients, where there are some.
+    pub slopes: Vec<[f64; 2]>,
+    sloped: bool,
+}
+
+impl Part {
+    /// No row yet; with weights of gradients or without.
+    pub fn with_slopes(sloped: bool) -> Self {
+        Self {
+            sloped,
+            ..Self::default()
+        }
+    }
+
+    /// Adds an entry, unless it is nothing.
+    #[inline]
+    pub fn entry(&mut self, vertex: i32, weight: f64, slope: [f64; 2]) {
+        if weight != 0.0 || slope != [0.0; 2] {
+            self.indices.push(vertex);
+            self.weights.push(weight);
+            if self.sloped {
+                self.slopes.push(slope);
+            }
+        }
+    }
+
+    /// Ends a row.
+    #[inline]
+    pub fn close(&mut self, row: usize) {
+        self.ends.push((row, self.indices.len()));
+    }
+}
 
 /// A sparse matrix in compressed rows.
 #[derive(Debug)]

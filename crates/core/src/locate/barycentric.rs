@@ -8,7 +8,7 @@ use super::cross::{certain, plain};
 use super::range::seen_from;
 use super::star::Place;
 use super::tiling::{next, prev};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::wide::{lowest, ratio, scaled};
 
 /// Areas below this may have lost digits at the lower end of the range.
@@ -16,7 +16,7 @@ const LEAST: f64 = 1e-250;
 
 /// The weights of the corners of the triangle at `place` for `q`: not negative, of sum 1.
 #[inline]
-pub fn barycentric(given: &Given, place: &Place, q: Point2) -> [f64; 3] {
+pub fn barycentric(given: &Triangles, place: &Place, q: Point2) -> [f64; 3] {
     let corners = given.corners(place.triangle);
     weights(corners, place.on, q)
 }

@@ -5,7 +5,7 @@ use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 use super::boxes::{Boxes, length};
 use super::range::seen_from;
 use super::tiling::{Side, next, prev};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 use crate::points::Extent;
 
@@ -24,7 +24,7 @@ pub struct Boundary {
 
 impl Boundary {
     /// Reads the boundary off the arrays.
-    pub fn of(given: &Given) -> Result<Self> {
+    pub fn of(given: &Triangles) -> Result<Self> {
         let mut sides = Vec::new();
         for (triangle, row) in given.neighbors.iter().enumerate() {
             let open = (0..3).filter(|&k| row[k] < 0);
@@ -53,7 +53,7 @@ impl Boundary {
     ///
     /// On a convex boundary in as many steps as there are edges between `from`, which has `q` beyond
     /// it, and the answer; elsewhere by boxes.
-    pub fn nearest(&self, given: &Given, from: Side, q: Point2) -> (Side, f64) {
+    pub fn nearest(&self, given: &Triangles, from: Side, q: Point2) -> (Side, f64) {
         if let Some(boxes) = &self.boxes {
             let found = boxes.nearest(q, None, |i, unit| measure(given, self.sides[i], q, unit));
             return found.map_or((from, 0.0), |(i, along)| (self.sides[i], along));
@@ -85,13 +85,13 @@ fn clamp(along: f64) -> f64 {
 }
 
 /// The ends of an edge.
-fn ends(given: &Given, side: Side) -> [Point2; 2] {
+fn ends(given: &Triangles, side: Side) -> [Point2; 2] {
     [next(side.corner), prev(side.corner)]
         .map(|corner| given.point(given.vertex(Side { corner, ..side })))
 }
 
 /// Where `q` is beside a boundary edge, 0 at its start and 1 at its end.
-fn project(given: &Given, side: Side, q: Point2) -> f64 {
+fn project(given: &Triangles, side: Side, q: Point2) -> f64 {
     let [u, v] = ends(given, side);
     // Each in a unit of its own: the edge may be very short beside the distance.
     let ([d], short) = seen_from(u, [v]);
@@ -100,7 +100,7 @@ fn project(given: &Given, side: Side, q: Point2) -> f64 {
 }
 
 /// The distance of `q` from a boundary edge, of coordinates times `unit`, and how far along that is.
-fn measure(given: &Given, side: Side, q: Point2, unit: f64) -> (f64, f64) {
+fn measure(given: &Triangles, side: Side, q: Point2, unit: f64) -> (f64, f64) {
     let t = clamp(project(given, side, q));
     let [u, v] = ends(given, side).map(|p| p.map(|x| x * unit));
     let away = [0, 1].map(|k| u[k] + t * (v[k] - u[k]) - q[k] * unit);
@@ -108,7 +108,7 @@ fn measure(given: &Given, side: Side, q: Point2, unit: f64) -> (f64, f64) {
 }
 
 /// The boundary edges in order, where they are one cycle.
-fn cycle(given: &Given, sides: &[Side]) -> Result<Option<Vec<Side>>> {
+fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
     let Some(&start) = sides.first() else {
         return Ok(None);
     };
@@ -143,7 +143,7 @@ fn cycle(given: &Given, sides: &[Side]) -> Result<Option<Vec<Side>>> {
 
 /// Whether a closed chain never turns right, and winds round once: then it goes through one
 /// lexicographic minimum.
-fn is_convex(given: &Given, cycle: &[Side]) -> bool {
+fn is_convex(given: &Triangles, cycle: &[Side]) -> bool {
     let start = |side: &Side| {
         given.point(given.vertex(Side {
             corner: next(side.corner),

@@ -35,7 +35,7 @@ pub use star::{Place, Star};
 pub use start::Start;
 pub use tiling::{Side, next, prev};
 
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::points::Extent;
 use walk::{Found, walk};
@@ -50,7 +50,7 @@ pub struct Kept {
 
 impl Kept {
     /// A tree of starts for many calls; the rest is made when it is needed.
-    pub fn of(given: &Given) -> Result<Self> {
+    pub fn of(given: &Triangles) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
             start: Start::of(given.simplices.len(), first)?,
@@ -64,7 +64,7 @@ impl Kept {
 #[derive(Clone, Copy)]
 pub struct Locator<'a> {
     /// The arrays.
-    pub given: Given<'a>,
+    pub given: Triangles<'a>,
     kept: &'a Kept,
 }
 
@@ -79,7 +79,7 @@ pub enum Located {
 
 impl<'a> Locator<'a> {
     /// A locator of what was kept for the same arrays.
-    pub fn new(given: Given<'a>, kept: &'a Kept) -> Self {
+    pub fn new(given: Triangles<'a>, kept: &'a Kept) -> Self {
         Self { given, kept }
     }
 
@@ -149,7 +149,7 @@ impl<'a> Locator<'a> {
 }
 
 /// On which edges `q` is, where the closed triangle has it.
-fn holds(given: &Given, t: usize, q: Point2) -> Option<[bool; 3]> {
+fn holds(given: &Triangles, t: usize, q: Point2) -> Option<[bool; 3]> {
     let [a, b, c] = given.corners(t);
     let signs = [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)];
     (!signs.contains(&Sign::Negative)).then(|| signs.map(|s| s == Sign::Zero))

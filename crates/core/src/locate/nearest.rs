@@ -11,7 +11,7 @@ use delone_predicates::{Point2, Sign, nearer};
 use super::Located;
 use super::batch::{Batch, Output};
 use super::tiling::{Side, next, prev};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::Result;
 
 /// For each query the nearest vertex, of several the first row; -1 for what is not finite.
@@ -37,7 +37,7 @@ pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
 }
 
 /// The nearest vertex to `q`, on the way from the corners of a triangle; `ties` is scratch room.
-fn nearest_from(given: &Given, triangle: usize, q: Point2, ties: &mut Vec<Side>) -> i32 {
+fn nearest_from(given: &Triangles, triangle: usize, q: Point2, ties: &mut Vec<Side>) -> i32 {
     let at = |side: Side| given.point(given.vertex(side));
     let mut best = Side {
         triangle,
@@ -70,7 +70,7 @@ fn nearest_from(given: &Given, triangle: usize, q: Point2, ties: &mut Vec<Side>)
 }
 
 /// The neighbours of the vertex at a corner, until `visit` answers `false`; some twice.
-fn neighbours(given: &Given, start: Side, mut visit: impl FnMut(Side) -> bool) {
+fn neighbours(given: &Triangles, start: Side, mut visit: impl FnMut(Side) -> bool) {
     given.around(start, |side| {
         let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
         visit(u) && (given.neighbors[side.triangle][u.corner] >= 0 || visit(v))
@@ -79,7 +79,7 @@ fn neighbours(given: &Given, start: Side, mut visit: impl FnMut(Side) -> bool) {
 
 /// The first row among all vertices as near as the one at `start`, where that is the least.
 #[cold]
-fn first_of_ties(given: &Given, start: Side, q: Point2, open: &mut Vec<Side>) -> i32 {
+fn first_of_ties(given: &Triangles, start: Side, q: Point2, open: &mut Vec<Side>) -> i32 {
     let here = given.point(given.vertex(start));
     let mut met = vec![given.vertex(start)];
     while let Some(side) = open.pop() {

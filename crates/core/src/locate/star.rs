@@ -5,7 +5,7 @@
 //! and the threads.
 
 use super::tiling::Side;
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 
 /// A point in a closed triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub struct First {
 impl Star {
     /// The first of the triangles that hold the point at `place`.
     #[inline]
-    pub fn first(&mut self, given: &Given, place: Place) -> First {
+    pub fn first(&mut self, given: &Triangles, place: Place) -> First {
         if place.on == [false; 3] {
             return First { place, open: false };
         }
@@ -81,7 +81,7 @@ impl Star {
     }
 
     #[inline(never)]
-    fn first_beside(&mut self, given: &Given, place: Place) -> First {
+    fn first_beside(&mut self, given: &Triangles, place: Place) -> First {
         let triangle = place.triangle;
         if let Some(corner) = place.edge() {
             let place = match given.beyond(Side { triangle, corner }) {

@@ -9,7 +9,7 @@
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
 use super::tiling::{Side, next, prev};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 
 /// How a trace ends.
@@ -34,7 +34,7 @@ enum State {
 
 /// A walk along the segment from `a` to `b`.
 pub struct Trace<'a> {
-    given: &'a Given<'a>,
+    given: &'a Triangles<'a>,
     a: Point2,
     b: Point2,
     /// Of the triangles beside an edge on the segment: the left one first, or the right one.
@@ -44,7 +44,7 @@ pub struct Trace<'a> {
 
 impl<'a> Trace<'a> {
     /// From the vertex at a corner to `b`.
-    pub fn from_corner(given: &'a Given<'a>, start: Side, b: Point2) -> Self {
+    pub fn from_corner(given: &'a Triangles<'a>, start: Side, b: Point2) -> Self {
         Self {
             given,
             a: given.point(given.vertex(start)),
@@ -57,7 +57,7 @@ impl<'a> Trace<'a> {
     /// From `a`, which is in the closed area of triangle `t` and on its edges `on`, to `b`, another
     /// point.
     pub fn from_inside(
-        given: &'a Given<'a>,
+        given: &'a Triangles<'a>,
         t: usize,
         on: [bool; 3],
         a: Point2,
@@ -85,7 +85,7 @@ impl<'a> Trace<'a> {
     }
 
     /// From beyond boundary edge `side`, which the segment meets, to `b`.
-    pub fn from_outside(given: &'a Given<'a>, side: Side, a: Point2, b: Point2) -> Self {
+    pub fn from_outside(given: &'a Triangles<'a>, side: Side, a: Point2, b: Point2) -> Self {
         let mut trace = Self {
             given,
             a,

@@ -1,9 +1,7 @@
 //! Exported arrays as a tiling: from triangle to triangle by codes, never by vertex numbers, so that
 //! the two sides of an edge may name different rows with equal coordinates.
 
-use delone_predicates::Point2;
-
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 
 /// A corner of a triangle, and the edge opposite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,19 +24,7 @@ pub fn prev(k: usize) -> usize {
     if k == 0 { 2 } else { k - 1 }
 }
 
-impl Given<'_> {
-    /// The coordinates of a vertex.
-    #[inline]
-    pub fn point(&self, v: i32) -> Point2 {
-        self.points[v as usize]
-    }
-
-    /// The coordinates of the corners of a triangle.
-    #[inline]
-    pub fn corners(&self, t: usize) -> [Point2; 3] {
-        self.simplices[t].map(|v| self.point(v))
-    }
-
+impl Triangles<'_> {
     /// The vertex at a corner.
     #[inline]
     pub fn vertex(&self, side: Side) -> i32 {

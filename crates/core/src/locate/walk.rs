@@ -9,7 +9,7 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::straight::{End, Trace};
 use super::tiling::{Side, next, prev};
-use crate::delaunay2::validate::Given;
+use crate::arrays::Triangles;
 use crate::error::Result;
 
 /// Where a walk ends.
@@ -29,7 +29,7 @@ fn budget(triangles: usize) -> usize {
 
 /// Walks from triangle `from` to `q`.
 #[inline]
-pub fn walk(given: &Given, from: usize, q: Point2) -> Result<Found> {
+pub fn walk(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
     match visibility(given, from, q, budget(given.simplices.len())) {
         Some(found) => Ok(found),
         None => straight(given, from, q),
@@ -44,7 +44,7 @@ fn side_of(a: Point2, b: Point2, q: Point2) -> Sign {
 
 /// The visibility walk, unless it needs more than `budget` steps.
 #[inline]
-pub fn visibility(given: &Given, from: usize, q: Point2, budget: usize) -> Option<Found> {
+pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> Option<Found> {
     let [a, b, c] = given.corners(from);
     let signs = [side_of(b, c, q), side_of(c, a, q), side_of(a, b, q)];
     let Some(k) = signs.iter().position(|&s| s == Sign::Negative) else {
@@ -87,7 +87,7 @@ pub fn visibility(given: &Given, from: usize, q: Point2, budget: usize) -> Optio
 /// memory come while the signs are computed: a tenth of the time where the points are in no order.
 /// Where an edge has different rows on its sides, other points may be loaded; nothing hangs on it.
 #[inline]
-fn touch(given: &Given, side: Side) {
+fn touch(given: &Triangles, side: Side) {
     let sum = |s: &[i32; 3]| s[0].wrapping_add(s[1]).wrapping_add(s[2]);
     let here = &given.simplices[side.triangle];
     for k in [next(side.corner), prev(side.corner)] {
@@ -110,7 +110,7 @@ fn select(first: bool, a: Point2, b: Point2) -> Point2 {
 /// The straight walk from the first corner of a triangle.
 #[cold]
 #[inline(never)]
-pub fn straight(given: &Given, from: usize, q: Point2) -> Result<Found> {
+pub fn straight(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
     let mut trace = Trace::from_corner(
         given,
         Side {
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn the_straight_walk_ends_where_the_other_turns_in_circles() {
         let (points, simplices, neighbors) = pinwheel(1.2);
-        let given = Given {
+        let given = Triangles {
             points: &points,
             simplices: &simplices,
             neighbors: &neighbors,

@@ -11,6 +11,7 @@ mod coordinates;
 mod face;
 mod foot;
 mod nearest;
+mod sites;
 mod star;
 mod tiling;
 mod walk;
@@ -30,7 +31,7 @@ use crate::error::Result;
 use crate::locate::{Boxes, Output, Start, kept};
 use crate::points::Extent;
 use boundary::Boundary;
-use nearest::Sites;
+use sites::Sites;
 use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.

@@ -2,16 +2,7 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
-/// The arrays of a triangulation in space, whose indices have been checked.
-#[derive(Debug, Clone, Copy)]
-pub struct Tetrahedra<'a> {
-    /// Coordinates.
-    pub points: &'a [Point3],
-    /// Positively oriented tetrahedra.
-    pub simplices: &'a [[i32; 4]],
-    /// The tetrahedron across the face opposite each corner, -1 outside.
-    pub neighbors: &'a [[i32; 4]],
-}
+pub use crate::arrays::Tetrahedra;
 
 /// A corner of a tetrahedron, and the face opposite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,18 +17,6 @@ pub struct Side {
 pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 impl Tetrahedra<'_> {
-    /// The coordinates of a vertex.
-    #[inline]
-    pub fn point(&self, v: i32) -> Point3 {
-        self.points[v as usize]
-    }
-
-    /// The coordinates of the corners of a tetrahedron.
-    #[inline]
-    pub fn corners(&self, t: usize) -> [Point3; 4] {
-        self.simplices[t].map(|v| self.point(v))
-    }
-
     /// The vertex at a corner.
     #[inline]
     pub fn vertex(&self, side: Side) -> i32 {

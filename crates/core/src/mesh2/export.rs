@@ -3,6 +3,7 @@
 
 use super::storage::{OPPOSITE, RECORD};
 use super::{Code, Mesh2, triangle};
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{with_room, zeroed};
 use crate::parallel;
@@ -14,22 +15,13 @@ pub(super) const OUTSIDE: Code = Code::MAX;
 /// Triangles that one task writes.
 const SHARE: usize = 1 << 14;
 
-/// The finite triangles of a mesh.
-#[derive(Debug, Default)]
-pub struct Arrays {
-    /// Three vertices a triangle, counter-clockwise.
-    pub simplices: Vec<[i32; 3]>,
-    /// The triangle opposite each vertex, -1 outside.
-    pub neighbors: Vec<[i32; 3]>,
-}
-
 /// As [`arrays`], and for each triangle and corner whether the edge opposite is marked.
 pub fn marked_arrays(
     mesh: Mesh2,
     ghost: Code,
     rows: &[u32],
     workers: usize,
-) -> Result<(Arrays, Vec<[bool; 3]>)> {
+) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
     let (mut mesh, out) = write(mesh, ghost, rows, workers)?;
     let patch = mesh.patch();
     let count = out.simplices.len();
@@ -39,12 +31,12 @@ pub fn marked_arrays(
 }
 
 /// Exports `mesh`, one of whose ghosts is `ghost`; vertex v becomes `rows[v]`.
-pub fn arrays(mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays> {
+pub fn arrays(mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays<3>> {
     write(mesh, ghost, rows, workers).map(|(_, arrays)| arrays)
 }
 
 /// The arrays, and the mesh without ghosts.
-fn write(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<(Mesh2, Arrays)> {
+fn write(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<(Mesh2, Arrays<3>)> {
     let count = drop_ghosts(&mut mesh, ghost)?;
     let mut out = Arrays {
         simplices: zeroed(count)?,

@@ -12,11 +12,12 @@ use std::iter::once;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
+use super::corners;
 use super::insert::{Cavity, Walk, walk};
 use super::place::{Bend, Places};
 use super::queue::{Bad, Queue};
 use super::shape::{Reason, Seen, Shape, angle, dot, minus};
-use super::{Counts, Task, Tell, corners};
+use super::task::{Counts, Task, Tell};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
 use crate::error::Result;

@@ -11,6 +11,7 @@
 
 use delone_predicates::Sign;
 
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 use crate::watch::Watch;
@@ -87,22 +88,13 @@ pub struct Insertion<'a, S> {
     stamp: u32,
 }
 
-/// What is left of the sites.
-#[derive(Debug)]
-pub struct Triangles {
-    /// Three sites a triangle, counter-clockwise.
-    pub simplices: Vec<[i32; 3]>,
-    /// The triangle opposite each corner, -1 outside.
-    pub neighbors: Vec<[i32; 3]>,
-}
-
 /// Triangulates sites 0 to n - 1, inserted in this order; `Err` holds those of sites all in line that
 /// are not hidden, in their order.
 pub fn insert_all<S: Sites>(
     sites: &S,
     n: usize,
     watch: &Watch,
-) -> Result<std::result::Result<Triangles, Vec<u32>>> {
+) -> Result<std::result::Result<Arrays<3>, Vec<u32>>> {
     let third = (2..n as u32).find(|&c| sites.turn([0, 1, c]) != Sign::Zero);
     let Some(third) = third else {
         return Ok(Err(chain(sites, n)));
@@ -291,7 +283,7 @@ impl<'a, S: Sites> Insertion<'a, S> {
         Ok(())
     }
 
-    fn export(self) -> Result<Triangles> {
+    fn export(self) -> Result<Arrays<3>> {
         let mut number = filled(self.vertices.len(), -1)?;
         let mut count = 0;
         for (corners, number) in self.vertices.iter().zip(&mut number) {
@@ -300,7 +292,7 @@ impl<'a, S: Sites> Insertion<'a, S> {
                 count += 1;
             }
         }
-        let mut out = Triangles {
+        let mut out = Arrays {
             simplices: with_room(count as usize)?,
             neighbors: with_room(count as usize)?,
         };

@@ -7,13 +7,14 @@ mod power;
 
 use delone_predicates::Point2;
 
+use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::order::arrange;
 use crate::points;
 use crate::watch::Watch;
 
-pub use insertion::{Sites, Triangles};
+pub use insertion::Sites;
 pub use periodic::{Copies, Images, periodic};
 pub use power::power_sign;
 
@@ -21,7 +22,7 @@ pub use power::power_sign;
 #[derive(Debug)]
 pub struct Regular {
     /// Triangles of rows; none where all points are in line.
-    pub triangles: Triangles,
+    pub triangles: Arrays<3>,
     /// Where all points are in line, the rows that are not hidden, in their order.
     pub chain: Vec<u32>,
     /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
@@ -61,13 +62,10 @@ pub fn regular(points: &[Point2], weights: &[f64], watch: &Watch) -> Result<Regu
     let found = insertion::insert_all(&sites, arranged.rows.len(), watch)?;
     let (mut triangles, chain) = match found {
         Ok(triangles) => (triangles, Vec::new()),
-        Err(chain) => {
-            let none = Triangles {
-                simplices: Vec::new(),
-                neighbors: Vec::new(),
-            };
-            (none, chain.iter().map(|&v| heaviest[v as usize]).collect())
-        }
+        Err(chain) => (
+            Arrays::default(),
+            chain.iter().map(|&v| heaviest[v as usize]).collect(),
+        ),
     };
     for corners in &mut triangles.simplices {
         *corners = corners.map(rows);

@@ -28,8 +28,9 @@
 use delone_predicates::{Point2, Sign};
 use num_bigint::BigInt;
 
-use super::insertion::{Sites, Triangles, insert_all};
+use super::insertion::{Sites, insert_all};
 use super::power::{determinant, in_line};
+use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::order::arrange;
@@ -59,7 +60,7 @@ pub struct Images<'a> {
 #[derive(Debug)]
 pub struct Copies {
     /// Triangles of copies.
-    pub triangles: Triangles,
+    pub triangles: Arrays<3>,
     /// Copies in line, where there is no triangle.
     pub chain: Vec<u32>,
     /// The row of each copy.
@@ -105,13 +106,7 @@ pub fn periodic(
     };
     let (triangles, chain) = match insert_all(&sites, order.len(), watch)? {
         Ok(triangles) => (triangles, Vec::new()),
-        Err(chain) => {
-            let none = Triangles {
-                simplices: Vec::new(),
-                neighbors: Vec::new(),
-            };
-            (none, chain)
-        }
+        Err(chain) => (Arrays::default(), chain),
     };
     Ok(Copies {
         triangles,

@@ -16,6 +16,7 @@ use std::collections::HashMap;
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::power::power_canonical;
+use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::locate3::FACES;
 use crate::memory::{filled, with_room};
@@ -36,15 +37,6 @@ pub struct Weighted<'a> {
     pub weights: &'a [f64],
 }
 
-/// What is left of the sites.
-#[derive(Debug, Default)]
-pub struct Tetrahedra {
-    /// Four sites a tetrahedron, positively oriented.
-    pub simplices: Vec<[i32; 4]>,
-    /// The tetrahedron opposite each corner, -1 outside.
-    pub neighbors: Vec<[i32; 4]>,
-}
-
 /// Tetrahedra with ghosts.
 struct Insertion<'a> {
     sites: Weighted<'a>,
@@ -61,7 +53,7 @@ struct Insertion<'a> {
 }
 
 /// Triangulates sites, inserted in their order after the first four given, which span space.
-pub fn insert_all(sites: Weighted, first: [u32; 4], watch: &Watch) -> Result<Tetrahedra> {
+pub fn insert_all(sites: Weighted, first: [u32; 4], watch: &Watch) -> Result<Arrays<4>> {
     let mut mesh = Insertion::of(sites, first)?;
     for p in (0..sites.points.len() as u32).filter(|p| !first.contains(p)) {
         if p.is_multiple_of(WATCH_EVERY) {
@@ -254,7 +246,7 @@ impl<'a> Insertion<'a> {
         Err(Error::Internal("a rim is not closed".into()))
     }
 
-    fn export(self) -> Result<Tetrahedra> {
+    fn export(self) -> Result<Arrays<4>> {
         let mut number = filled(self.vertices.len(), -1)?;
         let mut count = 0;
         for (corners, number) in self.vertices.iter().zip(&mut number) {
@@ -263,7 +255,7 @@ impl<'a> Insertion<'a> {
                 count += 1;
             }
         }
-        let mut out = Tetrahedra {
+        let mut out = Arrays {
             simplices: with_room(count as usize)?,
             neighbors: with_room(count as usize)?,
         };

@@ -5,13 +5,14 @@ mod power;
 
 use delone_predicates::{Point3, orient3d};
 
+use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::order::space::arrange;
 use crate::points;
 use crate::watch::Watch;
 
-pub use insertion::{Tetrahedra, Weighted};
+pub use insertion::Weighted;
 pub(crate) use power::determinant;
 pub use power::{power_canonical, power_sign};
 
@@ -19,7 +20,7 @@ pub use power::{power_canonical, power_sign};
 #[derive(Debug)]
 pub struct Regular {
     /// Tetrahedra of rows.
-    pub tetrahedra: Tetrahedra,
+    pub tetrahedra: Arrays<4>,
     /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
     pub stands_for: Vec<i32>,
 }

@@ -30,6 +30,7 @@ use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point2, lexicographic};
 use num_bigint::{BigInt, Sign};
 
+use super::vertices::{Center, Centered};
 use crate::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
@@ -48,25 +49,31 @@ pub struct Corners {
     weights: [f64; 3],
 }
 
-/// A centre as far as doubles reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Center {
-    /// Its rounded coordinates.
-    At(Point2),
-    /// A coordinate is beyond the range, and infinite here; the other is rounded.
-    Beyond(Point2),
-}
-
-impl Corners {
-    /// Corners with their weights, 0 for none.
+impl Centered<2, 3> for Corners {
     #[inline]
-    pub fn new([a, b, c]: [Point2; 3], [u, v, w]: [f64; 3]) -> Self {
+    fn new([a, b, c]: [Point2; 3], [u, v, w]: [f64; 3]) -> Self {
         Self {
             points: [a, b, c],
             weights: [u, v, w],
         }
     }
 
+    #[inline]
+    fn center(&self) -> Center<2> {
+        match self.turned().plain() {
+            Some(at) => Center::At(at),
+            None => self.rounded(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn rounded(&self) -> Center<2> {
+        self.pairs().map_or_else(|| self.exact(), Center::At)
+    }
+}
+
+impl Corners {
     /// Turned so that the lexicographically smallest corner comes first.
     #[inline]
     fn turned(&self) -> Self {
@@ -81,22 +88,6 @@ impl Corners {
             ([c, a, b], [w, u, v])
         };
         Self { points, weights }
-    }
-
-    /// The centre, within 4 units in the last place of each coordinate.
-    #[inline]
-    pub fn center(&self) -> Center {
-        match self.turned().plain() {
-            Some(at) => Center::At(at),
-            None => self.rounded(),
-        }
-    }
-
-    /// The centre, correctly rounded.
-    #[cold]
-    #[inline(never)]
-    pub fn rounded(&self) -> Center {
-        self.pairs().map_or_else(|| self.exact(), Center::At)
     }
 
     #[inline]
@@ -170,7 +161,7 @@ impl Corners {
         Some([x, y])
     }
 
-    fn exact(&self) -> Center {
+    fn exact(&self) -> Center<2> {
         let low = lowest(&self.points, &self.weights);
         let at = |x: f64| scaled(x, low);
         let weights = self.weights.map(|w| scaled(w, 2 * low));
@@ -184,7 +175,7 @@ pub(super) fn meeting(
     [a, b, c]: &[[BigInt; 2]; 3],
     [wa, wb, wc]: &[BigInt; 3],
     low: i64,
-) -> Center {
+) -> Center<2> {
     let (dx, dy, ex, ey) = (&b[0] - &a[0], &b[1] - &a[1], &c[0] - &a[0], &c[1] - &a[1]);
     let l = &dx * &dx + &dy * &dy + wa - wb;
     let m = &ex * &ex + &ey * &ey + wa - wc;

@@ -1,6 +1,7 @@
 //! Cells: around each site the vertices and ridges of its cell, counter-clockwise.
 
-use super::dual::{Given, OWNED, SHARED};
+use super::given::Given;
+use super::ridges::{OWNED, SHARED};
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room, zeroed};
 use crate::parallel;
@@ -26,7 +27,7 @@ pub struct Regions {
 
 /// What a walk around sites needs.
 pub(super) struct Walk<'a> {
-    pub given: Given<'a>,
+    pub given: Given<'a, 2, 3>,
     pub masks: &'a [u8],
     pub vertex: &'a [i32],
     pub first_ridge: &'a [u32],
@@ -66,7 +67,7 @@ fn starts(sites: &[[i32; 2]], of_point: &[i32], cells: usize) -> Result<Vec<i32>
 }
 
 /// For each point its cell, for each cell its point and the first corner there, as 4 t + k.
-fn first_corners(given: Given) -> Result<(Vec<i32>, Vec<i32>, Vec<u32>)> {
+fn first_corners(given: Given<2, 3>) -> Result<(Vec<i32>, Vec<i32>, Vec<u32>)> {
     let mut of_point = filled(given.points.len(), -1)?;
     let mut site = with_room(given.points.len())?;
     let mut codes = with_room(given.points.len())?;

@@ -3,10 +3,15 @@
 
 use delone_predicates::Point2;
 
-use super::dual::{Given, OWNED};
+use super::given::Given;
 use crate::error::Result;
 use crate::memory::{with_room, zeroed};
 use crate::parallel;
+
+/// The mask of a triangle: bit k where it shares its centre across edge k, bit 3 + k where the ridge
+/// of edge k is numbered with it.
+pub(super) const SHARED: u8 = 0b111;
+pub(super) const OWNED: u32 = 3;
 
 /// Triangles that one task does.
 const SHARE: usize = 1 << 14;
@@ -28,7 +33,7 @@ pub struct Ridges {
 /// Ridges in the order of the triangles with which they are numbered, and the number of the first
 /// ridge of each triangle. `far` are the vertices beyond the range.
 pub(super) fn ridges(
-    given: Given,
+    given: Given<2, 3>,
     masks: &[u8],
     vertex: &[i32],
     far: &[Point2],
@@ -87,7 +92,7 @@ fn count(masks: &[u8]) -> Result<(Vec<u32>, Vec<usize>, usize)> {
 /// The way from the triangle right of an edge (a, b) to the one left of it turns left from b - a,
 /// so that a lies on its left.
 fn fill(
-    given: Given,
+    given: Given<2, 3>,
     masks: &[u8],
     vertex: &[i32],
     from: usize,
@@ -117,7 +122,7 @@ fn fill(
 }
 
 /// Gives a ridge rays for the ends that are no vertices.
-fn close(given: Given, sites: &mut [i32; 2], ends: &mut [i32; 2], rays: &mut Vec<Point2>) {
+fn close(given: Given<2, 3>, sites: &mut [i32; 2], ends: &mut [i32; 2], rays: &mut Vec<Point2>) {
     let [a, b] = sites.map(|v| given.point(v));
     let normal = unit([a[1], b[0]], [b[1], a[0]]);
     let back = normal.map(|x| 0.0 - x);

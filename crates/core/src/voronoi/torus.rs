@@ -3,7 +3,8 @@
 
 use delone_predicates::{Point2, Sign};
 
-use super::center::{Center, meeting};
+use super::center::meeting;
+use super::vertices::Center;
 use crate::error::{Error, Result};
 use crate::memory::{filled, zeroed};
 use crate::parallel;

@@ -31,6 +31,7 @@ use delone_predicates::{Point3, lexicographic};
 use num_bigint::{BigInt, Sign};
 
 use crate::regular3::determinant;
+use crate::voronoi::vertices::{Center, Centered};
 use crate::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
@@ -49,19 +50,9 @@ pub struct Corners {
     weights: [f64; 4],
 }
 
-/// A centre as far as doubles reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Center {
-    /// Its rounded coordinates.
-    At(Point3),
-    /// A coordinate is beyond the range: the direction in which the centre lies, of length 1.
-    Beyond(Point3),
-}
-
-impl Corners {
-    /// Corners with their weights, 0 for none, in any order.
+impl Centered<3, 4> for Corners {
     #[inline]
-    pub fn new(mut points: [Point3; 4], mut weights: [f64; 4]) -> Self {
+    fn new(mut points: [Point3; 4], mut weights: [f64; 4]) -> Self {
         // A network that sorts four.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             if lexicographic(points[j], points[i]).is_lt() {
@@ -72,22 +63,22 @@ impl Corners {
         Self { points, weights }
     }
 
-    /// The centre, within 4 units in the last place of each coordinate.
     #[inline]
-    pub fn center(&self) -> Center {
+    fn center(&self) -> Center<3> {
         match self.plain() {
             Some(at) => Center::At(at),
             None => self.rounded(),
         }
     }
 
-    /// The centre, correctly rounded.
     #[cold]
     #[inline(never)]
-    pub fn rounded(&self) -> Center {
+    fn rounded(&self) -> Center<3> {
         self.pairs().map_or_else(|| self.exact(), Center::At)
     }
+}
 
+impl Corners {
     #[inline]
     fn plain(&self) -> Option<Point3> {
         let [a, b, c, g] = self.points;
@@ -168,7 +159,7 @@ impl Corners {
         Some(at)
     }
 
-    fn exact(&self) -> Center {
+    fn exact(&self) -> Center<3> {
         let low = lowest(&self.points, &self.weights);
         let at = self.points.map(|p| p.map(|x| scaled(x, low)));
         let heavy = self.weights.map(|w| scaled(w, 2 * low));

@@ -5,10 +5,10 @@
 
 use delone_predicates::Point3;
 
-use super::dual::Given;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::parallel;
+use crate::voronoi::Given;
 
 /// Ridges or cells that one task does.
 const SHARE: usize = 1 << 12;
@@ -50,7 +50,7 @@ pub struct Measures {
 }
 
 impl<'a> Cells<'a> {
-    pub(super) fn given(&self) -> Given<'a> {
+    pub(super) fn given(&self) -> Given<'a, 3, 4> {
         Given {
             points: self.points,
             weights: self.weights,

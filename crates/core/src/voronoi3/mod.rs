@@ -16,7 +16,6 @@ mod polyhedron;
 mod regions;
 mod ridges;
 
-pub use center::{Center, Corners};
 pub use clip::{Clip, Clipped, Shape, clip, halfspaces};
-pub use dual::{Diagram, Given, diagram};
+pub use dual::{Diagram, diagram};
 pub use measure::{Cells, Measures, measures};

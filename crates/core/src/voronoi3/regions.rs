@@ -1,10 +1,10 @@
 //! Cells: the vertices and faces around each site.
 
-use super::dual::Given;
 use super::ridges::Ridges;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 use crate::parallel;
+use crate::voronoi::Given;
 use crate::watch::Watch;
 
 /// Cells that one task does.
@@ -29,7 +29,7 @@ pub struct Regions {
 
 /// The cells of all points that are corners of tetrahedra.
 pub(super) fn regions(
-    given: Given,
+    given: Given<3, 4>,
     vertex: &[i32],
     ridges: &Ridges,
     workers: usize,

@@ -12,10 +12,10 @@ use std::collections::HashMap;
 use delone_predicates::{Point3, orient3d};
 
 use super::center::normal;
-use super::dual::Given;
 use crate::error::{Error, Result};
 use crate::memory::with_room;
 use crate::parallel;
+use crate::voronoi::Given;
 use crate::watch::Watch;
 
 /// Tetrahedra that one task does.
@@ -56,7 +56,7 @@ struct Part {
 
 /// What a walk around edges needs.
 struct Walk<'a> {
-    given: Given<'a>,
+    given: Given<'a, 3, 4>,
     vertex: &'a [i32],
     /// The ray of each face of the hull, by 4 t + k.
     ray: HashMap<u32, i32>,
@@ -77,7 +77,7 @@ struct Turn {
 /// Ridges in the order of the tetrahedra that come first around their edges. `far` are the directions of
 /// vertices beyond the range, and become the first rays.
 pub(super) fn ridges(
-    given: Given,
+    given: Given<3, 4>,
     vertex: &[i32],
     far: Vec<Point3>,
     workers: usize,
@@ -121,7 +121,7 @@ pub(super) fn ridges(
 }
 
 /// The direction away from the face opposite corner k of tetrahedron t.
-fn outward(given: Given, t: usize, k: usize) -> Point3 {
+fn outward(given: Given<3, 4>, t: usize, k: usize) -> Point3 {
     let s = given.simplices[t];
     // Counter-clockwise as seen from outside: for k = 3 that is (0, 2, 1), and so on by exchanges.
     let [a, b, c] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]][k].map(|i| given.point(s[i]));

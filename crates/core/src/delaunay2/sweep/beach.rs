@@ -5,8 +5,10 @@
 use delone_predicates::sweep::front;
 use delone_predicates::{Point2, Sign};
 
-use super::Site;
 use crate::mesh2::Code;
+
+/// A point and its number as a vertex.
+pub type Site = (Point2, u32);
 
 /// No arc.
 pub const NONE: u32 = u32::MAX;

@@ -1,11 +1,10 @@
 //! The circles to come, in a binary heap by their right ends. Each arc knows the place of its
 //! circle, so circles that come to nothing leave at once and the heap is no longer than the front.
 
-use delone_predicates::Sign;
 use delone_predicates::sweep::{CircleEnd, circle_end_abscissa, circle_ends};
+use delone_predicates::{Point2, Sign, orient2d};
 
 use super::beach::{Beach, NONE};
-use super::shrinks;
 
 /// The circle of an arc and the two beside it.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +29,11 @@ fn before(beach: &Beach, s: &Event, t: &Event) -> bool {
         }
     });
     sign == Sign::Negative
+}
+
+/// Whether three points of the front turn right: then their middle arc shrinks.
+fn shrinks([a, b, c]: [Point2; 3]) -> bool {
+    orient2d(a, b, c) == Sign::Negative
 }
 
 impl Events {

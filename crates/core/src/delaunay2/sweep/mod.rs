@@ -52,9 +52,9 @@ mod events;
 
 use std::ops::Range;
 
-use delone_predicates::{Point2, Sign, lexicographic, orient2d};
+use delone_predicates::{Point2, lexicographic, orient2d};
 
-use self::beach::{Beach, NONE};
+use self::beach::{Beach, NONE, Site};
 use self::events::Events;
 use super::ties;
 use crate::error::{Error, Result};
@@ -64,9 +64,6 @@ use crate::watch::Watch;
 
 /// Stops between two looks at the watch.
 const WATCH_EVERY: usize = 4096;
-
-/// A point and its number as a vertex.
-type Site = (Point2, u32);
 
 /// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
 /// block is collinear. `points` end with NaN for infinity.
@@ -242,9 +239,4 @@ impl<'a> Sweep<'a> {
         }
         Ok(ring[0])
     }
-}
-
-/// Whether three points of the front turn right: then their middle arc shrinks.
-fn shrinks([a, b, c]: [Point2; 3]) -> bool {
-    orient2d(a, b, c) == Sign::Negative
 }

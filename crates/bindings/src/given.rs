@@ -1,0 +1,106 @@
+//! Triangulations that are given as arrays: borrowed and checked for one call, or held for many.
+
+use delone_core::arrays::Given;
+use delone_core::error::{Error, Result};
+use delone_core::watch::Watch;
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays::{in_range, rows};
+use crate::errors::attached;
+use crate::signals::watched;
+
+/// Queries below which a call keeps the GIL: it is over before another thread could run.
+const FEW: usize = 16;
+
+/// Borrowed arrays. An index in them that is out of range is an `InternalError` when it is used.
+fn borrowed<'a, const D: usize, const N: usize>(
+    points: &'a PyReadonlyArray2<'_, f64>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    neighbors: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<Given<'a, D, N>> {
+    Ok(Given {
+        points: rows(points, "points")?,
+        simplices: rows(simplices, "simplices")?,
+        neighbors: rows(neighbors, "neighbors")?,
+    })
+}
+
+/// Borrowed arrays whose indices have been checked, which takes a look at each.
+pub fn checked<'a, const D: usize, const N: usize>(
+    points: &'a PyReadonlyArray2<'_, f64>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    neighbors: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<Given<'a, D, N>> {
+    let given = borrowed(points, simplices, neighbors)?;
+    if given.neighbors.len() != given.simplices.len() {
+        return Err(Error::Shape(
+            "neighbors and simplices differ in length".into(),
+        ));
+    }
+    in_range(given.simplices, 0, given.points.len(), "simplices")?;
+    in_range(given.neighbors, -1, given.simplices.len(), "neighbors")?;
+    Ok(given)
+}
+
+/// Arrays that have been checked and never change.
+pub struct Held {
+    points: Py<PyArray2<f64>>,
+    simplices: Py<PyArray2<i32>>,
+    neighbors: Py<PyArray2<i32>>,
+}
+
+/// The arrays of `Held`, borrowed from Python for one call.
+pub struct Lent<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
+}
+
+impl Held {
+    /// Keeps arrays; the caller has checked them.
+    pub fn new(
+        points: &PyReadonlyArray2<'_, f64>,
+        simplices: &PyReadonlyArray2<'_, i32>,
+        neighbors: &PyReadonlyArray2<'_, i32>,
+    ) -> Self {
+        Self {
+            points: (**points).clone().unbind(),
+            simplices: (**simplices).clone().unbind(),
+            neighbors: (**neighbors).clone().unbind(),
+        }
+    }
+
+    /// Borrows the arrays.
+    pub fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent<'py>> {
+        Ok(Lent {
+            points: self.points.bind(py).try_readonly()?,
+            simplices: self.simplices.bind(py).try_readonly()?,
+            neighbors: self.neighbors.bind(py).try_readonly()?,
+        })
+    }
+
+    /// The number of simplices.
+    pub fn count(&self, py: Python<'_>) -> usize {
+        self.simplices.bind(py).shape()[0]
+    }
+}
+
+impl Lent<'_> {
+    /// The arrays.
+    pub fn given<const D: usize, const N: usize>(&self) -> Result<Given<'_, D, N>> {
+        borrowed(&self.points, &self.simplices, &self.neighbors)
+    }
+}
+
+/// Does `work` for `count` queries, without the GIL unless they are few.
+pub fn answered<T: Send>(
+    py: Python<'_>,
+    count: usize,
+    work: impl FnOnce(&Watch) -> Result<T> + Send,
+) -> PyResult<T> {
+    if count <= FEW {
+        return attached(py, || work(&Watch::idle()));
+    }
+    watched(py, work)
+}

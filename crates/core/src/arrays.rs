@@ -1,0 +1,41 @@
+//! Triangulations as arrays: vertices are rows of points, neighbours simplices, or -1 outside.
+//! Simplices are triangles, `N` = 3 corners with `D` = 2 coordinates, or tetrahedra, 4 with 3.
+
+/// A triangulation that is given. Vertices must be rows of `points`, neighbours simplices or -1.
+#[derive(Debug, Clone, Copy)]
+pub struct Given<'a, const D: usize, const N: usize> {
+    /// Coordinates, finite.
+    pub points: &'a [[f64; D]],
+    /// The vertices of each simplex, positively oriented.
+    pub simplices: &'a [[i32; N]],
+    /// The simplex opposite each corner, -1 outside.
+    pub neighbors: &'a [[i32; N]],
+}
+
+/// Triangles in the plane.
+pub type Triangles<'a> = Given<'a, 2, 3>;
+/// Tetrahedra in space.
+pub type Tetrahedra<'a> = Given<'a, 3, 4>;
+
+impl<const D: usize, const N: usize> Given<'_, D, N> {
+    /// The coordinates of a vertex.
+    #[inline]
+    pub fn point(&self, v: i32) -> [f64; D] {
+        self.points[v as usize]
+    }
+
+    /// The coordinates of the corners of a simplex.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [[f64; D]; N] {
+        self.simplices[t].map(|v| self.point(v))
+    }
+}
+
+/// A triangulation that has been made: its simplices, each row one.
+#[derive(Debug, Default)]
+pub struct Arrays<const N: usize> {
+    /// The vertices of each, positively oriented.
+    pub simplices: Vec<[i32; N]>,
+    /// The simplex opposite each corner, -1 outside.
+    pub neighbors: Vec<[i32; N]>,
+}

@@ -1,0 +1,170 @@
+//! From simplices to vertices: centres, and which neighbouring simplices share theirs.
+
+use super::given::Given;
+use crate::error::Result;
+use crate::memory::{filled, zeroed};
+use crate::parallel;
+
+/// Simplices that one task does.
+const SHARE: usize = 1 << 14;
+/// Simplices whose corners are fetched before the first of their centres is computed: loads that do
+/// not wait for each other.
+const BATCH: usize = 64;
+/// Two roundings of one number, each within 4 units in the last place, differ by less than this
+/// share of it.
+const NEAR: f64 = 16.0 * f64::EPSILON;
+
+/// A centre as far as doubles reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Center<const D: usize> {
+    /// Its rounded coordinates.
+    At([f64; D]),
+    /// A coordinate is beyond the range. In the plane it is infinite here, and the other is rounded;
+    /// in space this is the direction in which the centre lies, of length 1.
+    Beyond([f64; D]),
+}
+
+/// The sites of a simplex and their weights: those of triangles and of tetrahedra have their centres
+/// each in their own way.
+pub(crate) trait Centered<const D: usize, const N: usize>: Copy {
+    /// Corners with their weights, 0 for none.
+    fn new(points: [[f64; D]; N], weights: [f64; N]) -> Self;
+    /// The centre, each coordinate within 4 units in the last place.
+    fn center(&self) -> Center<D>;
+    /// The centre, each coordinate rounded correctly.
+    fn rounded(&self) -> Center<D>;
+
+    /// The corners of simplex `t`.
+    fn of(given: Given<D, N>, t: usize) -> Self {
+        let s = given.simplices[t];
+        Self::new(s.map(|v| given.point(v)), s.map(|v| given.weight(v)))
+    }
+}
+
+/// A simplex whose centre is beyond the range of doubles, and where that is, as in `Center::Beyond`.
+pub(crate) type Far<const D: usize> = (usize, [f64; D]);
+
+/// The centre of each simplex, NaN for those beyond the range, which are listed.
+pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
+    given: Given<D, N>,
+    workers: usize,
+) -> Result<(Vec<[f64; D]>, Vec<Far<D>>)> {
+    let mut centers = zeroed(given.simplices.len())?;
+    let tasks = centers.chunks_mut(SHARE).enumerate().collect();
+    let found = parallel::map(workers, tasks, |(i, part): (usize, &mut [[f64; D]])| {
+        let mut beyond = Vec::new();
+        let mut batch = [C::of(given, i * SHARE); BATCH];
+        for (j, part) in part.chunks_mut(BATCH).enumerate() {
+            let from = i * SHARE + j * BATCH;
+            for (t, corners) in (from..from + part.len()).zip(&mut batch) {
+                *corners = C::of(given, t);
+            }
+            for (t, (slot, corners)) in (from..).zip(part.iter_mut().zip(&batch)) {
+                *slot = match corners.center() {
+                    Center::At(at) => at,
+                    Center::Beyond(at) => {
+                        beyond.push((t, at));
+                        [f64::NAN; D]
+                    }
+                };
+            }
+        }
+        beyond
+    });
+    Ok((centers, found.into_iter().flatten().collect()))
+}
+
+/// For each simplex a mask: bit k where it shares its centre across the side opposite corner k, which
+/// `tied` decides where the centres are near, and what `others` adds to that, told the simplex and
+/// its bits.
+pub(crate) fn masks<const D: usize, const N: usize>(
+    given: Given<D, N>,
+    centers: &[[f64; D]],
+    workers: usize,
+    tied: impl Fn(usize, usize) -> Result<bool> + Sync,
+    others: impl Fn(usize, u8) -> u8 + Sync,
+) -> Result<Vec<u8>> {
+    let mut masks = filled(given.simplices.len(), 0_u8)?;
+    let tasks = masks.chunks_mut(SHARE).enumerate().collect();
+    let done = parallel::map(workers, tasks, |(i, part): (usize, &mut [u8])| {
+        for (t, mask) in (i * SHARE..).zip(part) {
+            for k in 0..N {
+                let other = given.neighbors[t][k];
+                let shared = other >= 0
+                    && are_near(&centers[t], &centers[other as usize])
+                    && tied(t, other as usize)?;
+                *mask |= u8::from(shared) << k;
+            }
+            *mask |= others(t, *mask);
+        }
+        Ok(())
+    });
+    done.into_iter().collect::<Result<()>>()?;
+    Ok(masks)
+}
+
+/// Whether two centres may be one; NaN is near everything.
+#[inline]
+fn are_near<const D: usize>(here: &[f64; D], there: &[f64; D]) -> bool {
+    let apart = |i: usize| {
+        (here[i] - there[i]).abs() > NEAR * here[i].abs().max(there[i].abs()) + f64::MIN_POSITIVE
+    };
+    !(0..D).any(apart)
+}
+
+/// The vertex of each simplex: its number, or !i for number i of the far ones, whose places are the
+/// second result. `centers` becomes the list of vertices.
+pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
+    given: Given<D, N>,
+    masks: &[u8],
+    centers: &mut Vec<[f64; D]>,
+    beyond: &[Far<D>],
+) -> Result<(Vec<i32>, Vec<[f64; D]>)> {
+    const NONE: i32 = i32::MIN;
+    let shares = |t: usize| masks[t] & ((1 << N) - 1);
+    let mut vertex = filled(masks.len(), NONE)?;
+    let mut far = Vec::new();
+    let mut stack = Vec::new();
+    let mut count = 0;
+    for t in 0..masks.len() {
+        if vertex[t] != NONE {
+            continue;
+        }
+        let mut at = centers[t];
+        let mut place = None;
+        if at[0].is_nan() {
+            let found = beyond.binary_search_by_key(&t, |&(t, _)| t);
+            place = found.ok().map(|i| beyond[i].1);
+        } else if shares(t) != 0
+            && let Center::At(rounded) = C::of(given, t).rounded()
+        {
+            // Rounded correctly it is the same whichever of the simplices comes first.
+            at = rounded;
+        }
+        let number = if let Some(place) = place {
+            far.push(place);
+            !(far.len() as i32 - 1)
+        } else {
+            centers[count] = at;
+            count += 1;
+            count as i32 - 1
+        };
+        vertex[t] = number;
+        if shares(t) == 0 {
+            continue;
+        }
+        stack.push(t);
+        // Each simplex is numbered once and pushed then.
+        while let Some(t) = stack.pop() {
+            for k in (0..N).filter(|k| shares(t) >> k & 1 == 1) {
+                let other = given.neighbors[t][k] as usize;
+                if vertex[other] == NONE {
+                    vertex[other] = number;
+                    stack.push(other);
+                }
+            }
+        }
+    }
+    centers.truncate(count);
+    Ok((vertex, far))
+}
