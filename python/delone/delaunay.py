@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Self, overload
 from delone import _core
 from delone._arrays import as_workers
 from delone.errors import DegenerateInputError, InputError, InternalError
-from delone.plane.triangulation import counted, own_copy
+from delone.immutable import own_copy
+from delone.plane.triangulation import counted
 from delone.space.plane import plane_of
 from delone.space.spatial import Spatial
 from delone.validation import SpaceReport, ValidationReport

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +11,9 @@ from delone import _core, predicates
 from delone._arrays import require_finite
 from delone.delaunay import Delaunay
 from delone.errors import InternalError
+from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.plane import geometry as plane
-from delone.plane.triangulation import counted, kept, own_copy, sealed
+from delone.plane.triangulation import counted
 from delone.space import geometry as space
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["ConvexHull"]
 
 
-class ConvexHull:
+class ConvexHull(Immutable):
     """The convex hull of points in the plane or in space.
 
     Parameters
@@ -96,11 +96,8 @@ class ConvexHull:
     """
 
     __slots__ = (
-        "__weakref__",
-        "_cache",
         "_duplicates",
         "_facet_of",
-        "_lock",
         "_neighbors",
         "_points",
         "_polygons",
@@ -109,10 +106,8 @@ class ConvexHull:
         "_vertices",
     )
 
-    _cache: dict[str, Any]
     _duplicates: Indices
     _facet_of: Indices
-    _lock: threading.RLock
     _neighbors: Indices
     _points: Floats
     _polygons: Indices
@@ -134,10 +129,7 @@ class ConvexHull:
         self._fill(arrays | {"points": own})
 
     def _fill(self, arrays: dict[str, NDArray[Any]]) -> None:
-        object.__setattr__(self, "_cache", {})
-        object.__setattr__(self, "_lock", threading.RLock())
-        for name, array in arrays.items():
-            object.__setattr__(self, f"_{name}", sealed(array))
+        self._hold(**{name: sealed(array) for name, array in arrays.items()})
 
     @property
     def points(self) -> Floats:
@@ -262,18 +254,6 @@ class ConvexHull:
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("points", *_ARRAYS)
         return _restored, (type(self), {name: getattr(self, f"_{name}") for name in names})
-
-    def __copy__(self) -> ConvexHull:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> ConvexHull:
-        return self
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a ConvexHull cannot be changed: {name}")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a ConvexHull cannot be changed: {name}")
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):  # the constructor failed, or has not run

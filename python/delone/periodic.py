@@ -7,16 +7,16 @@ neighbours are found among them by their common edges.
 
 from __future__ import annotations
 
-import threading
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone import _core
 from delone._arrays import require_finite
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
-from delone.plane.triangulation import counted, first_rows, kept, own_copy, sealed
+from delone.immutable import Immutable, kept, own_copy, sealed
+from delone.plane.triangulation import counted, first_rows
 from delone.regular import as_weights
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _HALO = 8.0
 _FEW = 64
 
 
-class PeriodicDelaunay:
+class PeriodicDelaunay(Immutable):
     """The Delaunay triangulation of a periodic set of points in the plane.
 
     With weights it is the regular triangulation. ``Delaunay(points, periodic=periods)`` is one of
@@ -107,11 +107,9 @@ class PeriodicDelaunay:
     ([[0, 0], [0, 0], [0, 0]], [[0, 1], [1, 0], [1, 1]])
     """
 
-    __slots__ = ("__weakref__", "_arrays", "_cache", "_lock", "_periods")
+    __slots__ = ("_arrays", "_periods")
 
     _arrays: dict[str, NDArray[Any]]
-    _cache: dict[str, Any]
-    _lock: threading.RLock
     _periods: tuple[float | None, float | None]
 
     def __init__(
@@ -134,14 +132,7 @@ class PeriodicDelaunay:
         self, arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
     ) -> None:
         """Set everything there is; afterwards nothing can be set."""
-        values: dict[str, Any] = {
-            "_arrays": {name: sealed(array) for name, array in arrays.items()},
-            "_cache": {},
-            "_lock": threading.RLock(),
-            "_periods": periods,
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        self._hold(arrays={name: sealed(array) for name, array in arrays.items()}, periods=periods)
 
     @property
     def points(self) -> Floats:
@@ -235,20 +226,8 @@ class PeriodicDelaunay:
         rows = np.unique(np.column_stack((first, second, moved)), axis=0).astype(np.int32)
         return sealed(rows[:, :2].copy()), sealed(rows[:, 2:].copy())
 
-    def __copy__(self) -> PeriodicDelaunay:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> PeriodicDelaunay:
-        return self
-
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (self._arrays, self._periods)
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a PeriodicDelaunay cannot be changed: {name}")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a PeriodicDelaunay cannot be changed: {name}")
 
     def __repr__(self) -> str:
         if not hasattr(self, "_arrays"):  # the constructor failed, or has not run

@@ -13,7 +13,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_vectors
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
-from delone.plane.triangulation import counted, kept, own_copy, sealed
+from delone.immutable import kept, own_copy, sealed
+from delone.plane.triangulation import counted
 from delone.space.plane import plane_of, twins
 from delone.space.spatial import Spatial
 

@@ -14,8 +14,9 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.constrained import coverage, regions, segments
+from delone.immutable import kept, sealed
 from delone.plane import topology
-from delone.plane.triangulation import Triangulation, kept, sealed
+from delone.plane.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

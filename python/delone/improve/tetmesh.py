@@ -6,14 +6,14 @@ only that is here which holds for all of them.
 
 from __future__ import annotations
 
-import threading
-from typing import TYPE_CHECKING, Any, NoReturn, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core
 from delone._arrays import as_number
-from delone.plane.triangulation import counted, kept, sealed
+from delone.immutable import Immutable, kept, sealed
+from delone.plane.triangulation import counted
 from delone.space import location as places
 from delone.space import topology
 from delone.space.quality import TetQuality, counted_tetrahedra, measured
@@ -31,7 +31,7 @@ __all__ = ["TetMesh"]
 _ARRAYS = ("points", "simplices", "neighbors", "region")
 
 
-class TetMesh:
+class TetMesh(Immutable):
     """A mesh of tetrahedra, as `delone.improve` makes it.
 
     Attributes
@@ -64,11 +64,9 @@ class TetMesh:
     ((4, 3), array([0.16666667]))
     """
 
-    __slots__ = ("__weakref__", "_cache", "_lock", "_neighbors", "_points", "_region", "_report",
+    __slots__ = ("_neighbors", "_points", "_region", "_report",
                  "_simplices")  # fmt: skip
 
-    _cache: dict[str, Any]
-    _lock: threading.RLock
     _neighbors: Indices
     _points: Floats
     _region: Indices
@@ -78,10 +76,7 @@ class TetMesh:
     @classmethod
     def _of(cls, arrays: dict[str, NDArray[Any]], report: ImproveReport) -> Self:
         mesh = cls.__new__(cls)
-        values: dict[str, Any] = {"_cache": {}, "_lock": threading.RLock(), "_report": report}
-        values |= {f"_{name}": sealed(arrays[name]) for name in _ARRAYS}
-        for name, value in values.items():
-            object.__setattr__(mesh, name, value)
+        mesh._hold(report=report, **{name: sealed(arrays[name]) for name in _ARRAYS})
         return mesh
 
     @property
@@ -307,18 +302,6 @@ class TetMesh:
     def __reduce__(self) -> tuple[Any, ...]:
         arrays = {name: getattr(self, f"_{name}") for name in _ARRAYS}
         return type(self)._of, (arrays, self._report)
-
-    def __copy__(self) -> Self:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        return self
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):

@@ -19,6 +19,7 @@ from delone import location
 from delone._arrays import as_vectors, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
+from delone.immutable import own_copy
 from delone.interpolate.hull import summed
 from delone.interpolate.space import SPACE
 from delone.interpolate.values import (
@@ -30,7 +31,7 @@ from delone.interpolate.values import (
     require_finite_values,
 )
 from delone.interpolate.weights import joined
-from delone.plane.triangulation import Triangulation, own_copy
+from delone.plane.triangulation import Triangulation
 from delone.space import location as places
 
 if TYPE_CHECKING:

@@ -7,72 +7,29 @@ after the constructor, so any number of threads may use one.
 
 from __future__ import annotations
 
-import functools
-import threading
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core, location
-from delone._arrays import as_points, as_vectors, as_workers
+from delone._arrays import as_vectors, as_workers
+from delone.immutable import Immutable, kept, sealed
 from delone.plane import geometry, topology
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Triangulation", "counted", "first_rows", "kept", "own_copy", "sealed"]
-
-T = TypeVar("T")
+__all__ = ["Triangulation", "counted", "first_rows"]
 
 
-class Keeping(Protocol):
-    """An object with room for what is computed once."""
-
-    _cache: dict[str, Any]
-    _lock: threading.RLock
-
-
-Of = TypeVar("Of", bound=Keeping)
-
-
-def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
-    """Compute once for each object, also where several threads ask at the same time."""
-    name = compute.__name__
-
-    @functools.wraps(compute)
-    def get(self: Of) -> T:
-        cache = self._cache
-        if name not in cache:
-            with self._lock:
-                if name not in cache:
-                    cache[name] = compute(self)
-        value: T = cache[name]
-        return value
-
-    return get
-
-
-def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Return an array over memory of ours that neither it nor its base can make writeable."""
-    # The owner of memory may always ask for writing again, and a view leads to it by its base; the
-    # base of this array is a memoryview, which cannot.
-    array.flags.writeable = False
-    return np.asarray(array.data)
-
-
-class Triangulation:
+class Triangulation(Immutable):
     """Read-only arrays of triangles, and what follows from them; the base of public classes."""
 
     __slots__ = (
-        "__weakref__",
-        "_cache",
         "_duplicates",
-        "_lock",
         "_neighbors",
         "_points",
         "_simplices",
@@ -80,9 +37,7 @@ class Triangulation:
         "_workers",
     )
 
-    _cache: dict[str, Any]
     _duplicates: Indices
-    _lock: threading.RLock
     _neighbors: Indices
     _points: Floats
     _simplices: Indices
@@ -93,15 +48,11 @@ class Triangulation:
         self, arrays: dict[str, NDArray[Any]], stages: dict[str, float], workers: int | None
     ) -> None:
         """Set everything there is; afterwards nothing can be set."""
-        values = {
-            "_cache": {},
-            "_lock": threading.RLock(),
-            "_stages": stages,
-            "_workers": workers,
-        }
-        values |= {f"_{name}": sealed(array) for name, array in arrays.items()}
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        self._hold(
+            stages=stages,
+            workers=workers,
+            **{name: sealed(array) for name, array in arrays.items()},
+        )
 
     def _tiling(self) -> tuple[Indices, Indices]:
         """Triangles and neighbours of the whole convex hull."""
@@ -478,32 +429,10 @@ class Triangulation:
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self)._from_arrays, (self._arrays(), self._stages, self._workers)
 
-    def __copy__(self) -> Self:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        return self
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
-
 
 def counted(count: int, noun: str) -> str:
     """Return a number and its noun, as in "1 point" and "2 points"."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
-def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> Floats:
-    """Return points that no one else can change, neither now nor while the core runs."""
-    array = as_points(points, ndim=ndim)
-    if isinstance(points, list | tuple):
-        return array
-    if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):
-        return array
-    return array.copy()
 
 
 def first_rows(points: Floats) -> NDArray[np.int64]:

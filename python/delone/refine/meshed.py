@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from delone.immutable import kept, sealed
 from delone.plane import quality, topology
-from delone.plane.triangulation import Triangulation, counted, kept, sealed
+from delone.plane.triangulation import Triangulation, counted
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain, Lines
 from delone.refine.report import reported

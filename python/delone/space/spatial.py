@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core, location
+from delone.immutable import kept, sealed
 from delone.plane.quality import measured as measured_triangles
-from delone.plane.triangulation import Triangulation, kept, sealed
+from delone.plane.triangulation import Triangulation
 from delone.space import geometry, topology
 from delone.space import location as places
 from delone.space.quality import measured as measured_tetrahedra

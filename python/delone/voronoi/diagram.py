@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
-import threading
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -17,8 +16,9 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
+from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
-from delone.plane.triangulation import counted, first_rows, kept, own_copy, sealed
+from delone.plane.triangulation import counted, first_rows
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.voronoi import clipping, dual, shapes, torus
 from delone.voronoi.cells import Cell, Neighbors, Rays
@@ -37,7 +37,7 @@ _SPACE = 3
 _NO_SITE = "there is no point; a diagram needs one"
 
 
-class Voronoi:
+class Voronoi(Immutable):
     """The Voronoi diagram of points in the plane, whole or clipped; of points in space, likewise.
 
     Parameters
@@ -158,11 +158,8 @@ class Voronoi:
     """
 
     __slots__ = (
-        "__weakref__",
-        "_cache",
         "_clip",
         "_dual",
-        "_lock",
         "_mesh",
         "_periods",
         "_points",
@@ -170,10 +167,8 @@ class Voronoi:
         "_workers",
     )
 
-    _cache: dict[str, Any]
     _clip: clipping.Clip | None
     _dual: dict[str, NDArray[Any]]
-    _lock: threading.RLock
     _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
     _periods: tuple[float | None, float | None] | None
     _points: Floats
@@ -236,15 +231,12 @@ class Voronoi:
         **rest: Any,
     ) -> None:
         """Set everything there is; afterwards nothing can be set."""
-        values = {
-            "_cache": {},
-            "_lock": threading.RLock(),
-            "_points": sealed(points),
-            "_weights": None if weights is None else sealed(weights),
-            "_dual": {name: sealed(array) for name, array in dual.items()},
-        }
-        for name, value in (values | {f"_{name}": value for name, value in rest.items()}).items():
-            object.__setattr__(self, name, value)
+        self._hold(
+            points=sealed(points),
+            weights=None if weights is None else sealed(weights),
+            dual={name: sealed(array) for name, array in dual.items()},
+            **rest,
+        )
 
     @classmethod
     def _from_parts(cls, parts: dict[str, Any]) -> Voronoi:
@@ -599,18 +591,6 @@ class Voronoi:
         1.0
         """
         return shapes.draw(self, ax, **options)
-
-    def __copy__(self) -> Voronoi:
-        return self
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Voronoi:
-        return self
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a Voronoi cannot be changed: {name}")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a Voronoi cannot be changed: {name}")
 
     def __repr__(self) -> str:
         if not hasattr(self, "_clip"):  # the constructor failed, or has not run

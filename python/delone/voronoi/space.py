@@ -22,7 +22,8 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.errors import InputError
-from delone.plane.triangulation import counted, kept, own_copy, sealed
+from delone.immutable import kept, own_copy, sealed
+from delone.plane.triangulation import counted
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.voronoi.bodies import Bodies, SpaceCell, SpaceNeighbors
 from delone.voronoi.cells import Rays

@@ -1,0 +1,87 @@
+"""Objects that never change, and so may be shared by any number of threads.
+
+What follows from an object is computed on first use and kept; arrays that it hands out cannot be
+written to.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+from typing import TYPE_CHECKING, Any, NoReturn, Self, TypeVar
+
+import numpy as np
+
+from delone._arrays import as_points
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Immutable", "kept", "own_copy", "sealed"]
+
+
+class Immutable:
+    """An object that is filled once; the base of public classes."""
+
+    __slots__ = ("__weakref__", "_cache", "_lock")
+
+    _cache: dict[str, Any]
+    _lock: threading.RLock
+
+    def _hold(self, **values: Any) -> None:
+        """Set all there is, each under its name and an underscore; afterwards nothing can be."""
+        for name, value in ({"cache": {}, "lock": threading.RLock()} | values).items():
+            object.__setattr__(self, f"_{name}", value)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+
+T = TypeVar("T")
+Of = TypeVar("Of", bound=Immutable)
+
+
+def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
+    """Compute once for each object, also where several threads ask at the same time."""
+    name = compute.__name__
+
+    @functools.wraps(compute)
+    def get(self: Of) -> T:
+        cache = self._cache
+        if name not in cache:
+            with self._lock:
+                if name not in cache:
+                    cache[name] = compute(self)
+        value: T = cache[name]
+        return value
+
+    return get
+
+
+def sealed(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array over memory of ours that neither it nor its base can make writeable."""
+    # The owner of memory may always ask for writing again, and a view leads to it by its base; the
+    # base of this array is a memoryview, which cannot.
+    array.flags.writeable = False
+    return np.asarray(array.data)
+
+
+def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> NDArray[np.float64]:
+    """Return points that no one else can change, neither now nor while the core runs."""
+    array = as_points(points, ndim=ndim)
+    if isinstance(points, list | tuple):
+        return array
+    if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):
+        return array
+    return array.copy()
