@@ -22,7 +22,7 @@ import numpy as np
 
 from delone._arrays import as_choice
 from delone.errors import InputError
-from delone.voronoi import clipping
+from delone.voronoi import outline
 from delone.voronoi.diagram import Voronoi
 
 if TYPE_CHECKING:
@@ -171,9 +171,9 @@ def lloyd(
     if diagram.ndim != _PLANE:
         raise InputError("lloyd is for points in the plane; cell_centroids are there in space, too")
     domain = diagram.clip
-    unit = clipping.unit_of(np.array(diagram._clip.bounds))  # type: ignore[union-attr]
+    unit = outline.unit_of(np.array(diagram._clip.bounds))  # type: ignore[union-attr]
     if unit != 1:
-        scaled = clipping.as_scaled(domain, unit)
+        scaled = outline.as_scaled(domain, unit)
         found_in_units = lloyd(
             diagram.points * unit,
             scaled,

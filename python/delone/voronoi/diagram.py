@@ -20,7 +20,7 @@ from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
 from delone.plane.triangulation import counted, first_rows
 from delone.regular import RegularTriangulation, as_weights, triangulated
-from delone.voronoi import clipping, dual, shapes, torus
+from delone.voronoi import clipping, dual, outline, shapes, torus
 from delone.voronoi.cells import Cell, Neighbors, Rays
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class Voronoi(Immutable):
         "_workers",
     )
 
-    _clip: clipping.Clip | None
+    _clip: outline.Clip | None
     _dual: dict[str, NDArray[Any]]
     _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
     _periods: tuple[float | None, float | None] | None
@@ -206,7 +206,7 @@ class Voronoi(Immutable):
             mesh, arrays = _power_dual(own, heavy, threads)
         else:
             mesh, arrays = _dual(own, threads)
-        where = clipping.as_clip(clip, own, fix=fix, periods=lengths)
+        where = outline.as_clip(clip, own, fix=fix, periods=lengths)
         self._fill(
             points=own,
             weights=heavy,

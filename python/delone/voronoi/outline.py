@@ -1,0 +1,287 @@
+"""Where cells are to end: boxes, and outlines by shapely, from whatever stands for one.
+
+GEOS computes with squares and products of coordinates, which must neither over- nor underflow:
+where coordinates are very large or small, it gets them multiplied by a power of two.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.voronoi.shapes import shapely_or_say
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Clip", "areal_parts", "as_clip", "as_scaled", "times", "unit_of"]
+
+# By this share of its extent the box is larger than the outline that is in it.
+_MARGIN = 2.0**-6
+_POLYGON, _MULTIPOLYGON = 3, 6
+# Coordinates up to these magnitudes GEOS gets as they are.
+_SMALL, _LARGE = 2.0**-100, 2.0**100
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Clip:
+    """Where cells end.
+
+    Parameters
+    ----------
+    bounds : tuple of float
+        The box ``(xmin, ymin, xmax, ymax)``.
+    outline : shapely geometry, optional
+        The outline; None for the box itself.
+    """
+
+    bounds: tuple[float, float, float, float]
+    outline: Any = None
+
+    @property
+    def name(self) -> str:
+        """What it is, in a few words."""
+        return "a box" if self.outline is None else f"a {self.outline.geom_type}"
+
+
+def as_clip(
+    clip: Any,
+    points: Floats,
+    *,
+    fix: bool,
+    periods: tuple[float | None, float | None] | None = None,
+) -> Clip | None:
+    """Return what a caller wants to clip to.
+
+    Parameters
+    ----------
+    clip : None, "box", sequence of 4 floats, or geometry
+        As for `delone.Voronoi`.
+    points : ndarray of float64, shape (n, 2)
+        The sites.
+    fix : bool
+        Repair an invalid geometry.
+    periods : tuple of two floats or None, optional
+        The periods of the sites.
+
+    Returns
+    -------
+    Clip or None
+        None for no clip.
+
+    Raises
+    ------
+    InputError
+        It has no area, is no polygon, or is invalid.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.outline import as_clip
+    >>> as_clip("box", np.array([(0.0, 0), (2, 1)]), fix=False).bounds
+    (0.0, 0.0, 2.0, 1.0)
+    """
+    if clip is None:
+        return None
+    if periods is not None:
+        return _strip(clip, points, periods)
+    if isinstance(clip, str):
+        if clip != "box":
+            raise InputError(f"clip must be 'box', four numbers or a polygon, got {clip!r}")
+        return _box([*points.min(axis=0), *points.max(axis=0)])
+    geometry = _geometry(clip)
+    return _box(clip) if geometry is None else _outline(geometry, fix)
+
+
+def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]) -> Clip:
+    """A box that is infinite where sites come again."""
+    if None not in periods:
+        raise InputError(
+            "cells that come again in x and in y have no border that a clip could cut them to; "
+            "intersect their polygons() with it instead"
+        )
+    axis = 0 if periods[1] is None else 1
+    whole = "(-inf, ymin, inf, ymax)" if axis == 0 else "(xmin, -inf, xmax, inf)"
+    only = f"with one period clip must be 'box' or four numbers {whole}"
+    if isinstance(clip, str) and clip == "box":
+        box = np.concatenate((points.min(axis=0), points.max(axis=0)))
+        box[[axis, axis + 2]] = -np.inf, np.inf
+    elif isinstance(clip, str) or hasattr(clip, "geom_type") or hasattr(clip, "geometry"):
+        raise InputError(f"{only}; intersect polygons() with others instead")
+    else:
+        try:
+            box = np.array([float(x) for x in clip])
+        except (TypeError, ValueError):
+            raise InputError(f"{only}, got {clip!r:.80}") from None
+    low, high = (float(x) for x in box[[1 - axis, 3 - axis]]) if len(box) == 4 else (np.nan,) * 2
+    if not (np.isfinite([low, high]).all() and (box[[axis, axis + 2]] == [-np.inf, np.inf]).all()):
+        raise InputError(f"{only}, got {clip!r:.80}")
+    if not low < high:
+        raise InputError(f"the box of clip has no area: {low!r} must be below {high!r}")
+    left, bottom, right, top = box.tolist()
+    return Clip(bounds=(left, bottom, right, top))
+
+
+def _together(geometries: Any) -> Any:
+    """All polygons of a table as one; what is invalid stays so, and is named later."""
+    shapely = shapely_or_say()
+
+    found = np.array([each for each in geometries if each is not None], dtype=object)
+    if len(found) == 1:
+        return found[0]
+    others = np.setdiff1d(shapely.get_type_id(found), (_POLYGON, _MULTIPOLYGON))
+    if len(others):
+        raise InputError("clip must hold polygons, and nothing else")
+    if shapely.is_valid(found).all():
+        return shapely.union_all(found)
+    return shapely.multipolygons(shapely.get_parts(found))
+
+
+def _geometry(clip: Any) -> Any:
+    """A geometry of shapely for whatever stands for one, None for what does not."""
+    if hasattr(clip, "geometry") and hasattr(clip.geometry, "values"):
+        return _together(clip.geometry.values)
+    if hasattr(clip, "geom_type"):
+        return clip
+    if isinstance(clip, dict) or hasattr(clip, "__geo_interface__"):
+        return _of_mapping(clip)
+    return None
+
+
+def _of_mapping(mapping: Any) -> Any:
+    """A geometry from a mapping of the form of GeoJSON, a feature's included."""
+    shape = shapely_or_say().geometry.shape
+    mapping = getattr(mapping, "__geo_interface__", mapping)
+    if mapping.get("type") == "FeatureCollection":
+        return _together([shape(each["geometry"]) for each in mapping["features"]])
+    try:
+        return shape(mapping["geometry"] if mapping.get("type") == "Feature" else mapping)
+    except Exception as error:
+        raise InputError(f"clip {mapping!r:.80} is no geometry: {error}") from error
+
+
+def _box(numbers: Any) -> Clip:
+    try:
+        left, bottom, right, top = (float(x) for x in numbers)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"clip must be 'box', four numbers (xmin, ymin, xmax, ymax) or a polygon, got "
+            f"{numbers!r}"
+        ) from None
+    if not np.isfinite([left, bottom, right, top]).all():
+        raise InputError("the box of clip must be finite")
+    if not (left < right and bottom < top):
+        raise InputError(
+            f"the box of clip has no area: xmin {left!r} must be below xmax {right!r}, and ymin "
+            f"{bottom!r} below ymax {top!r}"
+        )
+    return Clip(bounds=(left, bottom, right, top))
+
+
+def _outline(geometry: Any, fix: bool) -> Clip:
+    shapely = shapely_or_say()
+
+    if shapely.get_type_id(geometry) not in (_POLYGON, _MULTIPOLYGON):
+        raise InputError(f"clip must be a polygon or a multipolygon, got a {geometry.geom_type}")
+    geometry = shapely.force_2d(geometry)
+    if not np.isfinite(shapely.get_coordinates(geometry)).all():
+        raise InputError("the outline of clip has a coordinate that is NaN or infinite")
+    unit = unit_of(shapely.get_coordinates(geometry))
+    in_units = times(geometry, unit)
+    if not shapely.is_valid(in_units):
+        if not fix:
+            reason = shapely.is_valid_reason(in_units)
+            where = "" if unit == 1 else f" (in units of {1 / unit!r})"
+            raise InputError(
+                f"the outline of clip is invalid: {reason}{where}; repair it, or pass fix=True"
+            )
+        in_units = areal_parts(np.array([shapely.make_valid(in_units)]))[0]
+        geometry = times(in_units, 1 / unit)
+    if not shapely.area(in_units) > 0:
+        raise InputError("the outline of clip has no area")
+    left, bottom, right, top = shapely.bounds(geometry).tolist()
+    margin = _MARGIN * max(right / 2 - left / 2, top / 2 - bottom / 2) * 2
+    largest = float(np.finfo(np.float64).max)
+    with np.errstate(over="ignore"):
+        wide = np.array([left, bottom, right, top]) + margin * np.array([-1, -1, 1, 1])
+    bounds = np.clip(wide, -largest, largest).tolist()
+    return Clip(bounds=tuple(bounds), outline=geometry)
+
+
+def unit_of(coordinates: Floats) -> float:
+    """Return a power of two by which products of coordinates stay in range.
+
+    Parameters
+    ----------
+    coordinates : ndarray of float64
+        Finite numbers.
+
+    Returns
+    -------
+    float
+        1 unless they are very large or very small.
+    """
+    largest = float(np.abs(coordinates).max(initial=0.0))
+    if largest == 0 or _SMALL < largest < _LARGE:
+        return 1.0
+    # Both it and its inverse are doubles.
+    return math.ldexp(1.0, int(np.clip(-math.frexp(largest)[1], -1022, 1022)))
+
+
+def as_scaled(clip: Any, factor: float) -> Any:
+    """Return a box or an outline multiplied by a power of two.
+
+    Parameters
+    ----------
+    clip : tuple of 4 floats, or geometry
+        As `delone.Voronoi.clip` gives it.
+    factor : float
+        The power of two.
+
+    Returns
+    -------
+    tuple of 4 floats, or geometry
+        Of the same kind.
+    """
+    if isinstance(clip, tuple):
+        return tuple(x * factor for x in clip)
+    return times(clip, factor)
+
+
+def times(geometry: Any, factor: float) -> Any:
+    """Return geometries with coordinates multiplied by a power of two.
+
+    Parameters
+    ----------
+    geometry : geometry or ndarray of such
+        Of shapely.
+    factor : float
+        The power of two.
+
+    Returns
+    -------
+    geometry or ndarray of such
+        The same, where the factor is 1.
+    """
+    if factor == 1:
+        return geometry
+    return shapely_or_say().transform(geometry, lambda places: places * factor)
+
+
+def areal_parts(geometries: NDArray[Any]) -> NDArray[Any]:
+    """Leave out the points and lines in which areas touch."""
+    shapely = shapely_or_say()
+
+    mixed = np.flatnonzero(~np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON)))
+    for row in mixed:
+        parts = shapely.get_parts(geometries[row])
+        parts = shapely.get_parts(parts)
+        areas = parts[shapely.get_type_id(parts) == _POLYGON]
+        geometries[row] = shapely.union_all(areas) if len(areas) else shapely.Polygon()
+    return geometries
