@@ -1,8 +1,8 @@
 //! Convex hulls in the plane and in space: exact, each vertex extreme, each facet canonical.
 //!
-//! `plane` is one chain below and one above. In space `insertion` makes a surface of triangles by walks
-//! round an `inner` point, `cells` keep from it most of what is inside. In the surface vertices may lie in the middle of flat facets; `faces` merges coplanar triangles to polygons
-//! of extreme vertices; `polygon` triangulates those by coordinates alone. Orders and numbers of
+//! `plane` is one chain below and one above. In space `surface` makes one of triangles, by `insertion`, which walks
+//! round an `inner` point; `cells` keep from it most of what is inside. In the surface vertices may lie in
+//! the middle of flat facets; `faces` merges coplanar triangles to polygons of extreme vertices; `polygon` triangulates those by coordinates alone. Orders and numbers of
 //! insertion leave no trace.
 
 mod cells;
@@ -11,6 +11,7 @@ mod inner;
 mod insertion;
 mod plane;
 mod polygon;
+mod surface;
 
 use delone_predicates::{Point3, lexicographic};
 
@@ -41,7 +42,7 @@ pub struct Hull3 {
 
 /// The hull of finite points; nothing where they span no volume.
 pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
-    let Some(surface) = insertion::surface(points, watch)? else {
+    let Some(surface) = surface::surface(points, watch)? else {
         return Ok(None);
     };
     watch.check()?;
