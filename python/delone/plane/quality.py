@@ -1,8 +1,9 @@
 """How good triangles are: angles, areas, ratios, and the exact comparison with a bound of angles.
 
-Measures are rounded, with each triangle scaled to its own size so that nothing exceeds the range of
-doubles. `below` decides by squares of cosines; where these are too close to the bound to tell, it
-goes on with fractions, so that its answer is exact.
+Measures are rounded, but right: each triangle is scaled to its own size, so that nothing exceeds
+the range of doubles, and areas that cancel in thin ones are computed with more digits. `below`
+decides by squares of cosines; where these are too close to the bound to tell, it goes on with
+fractions, so that its answer is exact.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ __all__ = ["Quality", "below", "measured", "smallest_corners", "squared_cosine"]
 _BLOCK = 1 << 17
 # Differences of larger coordinates may exceed the range of doubles.
 _LARGE = 1e300
+# Areas below this share of the two shorter sides' product have lost too many bits.
+_THIN = 2.0**-5
 # Squares that differ by a smaller part are compared exactly: some eight roundings each.
 _UNSURE = 1e-13
 # Squared cosines that are simple fractions, and whose double is another number.
@@ -172,7 +175,7 @@ def measured(points: Floats, simplices: Indices) -> Quality:
         # Where squares of lengths leave the range, ratios are infinite or NaN.
         with np.errstate(all="ignore"):
             around = lengths.sum(axis=0) * lengths.prod(axis=0)
-            found[2, block] = 4 * twice * twice / around
+            found[2, block] = 4 * twice * (twice / around)
             found[3, block] = ordered[2] / ordered[0]
     return Quality(
         smallest_angle=found[0],
@@ -188,11 +191,12 @@ def _blocks(points: Floats, simplices: Indices) -> Iterator[tuple[slice, Floats,
     for start in range(0, len(simplices), _BLOCK):
         block = slice(start, start + _BLOCK)
         corners = points[simplices[block]]
-        if np.abs(corners).max(initial=0) > _LARGE:
-            corners *= 0.5
-        # The edge opposite each corner.
+        largest = np.abs(corners).max(axis=(1, 2), initial=0)
+        corners = np.where((largest > _LARGE)[:, None, None], 0.5 * corners, corners)
+        # The edge opposite each corner, in a unit of its own that rounds nothing.
         sides = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
-        sides /= np.abs(sides).max(axis=(1, 2), keepdims=True)
+        unit = -np.frexp(np.abs(sides).max(axis=(1, 2)))[1][:, None, None]
+        sides = np.ldexp(sides, unit)
         x, y = sides[..., 0].T, sides[..., 1].T
         lengths = np.hypot(x, y)
         crosses = np.array([x[k - 2] * y[k - 1] - y[k - 2] * x[k - 1] for k in range(3)])
@@ -200,6 +204,12 @@ def _blocks(points: Floats, simplices: Indices) -> Iterator[tuple[slice, Floats,
         # All three are twice the area; the one of the two shorter sides is rounded least.
         best = lengths.argmax(axis=0)
         twice = np.abs(np.take_along_axis(crosses, best[None], axis=0)[0])
+        beside = lengths.prod(axis=0) / lengths.max(axis=0)
+        thin = np.flatnonzero(~(twice > _THIN * beside))
+        if len(thin):
+            rows = np.arange(3 * len(thin), dtype=np.int32).reshape(-1, 3)
+            scaled = np.ldexp(corners[thin], unit[thin])
+            twice[thin] = 2 * areas(scaled.reshape(-1, 2), rows)
         yield block, lengths, twice, dots
 
 
