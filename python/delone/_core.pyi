@@ -20,7 +20,6 @@ __all__ = [
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
-    "halfspaces3",
     "hull2",
     "hull3",
     "improve3",
@@ -329,9 +328,6 @@ def measures3(
 def regular3(
     points: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
-def halfspaces3(
-    planes: NDArray[np.float64], size: float
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
 def measures2(
     starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...

@@ -61,7 +61,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(voronoi::voronoi_clip2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::measures2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi3, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi3::halfspaces3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::measures3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::regular3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;

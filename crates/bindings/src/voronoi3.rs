@@ -169,26 +169,6 @@ pub fn voronoi_clip3<'py>(
     Ok(out)
 }
 
-/// `(points, starts, corners, labels)`.
-type Solid = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
-
-/// What half-spaces n . x <= c leave of the cube of all |x| <= size.
-#[pyfunction]
-pub fn halfspaces3(
-    py: Python<'_>,
-    planes: PyReadonlyArray2<'_, f64>,
-    size: f64,
-) -> PyResult<Solid> {
-    let planes = rows(&planes, "planes").map_err(|e| raise(py, &e))?;
-    let made = dual::halfspaces(planes, size);
-    Ok((
-        table(py, made.points)?,
-        column(py, made.starts),
-        column(py, made.corners),
-        column(py, made.labels),
-    ))
-}
-
 /// `(simplices, neighbors, stands_for)`.
 type Weighed = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
 

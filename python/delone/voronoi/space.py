@@ -109,7 +109,11 @@ class SpaceVoronoi(Voronoi):
     attributes listed above remain those of the whole diagram. Cells whose vertices all lie inside
     stay as they are; the others are the polyhedron, cut by the planes of their neighbours one after
     the other. An area or a volume beyond the range of doubles is infinite; below it, the smallest
-    double.
+    double. Corners in a clip are right to about 1e-13 of the largest coordinate, beside sites close
+    together, too, as exact arithmetic finds them where planes meet at a flat angle. Which corners
+    there are is decided on rounded numbers: that may lose or add faces as small as roundings, and
+    beside sites that differ by a few units in the last place, wrong ones. A cell has the same
+    corner twice where its surface would not be closed otherwise.
 
     Half-spaces are judged exactly, whatever their exponents, and the corners of what they have in
     common are rounded once: O(k^2) expected time for k of them, about half a second for 300.

@@ -4,12 +4,16 @@
 //! the planes of the cell's ridges one after the other (C. H. Rycroft, "Voro++: a three-dimensional Voronoi
 //! cell library in C++", Chaos 19, 2009), so that no use is made of vertices that are far away or at infinity.
 //!
+//! Corners are found in floating point. Where three planes meet at a flat angle, as those towards two sites
+//! close together do with a third one, a corner is found in integers (`meeting`).
+//!
 //! A ridge is measured once: as a whole where one of its two cells is, otherwise in the cell of its
 //! first site. So both cells say the same.
 
 use delone_predicates::Point3;
 
-use super::measure::{Cells, Measures, dot, measures};
+use super::measure::{Cells, Measures, dot, length, measures, seen};
+use super::meeting::{Plane, meeting};
 use super::polyhedron::Polyhedron;
 use crate::error::Result;
 use crate::memory::with_room;
@@ -18,6 +22,10 @@ use crate::watch::Watch;
 
 /// Cells that one task does.
 const SHARE: usize = 1 << 10;
+/// Planes whose normals, at length 1, span less than this meet where rounding does not tell.
+const FLAT: f64 = 1.0 / 32.0;
+/// More than the share of its terms by which a sum of six products of rounded numbers errs.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A convex polyhedron: faces counter-clockwise from outside, and their planes n . x <= c.
 #[derive(Clone, Copy)]
@@ -80,10 +88,21 @@ pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<C
     start
         .labels
         .extend((0..clip.planes.len() as i32).map(|k| !k));
+    let frame = Frame {
+        clip,
+        normals: clip
+            .planes
+            .iter()
+            .map(|&[x, y, z, _]| unit([x, y, z]))
+            .collect(),
+    };
     let rest: Vec<usize> = (0..whole.len()).filter(|&c| !whole[c]).collect();
     let bodies = parallel::map(workers, rest.chunks(SHARE).collect(), |part| {
         watch.check()?;
-        Ok(part.iter().map(|&c| body(cells, c, &start)).collect())
+        Ok(part
+            .iter()
+            .map(|&c| body(cells, c, &start, &frame))
+            .collect())
     });
     let bodies = bodies.into_iter().collect::<Result<Vec<Vec<Body>>>>()?;
     collected(cells, &whole, measures(cells, workers)?, bodies)
@@ -102,20 +121,31 @@ fn inside(vertices: &[Point3], clip: Clip, workers: usize) -> Vec<bool> {
     parts.into_iter().flatten().collect()
 }
 
-fn body(cells: Cells, cell: usize, start: &Polyhedron) -> Body {
-    let site = cells.site[cell];
-    let p = cells.points[site as usize];
+fn body(cells: Cells, cell: usize, start: &Polyhedron, frame: &Frame) -> Body {
+    let mut planes = Planes {
+        cells,
+        frame,
+        site: cells.site[cell],
+        ridges: cells.ridges_of(cell),
+        known: Vec::new(),
+    };
     let mut shape = start.clone();
-    for &ridge in cells.ridges_of(cell) {
-        let (d, h) = cells.plane(ridge as usize, site);
-        shape.cut(ridge, |x| {
-            dot([x[0] - p[0], x[1] - p[1], x[2] - p[2]], d) - h
-        });
+    for i in 0..planes.ridges.len() {
+        let (d, h) = planes.add();
+        let p = planes.origin();
+        shape.cut(
+            i as i32,
+            |x| dot([x[0] - p[0], x[1] - p[1], x[2] - p[2]], d) - h,
+            |labels| planes.corner(labels),
+        );
         if shape.is_empty() {
             break;
         }
     }
     shape.weld();
+    for label in shape.labels.iter_mut().filter(|label| **label >= 0) {
+        *label = planes.ridges[*label as usize];
+    }
     let (volume, centroid) = shape.body();
     Body {
         cell: cell as i32,
@@ -124,6 +154,104 @@ fn body(cells: Cells, cell: usize, start: &Polyhedron) -> Body {
         areas: (0..shape.labels.len()).map(|f| shape.area(f)).collect(),
         shape,
     }
+}
+
+/// The clip, with normals of length 1.
+struct Frame<'a> {
+    clip: Clip<'a>,
+    normals: Vec<Point3>,
+}
+
+impl Frame<'_> {
+    /// The plane of a face as exactly as it is known: that of a triangle is the one of its corners.
+    fn plane(&self, face: usize) -> Plane {
+        let bounds = self.clip.starts[face] as usize..self.clip.starts[face + 1] as usize;
+        match self.clip.corners[bounds] {
+            [a, b, c] => Plane::Through([a, b, c].map(|v| self.clip.points[v as usize])),
+            _ => Plane::Equation(self.clip.planes[face]),
+        }
+    }
+}
+
+/// The planes of a cell; labels are numbers of its ridges, or !k for face k of the clip.
+struct Planes<'a> {
+    cells: Cells<'a>,
+    frame: &'a Frame<'a>,
+    site: i32,
+    ridges: &'a [i32],
+    /// d and h of `Cells::plane`, and d at length 1, of the ridges so far.
+    known: Vec<(Point3, f64, Point3)>,
+}
+
+impl Planes<'_> {
+    fn origin(&self) -> Point3 {
+        self.cells.points[self.site as usize]
+    }
+
+    /// Adds the plane of the next ridge.
+    fn add(&mut self) -> (Point3, f64) {
+        let (d, h) = self
+            .cells
+            .plane(self.ridges[self.known.len()] as usize, self.site);
+        self.known.push((d, h, unit(d)));
+        (d, h)
+    }
+
+    fn normal(&self, label: i32) -> Point3 {
+        if label < 0 {
+            self.frame.normals[!label as usize]
+        } else {
+            self.known[label as usize].2
+        }
+    }
+
+    /// Where three planes meet, exactly rounded, if they do at so flat an angle that a point that lies on each but
+    /// for rounding may be far from there, and if that is on the inner side of all others.
+    fn corner(&self, labels: [i32; 3]) -> Option<Point3> {
+        let [p, q, r] = labels.map(|label| self.normal(label));
+        let upright = [0, 1, 2].map(|k| {
+            let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+            p[x] * q[y] - p[y] * q[x]
+        });
+        // NaN, where a length is beyond the range, is as good as well apart.
+        if dot(upright, r).abs() < FLAT {
+            let at = meeting(labels.map(|label| self.plane(label)))?;
+            return self.holds(at).then_some(at);
+        }
+        None
+    }
+
+    fn plane(&self, label: i32) -> Plane {
+        if label < 0 {
+            return self.frame.plane(!label as usize);
+        }
+        let given = self.cells.given();
+        let sites = self.cells.sites[self.ridges[label as usize] as usize];
+        Plane::Between(
+            sites.map(|site| given.point(site)),
+            sites.map(|site| given.weight(site)),
+        )
+    }
+
+    /// Whether a point is, but for rounding, on the inner side of all planes.
+    fn holds(&self, at: Point3) -> bool {
+        let p = self.origin();
+        let size = |n: Point3, far: Point3| (0..3).map(|k| n[k].abs() * far[k]).sum::<f64>();
+        let of_ridges = self.known.iter().all(|&(d, h, _)| {
+            let far = [0, 1, 2].map(|k| at[k].abs() + p[k].abs());
+            dot(seen(at, p), d) - h <= ROUNDING * (size(d, far) + h.abs())
+        });
+        of_ridges
+            && self.frame.clip.planes.iter().all(|&[x, y, z, c]| {
+                let n = [x, y, z];
+                dot(n, at) - c <= ROUNDING * (size(n, at.map(f64::abs)) + c.abs())
+            })
+    }
+}
+
+fn unit(v: Point3) -> Point3 {
+    let size = length(v);
+    v.map(|x| x / size)
 }
 
 /// Puts bodies into arrays, and their measures in the place of those of whole cells.
@@ -171,7 +299,7 @@ fn collected(
         out.face_starts.push(out.labels.len() as i32);
         out.measures.volumes[cell] = body.volume;
         out.measures.centroids[cell] = body.centroid;
-        out.measures.areas[cell] = body.areas.iter().sum();
+        out.measures.areas[cell] = body.areas.iter().fold(0.0, |sum, a| sum + a);
         for (&label, area) in body.shape.labels.iter().zip(&body.areas) {
             if label >= 0 {
                 let [a, b] = cells.sites[label as usize];
@@ -182,37 +310,4 @@ fn collected(
         }
     }
     Ok(out)
-}
-
-/// What half-spaces n . x <= c leave of the cube of all |x| <= size: faces have the labels of their
-/// half-spaces, negative for the cube.
-pub fn halfspaces(planes: &[[f64; 4]], size: f64) -> Shape {
-    let mut shape = Polyhedron::cube(size);
-    for (i, p) in (0..).zip(planes) {
-        shape.cut(i, |x| dot([p[0], p[1], p[2]], x) - p[3]);
-        if shape.is_empty() {
-            break;
-        }
-    }
-    shape.weld();
-    let signed = |v: Vec<u32>| v.into_iter().map(|i| i as i32).collect();
-    Shape {
-        points: shape.points,
-        starts: signed(shape.starts),
-        corners: signed(shape.corners),
-        labels: shape.labels,
-    }
-}
-
-/// A polyhedron as arrays.
-#[derive(Debug)]
-pub struct Shape {
-    /// Corners.
-    pub points: Vec<Point3>,
-    /// The corners of face f are `corners[starts[f]..starts[f + 1]]`.
-    pub starts: Vec<i32>,
-    /// Numbers of corners, counter-clockwise from outside.
-    pub corners: Vec<i32>,
-    /// Where each face comes from.
-    pub labels: Vec<i32>,
 }

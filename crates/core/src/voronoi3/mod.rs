@@ -12,10 +12,11 @@ mod center;
 mod clip;
 mod dual;
 mod measure;
+mod meeting;
 mod polyhedron;
 mod regions;
 mod ridges;
 
-pub use clip::{Clip, Clipped, Shape, clip, halfspaces};
+pub use clip::{Clip, Clipped, clip};
 pub use dual::{Diagram, diagram};
 pub use measure::{Cells, Measures, measures};

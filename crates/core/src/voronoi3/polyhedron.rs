@@ -1,5 +1,8 @@
 //! A convex polyhedron that is cut by planes, in floating point.
 //!
+//! A new corner is a share of its edge, unless the caller knows better: on an edge between nearly parallel
+//! planes, that share would be right for the planes only, not for the point.
+//!
 //! Corners are kept or not by the sign of a rounded number, and all else follows from that: each edge with one
 //! end kept gets one new corner, which one of its two faces enters and the other one leaves. So the
 //! new edges make closed turns, and the surface stays closed, whatever the signs are.
@@ -28,31 +31,24 @@ struct Spare {
     starts: Vec<u32>,
     corners: Vec<u32>,
     labels: Vec<i32>,
-    /// Kept end, other end, new corner.
-    cuts: Vec<(u32, u32, u32)>,
+    cuts: Vec<Cut>,
     /// For a new corner the one after it in the new face.
     links: Vec<(u32, u32)>,
 }
 
+/// An edge with one end kept.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    kept: u32,
+    other: u32,
+    /// The new corner.
+    new: u32,
+    /// The label of the face that came first.
+    beside: i32,
+}
+
 const NONE: u32 = u32::MAX;
-/// The faces of a cube whose corners have x, y and z in the bits of their numbers.
-const CUBE: [u32; 24] = [
-    0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6,
-];
-
 impl Polyhedron {
-    /// The cube of all |x| <= size, with faces -1 to -6.
-    pub fn cube(size: f64) -> Self {
-        let bit = |i: u32, k: u32| if i >> k & 1 == 1 { size } else { -size };
-        Self {
-            points: (0..8).map(|i| [0, 1, 2].map(|k| bit(i, k))).collect(),
-            starts: (0..7).map(|f| 4 * f).collect(),
-            corners: CUBE.to_vec(),
-            labels: (0..6).map(|f| !f).collect(),
-            spare: Spare::default(),
-        }
-    }
-
     pub fn is_empty(&self) -> bool {
         self.labels.is_empty()
     }
@@ -61,14 +57,20 @@ impl Polyhedron {
         &self.corners[self.starts[f] as usize..self.starts[f + 1] as usize]
     }
 
-    /// Removes what lies where `value`, linear, is positive. New faces get the label.
-    pub fn cut(&mut self, label: i32, value: impl Fn(Point3) -> f64) {
+    /// Removes what lies where `value`, linear, is positive. New faces get the label. Where faces of three labels
+    /// meet, `meet` may tell the corner.
+    pub fn cut(
+        &mut self,
+        label: i32,
+        value: impl Fn(Point3) -> f64,
+        meet: impl Fn([i32; 3]) -> Option<Point3>,
+    ) {
         let mut spare = std::mem::take(&mut self.spare);
         spare.values.clear();
         spare.values.extend(self.points.iter().map(|&p| value(p)));
         if spare.values.iter().any(|&v| v > 0.0) {
             if spare.values.iter().any(|&v| v < 0.0) {
-                self.part(label, &mut spare);
+                self.part(label, &mut spare, &meet);
             } else {
                 self.points.clear();
                 self.corners.clear();
@@ -79,7 +81,7 @@ impl Polyhedron {
         self.spare = spare;
     }
 
-    fn part(&mut self, label: i32, spare: &mut Spare) {
+    fn part(&mut self, label: i32, spare: &mut Spare, meet: &impl Fn([i32; 3]) -> Option<Point3>) {
         spare.points.clear();
         spare.number.clear();
         for (&p, &v) in self.points.iter().zip(&spare.values) {
@@ -97,7 +99,7 @@ impl Polyhedron {
         spare.starts.clear();
         spare.starts.push(0);
         for f in 0..self.labels.len() {
-            self.part_face(f, spare);
+            self.part_face(f, spare, &|beside, also| meet([beside, also, label]));
         }
         close(label, spare);
         std::mem::swap(&mut self.points, &mut spare.points);
@@ -106,7 +108,7 @@ impl Polyhedron {
         std::mem::swap(&mut self.labels, &mut spare.labels);
     }
 
-    fn part_face(&self, f: usize, spare: &mut Spare) {
+    fn part_face(&self, f: usize, spare: &mut Spare, meet: &impl Fn(i32, i32) -> Option<Point3>) {
         let face = self.face(f);
         let begin = spare.corners.len();
         let (mut leave, mut enter) = (NONE, NONE);
@@ -117,11 +119,8 @@ impl Polyhedron {
                 spare.number[q as usize] != NONE,
             );
             if keeps_p != keeps_q {
-                let new = if keeps_p {
-                    self.on_edge(p, q, spare)
-                } else {
-                    self.on_edge(q, p, spare)
-                };
+                let (kept, other) = if keeps_p { (p, q) } else { (q, p) };
+                let new = self.on_edge((kept, other), self.labels[f], spare, meet);
                 spare.corners.push(new);
                 if keeps_p {
                     leave = new;
@@ -146,10 +145,22 @@ impl Polyhedron {
         }
     }
 
-    /// The new corner of an edge from a corner that is kept.
-    fn on_edge(&self, kept: u32, other: u32, spare: &mut Spare) -> u32 {
-        let known = spare.cuts.iter().find(|c| (c.0, c.1) == (kept, other));
-        if let Some(&(_, _, new)) = known {
+    /// The new corner of an edge from a corner that is kept, in each of the two faces beside it.
+    fn on_edge(
+        &self,
+        (kept, other): (u32, u32),
+        face: i32,
+        spare: &mut Spare,
+        meet: &impl Fn(i32, i32) -> Option<Point3>,
+    ) -> u32 {
+        let known = spare
+            .cuts
+            .iter()
+            .find(|c| (c.kept, c.other) == (kept, other));
+        if let Some(&Cut { new, beside, .. }) = known {
+            if let Some(at) = meet(beside, face) {
+                spare.points[new as usize] = at;
+            }
             return new;
         }
         let (v, w) = (spare.values[kept as usize], spare.values[other as usize]);
@@ -158,16 +169,25 @@ impl Polyhedron {
         let at = [0, 1, 2].map(|k| p[k] + (q[k] - p[k]) * share);
         spare.points.push(at);
         let new = spare.points.len() as u32 - 1;
-        spare.cuts.push((kept, other, new));
+        spare.cuts.push(Cut {
+            kept,
+            other,
+            new,
+            beside: face,
+        });
         new
     }
 
-    /// Gives equal corners one number, and drops faces that have fewer than three.
+    /// Gives equal corners one number, and drops faces that have fewer than three. Where the surface would not be
+    /// closed then, as a face touched itself, all stays, with corners that are equal.
     pub fn weld(&mut self) {
         let mut first: Vec<u32> = Vec::with_capacity(self.points.len());
         for i in 0..self.points.len() {
             let same = (0..i).find(|&j| self.points[j] == self.points[i]);
             first.push(same.unwrap_or(i) as u32);
+        }
+        if first.iter().zip(0..).all(|(&j, i)| i == j) {
+            return;
         }
         let mut number = vec![NONE; self.points.len()];
         let (mut points, mut starts, mut corners, mut labels) = (vec![], vec![0], vec![], vec![]);
@@ -191,7 +211,10 @@ impl Polyhedron {
             starts.push(corners.len() as u32);
             labels.push(self.labels[f]);
         }
-        (self.points, self.starts, self.corners, self.labels) = (points, starts, corners, labels);
+        if is_closed(points.len(), &starts, &corners) {
+            (self.points, self.starts) = (points, starts);
+            (self.corners, self.labels) = (corners, labels);
+        }
     }
 
     /// The area of a face: infinite beyond the range of doubles, and not 0 below it.
@@ -253,6 +276,21 @@ impl Polyhedron {
     }
 }
 
+/// Whether each edge is there once each way, and corners and faces are as many as on a ball.
+fn is_closed(points: usize, starts: &[u32], corners: &[u32]) -> bool {
+    let mut edges = Vec::with_capacity(corners.len());
+    for bounds in starts.windows(2) {
+        let face = &corners[bounds[0] as usize..bounds[1] as usize];
+        let next = face.iter().skip(1).chain(face.first());
+        edges.extend(face.iter().zip(next).map(|(&p, &q)| (p, q)));
+    }
+    edges.sort_unstable();
+    let once = edges.windows(2).all(|pair| pair[0] != pair[1]);
+    let back = |&(p, q): &(u32, u32)| edges.binary_search(&(q, p)).is_ok();
+    let faces = starts.len() - 1;
+    once && edges.iter().all(back) && points + faces == edges.len() / 2 + 2
+}
+
 /// Adds the new faces: the turns of the links.
 fn close(label: i32, spare: &mut Spare) {
     while let Some((start, mut now)) = spare.links.pop() {
@@ -274,31 +312,75 @@ fn close(label: i32, spare: &mut Spare) {
 mod tests {
     use super::*;
 
+    /// The faces of a cube whose corners have x, y and z in the bits of their numbers.
+    const CUBE: [u32; 24] = [
+        0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6,
+    ];
+
+    /// The cube of all |x| <= size, with faces -1 to -6.
+    fn cube(size: f64) -> Polyhedron {
+        let bit = |i: u32, k: u32| if i >> k & 1 == 1 { size } else { -size };
+        Polyhedron {
+            points: (0..8).map(|i| [0, 1, 2].map(|k| bit(i, k))).collect(),
+            starts: (0..7).map(|f| 4 * f).collect(),
+            corners: CUBE.to_vec(),
+            labels: (0..6).map(|f| !f).collect(),
+            spare: Spare::default(),
+        }
+    }
+
+    /// Corners as they come.
+    fn none(_: [i32; 3]) -> Option<Point3> {
+        None
+    }
+
     #[test]
     fn a_corner_goes() {
-        let mut body = Polyhedron::cube(0.5);
+        let mut body = cube(0.5);
         let (volume, center) = body.body();
         assert!((volume - 1.0).abs() < 1e-15 && center.iter().all(|x| x.abs() < 1e-15));
-        body.cut(7, |p| p[0] + p[1] + p[2] - 0.5);
+        body.cut(7, |p| p[0] + p[1] + p[2] - 0.5, none);
         body.weld();
         assert!((body.body().0 - 5.0 / 6.0).abs() < 1e-15);
         let f = body.labels.iter().position(|&l| l == 7).unwrap();
         assert_eq!(body.face(f).len(), 3);
         assert!((body.area(f) - 0.75_f64.sqrt()).abs() < 1e-15);
-        body.cut(8, |p| p[0] - 2.0);
+        body.cut(8, |p| p[0] - 2.0, none);
         assert_eq!(body.labels.len(), 7);
-        body.cut(9, |p| p[0] + 1.0);
+        body.cut(9, |p| p[0] + 1.0, none);
         assert!(body.is_empty());
         assert_eq!(body.body().0, 0.0);
     }
 
     #[test]
     fn a_plane_through_corners_leaves_half() {
-        let mut body = Polyhedron::cube(0.5);
-        body.cut(3, |p| p[0] - p[1]);
+        let mut body = cube(0.5);
+        body.cut(3, |p| p[0] - p[1], none);
         body.weld();
         assert!((body.body().0 - 0.5).abs() < 1e-15);
         assert_eq!((body.points.len(), body.labels.len()), (6, 5));
         assert!((0..5).all(|f| body.area(f) > 0.0));
+    }
+
+    #[test]
+    fn corners_may_be_told() {
+        let mut body = cube(0.5);
+        let told = |labels: [i32; 3]| {
+            (labels.contains(&-1) && labels.contains(&-3)).then_some([-0.5, -0.5, 0.125])
+        };
+        body.cut(7, |p| p[2] - 0.1, told);
+        let at = |p: &&Point3| p[0] == -0.5 && p[1] == -0.5;
+        let heights: Vec<f64> = body.points.iter().filter(at).map(|p| p[2]).collect();
+        assert_eq!(heights, [-0.5, 0.125]);
+    }
+
+    #[test]
+    fn what_welding_would_pinch_stays_apart() {
+        // Two corners across the cube from each other.
+        let mut body = cube(0.5);
+        body.points[1] = body.points[6];
+        let corners = body.corners.clone();
+        body.weld();
+        assert_eq!((body.points.len(), body.corners), (8, corners));
     }
 }

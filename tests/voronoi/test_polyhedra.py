@@ -1,9 +1,11 @@
-"""Half-spaces as clips, against Fractions: whether they have volume and an end; their corners."""
+"""Clips of space against Fractions: half-spaces, and the faces of cells cut beside twins."""
 
 from __future__ import annotations
 
 import itertools
+import json
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,8 @@ from delone.errors import InputError
 from delone.voronoi.halfspaces import common_part
 
 Exact = tuple[Fraction, ...]
+
+CORPUS = Path(__file__).parent.parent / "corpus" / "space"
 
 SITES = np.random.default_rng(0).random((6, 3))
 BOX = [(1, 0, 0, -1), (-1, 0, 0, 0), (0, 1, 0, -1), (0, -1, 0, 0), (0, 0, 1, -1), (0, 0, -1, 0)]
@@ -209,3 +213,104 @@ def test_many_planes_through_one_point() -> None:
     assert sorted(map(len, faces)) == [3] * 40 + [40]
     assert rows == list(range(41))
     assert [0.0, 0.0, 1.0] in points.tolist()
+
+
+def corpus(name: str) -> Any:
+    case = json.loads((CORPUS / f"{name}.json").read_text(encoding="utf-8"))
+    return np.array(case["points"])
+
+
+def bisector(p: Exact, q: Exact) -> Exact:
+    """The half-space of the points that are not farther from p than from q."""
+    way = tuple(2 * (y - x) for x, y in zip(p, q, strict=True))
+    return *way, dot(p, p) - dot(q, q)
+
+
+def exact_area(row: Exact, corners: set[Exact]) -> float:
+    """The area of the face of a half-space, by its shadow along the largest of its normal."""
+    normal = row[:3]
+    axis = max(range(3), key=lambda k: abs(normal[k]))
+    shadow = sorted(at[:axis] + at[axis + 1 :] for at in corners if dot(normal, at) + row[3] == 0)
+    if len(shadow) < 3:
+        return 0.0
+
+    def chain(points: list[Exact]) -> list[Exact]:
+        kept: list[Exact] = []
+        for p in points:
+            while len(kept) > 1 and turn(kept[-2], kept[-1], p) <= 0:
+                kept.pop()
+            kept.append(p)
+        return kept[:-1]
+
+    around = chain(shadow) + chain(shadow[::-1])
+    twice = sum(turn(around[0], p, q) for p, q in itertools.pairwise(around[1:]))
+    size = float(dot(normal, normal) / normal[axis] ** 2) ** 0.5
+    return float(twice / 2) * size
+
+
+def turn(p: Exact, q: Exact, r: Exact) -> Fraction:
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+
+def check_areas(points: Any, bounds: tuple[Any, Any], rel: float, **clip: Any) -> None:
+    """The faces between cells in a box have the areas of rational arithmetic."""
+    diagram = Voronoi(points, **(clip or {"clip": bounds}))
+    low, high = (tuple(map(Fraction, row)) for row in bounds)
+    sites = exact_rows(points)
+    axes = [tuple(Fraction(int(i == k)) for i in range(3)) for k in range(3)]
+    box = [(*axis, -top) for axis, top in zip(axes, high, strict=True)]
+    box += [(*(-x for x in axis), under) for axis, under in zip(axes, low, strict=True)]
+    for i, p in enumerate(sites):
+        rows = [bisector(p, q) for j, q in enumerate(sites) if j != i]
+        corners = corners_of([*box, *rows])
+        others = [j for j in range(len(sites)) if j != i]
+        exact = {j: exact_area(row, corners) for j, row in zip(others, rows, strict=True)}
+        cell = diagram.cell(i)
+        found = dict(zip(cell.neighbors.tolist(), cell.areas.tolist(), strict=True))
+        assert found == pytest.approx({j: a for j, a in exact.items() if a}, rel=rel)
+        assert cell.area == pytest.approx(
+            sum(exact.values()) + sum(exact_area(row, corners) for row in box), rel=rel
+        )
+
+
+UNIT = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-11, 1e-13, 1e-14, 1e-15])
+def test_faces_beside_twins_have_their_areas(gap: float) -> None:
+    twins = [(0.5 - gap, 0.5, 0.75), (0.5 + gap, 0.5 + gap / 3, 0.75)]
+    points = np.array([(0.5, 0.5, 0.25), *twins, (0.5, 0.9, 0.2), (0.1, 0.4, 0.4)])
+    check_areas(points, UNIT, 1e-12)
+    assert gap != 1e-15 or np.array_equal(points, corpus("twins-across-a-face"))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_faces_beside_random_twins_in_boxes_half_spaces_and_hulls(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = rng.random((4, 3))
+    points = np.concatenate(
+        (points, points[:2] + rng.choice((-1, 1), (2, 3)) * 10.0 ** -(8 + seed))
+    )
+    check_areas(points, UNIT, 1e-11)
+    check_areas(points, UNIT, 1e-11, clip=BOX)
+    corners = np.array(list(itertools.product((0.0, 1.0), repeat=3)))
+    check_areas(points, UNIT, 1e-11, clip=corners)
+
+
+def test_cells_of_a_shaken_lattice_are_closed_in_a_clip() -> None:
+    points = corpus("lattice-shaken-by-roundings")
+    diagram = Voronoi(points, clip="box")
+    for i in range(len(points)):
+        cell = diagram.cell(i)
+        faces = [face.tolist() for face in cell.faces]
+        edges = [(u, v) for face in faces for u, v in zip(face, face[1:] + face[:1], strict=True)]
+        assert len(set(edges)) == len(edges)
+        assert {(v, u) for u, v in edges} == set(edges)
+        assert len(cell.vertices) - len(edges) // 2 + len(faces) == 2
+
+
+def test_a_cell_of_which_nothing_is_left_has_an_area_of_plain_zero() -> None:
+    diagram = Voronoi(np.random.default_rng(2).random((60, 3)), clip=((0, 0, 0), (0.2, 0.2, 0.2)))
+    nothing = diagram.cell_areas == 0
+    assert nothing.any()
+    assert not np.signbit(diagram.cell_areas[nothing]).any()
