@@ -6,10 +6,21 @@ import sys
 import numpy as np
 import pytest
 
-from delone import Delaunay, FileFormatError, MissingExtraError
+from delone import (
+    ConvexHull,
+    Delaunay,
+    FileFormatError,
+    InputError,
+    MissingExtraError,
+    RegularTriangulation,
+    Voronoi,
+    improve,
+)
 from delone.atomic import replacing
 from delone.io import input_suffixes, output_suffixes, read_mesh, read_points, write_mesh
 
+# It asks once, when it is imported, which libraries are there: before tests take some away.
+pytest.importorskip("pyogrio")
 MESH = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
 
 
@@ -150,3 +161,30 @@ def test_numpy_is_enough_for_its_own_files(tmp_path, monkeypatch):
     assert np.array_equal(
         read_points(tmp_path / "a.csv").points, read_points(tmp_path / "a.npz").points
     )
+
+
+CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".npz", ".png", ".ply"])
+@pytest.mark.parametrize(
+    "other", [ConvexHull(CUBE), ConvexHull(MESH.points), Voronoi(MESH.points), None, (1, 2)]
+)
+def test_what_is_no_triangulation_is_refused(tmp_path, suffix, other):
+    """The facets of a hull were once written as tetrahedra."""
+    with pytest.raises(InputError, match=type(other).__name__):
+        write_mesh(tmp_path / f"a{suffix}", other)
+    assert not list(tmp_path.iterdir())
+
+
+def test_npz_holds_what_can_be_loaded(tmp_path):
+    weighted = RegularTriangulation(MESH.points, np.zeros(5))
+    for other in (weighted, improve(Delaunay(CUBE))):
+        with pytest.raises(FileFormatError, match=type(other).__name__):
+            write_mesh(tmp_path / "a.npz", other)
+
+
+def test_improved_tetrahedra_have_a_picture(tmp_path):
+    pytest.importorskip("pyvista")
+    write_mesh(tmp_path / "a.png", improve(Delaunay([*CUBE, (0.4, 0.5, 0.6)])))
+    assert (tmp_path / "a.png").stat().st_size > 1000

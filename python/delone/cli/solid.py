@@ -39,8 +39,8 @@ __all__ = [
 ]
 
 _FIRST_DUPLICATES = 5
-# What holds or draws a Delaunay triangulation of space, but no other tetrahedra.
-_DELAUNAY_ONLY = (".npz", ".png")
+# What holds a Delaunay triangulation of space, but no other tetrahedra.
+_DELAUNAY_ONLY = (".npz",)
 
 
 def is_space(source: Path, wanted: bool | None, survey: PointSet | GeometrySet) -> bool:
@@ -128,7 +128,7 @@ def improved(mesh: Delaunay, outputs: Iterable[Path], min_angle: float) -> TetMe
     """
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
-            raise Failure(f"{path}: --improve writes .vtu and .msh files", Exit.USAGE)
+            raise Failure(f"{path}: --improve writes .vtu, .msh and .png files", Exit.USAGE)
     return improve(mesh, min_angle=min_angle)
 
 

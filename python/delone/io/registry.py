@@ -11,19 +11,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
+
 from delone.atomic import replacing
-from delone.errors import FileFormatError
-from delone.improve.tetmesh import TetMesh
+from delone.errors import FileFormatError, InputError
 from delone.io.compressed import SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.delaunay import Delaunay
+    from delone.improve.tetmesh import TetMesh
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
     from delone.refine.meshed import Mesh as QualityMesh
@@ -345,7 +346,7 @@ def write_mesh(
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
         GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh or TetMesh
-        What to write. Tetrahedra go to VTU and MSH.
+        What to write. Tetrahedra go to VTU, MSH and PNG.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.
     crs : str, optional
@@ -361,7 +362,7 @@ def write_mesh(
     FileFormatError
         Unknown suffix, or something that the format cannot hold.
     InputError
-        `z` or an attribute has the wrong length.
+        `z` or an attribute has the wrong length, or `triangulation` is none.
     MissingExtraError
         The library for this format is not installed.
     OSError
@@ -388,10 +389,13 @@ def write_mesh(
     ...     len(read_points(Path(folder) / "mesh.npz"))
     5
     """
-    write = writer(path, space=triangulation.ndim == 3)
-    suffix = Path(path).suffix.lower()
-    if isinstance(triangulation, TetMesh) and suffix in (".npz", ".png"):
-        raise FileFormatError(f"{path}: {suffix} files hold no tetrahedra of a TetMesh; use .vtu")
+    name, ndim = type(triangulation).__name__, getattr(triangulation, "ndim", 0)
+    # Sides of a hull have a corner less.
+    if np.shape(getattr(triangulation, "simplices", ()))[1:] != (ndim + 1,):
+        raise InputError(f"a {name} is no triangulation: there is nothing to write")
+    write = writer(path, space=ndim == 3)
+    if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
+        raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
     with replacing(path) as beside:
         write(beside, triangulation, z=z, crs=crs, edges=edges, attributes=attributes)
 
