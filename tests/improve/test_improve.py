@@ -487,7 +487,7 @@ def test_files_hold_the_mesh(suffix: str, tmp_path: Path) -> None:
 def test_files_of_the_plane_refuse_it(tmp_path: Path) -> None:
     mesh = delone.improve(uniform(50))
     for name in ("mesh.geojson", "mesh.stl", "mesh.npz"):
-        with pytest.raises(delone.FileFormatError, match="tetrahedra|TetMesh"):
+        with pytest.raises(delone.FileFormatError, match=r"tetrahedra|TetMesh"):
             delone.io.write_mesh(tmp_path / name, mesh)
     with pytest.raises(delone.FileFormatError, match="heights"):
         delone.io.write_mesh(tmp_path / "mesh.vtu", mesh, z=np.zeros(50))
