@@ -74,6 +74,15 @@ class Location(Places):
         Outside, the boundary edge with that point, the triangle to its left; else -1.
     along : ndarray of float64, shape (...)
         Outside, how far along that edge the point is, from 0 to 1; else NaN.
+
+    Examples
+    --------
+    >>> from delone import Delaunay
+    >>> place = Delaunay([(0, 0), (4, 0), (0, 4)]).locate([(1, 2), (3, 3)])
+    >>> place.simplex.tolist(), sorted(place.barycentric[0].tolist())
+    ([0, -1], [0.25, 0.25, 0.5])
+    >>> place.edge[1].tolist(), float(place.along[1]), place.nearest[1].tolist()
+    ([1, 2], 0.5, [2.0, 2.0])
     """
 
     simplex: Indices

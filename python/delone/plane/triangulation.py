@@ -65,17 +65,20 @@ class Triangulation(Immutable):
 
     @property
     def points(self) -> Floats:
-        """The coordinates, (n, 2)."""
+        """The coordinates, (n, d), where d is `ndim`."""
         return self._points
 
     @property
     def simplices(self) -> Indices:
-        """The triangles as rows of `points`, (m, 3), counter-clockwise."""
+        """The simplices as rows of `points`, (m, d + 1).
+
+        Triangles are counter-clockwise, tetrahedra positively oriented.
+        """
         return self._simplices
 
     @property
     def neighbors(self) -> Indices:
-        """The triangle opposite each vertex, (m, 3); -1 outside."""
+        """The simplex opposite each vertex, (m, d + 1); -1 outside."""
         return self._neighbors
 
     @property
@@ -90,7 +93,7 @@ class Triangulation(Immutable):
 
     @property
     def nsimplex(self) -> int:
-        """Number of triangles."""
+        """Number of simplices: triangles, or tetrahedra."""
         return len(self._simplices)
 
     @property
@@ -101,13 +104,13 @@ class Triangulation(Immutable):
     @property
     @kept
     def min_bound(self) -> Floats:
-        """The least coordinates, (2,)."""
+        """The least coordinates, (d,)."""
         return sealed(self._points.min(axis=0))
 
     @property
     @kept
     def max_bound(self) -> Floats:
-        """The greatest coordinates, (2,)."""
+        """The greatest coordinates, (d,)."""
         return sealed(self._points.max(axis=0))
 
     @property
@@ -148,14 +151,17 @@ class Triangulation(Immutable):
     @property
     @kept
     def vertex_to_simplex(self) -> Indices:
-        """A triangle of each point, (n,): the first one that has it or its duplicate as vertex."""
+        """A simplex of each point, (n,): the first that has it, or what it repeats, for a vertex.
+
+        -1 where there is none.
+        """
         first = topology.vertex_to_simplex(self._simplices, self.npoints)
         return sealed(first[self.duplicate_of])
 
     @property
     @kept
     def coplanar(self) -> Indices:
-        """The duplicates, (k, 3): row, a triangle of its vertex (-1 if it has none), its vertex."""
+        """The duplicates, (k, 3): row, a simplex of its vertex (-1 if it has none), its vertex."""
         row, first = self._duplicates.T
         return sealed(np.column_stack((row, self.vertex_to_simplex[first], first)))
 
@@ -365,8 +371,12 @@ class Triangulation(Immutable):
 
         Raises
         ------
-        ShapeError, DtypeError
+        ShapeError, DtypeError, NonFiniteError
             An end is no finite point.
+
+        Notes
+        -----
+        Exact. Linear in the number of triangles met, after a walk to the first.
 
         Examples
         --------

@@ -49,6 +49,13 @@ class SpaceLocation(Places):
     shares : ndarray of float64, shape (..., 3)
         Outside, the weights of these corners in that point, none below 0, of sum 1 up to rounding;
         else NaN.
+
+    Examples
+    --------
+    >>> from delone import Delaunay
+    >>> place = Delaunay([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]).locate((1, 1, -3))
+    >>> int(place.simplex), place.nearest.tolist(), sorted(place.face.tolist())
+    (-1, [1.0, 1.0, 0.0], [0, 1, 2])
     """
 
     simplex: Indices

@@ -267,7 +267,38 @@ class Spatial(Triangulation):
         return places.locate(self._solid_locator, self._points, xi, self._workers)
 
     def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """Return the triangles along a segment, as `Triangulation.walk` does; plane only."""
+        """Return the triangles along a segment; plane only.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Ends of the segment.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            The triangles that have more than a point of the segment, in order from a to b. Where it
+            runs along an edge, the triangle to the left of it, or the only one there is. Parts
+            outside are skipped; a segment of length zero is a point to be found.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError
+            An end is no finite point.
+        AttributeError
+            The points are in space.
+
+        Notes
+        -----
+        Exact. Linear in the number of triangles met, after a walk to the first.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+        >>> len(mesh.walk((-1, 0.5), (5, 1)))
+        3
+        """
         self._only(2, "walk", "`find_simplex` takes points of a segment")
         return super().walk(a, b)
 

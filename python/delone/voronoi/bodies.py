@@ -32,6 +32,14 @@ class SpaceNeighbors(NamedTuple):
         The neighbours of each site, ascending.
     areas : ndarray of float64, shape (k,)
         The area of the face that both cells have in common.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> grid = [(x, y, z) for x in range(3) for y in range(3) for z in range(3)]
+    >>> indptr, indices, areas = Voronoi(grid).neighbors
+    >>> indices[indptr[13]:indptr[14]].tolist()
+    [4, 10, 12, 14, 16, 22]
     """
 
     indptr: Indices
@@ -65,6 +73,14 @@ class SpaceCell:
         Of the cell, and of its surface; as in the diagram.
     centroid : ndarray of float64, shape (3,)
         As in the diagram.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> grid = [(x, y, z) for x in range(3) for y in range(3) for z in range(3)]
+    >>> cell = Voronoi(grid).cell(13)
+    >>> cell.bounded, len(cell.vertices), [len(face) for face in cell.faces]
+    (True, 8, [4, 4, 4, 4, 4, 4])
     """
 
     site: int

@@ -28,7 +28,14 @@ class Rays(NamedTuple):
     origin : ndarray of float64, shape (k, 2)
         Its one vertex; on a line, the point nearest to both sites.
     direction : ndarray of float64, shape (k, 2)
-        Of length 1.
+        Of length 1. In space origins and directions have three columns.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> rays = Voronoi([(0, 0), (2, 0), (0, 2)]).rays
+    >>> rays.origin[0].tolist(), rays.direction[0].tolist()
+    ([1.0, 1.0], [0.0, -1.0])
     """
 
     ridge: Indices
@@ -47,6 +54,14 @@ class Neighbors(NamedTuple):
         The neighbours of each site, ascending.
     lengths : ndarray of float64, shape (k,)
         The length of the edge that both cells have in common.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> strips = Voronoi([(0, 0), (2, 0), (4, 0)], clip=(-1, -1, 5, 1))
+    >>> indptr, indices, lengths = strips.neighbors
+    >>> indices[indptr[1]:indptr[2]].tolist(), lengths[indptr[1]:indptr[2]].tolist()
+    ([0, 2], [2.0, 2.0])
     """
 
     indptr: Indices
@@ -79,6 +94,13 @@ class Cell:
         As in the diagram.
     centroid : ndarray of float64, shape (2,)
         As in the diagram.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> cell = Voronoi([(0, 0), (2, 0), (4, 0)], clip=(-1, -1, 5, 1)).cell(1)
+    >>> cell.bounded, cell.area, cell.centroid.tolist(), cell.neighbors.tolist()
+    (False, 4.0, [2.0, 0.0], [0, 2])
     """
 
     site: int

@@ -250,7 +250,7 @@ class Voronoi(Immutable):
 
     @property
     def points(self) -> Floats:
-        """The sites, (n, 2)."""
+        """The sites, (n, d), where d is `ndim`."""
         return self._points
 
     @property
@@ -292,7 +292,7 @@ class Voronoi(Immutable):
 
     @property
     def vertices(self) -> Floats:
-        """The vertices of the whole diagram, (k, 2)."""
+        """The vertices of the whole diagram, (k, d)."""
         return self._dual["vertices"]
 
     @property
@@ -436,7 +436,10 @@ class Voronoi(Immutable):
     @property
     @kept
     def cell_perimeters(self) -> Floats:
-        """Perimeters of the cells within the clip, (n,), holes included."""
+        """Perimeters of the cells within the clip, (n,), in the unit of the points, holes included.
+
+        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites.
+        """
         return sealed(np.append(self._clipped.perimeters, 0.0)[self.point_region])
 
     @property
@@ -571,7 +574,9 @@ class Voronoi(Immutable):
         ax : matplotlib Axes, optional
             Where to draw; by default on new axes.
         **options
-            As in `delone.voronoi.shapes.draw`.
+            ``values``, array_like of float, shape (n,): cells are coloured by them; ``cmap``: the
+            colours; ``colorbar``: False leaves the scale out; ``points``: whether sites are drawn,
+            by default where there are few enough to be told apart; ``linewidth``: that of edges.
 
         Returns
         -------
@@ -582,6 +587,12 @@ class Voronoi(Immutable):
         ------
         MissingExtraError
             matplotlib is not installed.
+        InputError
+            ``values`` has another length.
+
+        Notes
+        -----
+        Without a clip the diagram is drawn as far as the box of the sites and a tenth more.
 
         Examples
         --------

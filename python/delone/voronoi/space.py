@@ -253,7 +253,10 @@ class SpaceVoronoi(Voronoi):
     @property
     @kept
     def cell_areas(self) -> Floats:
-        """Areas of the surfaces of the cells within the clip, (n,)."""
+        """Areas of the surfaces of the cells within the clip, (n,), in the square of the unit.
+
+        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites.
+        """
         return sealed(np.append(self._bodies.areas, 0.0)[self.point_region])
 
     @property
@@ -358,6 +361,13 @@ class SpaceVoronoi(Voronoi):
         ------
         MissingExtraError
             pyvista is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> grid = [(x, y, z) for x in range(3) for y in range(3) for z in range(3)]
+        >>> Voronoi(grid).to_pyvista().n_cells
+        1
         """
         from delone.io.extras import require
 
@@ -404,6 +414,12 @@ class SpaceVoronoi(Voronoi):
         ------
         MissingExtraError
             pyvista is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
+        >>> Voronoi(corners, clip="box").plot().show()  # doctest: +SKIP
         """
         from delone.io.extras import require
 
