@@ -83,6 +83,9 @@ class Delaunay(Spatial):
         `points` is no array of real points in the plane or in space.
     InputError
         `method` or `workers` is none of its choices.
+    LimitError
+        There are more than 2**28 points in the plane or 2**27 in space, or more than 2**30
+        tetrahedra. `delone.distributed` has no such limit in the plane.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -304,6 +307,10 @@ class Delaunay(Spatial):
         -----
         Checked in linear time are shapes, dtypes, ranges, duplicates, mutual neighbours,
         orientations and the boundary. `validate` proves the rest.
+
+        Examples
+        --------
+        See `save`.
         """
         from delone import archive
 

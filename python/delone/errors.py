@@ -42,19 +42,61 @@ def _row_numbers(rows: Iterable[int] | NDArray[np.integer]) -> NDArray[np.int64]
 
 
 class DeloneError(Exception):
-    """Root of all exceptions that delone raises on purpose."""
+    """Root of all exceptions that delone raises on purpose.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([(0, 0), (1, 1)])
+    ... except delone.DeloneError as error:
+    ...     print(error)
+    2 distinct points are too few for a triangle: three that are not in line are needed
+    """
 
 
 class InputError(DeloneError, ValueError):
-    """An argument has a value that cannot be used."""
+    """An argument has a value that cannot be used; a ValueError as well.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([(0, 0), (1, 0), (0, 1)], method="magic")
+    ... except ValueError as error:
+    ...     print(str(error)[:27])
+    method must be one of 'auto
+    """
 
 
 class ShapeError(InputError):
-    """An array has the wrong number of axes, or an axis the wrong length."""
+    """An array has the wrong number of axes, or an axis the wrong length.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([0, 1, 2])
+    ... except delone.ShapeError as error:
+    ...     print(error)
+    points must have shape (n, 2) or (n, 3), got (3,)
+    """
 
 
 class DtypeError(InputError, TypeError):
-    """An array or argument is of a kind that has no exact float64 (or index) meaning."""
+    """An array or argument is of a kind that has no exact float64 (or index) meaning.
+
+    A TypeError as well.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([(0, 0), (2**53 + 1, 0), (0, 1)])
+    ... except TypeError as error:
+    ...     print(type(error).__name__)
+    DtypeError
+    """
 
 
 class NonFiniteError(InputError):
@@ -75,6 +117,15 @@ class NonFiniteError(InputError):
         Row numbers of the first bad points.
     count : int
         How many rows are bad in all.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([(0, 0), (1, float("nan")), (1, 1), (0, 1)])
+    ... except delone.NonFiniteError as error:
+    ...     print(error.count, error.rows)
+    1 [1]
     """
 
     rows: NDArray[np.int64]
@@ -112,10 +163,19 @@ class DegenerateInputError(InputError):
         ``"too few points"``, ``"collinear"`` or ``"coplanar"``; empty where it is not known.
     chain : ndarray of int64
         Row numbers of the distinct points, in their order along the line; lexicographic where they
-        are on none. Empty for coplanar points.
+        are on none.
     plane : PlaneTriangulation or None
         Of points in space that lie in one plane and not on one line, three points among them, the
         Delaunay triangulation of that plane; with weights, the regular one.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Delaunay([(2, 2), (0, 0), (1, 1)])
+    ... except delone.DegenerateInputError as error:
+    ...     print(error.reason, error.chain)
+    collinear [1 2 0]
     """
 
     reason: str
@@ -154,6 +214,16 @@ class CrossingSegmentsError(InputError):
         Rows of the segments that cross, every pair once.
     points : ndarray of float64, shape (c, 2)
         Where they cross, each coordinate rounded once.
+
+    Examples
+    --------
+    >>> import delone
+    >>> corners = [(0, 0), (3, 0), (3, 1), (0, 1)]
+    >>> try:
+    ...     delone.ConstrainedDelaunay(corners, [(0, 2), (1, 3)])
+    ... except delone.CrossingSegmentsError as error:
+    ...     print(error.pairs, error.points)
+    [[0 1]] [[1.5 0.5]]
     """
 
     pairs: NDArray[np.int64]
@@ -187,6 +257,15 @@ class ConflictingValuesError(InputError):
     ----------
     rows : ndarray of int64, shape (k, 2)
         Rows of points, each with the first row of the same coordinates.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.interpolate.Linear([(0, 0), (1, 0), (0, 1), (1, 0)], [1.0, 2.0, 3.0, 2.5])
+    ... except delone.ConflictingValuesError as error:
+    ...     print(error.rows)
+    [[3 1]]
     """
 
     rows: NDArray[np.int64]
@@ -217,6 +296,16 @@ class BudgetExceededError(DeloneError, RuntimeError):
         How many added vertices were allowed.
     found : int
         How many were found when the work was given up; there may be more.
+
+    Examples
+    --------
+    >>> import delone
+    >>> square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1)]]}
+    >>> try:
+    ...     delone.mesh(square, max_area=0.001, max_points=10)
+    ... except delone.BudgetExceededError as error:
+    ...     print(error.limit, error.found > error.limit)
+    10 True
     """
 
     limit: int
@@ -231,7 +320,7 @@ class BudgetExceededError(DeloneError, RuntimeError):
 
 
 class BusyError(DeloneError, RuntimeError):
-    """Another process is writing there.
+    """Another process is writing there: `delone.distributed.triangulate` has one run in a folder.
 
     Parameters
     ----------
@@ -248,6 +337,12 @@ class BusyError(DeloneError, RuntimeError):
         The number of the process, 0 where it has not said.
     host : str
         The name of its machine.
+
+    Examples
+    --------
+    >>> from delone import BusyError
+    >>> BusyError(pid=4711, host="survey").pid
+    4711
     """
 
     pid: int
@@ -262,7 +357,17 @@ class BusyError(DeloneError, RuntimeError):
 
 
 class LimitError(InputError):
-    """The input is larger than an index or a buffer of this build can hold."""
+    """The input is larger than an index or a buffer of this build can hold.
+
+    Examples
+    --------
+    >>> import delone
+    >>> try:
+    ...     delone.Voronoi([(1e308, 0), (1.1e308, 1)], periodic=(1e308, None))
+    ... except delone.LimitError as error:
+    ...     print(error)
+    the next copy of a site lies beyond the range of doubles
+    """
 
 
 class InternalError(DeloneError, RuntimeError):
@@ -279,6 +384,12 @@ class InternalError(DeloneError, RuntimeError):
     ----------
     points : ndarray of float64 or None
         The points with which it went wrong, to be sent along: ``np.save("report.npy", e.points)``.
+
+    Examples
+    --------
+    >>> from delone import InternalError
+    >>> print(InternalError("a walk did not end"))
+    a walk did not end. This is a bug in delone; please report it together with the input.
     """
 
     points: NDArray[np.float64] | None = None
@@ -290,7 +401,22 @@ class InternalError(DeloneError, RuntimeError):
 
 
 class FileFormatError(DeloneError, ValueError):
-    """A file is torn, or is not in the format that its name or header claims."""
+    """A file is torn, or is not in the format that its name or header claims.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone import FileFormatError, io
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "torn.npy"
+    ...     _ = file.write_bytes(b"NUMPY")
+    ...     try:
+    ...         io.read_points(file)
+    ...     except FileFormatError as error:
+    ...         print("torn.npy" in str(error))
+    True
+    """
 
 
 class MissingExtraError(DeloneError, ImportError):
@@ -307,6 +433,12 @@ class MissingExtraError(DeloneError, ImportError):
     ----------
     extra : str
         The extra to install, as in ``pip install "delone[las]"``.
+
+    Examples
+    --------
+    >>> from delone import MissingExtraError
+    >>> print(MissingExtraError(extra="las"))
+    install it with: pip install "delone[las]"
     """
 
     extra: str

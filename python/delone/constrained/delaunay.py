@@ -450,6 +450,10 @@ class ConstrainedDelaunay(Segmented):
         Checked in linear time are shapes, dtypes, ranges, duplicates, mutual neighbours,
         orientations, the boundary, and that the flags of edges are those of the subsegments.
         `validate` proves the rest.
+
+        Examples
+        --------
+        See `save`.
         """
         from delone import archive
 

@@ -49,6 +49,13 @@ class Plan:
         Bytes that stay.
     seconds : float
         With all workers, without the decompression of the source.
+
+    Examples
+    --------
+    >>> from delone import distributed
+    >>> need = distributed.plan(10_000_000, workers=2)
+    >>> need.tiles, need.worker_memory, need.seconds
+    (5, 530000000, 6.0)
     """
 
     points: int

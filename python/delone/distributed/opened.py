@@ -90,7 +90,18 @@ class TiledDelaunay:
     Notes
     -----
     A triangle is numbered by its place: those of tile 0 come first, then those of tile 1, and so
-    on. One tile at a time is in memory, except where a method says otherwise.
+    on. One tile at a time is in memory, except where a method says otherwise. Whatever reads tiles
+    raises `FileFormatError` where their files are lost or torn.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from delone import datasets, distributed
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+    ...     tin = distributed.open(folder + "/tin")
+    >>> tin.npoints, tin.nsimplex, tin.ntiles, tin.bounds
+    (400, 722, 4, (0.0, 0.0, 19.0, 19.0))
     """
 
     def __init__(self, store: Store, manifest: dict[str, Any]) -> None:
@@ -165,6 +176,16 @@ class TiledDelaunay:
             There is no such tile.
         FileFormatError
             Its files are lost or torn, lack a column, or hold something else.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     tile = tin.tile(0)
+        >>> int(tile.owned.sum()), len(tile.points) > 100
+        (100, True)
         """
         number = as_count(number, name="number")
         if not 0 <= number < self.ntiles:
@@ -190,7 +211,22 @@ class TiledDelaunay:
             raise FileFormatError(f"{path} holds no mesh: {error}") from error
 
     def tiles(self) -> Iterator[Tile]:
-        """Read all tiles, one after another."""
+        """Read all tiles, one after another.
+
+        Returns
+        -------
+        iterator of Tile
+            In the order of their numbers; each is read when it is asked for.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     [int(tile.owned.sum()) for tile in tin.tiles()]
+        [100, 100, 100, 100]
+        """
         return (self.tile(number) for number in range(self.ntiles))
 
     def simplices(self) -> Numbers:
@@ -200,6 +236,19 @@ class TiledDelaunay:
         -------
         ndarray of int64, shape (m, 3)
             Counter-clockwise, in the order of their numbers.
+
+        Notes
+        -----
+        Memory is 24 bytes a triangle, and one tile.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     tin.simplices().shape
+        (722, 3)
         """
         found = np.empty((self.nsimplex, 3), dtype=np.int64)
         for tile in self.tiles():
@@ -231,6 +280,11 @@ class TiledDelaunay:
         ndarray of int64, shape (...)
             The number of a triangle that has the point inside or on its boundary, of several one of
             the lowest tile; -1 outside.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
 
         Examples
         --------
@@ -270,10 +324,24 @@ class TiledDelaunay:
         ------
         InputError
             There is no such attribute.
+        ShapeError, DtypeError
+            `xi` is no array of real points in the plane.
 
         Notes
         -----
         Triangles are those of the whole set, so that there are no seams between tiles.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points.sum(axis=1)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     tin.interpolate([(3.25, 4.5), (-1, 0)])
+        array([7.75,  nan])
         """
         self._require(value)
         queries, shape = _queries(xi)
@@ -303,6 +371,19 @@ class TiledDelaunay:
         -------
         TiledReport
             True where all is right; else it names the tiles and what is wrong.
+
+        Notes
+        -----
+        Exact, from the files alone, one tile at a time; what the manifest says is compared.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     bool(tin.validate())
+        True
         """
         from delone.distributed.proof import prove
 
@@ -324,8 +405,20 @@ class TiledDelaunay:
 
         Raises
         ------
+        InputError
+            There is no such table.
         MissingExtraError
             dask is not installed.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     frame = tin.to_dask_dataframe("vertices")
+        ...     frame.npartitions, len(frame)
+        (4, 400)
         """
         from delone.distributed.tables import dask_frame
 
@@ -345,6 +438,17 @@ class TiledDelaunay:
             The folder is there already.
         MissingExtraError
             geopandas is not installed.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from delone import datasets, distributed
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+        ...     tin.to_geoparquet(folder + "/polygons")
+        ...     len(list(Path(folder, "polygons").iterdir()))
+        4
         """
         from delone.distributed.tables import write_geoparquet
 
@@ -379,6 +483,18 @@ class TiledDelaunay:
             There is no such attribute, or `resolution` is not above 0.
         MissingExtraError
             rasterio is not installed.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from delone import datasets, distributed
+        >>> points = datasets.grid(400)
+        >>> slope = np.column_stack((points, points.sum(axis=1)))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     tin = distributed.triangulate(slope, folder + "/tin", tile_points=100)
+        ...     tin.to_raster(0.5, folder + "/dem.tif").name
+        'dem.tif'
         """
         from delone.distributed.dem import write_dem
 

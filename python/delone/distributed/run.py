@@ -61,6 +61,18 @@ class Progress:
         Points that tiles have been given of other tiles.
     memory : int
         The greatest memory of a process, in bytes.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from delone import datasets, distributed
+    >>> seen = []
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = distributed.triangulate(
+    ...         datasets.grid(400), folder + "/tin", tile_points=100, progress=seen.append
+    ...     )
+    >>> seen[-1].stage, seen[-1].done, seen[-1].total, seen[-1].tiles
+    ('finish', 4, 4, 4)
     """
 
     stage: str = ""

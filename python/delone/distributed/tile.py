@@ -53,6 +53,16 @@ class Tile:
         Its triangles as rows of `points`, counter-clockwise.
     attributes : dict of str to ndarray
         Heights ``z`` and further columns, one value for each vertex.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from delone import datasets, distributed
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
+    ...     tile = tin.tile(0)
+    >>> tile.owned.tolist() == [True] * 100 + [False] * (len(tile.points) - 100)
+    True
     """
 
     number: int
