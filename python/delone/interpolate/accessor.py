@@ -100,6 +100,10 @@ class ArrayInterpolation:
         InputError
             The coordinates are not found, or ``nan="drop"`` is asked for, which would need other
             triangles for each field.
+
+        Examples
+        --------
+        See `ArrayInterpolation`.
         """
         return _interpolated(
             self._array, _target(x, y, coords, self._array), coords, method, options
@@ -128,6 +132,24 @@ class ArrayInterpolation:
         -------
         xarray.DataArray
             With the dimensions y and x, or as the coordinates are called, in place of the points.
+
+        Raises
+        ------
+        InputError
+            As for `interp`; or not exactly one of `resolution` and `shape` is given.
+
+        Examples
+        --------
+        >>> import xarray
+        >>> import delone.interpolate.accessor
+        >>> stations = xarray.DataArray(
+        ...     [1.0, 5.0, 9.0],
+        ...     dims="station",
+        ...     coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
+        ... )
+        >>> stations.delone.grid(shape=(2, 2)).values
+        array([[ 4.,  6.],
+               [ 8., nan]])
         """
         nodes = _raster(self._array, coords, resolution, shape, bounds)
         return self.interp(*nodes, coords=coords, method=method, **options)
@@ -141,6 +163,17 @@ class DatasetInterpolation:
     ----------
     dataset : xarray.Dataset
         Values at scattered points. Variables without these dimensions stay as they are.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> import delone.interpolate.accessor
+    >>> stations = xarray.Dataset(
+    ...     {"height": ("station", [1.0, 5.0, 9.0])},
+    ...     coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
+    ... )
+    >>> stations.delone.interp([1.0], [1.0]).height.values
+    array([[4.]])
     """
 
     def __init__(self, dataset: Any) -> None:

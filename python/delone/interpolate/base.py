@@ -59,6 +59,12 @@ class Interpolator:
         Values at the sites.
     extrapolate, duplicates, nan, respect_constraints, workers
         As in `Linear`.
+
+    Examples
+    --------
+    >>> from delone.interpolate import Interpolator, Linear
+    >>> isinstance(Linear([(0, 0), (4, 0), (0, 4)]), Interpolator)
+    True
     """
 
     EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "error")
@@ -134,6 +140,15 @@ class Interpolator:
         InputError
             No values are there; duplicates have different ones; a query is outside of the hull,
             infinity included, and ``extrapolate="error"``.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> height = Linear([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0])
+        >>> height([(1, 1), (9, 9)])
+        array([ 4., nan])
+        >>> height((1, 1), values=[0.0, 0.0, 8.0])
+        array(2.)
         """
         interpolator, field, columns = self._with(values)
         queries = as_vectors(xi, self._ndim, name="xi")
@@ -156,6 +171,19 @@ class Interpolator:
             Of the shape of the queries, that of one value, and d: the derivatives by x and by y, in
             space by z as well. Outside of the hull NaN, or with ``extrapolate="linear"`` the slope
             with which the interpolant goes on there.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError, InputError
+            As for values; or there are no derivatives, as of natural neighbours in space.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> height = Linear([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0])
+        >>> height.gradient([(1, 1), (9, 9)])
+        array([[ 1.,  2.],
+               [nan, nan]])
         """
         interpolator, field, columns = self._with(values)
         queries = as_vectors(xi, self._ndim, name="xi")
@@ -178,9 +206,16 @@ class Interpolator:
         Raises
         ------
         ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
+            `xi` is no array of real points of the dimension of the sites.
         InputError
             A query is outside of the hull, and ``extrapolate="error"``.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> table = Linear([(0, 0), (4, 0), (0, 4)]).weights([(1, 1), (2, 2)])
+        >>> table @ [1.0, 5.0, 9.0], table @ [0.0, 0.0, 8.0]
+        (array([4., 7.]), array([2., 4.]))
         """
         queries = as_vectors(xi, self._ndim, name="xi")
         return self._table(queries.reshape(-1, self._ndim), queries.shape[:-1])

@@ -59,6 +59,14 @@ class CrossValidation:
     predicted : ndarray, shape (n,) or (n, ...)
         What the others say; NaN where they say nothing, as at corners of the hull, and where they
         span no area.
+
+    Examples
+    --------
+    >>> from delone.interpolate import cross_validate
+    >>> points = [(0, 0), (4, 0), (4, 4), (0, 4), (1, 2)]
+    >>> found = cross_validate(points, [0.0, 4.0, 8.0, 4.0, 9.0], "linear")
+    >>> found.count, float(found.residuals[4]), float(found.rmse)
+    (1, 6.0, 6.0)
     """
 
     method: str

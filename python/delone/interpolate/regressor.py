@@ -90,7 +90,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         Parameters
         ----------
         X : array_like, shape (n, 2)
-            Training points.
+            Training points; where `columns` are given, with any further features.
         y : array_like, shape (n,) or (n, k)
             Their values.
 
@@ -103,6 +103,10 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         ------
         ValueError
             There are not two features, or the points span no area.
+
+        Examples
+        --------
+        See `DelaunayRegressor`.
         """
         X, y = validate_data(  # noqa: N806
             self, X, y, multi_output=True, y_numeric=True, ensure_min_samples=3, dtype=np.float64
@@ -123,12 +127,23 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         Parameters
         ----------
         X : array_like, shape (n, 2)
-            Points.
+            Points; as many features as `fit` was given.
 
         Returns
         -------
         ndarray of float64, shape (n,) or (n, k)
             Values.
+
+        Raises
+        ------
+        ValueError
+            There are not as many features, or one is NaN or infinite.
+        NotFittedError
+            `fit` has not been called.
+
+        Examples
+        --------
+        See `DelaunayRegressor`.
         """
         check_is_fitted(self)
         X = validate_data(self, X, reset=False, dtype=np.float64)  # noqa: N806

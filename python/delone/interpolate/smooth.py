@@ -40,7 +40,7 @@ _DEGREES = {"local": 2, "plane": 1}
 
 
 class GradientWarning(UserWarning):
-    """The estimation of gradients stopped before it had converged."""
+    """The estimation of gradients stopped before it had converged: `maxiter` was reached."""
 
 
 class Sheet(NamedTuple):
@@ -101,6 +101,15 @@ class Smooth(Interpolator):
         -------
         ndarray of float64 or complex128
             Of the shape of the queries, that of one value, and (2, 2). NaN outside of the hull.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError, InputError
+            As for values; or the sites are in space.
+
+        Examples
+        --------
+        See `CloughTocher`.
         """
         if self._ndim == SPACE:
             refuse("hessian", "there are values alone")
@@ -123,6 +132,15 @@ class Smooth(Interpolator):
         ndarray of float64 or complex128
             One for each point of `triangulation`, of the shape of one value and 2. With constraints
             respected the points on them have one on each side; these come after the others.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.interpolate import CloughTocher
+        >>> points = np.random.default_rng(3).random((200, 2))
+        >>> bowl = CloughTocher(points, (points**2).sum(axis=1), gradients="local")
+        >>> np.allclose(bowl.site_gradients(), 2 * points)
+        True
         """
         interpolator, field, columns = self._with(values)
         found = interpolator.gradients(columns)

@@ -81,6 +81,13 @@ class LloydResult:
     evaluations : int
         How many diagrams were computed: one more than steps, and those that L-BFGS has tried in
         vain.
+
+    Examples
+    --------
+    >>> from delone import lloyd
+    >>> result = lloyd([(0.1, 0.5), (0.3, 0.5)], (0, 0, 1, 1), iterations=3)
+    >>> result.iterations, result.converged, len(result.energies), result.evaluations
+    (3, False, 4, 4)
     """
 
     points: Floats
