@@ -226,27 +226,27 @@ class Delaunay:
 
     @property
     def points(self) -> Floats:
-        """Coordinates."""
+        """Coordinates, (npoints, ndim)."""
         return self._points
 
     @cached_property
     def simplices(self) -> Indices:
-        """Triangles, counter-clockwise."""
+        """The simplices, (nsimplex, ndim + 1): triangles, counter-clockwise, or tetrahedra."""
         return self._mesh.simplices.copy()
 
     @cached_property
     def neighbors(self) -> Indices:
-        """The triangle opposite each vertex."""
+        """The simplex opposite each vertex, (nsimplex, ndim + 1); -1 outside."""
         return self._mesh.neighbors.copy()
 
     @cached_property
     def convex_hull(self) -> Indices:
-        """Edges of the convex hull."""
+        """Edges or triangles of the convex hull, (nfaces, ndim)."""
         return self._mesh.convex_hull.copy()
 
     @cached_property
     def vertex_to_simplex(self) -> Indices:
-        """A triangle of each point."""
+        """A simplex of each point, (npoints,); -1 where there is none."""
         found = self._mesh.vertex_to_simplex.copy()
         if not self._options.coplanar:
             found[self._mesh.coplanar[:, 0]] = -1
@@ -260,29 +260,29 @@ class Delaunay:
 
     @cached_property
     def coplanar(self) -> Indices:
-        """Rows that are no vertices, a triangle of their vertex, and their vertex."""
+        """The duplicates, (ncoplanar, 3): row, a simplex of its vertex, its vertex."""
         if self._options.coplanar:
             return self._mesh.coplanar.copy()
         return np.empty((0, 3), dtype=np.int32)
 
     @cached_property
     def good(self) -> Indices:
-        """Ones: no option leaves a triangle out."""
+        """Ones, (nsimplex,): no option leaves a simplex out."""
         return np.ones(self._mesh.nsimplex, dtype=np.int32)
 
     @cached_property
     def min_bound(self) -> Floats:
-        """The least coordinates."""
+        """The least coordinates, (ndim,)."""
         return self._mesh.min_bound.copy()
 
     @cached_property
     def max_bound(self) -> Floats:
-        """The greatest coordinates."""
+        """The greatest coordinates, (ndim,)."""
         return self._mesh.max_bound.copy()
 
     @cached_property
     def transform(self) -> Floats:
-        """Affine maps to barycentric coordinates, NaN for nearly flat triangles.
+        """Affine maps to barycentric coordinates, NaN for nearly flat simplices.
 
         Nearly flat is what SciPy takes for it: the reciprocal condition number of the matrix of
         edge vectors, in the 1-norm, is below 1000 eps. The maps of these triangles are in
@@ -337,7 +337,7 @@ class Delaunay:
 
     @cached_property
     def equations(self) -> Floats:
-        """Normal and offset of the plane through the lifted corners of each triangle."""
+        """Normal and offset of the plane through the lifted corners of each simplex."""
         horizontal, length = self._normals
         corner = self._mesh.points[self._mesh.simplices[:, 0]]
         # The offset is what makes the equation 0 at a lifted corner.
@@ -350,13 +350,20 @@ class Delaunay:
 
         Parameters
         ----------
-        x : array_like, shape (..., 2)
+        x : array_like, shape (..., ndim)
             Points.
 
         Returns
         -------
-        ndarray of float64, shape (..., 3)
-            Their coordinates and ``paraboloid_scale * (x**2 + y**2) + paraboloid_shift``.
+        ndarray of float64, shape (..., ndim + 1)
+            Their coordinates and ``paraboloid_scale * (x**2).sum() + paraboloid_shift``.
+
+        Raises
+        ------
+        IndexError
+            `x` is a number.
+        ValueError
+            `x` has another number of coordinates.
 
         Examples
         --------
@@ -369,22 +376,30 @@ class Delaunay:
         return np.concatenate((x, height[..., None]), axis=-1)
 
     def plane_distance(self, xi: ArrayLike) -> Floats:
-        """Return how far lifted points are from the planes of all triangles.
+        """Return how far lifted points are from the planes of all simplices.
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., ndim)
             Points.
 
         Returns
         -------
         ndarray of float64, shape (..., nsimplex)
             Positive where the lifted point is on the outer side of the plane: for a point inside
-            the circle of a triangle, or outside it in a furthest-site triangulation.
+            the circle or sphere of a simplex, or outside it in a furthest-site triangulation.
+
+        Raises
+        ------
+        IndexError
+            `xi` is a number.
+        ValueError
+            `xi` has another number of coordinates.
 
         Notes
         -----
-        Computed from differences to a corner, so that nothing is lost far from the origin.
+        Computed from differences to a corner, so that nothing is lost far from the origin. Time and
+        memory are those of all pairs of points and simplices.
 
         Examples
         --------
@@ -407,11 +422,11 @@ class Delaunay:
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
     ) -> Indices:
-        """Tell which triangles hold points, exactly.
+        """Tell which simplices hold points, exactly.
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., ndim)
             Points.
         bruteforce, tol
             Accepted as in SciPy, without effect.
@@ -419,7 +434,7 @@ class Delaunay:
         Returns
         -------
         ndarray of int32, shape (...)
-            Triangles, -1 outside.
+            Triangles or tetrahedra, the first one where there are several, -1 outside.
 
         Raises
         ------
@@ -442,13 +457,13 @@ _FOLLOWING = [name for name, value in vars(Delaunay).items() if isinstance(value
 
 
 def tsearch(tri: Any, xi: ArrayLike) -> Indices:
-    """Tell which triangles hold points: ``tri.find_simplex(xi)``.
+    """Tell which simplices hold points: ``tri.find_simplex(xi)``.
 
     Parameters
     ----------
     tri : Delaunay
         A triangulation.
-    xi : array_like, shape (..., 2)
+    xi : array_like, shape (..., ndim)
         Points.
 
     Returns

@@ -303,6 +303,13 @@ def delaunay(pts: ArrayLike) -> Indices:
     ndarray of int32, shape (m, 3)
         Triangles, counter-clockwise.
 
+    Raises
+    ------
+    DegenerateInputError
+        The points span no area.
+    ShapeError, DtypeError, NonFiniteError
+        `pts` is no array of finite points.
+
     Examples
     --------
     >>> from delone.compat.triangle import delaunay
@@ -323,7 +330,14 @@ def convex_hull(pts: ArrayLike) -> Indices:
     Returns
     -------
     ndarray of int32, shape (h, 2)
-        Edges.
+        Edges, each with the points to its left; points inside of a side divide it.
+
+    Raises
+    ------
+    DegenerateInputError
+        The points span no area.
+    ShapeError, DtypeError, NonFiniteError
+        `pts` is no array of finite points.
 
     Examples
     --------
@@ -352,6 +366,13 @@ def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
         Where each unbounded edge begins.
     ray_direct : ndarray of float64, shape (h, 2)
         Which way it goes; as long as the edge of the hull that it crosses.
+
+    Raises
+    ------
+    DegenerateInputError
+        The points span no area.
+    ShapeError, DtypeError, NonFiniteError
+        `pts` is no array of finite points.
 
     Examples
     --------
