@@ -54,6 +54,13 @@ def unstructured(mesh: Delaunay, *, values: ArrayLike | None = None, name: str =
         The triangulation is in the plane, or there is another number of values.
     MissingExtraError
         pyvista is not installed.
+
+    Examples
+    --------
+    >>> from delone import Delaunay, datasets, scene
+    >>> mesh = Delaunay(datasets.uniform(50, ndim=3))
+    >>> scene.unstructured(mesh, values=mesh.volumes).n_cells == mesh.nsimplex
+    True
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in space")
     if mesh.ndim != 3:
@@ -163,6 +170,17 @@ def draw(path: str | os.PathLike[str], shape: Delaunay | ConvexHull, **options: 
         As in `plot`.
     MissingExtraError
         pyvista is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone import ConvexHull, datasets, scene
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "hull.png"
+    ...     scene.draw(file, ConvexHull(datasets.uniform(50, ndim=3)))
+    ...     file.read_bytes()[1:4]
+    b'PNG'
     """
     with _quiet():
         plotter = _aimed(plot(shape, off_screen=True, **options))

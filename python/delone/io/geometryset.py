@@ -89,6 +89,14 @@ class GeometrySet:
         ------
         FileFormatError
             A geometry is missing, empty or no point.
+
+        Examples
+        --------
+        >>> import numpy as np, shapely
+        >>> from delone.io import GeometrySet
+        >>> wells = np.array([shapely.Point(1, 2), shapely.MultiPoint([(3, 4), (5, 6)])])
+        >>> GeometrySet(geometries=wells).as_points().points.tolist()
+        [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]
         """
         shapely = _shapely()
         kinds = shapely.get_type_id(self.geometries)
@@ -110,6 +118,14 @@ class GeometrySet:
         -------
         PointSet
             In the order of the features; a closed ring has its first point twice.
+
+        Examples
+        --------
+        >>> import numpy as np, shapely
+        >>> from delone.io import GeometrySet
+        >>> square = GeometrySet(geometries=np.array([shapely.box(0, 0, 1, 1)]))
+        >>> len(square.coordinates())
+        5
         """
         points, z = self._coordinates()
         return PointSet(points=points, z=z, crs=self.crs, source=self.source)

@@ -84,6 +84,10 @@ class MeshFile:
         Heights over the plane.
     source : str, optional
         The file.
+
+    Examples
+    --------
+    See `read_mesh`.
     """
 
     points: NDArray[np.float64]
@@ -290,17 +294,18 @@ def read_geometries(
 
 
 def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
-    """Read triangles from a file, as they are.
+    """Read triangles or tetrahedra from a file, as they are.
 
     Parameters
     ----------
     path : str or path-like
-        An npz file of `Delaunay.save`, or VTU, PLY, OBJ, STL, MSH.
+        An npz file that a class of delone has saved, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE
+        with its NODE beside it. Tetrahedra come from npz, VTU and MSH.
 
     Returns
     -------
     MeshFile
-        Points and triangles in the order of the file. Indices are in range; nothing else has been
+        Points and simplices in the order of the file. Indices are in range; nothing else has been
         checked.
 
     Raises
@@ -308,7 +313,7 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     FileNotFoundError
         There is no such file.
     FileFormatError
-        Unknown suffix; the file is torn, or holds no triangles.
+        Unknown suffix; the file is torn, or holds neither triangles nor tetrahedra.
     MissingExtraError
         The library for this format is not installed.
 
@@ -346,7 +351,8 @@ def write_mesh(
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
         GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh or TetMesh
-        What to write. Tetrahedra go to VTU, MSH and PNG.
+        What to write. Tetrahedra go to VTU, MSH and PNG, those of a `Delaunay` to npz as well, all
+        without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.
     crs : str, optional
@@ -354,8 +360,7 @@ def write_mesh(
     edges : bool, optional
         Write edges in place of triangles, to VTU, MSH, GeoPackage or GeoJSON; pictures show both.
     attributes : mapping of str to array_like, optional
-        Values by point (n,) or by triangle (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
-        Triangulations in space go to VTU, MSH, npz and PNG, without `z` and `crs`.
+        Values by point (n,) or by simplex (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
 
     Raises
     ------

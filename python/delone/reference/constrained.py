@@ -41,6 +41,13 @@ class ConstrainedTriangulation(NamedTuple):
     sources : dict of tuple of int to list of int
         Each subsegment, the smaller vertex first, in ascending order, with the rows of the segments
         that cover it, ascending.
+
+    Examples
+    --------
+    >>> from delone.reference import constrained_delaunay
+    >>> square = constrained_delaunay([(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 3), (3, 1)])
+    >>> square.triangles, square.sources
+    ([(0, 1, 3), (1, 2, 3)], {(1, 3): [0, 1]})
     """
 
     triangles: list[Triangle]

@@ -32,6 +32,13 @@ class Circle(NamedTuple):
         Its centre.
     squared_radius : Fraction
         The square of its radius, which is rational where the radius itself need not be.
+
+    Examples
+    --------
+    >>> from delone.reference import circumcircle
+    >>> circle = circumcircle((0, 0), (2, 0), (0, 2))
+    >>> str(circle.centre[0]), str(circle.squared_radius)
+    ('1', '2')
     """
 
     centre: tuple[Fraction, Fraction]

@@ -148,7 +148,7 @@ def mesh(
     Notes
     -----
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
-    off-centres (A. Ungor 2004), cuts at powers of two around sharp corners, and the rule of Miller,
+    off-centres (A. Üngör 2004), cuts at powers of two around sharp corners, and the rule of Miller,
     Pav and Walkington (2005) for triangles there, so that it ends for angles up to 26 degrees, in
     practice up to 33, unless `max_points` ends it before. That happens in the needles of corners
     whose sides are so nearly of one direction that all between them is a sliver: a triangle of

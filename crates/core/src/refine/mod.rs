@@ -3,7 +3,7 @@
 //!
 //! J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", Journal
 //! of Algorithms 18 (1995), with the diametral lenses of L. P. Chew, "Guaranteed-quality mesh
-//! generation for curved surfaces" (1993), the off-centres of A. Ungor (2004), and for small angles
+//! generation for curved surfaces" (1993), the off-centres of A. Üngör (2004), and for small angles
 //! of the input the rule of G. L. Miller, S. E. Pav and N. J. Walkington, "When and why Delaunay
 //! refinement algorithms work", International Journal of Computational Geometry & Applications 15
 //! (2005): a thin triangle whose shortest edge spans two subsegments that meet in a corner, on one

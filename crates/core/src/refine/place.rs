@@ -1,7 +1,7 @@
 //! Where a vertex goes that is to mend a bad triangle, in plain floating point.
 //!
 //! Three rules make few vertices do. An angle asks for the off-centre: on the way from the shortest
-//! edge to the centre of the circle, so far that the triangle of the two is just good (A. Ungor,
+//! edge to the centre of the circle, so far that the triangle of the two is just good (A. Üngör,
 //! "Off-centers", LATIN 2004). Where a size is asked for, the vertex is no farther from the edge than
 //! the size, so that a front of triangles moves on that are almost equilateral and almost as large as
 //! they may be (S. Rebay, "Efficient unstructured mesh generation by means of Delaunay

@@ -1,5 +1,5 @@
 //! The triangles to be improved, those with the shortest edges first: what is inserted for them is
-//! near, and spares larger ones (A. Ungor, "Off-centers: a new type of Steiner points for computing
+//! near, and spares larger ones (A. Üngör, "Off-centers: a new type of Steiner points for computing
 //! size-optimal quality-guaranteed Delaunay triangulations", LATIN 2004).
 //!
 //! Lengths fall in buckets that grow by a factor of 2^(1/4); within a bucket the last one in is the
