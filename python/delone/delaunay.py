@@ -105,10 +105,10 @@ class Delaunay(Spatial):
     Whatever is not listed above is computed on first use and kept.
 
     Time is O(n log n) with a small constant, most of it linear. ``"auto"`` picks cavity insertion
-    along a Hilbert curve, in blocks of a k-d tree that are merged: no method was faster where it
-    was measured, but for divide and conquer on lattices and circles. A block whose triangles are
-    so thin that insertion exceeds its budget of work, as on two lines that nearly coincide, goes
-    to divide and conquer.
+    along a Hilbert curve, in blocks of a k-d tree that are merged: on scattered points no method
+    was faster where it was measured. Blocks of lattices, which divide and conquer does sooner, go
+    to it, and so does a block whose triangles are so thin that insertion exceeds its budget of
+    work, as on two lines that nearly coincide.
 
     ========================  =========================================  =======================
     `method`                  paper                                      time

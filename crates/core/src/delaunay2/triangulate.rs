@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use delone_predicates::Point2;
+use delone_predicates::{Point2, incircle};
 
 use super::merge::merge;
 use super::{bowyer_watson, divide_conquer, incremental, lifting, sweep};
@@ -17,7 +17,7 @@ use crate::{parallel, points};
 /// How a triangulation is built; the triangles are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// What is fastest: cavity insertion along the curve.
+    /// What is fastest: cavity insertion along the curve, but divide and conquer where ties abound.
     Auto,
     /// Cavity insertion along the curve.
     BowyerWatson,
@@ -55,6 +55,11 @@ impl Method {
         matches!(self, Self::Auto | Self::BowyerWatson | Self::DivideConquer)
     }
 }
+
+/// Places at which a block is tried for ties, and how many tell that they abound. Of four neighbours along
+/// the curve a third have one circle on a grid, hardly any among scattered points.
+const TRIED: usize = 48;
+const ABOUND: usize = 6;
 
 /// A part of the work and the time it took.
 pub type Stage = (&'static str, Duration);
@@ -214,6 +219,7 @@ fn block(
 ) -> Result<Code> {
     let own = block.clone();
     let ghost = match method {
+        Method::Auto if ties_abound(&points[block.start as usize..block.end as usize]) => None,
         Method::Auto | Method::BowyerWatson => {
             bowyer_watson::build(points, own, mesh.reborrow(), watch)?
         }
@@ -226,6 +232,16 @@ fn block(
         return Ok(ghost);
     }
     divide_conquer::build(points, block, mesh, watch)
+}
+
+/// Whether many neighbours among the points of a block, which lie along the curve, have one circle.
+fn ties_abound(own: &[Point2]) -> bool {
+    let step = (own.len() / TRIED).max(4);
+    let ties = own
+        .chunks(step)
+        .filter_map(|part| part.first_chunk())
+        .filter(|&&[a, b, c, d]| incircle(a, b, c, d).is_zero());
+    ties.count() >= ABOUND
 }
 
 /// Times the stages one after the other.
@@ -250,5 +266,29 @@ impl Clock {
         let now = Instant::now();
         self.stages
             .push((name, now - std::mem::replace(&mut self.last, now)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ties_abound_on_grids_alone() {
+        let grid = |i: u32| [f64::from(i % 60), f64::from(i / 60)];
+        let scattered = |i: u32| grid(i).map(|x| (x + 0.3 * (1.7 * x * f64::from(i)).sin()) * 1e3);
+        let abound = |points: Vec<Point2>| {
+            let arranged = arrange(&points, 1, &Watch::idle()).unwrap();
+            ties_abound(&arranged.points)
+        };
+        assert!(abound((0..3600).map(grid).collect()));
+        assert!(!abound((0..3600).map(scattered).collect()));
+        assert!(!abound(
+            (0..3600)
+                .map(scattered)
+                .map(|p| p.map(f64::round))
+                .collect()
+        ));
+        assert!(!abound((0..3).map(grid).collect()));
     }
 }
