@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{column, flat, rows, shaped};
 use crate::errors::raise;
-use crate::locator::Locator2;
+use crate::locator::Plane;
 use crate::signals::watched;
 
 /// Columns of values.
@@ -68,7 +68,7 @@ fn table_of(
 /// Linear interpolation.
 pub fn linear_of(
     py: Python<'_>,
-    locator: &Locator2,
+    locator: &Plane,
     values: &Values<'_>,
     xi: &Points<'_>,
     order: usize,
@@ -76,14 +76,13 @@ pub fn linear_of(
 ) -> PyResult<Array> {
     let order = order_of(order)?;
     let fail = |e: Error| raise(py, &e);
-    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let columns = values.shape()[1];
     let items = flat(values, "values").map_err(fail)?;
-    let found = locator.batch(py, queries, workers, |batch| {
+    let (found, n) = locator.batch(xi, workers, |batch| {
         let field = Field::new(&batch.locator.given, items, None, columns)?;
         linear(batch, field, order)
     })?;
-    table_of(py, found, queries.len(), columns, order)
+    table_of(py, found, n, columns, order)
 }
 
 /// What Clough-Tocher interpolation and natural neighbours are given.
@@ -105,14 +104,13 @@ pub struct Smooth<'a, 'py> {
 /// Clough-Tocher interpolation, or natural neighbours of a kind.
 pub fn smooth_of(
     py: Python<'_>,
-    locator: &Locator2,
+    locator: &Plane,
     kind: Option<&str>,
     given: Smooth<'_, '_>,
 ) -> PyResult<Array> {
     let order = order_of(given.order)?;
     let kind = kind.map(kind_of).transpose()?;
     let fail = |e: Error| raise(py, &e);
-    let queries: &[Point2] = rows(given.xi, "xi").map_err(fail)?;
     let columns = given.values.shape()[1];
     let items = flat(given.values, "values").map_err(fail)?;
     let slopes = given.gradients.map(|g| flat(g, "gradients"));
@@ -121,32 +119,27 @@ pub fn smooth_of(
         return Err(PyValueError::new_err("this kind needs gradients"));
     }
     let barrier = barrier_of(given.barrier, locator.held.count(py)).map_err(fail)?;
-    let workers = given.workers;
-    let found = locator.batch(py, queries, workers, |batch| {
+    let (found, n) = locator.batch(given.xi, given.workers, |batch| {
         let field = Field::new(&batch.locator.given, items, slopes, columns)?;
         match kind {
             None => clough_tocher(batch, field, barrier, order),
             Some(kind) => natural_values(batch, kind, field, barrier, order),
         }
     })?;
-    table_of(py, found, queries.len(), columns, order)
+    table_of(py, found, n, columns, order)
 }
 
 /// `(triangle, weights, slopes)` of Clough-Tocher interpolation.
 pub fn corner_weights_of(
     py: Python<'_>,
-    locator: &Locator2,
+    locator: &Plane,
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
 ) -> PyResult<(Array, Array, Array)> {
     let fail = |e: Error| raise(py, &e);
-    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
-    let n = queries.len();
-    let found = locator.batch(py, queries, workers, |batch| {
-        clough_tocher_weights(batch, barrier)
-    })?;
+    let (found, n) = locator.batch(xi, workers, |batch| clough_tocher_weights(batch, barrier))?;
     Ok((
         column(py, found.triangle),
         shaped(py, found.weights, [n, 3])?,
@@ -160,7 +153,7 @@ pub type Neighbours = (Array, Array, Array, Option<Array>, Array);
 /// The weights of natural neighbours.
 pub fn natural_of(
     py: Python<'_>,
-    locator: &Locator2,
+    locator: &Plane,
     kind: &str,
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
@@ -168,10 +161,9 @@ pub fn natural_of(
 ) -> PyResult<Neighbours> {
     let kind = kind_of(kind)?;
     let fail = |e: Error| raise(py, &e);
-    let queries: &[Point2] = rows(xi, "xi").map_err(fail)?;
     let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
-    let (found, triangle) =
-        locator.batch(py, queries, workers, |batch| natural(batch, kind, barrier))?;
+    let ((found, triangle), _) =
+        locator.batch(xi, workers, |batch| natural(batch, kind, barrier))?;
     let entries = found.indices.len();
     let slopes = if kind.is_smooth() {
         Some(shaped(py, found.slopes, [entries, 2])?)
@@ -190,7 +182,7 @@ pub fn natural_of(
 /// `(indptr, indices, weights)` of all other vertices, for each.
 pub fn leave_one_out_of(
     py: Python<'_>,
-    locator: &Locator2,
+    locator: &Plane,
     kind: &str,
     workers: usize,
 ) -> PyResult<(Array, Array, Array)> {

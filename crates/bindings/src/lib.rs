@@ -44,7 +44,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(distributed::disks2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::within2, m)?)?;
     m.add_function(wrap_pyfunction!(distributed::deepest2, m)?)?;
-    m.add_class::<locator::Locator2>()?;
+    m.add_class::<locate::Locator2>()?;
     m.add_class::<locate3::Locator3>()?;
     m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;

@@ -6,57 +6,41 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{column, rows, shaped};
-use crate::errors::{detached, raise};
-use crate::given::{Held, checked};
+use crate::errors::raise;
+use crate::given::checked;
 use crate::interpolate::{
     Closed, Gradients, Neighbours, Points, Smooth, Values, corner_weights_of, leave_one_out_of,
     linear_of, natural_of, smooth_of,
 };
-use crate::locator::Locator2;
+use crate::locator::Plane;
 use crate::signals::watched;
 
 /// `(triangle, weights, beside, edge, along)`.
 type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
+/// A triangulation for many calls.
+#[pyclass(frozen, module = "delone._core")]
+pub struct Locator2(Plane);
+
 #[pymethods]
 impl Locator2 {
     #[new]
     fn new(
-        py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
     ) -> PyResult<Self> {
-        let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
-        let kept = detached(py, || Kept::of(&given))?;
-        Ok(Self {
-            held: Held::new(&points, &simplices, &neighbors),
-            kept,
-        })
+        Plane::new(&points, &simplices, &neighbors, Kept::of).map(Self)
     }
 
     /// For each query the first triangle that holds it, or -1.
-    fn find(
-        &self,
-        py: Python<'_>,
-        xi: PyReadonlyArray2<'_, f64>,
-        workers: usize,
-    ) -> PyResult<Py<PyAny>> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-        let found = self.batch(py, queries, workers, find)?;
-        Ok(column(py, found))
+    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+        self.0.column(&xi, workers, find)
     }
 
     /// Triangles with barycentric coordinates, and outside the nearest boundary point.
-    fn locate(
-        &self,
-        py: Python<'_>,
-        xi: PyReadonlyArray2<'_, f64>,
-        workers: usize,
-    ) -> PyResult<Places> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-        let n = queries.len();
-        let found = self.batch(py, queries, workers, coordinates)?;
+    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Places> {
+        let (found, n) = self.0.batch(&xi, workers, coordinates)?;
         Ok((
             column(py, found.triangle),
             shaped(py, found.weights, [n, 3])?,
@@ -67,15 +51,8 @@ impl Locator2 {
     }
 
     /// The nearest vertex to each query; of a Delaunay triangulation.
-    fn nearest(
-        &self,
-        py: Python<'_>,
-        xi: PyReadonlyArray2<'_, f64>,
-        workers: usize,
-    ) -> PyResult<Py<PyAny>> {
-        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
-        let found = self.batch(py, queries, workers, nearest)?;
-        Ok(column(py, found))
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+        self.0.column(&xi, workers, nearest)
     }
 
     /// The triangles along the segment from `a` to `b`.
@@ -90,7 +67,9 @@ impl Locator2 {
             pair.ok_or_else(|| raise(py, &Error::Shape("an end needs two coordinates".into())))
         };
         let (a, b) = (end(&a)?, end(&b)?);
-        let met = self.run(py, usize::MAX, |locator, _| along(locator, a, b))?;
+        let met = self
+            .0
+            .run(py, usize::MAX, |locator, _| along(locator, a, b))?;
         Ok(column(py, met))
     }
 
@@ -103,7 +82,7 @@ impl Locator2 {
         order: usize,
         workers: usize,
     ) -> PyResult<Py<PyAny>> {
-        linear_of(py, self, &values, &xi, order, workers)
+        linear_of(py, &self.0, &values, &xi, order, workers)
     }
 
     /// Clough-Tocher interpolation: values, gradients or Hessians.
@@ -129,7 +108,7 @@ impl Locator2 {
             order,
             workers,
         };
-        smooth_of(py, self, None, given)
+        smooth_of(py, &self.0, None, given)
     }
 
     /// The weights of Clough-Tocher interpolation.
@@ -140,7 +119,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         workers: usize,
     ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-        corner_weights_of(py, self, &xi, barrier.as_ref(), workers)
+        corner_weights_of(py, &self.0, &xi, barrier.as_ref(), workers)
     }
 
     /// The weights of natural neighbours.
@@ -152,7 +131,7 @@ impl Locator2 {
         barrier: Option<Closed<'_>>,
         workers: usize,
     ) -> PyResult<Neighbours> {
-        natural_of(py, self, kind, &xi, barrier.as_ref(), workers)
+        natural_of(py, &self.0, kind, &xi, barrier.as_ref(), workers)
     }
 
     /// Natural neighbour interpolation: values, gradients or Hessians.
@@ -179,7 +158,7 @@ impl Locator2 {
             order,
             workers,
         };
-        smooth_of(py, self, Some(kind), given)
+        smooth_of(py, &self.0, Some(kind), given)
     }
 
     /// The weights of all other vertices, for each.
@@ -189,7 +168,7 @@ impl Locator2 {
         kind: &str,
         workers: usize,
     ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-        leave_one_out_of(py, self, kind, workers)
+        leave_one_out_of(py, &self.0, kind, workers)
     }
 }
 

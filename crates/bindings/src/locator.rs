@@ -1,28 +1,51 @@
-//! The class `Locator2`; its methods are in `locate`.
+//! Triangulations for many calls, of either dimension: what `Locator2` and `Locator3` have in common.
 
-use delone_core::Point2;
+use delone_core::arrays::Given;
 use delone_core::error::Result;
-use delone_core::locate::{Batch, Kept, Locator};
+use delone_core::locate::{self, Batch, Locator, Walks};
+use delone_core::locate3;
 use delone_core::watch::Watch;
+use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::errors::raise;
-use crate::given::{Held, answered};
+use crate::arrays::{column, rows};
+use crate::errors::{detached, raise};
+use crate::given::{Held, answered, checked};
 
-/// A triangulation for many calls: its arrays, which never change, and a tree of starts.
-#[pyclass(frozen, module = "delone._core")]
-pub struct Locator2 {
+/// Arrays, which never change, and what the core keeps for them, such as a tree of starts.
+pub struct Tiling<K, const D: usize, const N: usize> {
     pub held: Held,
-    pub kept: Kept,
+    kept: K,
 }
 
-impl Locator2 {
+/// Triangles.
+pub type Plane = Tiling<locate::Kept, 2, 3>;
+/// Tetrahedra.
+pub type Space = Tiling<locate3::Kept, 3, 4>;
+
+impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
+    /// Checks the arrays and makes what is kept for them.
+    pub fn new(
+        points: &PyReadonlyArray2<'_, f64>,
+        simplices: &PyReadonlyArray2<'_, i32>,
+        neighbors: &PyReadonlyArray2<'_, i32>,
+        keep: impl FnOnce(&Given<D, N>) -> Result<K> + Send,
+    ) -> PyResult<Self> {
+        let py = points.py();
+        let given = checked(points, simplices, neighbors).map_err(|e| raise(py, &e))?;
+        let kept = detached(py, || keep(&given))?;
+        Ok(Self {
+            held: Held::new(points, simplices, neighbors),
+            kept,
+        })
+    }
+
     /// Calls `work` with a locator for `count` queries, without the GIL unless they are few.
     pub fn run<T: Send>(
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&Locator, &Watch) -> Result<T> + Send,
+        work: impl FnOnce(&Locator<K, D, N>, &Watch) -> Result<T> + Send,
     ) -> PyResult<T> {
         let lent = self.held.lend(py)?;
         let given = lent.given().map_err(|e| raise(py, &e))?;
@@ -30,21 +53,34 @@ impl Locator2 {
         answered(py, count, |watch| work(&locator, watch))
     }
 
-    /// Calls `work` with a batch of queries.
+    /// Calls `work` with a batch of queries; gives their number, too.
     pub fn batch<T: Send>(
         &self,
-        py: Python<'_>,
-        queries: &[Point2],
+        xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch) -> Result<T> + Send,
-    ) -> PyResult<T> {
-        self.run(py, queries.len(), |locator, watch| {
+        work: impl FnOnce(&Batch<K, D, N>) -> Result<T> + Send,
+    ) -> PyResult<(T, usize)> {
+        let py = xi.py();
+        let queries = rows(xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.run(py, queries.len(), |&locator, watch| {
             work(&Batch {
-                locator: *locator,
+                locator,
                 queries,
                 workers,
                 watch,
             })
-        })
+        })?;
+        Ok((found, queries.len()))
+    }
+
+    /// Calls `work`, which has one number for each query.
+    pub fn column<T: Element + Send>(
+        &self,
+        xi: &PyReadonlyArray2<'_, f64>,
+        workers: usize,
+        work: impl FnOnce(&Batch<K, D, N>) -> Result<Vec<T>> + Send,
+    ) -> PyResult<Py<PyAny>> {
+        let (found, _) = self.batch(xi, workers, work)?;
+        Ok(column(xi.py(), found))
     }
 }

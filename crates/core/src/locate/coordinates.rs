@@ -1,8 +1,7 @@
 //! Triangles with barycentric coordinates, and outside the nearest point of the boundary.
 
-use super::batch::{Batch, Output};
 use super::tiling::{Side, next, prev};
-use super::{Located, barycentric};
+use super::{Batch, Located, Output, barycentric};
 use crate::error::Result;
 
 /// Where queries are, row by row.

@@ -1,7 +1,8 @@
 //! Which triangle holds a point: exact, boundary included, for any tiling in exported arrays.
 //!
 //! `Locator` keeps what calls have in common: a tree of starts, the boundary. `batch` takes queries
-//! along the curve, or as they come where that is as good, and walks from each to the next.
+//! along the curve, or as they come where that is as good, and `walker` goes from each to the next.
+//! What knows no triangle, such as `batch` and `boxes`, serves tetrahedra as well.
 
 mod barycentric;
 mod batch;
@@ -10,6 +11,7 @@ mod boxes;
 mod coordinates;
 mod cross;
 mod nearest;
+mod output;
 mod range;
 mod segment;
 mod star;
@@ -17,25 +19,27 @@ mod start;
 mod straight;
 mod tiling;
 mod walk;
+mod walker;
 
 use std::sync::OnceLock;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
 pub use barycentric::{barycentric, weights as barycentric_weights};
-pub use batch::{Batch, Output};
+pub use batch::{Batch, Walks, find, is_finite, squared};
 pub use boundary::Boundary;
 pub use boxes::{Boxes, length};
 pub use coordinates::{Coordinates, coordinates};
 pub use cross::{certain, cross, plain};
 pub use nearest::nearest;
+pub use output::Output;
 pub use range::{in_unit, seen_from, unit_of};
 pub use segment::along;
 pub use star::{Place, Star};
 pub use start::Start;
 pub use tiling::{Side, next, prev};
 
-use crate::arrays::Triangles;
+use crate::arrays::{Given, Triangles};
 use crate::error::Result;
 use crate::points::Extent;
 use walk::{Found, walk};
@@ -60,12 +64,27 @@ impl Kept {
     }
 }
 
-/// A triangulation and what is kept for it.
-#[derive(Clone, Copy)]
-pub struct Locator<'a> {
+/// A triangulation and what is kept for it; of the plane, if nothing else is said.
+pub struct Locator<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
     /// The arrays.
-    pub given: Triangles<'a>,
-    kept: &'a Kept,
+    pub given: Given<'a, D, N>,
+    pub(crate) kept: &'a K,
+}
+
+impl<K, const D: usize, const N: usize> Copy for Locator<'_, K, D, N> {}
+
+// Derived, it would ask the same of what is kept.
+impl<K, const D: usize, const N: usize> Clone for Locator<'_, K, D, N> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<'a, K, const D: usize, const N: usize> Locator<'a, K, D, N> {
+    /// A locator of what was kept for the same arrays.
+    pub fn new(given: Given<'a, D, N>, kept: &'a K) -> Self {
+        Self { given, kept }
+    }
 }
 
 /// Where a point is.
@@ -78,11 +97,6 @@ pub enum Located {
 }
 
 impl<'a> Locator<'a> {
-    /// A locator of what was kept for the same arrays.
-    pub fn new(given: Triangles<'a>, kept: &'a Kept) -> Self {
-        Self { given, kept }
-    }
-
     /// The boundary.
     pub fn boundary(&self) -> Result<&'a Boundary> {
         kept(&self.kept.boundary, || Boundary::of(&self.given))
@@ -112,7 +126,7 @@ impl<'a> Locator<'a> {
 
     /// Where `q` is; nothing for what is not finite, or where there is no triangle.
     pub fn locate(&self, q: Point2) -> Result<Option<Located>> {
-        if !is_finite(q) || self.given.simplices.is_empty() {
+        if !is_finite(&q) || self.given.simplices.is_empty() {
             return Ok(None);
         }
         let located = self.locate_from(self.near(q), q, &mut Star::default())?;
@@ -164,24 +178,4 @@ pub fn kept<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T>) -> Result<&
             Ok(cell.get_or_init(|| made))
         }
     }
-}
-
-fn is_finite(q: Point2) -> bool {
-    q[0].is_finite() && q[1].is_finite()
-}
-
-/// For each query the first triangle that holds it, boundary included, or -1: outside, or not
-/// finite.
-pub fn find(batch: &Batch) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
-    batch.each(
-        || (),
-        |(), row, _, at| {
-            if let Located::Inside(place) = at {
-                found.set(row, place.triangle as i32);
-            }
-            Ok(())
-        },
-    )?;
-    Ok(found.into_vec())
 }

@@ -8,9 +8,8 @@
 
 use delone_predicates::{Point2, Sign, nearer};
 
-use super::Located;
-use super::batch::{Batch, Output};
 use super::tiling::{Side, next, prev};
+use super::{Batch, Located, Output};
 use crate::arrays::Triangles;
 use crate::error::Result;
 

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 /// that holds `a` where `a` is `b`. Of the two beside an edge on the segment the left one counts,
 /// at the boundary the one there is. Parts outside the convex hull are skipped.
 pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
-    if !is_finite(a) || !is_finite(b) {
+    if !is_finite(&a) || !is_finite(&b) {
         return Err(Error::Shape("an end of the segment is not finite".into()));
     }
     if locator.given.simplices.is_empty() {

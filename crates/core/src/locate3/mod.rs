@@ -1,11 +1,10 @@
 //! Which tetrahedron holds a point: exact, boundary included, for any tiling in exported arrays.
 //!
-//! The rooms are those of `locate`: `Locator` keeps a tree of starts, `batch` takes queries along a
-//! curve and walks from each to the next, `star` finds the first of several that hold a point, `boundary`
-//! what is nearest outside.
+//! The rooms are those of `locate`, whose `batch` takes queries in order here as well: `Kept` has a tree
+//! of starts, `walker` goes from query to query, `star` finds the first of several that hold a point,
+//! `boundary` what is nearest outside.
 
 mod barycentric;
-mod batch;
 mod boundary;
 mod coordinates;
 mod face;
@@ -15,20 +14,21 @@ mod sites;
 mod star;
 mod tiling;
 mod walk;
+mod walker;
 
 use std::sync::OnceLock;
 
 use delone_predicates::{Point3, Sign, orient3d};
 
 pub use barycentric::barycentric;
-pub use batch::Batch;
 pub use coordinates::{Coordinates, Within, coordinates, within};
 pub use nearest::nearest;
 pub use star::{Place, Star};
 pub use tiling::{FACES, Side, Tetrahedra};
 
 use crate::error::Result;
-use crate::locate::{Boxes, Output, Start, kept};
+pub use crate::locate::find;
+use crate::locate::{self, Boxes, Start, is_finite, kept};
 use crate::points::Extent;
 use boundary::Boundary;
 use sites::Sites;
@@ -59,13 +59,10 @@ impl Kept {
     }
 }
 
-/// A triangulation and what is kept for it.
-#[derive(Clone, Copy)]
-pub struct Locator<'a> {
-    /// The arrays.
-    pub given: Tetrahedra<'a>,
-    kept: &'a Kept,
-}
+/// A triangulation of space and what is kept for it.
+pub type Locator<'a> = locate::Locator<'a, Kept, 3, 4>;
+/// Queries in space of one call.
+pub type Batch<'a> = locate::Batch<'a, Kept, 3, 4>;
 
 /// Where a point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,11 +74,6 @@ pub enum Located {
 }
 
 impl<'a> Locator<'a> {
-    /// A locator of what was kept for the same arrays.
-    pub fn new(given: Tetrahedra<'a>, kept: &'a Kept) -> Self {
-        Self { given, kept }
-    }
-
     /// A tetrahedron near `q`.
     #[inline]
     pub fn near(&self, q: Point3) -> usize {
@@ -128,7 +120,7 @@ impl<'a> Locator<'a> {
 
     /// Where `q` is; nothing for what is not finite, or where there is no tetrahedron.
     pub fn locate(&self, q: Point3) -> Result<Option<Located>> {
-        if !is_finite(q) || self.given.simplices.is_empty() {
+        if !is_finite(&q) || self.given.simplices.is_empty() {
             return Ok(None);
         }
         if self.is_far(q) {
@@ -168,24 +160,4 @@ impl<'a> Locator<'a> {
         });
         Ok(best)
     }
-}
-
-fn is_finite(q: Point3) -> bool {
-    q.iter().all(|x| x.is_finite())
-}
-
-/// For each query the first tetrahedron that holds it, boundary included, or -1: outside, or not
-/// finite.
-pub fn find(batch: &Batch) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
-    batch.each(
-        || (),
-        |(), row, _, at| {
-            if let Located::Inside(place) = at {
-                found.set(row, place.simplex as i32);
-            }
-            Ok(())
-        },
-    )?;
-    Ok(found.into_vec())
 }

@@ -1,6 +1,6 @@
 //! The nearest vertex for each query of a batch.
 
-use super::batch::Batch;
+use super::Batch;
 use crate::error::Result;
 use crate::locate::Output;
 

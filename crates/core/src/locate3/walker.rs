@@ -1,0 +1,71 @@
+//! Walks from query to query of a batch.
+
+use delone_predicates::Point3;
+
+use super::tiling::Side;
+use super::{Kept, Located, Locator, Star};
+use crate::error::Result;
+use crate::locate::{Walks, squared};
+
+/// How far, in lengths of an edge of the last tetrahedron, a walk goes; from further on the tree of
+/// starts is cheaper. Squared; each step costs more than in the plane.
+const REACH: f64 = 16.0;
+
+impl Walks<3, 4> for Kept {
+    type Located = Located;
+
+    fn walker(locator: &Locator) -> impl FnMut(Point3) -> Result<Located> + Send {
+        let mut walker = Walker {
+            locator,
+            star: Star::default(),
+            near: 0,
+            last: [f64::NAN; 3],
+            reach: 0.0,
+            beyond: None,
+        };
+        move |q| walker.go(q)
+    }
+
+    #[inline]
+    fn holder(at: &Located) -> i32 {
+        match at {
+            Located::Inside(place) => place.simplex as i32,
+            Located::Outside(_) => -1,
+        }
+    }
+}
+
+/// Walks from query to query; where the next one is far, from the tree of starts. What is outside is mostly
+/// told without a walk: beyond the box of all points, or beyond the boundary face where the last walk
+/// has left a convex body, which is as good a proof for each point on that side of its plane.
+struct Walker<'a> {
+    locator: &'a Locator<'a>,
+    star: Star,
+    near: usize,
+    last: Point3,
+    reach: f64,
+    beyond: Option<Side>,
+}
+
+impl Walker<'_> {
+    #[inline]
+    fn go(&mut self, q: Point3) -> Result<Located> {
+        let beyond = |side| self.locator.is_beyond(side, q);
+        if self.locator.is_far(q) || self.beyond.is_some_and(beyond) {
+            return Ok(Located::Outside(self.beyond));
+        }
+        // False for NaN, at first and where squares overflow: then the tree knows the start.
+        let close = squared(q, self.last) <= self.reach;
+        if !close {
+            self.near = self.locator.near(q);
+        }
+        let at = self.locator.locate_from(self.near, q, &mut self.star)?;
+        (self.near, self.beyond) = match at {
+            Located::Inside(place) => (place.simplex, None),
+            Located::Outside(side) => (side.map_or(self.near, |side| side.simplex), side),
+        };
+        let [a, b, ..] = self.locator.given.corners(self.near);
+        (self.last, self.reach) = (q, REACH * squared(a, b));
+        Ok(at)
+    }
+}
