@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Self, overload
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.counting import counted
 from delone.errors import DegenerateInputError, InputError, InternalError
 from delone.immutable import own_copy
-from delone.plane.triangulation import counted
 from delone.space.plane import plane_of
 from delone.space.spatial import Spatial
 from delone.validation import SpaceReport, ValidationReport
@@ -332,10 +332,8 @@ class Delaunay(Spatial):
         duplicates = len(self._duplicates)
         if duplicates:
             points += f" ({counted(duplicates, 'duplicate')})"
-        if self.ndim == 2:
-            return f"<Delaunay of {points}: {counted(self.nsimplex, 'triangle')}>"
-        simplices = "1 tetrahedron" if self.nsimplex == 1 else f"{self.nsimplex} tetrahedra"
-        return f"<Delaunay of {points}: {simplices}>"
+        simplex = "triangle" if self.ndim == 2 else "tetrahedron"
+        return f"<Delaunay of {points}: {counted(self.nsimplex, simplex)}>"
 
 
 def _triangles(points: NDArray[np.float64], method: str, workers: int) -> Any:

@@ -9,11 +9,11 @@ import numpy as np
 
 from delone import _core, predicates
 from delone._arrays import require_finite
+from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InternalError
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.plane import geometry as plane
-from delone.plane.triangulation import counted
 from delone.space import geometry as space
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_points, as_simplices
+from delone.counting import counted
 from delone.errors import LimitError
 
 if TYPE_CHECKING:
@@ -68,8 +69,8 @@ class LawsonResult:
     angles: Floats | None = None
 
     def __repr__(self) -> str:
-        flips = "1 flip" if self.flips == 1 else f"{self.flips} flips"
-        return f"<LawsonResult: {len(self.simplices)} triangles after {flips}>"
+        triangles = counted(len(self.simplices), "triangle")
+        return f"<LawsonResult: {triangles} after {counted(self.flips, 'flip')}>"
 
 
 def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> LawsonResult:

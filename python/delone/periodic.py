@@ -14,9 +14,10 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import require_finite
+from delone.counting import counted
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
 from delone.immutable import Immutable, kept, own_copy, sealed
-from delone.plane.triangulation import counted, first_rows
+from delone.plane.triangulation import first_rows
 from delone.regular import as_weights
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_vectors
+from delone.counting import counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.immutable import kept, own_copy, sealed
-from delone.plane.triangulation import counted
 from delone.space.plane import plane_of, twins
 from delone.space.spatial import Spatial
 
@@ -140,10 +140,8 @@ class RegularTriangulation(Spatial):
         if hidden := len(self.hidden):
             notes.append(f"{hidden} hidden")
         noted = f" ({', '.join(notes)})" if notes else ""
-        simplices = counted(self.nsimplex, "triangle")
-        if self.ndim == _SPACE:
-            simplices = "1 tetrahedron" if self.nsimplex == 1 else f"{self.nsimplex} tetrahedra"
-        return f"<RegularTriangulation of {points}{noted}: {simplices}>"
+        simplex = "tetrahedron" if self.ndim == _SPACE else "triangle"
+        return f"<RegularTriangulation of {points}{noted}: {counted(self.nsimplex, simplex)}>"
 
 
 def as_weights(weights: ArrayLike, npoints: int) -> Floats:

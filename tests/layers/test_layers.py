@@ -25,7 +25,7 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays"}
+FOUNDATION = {"errors", "_arrays", "counting"}
 PUBLIC = {
     "delone",
     "errors",
@@ -42,6 +42,7 @@ PUBLIC = {
 PYTHON: dict[str, set[str]] = {
     "errors": set(),
     "_arrays": {"errors"},
+    "counting": set(),
     "_core": set(),
     "immutable": {"_arrays"},
     "plane": {"_core", "immutable", "location", "plot"} | FOUNDATION,
@@ -54,13 +55,12 @@ PYTHON: dict[str, set[str]] = {
     "atomic": set(),
     "archive": {"atomic", "plane", "predicates", "space", "errors"},
     "location": {"_core"} | FOUNDATION,
-    "delaunay": {"immutable", "_core", "archive", "periodic", "plane", "space", "validation"}
-    | FOUNDATION,
+    "delaunay": {"immutable", "_core", "archive", "periodic", "space", "validation"} | FOUNDATION,
     "constrained": {"immutable", "_core", "archive", "location", "plane", "validation"}
     | FOUNDATION,
     "refine": {"immutable", "_core", "archive", "constrained", "io", "plane"} | FOUNDATION,
-    "improve": {"immutable", "_core", "io", "plane", "plot", "space"} | FOUNDATION,
-    "regular": {"immutable", "_core", "plane", "space"} | FOUNDATION,
+    "improve": {"immutable", "_core", "io", "plot", "space"} | FOUNDATION,
+    "regular": {"immutable", "_core", "space"} | FOUNDATION,
     "periodic": {"immutable", "_core", "plane", "regular"} | FOUNDATION,
     "voronoi": {"immutable", "_core", "delaunay", "io", "periodic", "plane", "regular", "space"}
     | FOUNDATION,

@@ -24,10 +24,10 @@ from delone._arrays import (
 from delone.constrained import regions
 from delone.constrained.segmented import Options, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
+from delone.counting import counted
 from delone.errors import InputError, InternalError
 from delone.immutable import kept, own_copy
 from delone.plane import topology
-from delone.plane.triangulation import counted
 
 if TYPE_CHECKING:
     import os

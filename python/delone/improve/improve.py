@@ -20,6 +20,7 @@ from delone._arrays import (
     as_simplices,
     require_finite,
 )
+from delone.counting import counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.improve import report
 from delone.improve.tetmesh import TetMesh
@@ -194,7 +195,7 @@ def _require_positive(points: Floats, simplices: Indices) -> None:
     for sign, what in ((-1, "negatively oriented: swap two of their vertices"), (0, "flat")):
         rows = np.flatnonzero(signs == sign)
         if len(rows):
-            noun = quality.counted_tetrahedra(len(rows))
+            noun = counted(len(rows), "tetrahedron")
             verb = "is" if len(rows) == 1 else "are"
             raise InputError(f"{noun} {verb} {what}; first: {rows[0]}")
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.plane.triangulation import counted
+from delone.counting import counted
 from delone.space import quality
-from delone.space.quality import EDGES, counted_tetrahedra
+from delone.space.quality import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -112,8 +112,7 @@ class ImproveReport:
             f"before, {self.smallest_after:.4g} to {self.largest_after:.4g} after",
             f"{counted(self.edge_removals + self.boundary_flips, 'edge')} and "
             f"{counted(self.face_removals, 'set')} of faces removed, "
-            f"{counted(self.moves, 'move')} of vertices in {self.passes} "
-            f"{'pass' if self.passes == 1 else 'passes'}",
+            f"{counted(self.moves, 'move')} of vertices in {counted(self.passes, 'pass')}",
         ]
         if self.exudations:
             lines.append(f"{counted(self.exudations, 'weight')} given to vertices")
@@ -123,7 +122,7 @@ class ImproveReport:
             if len(rows):
                 shown = ", ".join(map(str, rows[:_SHOWN].tolist()))
                 more = ", ..." if len(rows) > _SHOWN else ""
-                noun = counted_tetrahedra(len(rows))
+                noun = counted(len(rows), "tetrahedron")
                 lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}{more}")
         if self.exhausted:
             lines.append("the limit on passes ended the work")

@@ -12,11 +12,11 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_number
+from delone.counting import counted
 from delone.immutable import Immutable, kept, sealed
-from delone.plane.triangulation import counted
 from delone.space import location as places
 from delone.space import topology
-from delone.space.quality import TetQuality, counted_tetrahedra, measured
+from delone.space.quality import TetQuality, measured
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -306,4 +306,5 @@ class TetMesh(Immutable):
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):
             return "<TetMesh of nothing yet>"
-        return f"<TetMesh of {counted(self.npoints, 'point')}: {counted_tetrahedra(self.nsimplex)}>"
+        tetrahedra = counted(self.nsimplex, "tetrahedron")
+        return f"<TetMesh of {counted(self.npoints, 'point')}: {tetrahedra}>"

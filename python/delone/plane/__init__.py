@@ -1,5 +1,5 @@
 """Triangulations in the plane: what follows from triangles, whichever they are.
 
 `topology` needs no coordinates, `geometry` measures, `quality` judges, and `triangulation` is the
-base of all classes that put them to use.
+base of all classes that put them to use. `measures` is the base of qualities, in space as well.
 """

@@ -9,14 +9,14 @@ fractions, so that its answer is exact.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone.plane.geometry import areas
-from delone.plane.triangulation import counted
+from delone.plane.measures import Measures
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,11 +39,10 @@ _THIN = 2.0**-5
 _UNSURE = 1e-13
 # Squared cosines that are simple fractions, and whose double is another number.
 _SIMPLE = {30.0: 0.75, 45.0: 0.5}
-_PERCENTILES = (1, 10, 50, 90, 99)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Quality:
+class Quality(Measures):
     """Measures of the triangles of a mesh, one entry for each.
 
     Parameters
@@ -80,43 +79,7 @@ class Quality:
     radius_ratio: Floats
     edge_ratio: Floats
 
-    def __post_init__(self) -> None:
-        for each in fields(self):
-            getattr(self, each.name).flags.writeable = False
-
-    def summary(self) -> dict[str, dict[str, float]]:
-        """Return least, greatest and mean values and percentiles.
-
-        Returns
-        -------
-        dict
-            For each measure ``min``, ``max``, ``mean`` and the percentiles ``p1``, ``p10``,
-            ``p50``, ``p90`` and ``p99``.
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).quality().summary()["area"]["mean"]
-        0.5
-        """
-        found = {}
-        for each in fields(self):
-            values = getattr(self, each.name)
-            at = np.percentile(values, _PERCENTILES).tolist()
-            named = {f"p{p}": value for p, value in zip(_PERCENTILES, at, strict=True)}
-            ends = {"min": float(values.min()), "max": float(values.max())}
-            found[each.name] = ends | {"mean": float(values.mean())} | named
-        return found
-
-    def __str__(self) -> str:
-        names = ("min", "p1", "p10", "p50", "p90", "p99", "max")
-        head = ("least", "1 %", "10 %", "median", "90 %", "99 %", "most")
-        lines: list[tuple[str, ...]] = [(counted(len(self.area), "triangle"), *head)]
-        for measure, values in self.summary().items():
-            lines.append((measure.replace("_", " "), *(f"{values[name]:.3g}" for name in names)))
-        rows = (f"{line[0]:<18}" + "".join(f"{cell:>9}" for cell in line[1:]) for line in lines)
-        return "\n".join(rows)
+    _noun = "triangle"
 
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
         """Draw the histogram of the smallest and the largest angles (extra ``plot``).

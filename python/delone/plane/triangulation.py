@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Triangulation", "counted", "first_rows"]
+__all__ = ["Triangulation", "first_rows"]
 
 
 class Triangulation(Immutable):
@@ -438,11 +438,6 @@ class Triangulation(Immutable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self)._from_arrays, (self._arrays(), self._stages, self._workers)
-
-
-def counted(count: int, noun: str) -> str:
-    """Return a number and its noun, as in "1 point" and "2 points"."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def first_rows(points: Floats) -> NDArray[np.int64]:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from delone.counting import counted
 from delone.immutable import kept, sealed
 from delone.plane import quality, topology
-from delone.plane.triangulation import Triangulation, counted
+from delone.plane.triangulation import Triangulation
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain, Lines
 from delone.refine.report import reported

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone.counting import counted
 from delone.plane import quality
-from delone.plane.triangulation import counted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -16,6 +16,7 @@ import numpy as np
 
 from delone._arrays import as_number
 from delone.errors import InputError
+from delone.plane.measures import Measures
 from delone.space.stages import Exact, Measure, Vectors, cross, dot, staged
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["EDGES", "FACES", "TetQuality", "counted_tetrahedra", "dihedral_angles", "measured"]
+__all__ = ["EDGES", "FACES", "TetQuality", "dihedral_angles", "measured"]
 
 # Corners of the face opposite each corner, with that corner on the positive side.
 FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
@@ -34,11 +35,10 @@ EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 _BESIDE = tuple(tuple(c for c in range(4) if c not in edge) for edge in EDGES)
 # Classes of a histogram in degrees: narrower ones are a mistake, and would fill the memory.
 _NARROWEST = 0.001
-_PERCENTILES = (1, 10, 50, 90, 99)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TetQuality:
+class TetQuality(Measures):
     """Measures of the tetrahedra of a mesh, one entry for each.
 
     Parameters
@@ -80,34 +80,7 @@ class TetQuality:
     radius_ratio: Floats
     edge_ratio: Floats
 
-    def __post_init__(self) -> None:
-        for each in fields(self):
-            getattr(self, each.name).flags.writeable = False
-
-    def summary(self) -> dict[str, dict[str, float]]:
-        """Return least, greatest and mean values and percentiles.
-
-        Returns
-        -------
-        dict
-            For each measure ``min``, ``max``, ``mean`` and the percentiles ``p1``, ``p10``,
-            ``p50``, ``p90`` and ``p99``.
-
-        Examples
-        --------
-        >>> import delone
-        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
-        >>> delone.improve(corner).quality().summary()["largest_dihedral"]["mean"]
-        90.0
-        """
-        found = {}
-        for each in fields(self):
-            values = getattr(self, each.name)
-            at = np.percentile(values, _PERCENTILES).tolist()
-            named = {f"p{p}": value for p, value in zip(_PERCENTILES, at, strict=True)}
-            ends = {"min": float(values.min()), "max": float(values.max())}
-            found[each.name] = ends | {"mean": float(values.mean())} | named
-        return found
+    _noun = "tetrahedron"
 
     def histogram(self, width: float = 5.0) -> tuple[NDArray[np.int64], Floats]:
         """Count tetrahedra by their smallest dihedral angle.
@@ -145,15 +118,6 @@ class TetQuality:
         counts, _ = np.histogram(np.minimum(self.smallest_dihedral, bounds[-1]), bounds)
         return counts.astype(np.int64), bounds
 
-    def __str__(self) -> str:
-        names = ("min", "p1", "p10", "p50", "p90", "p99", "max")
-        head = ("least", "1 %", "10 %", "median", "90 %", "99 %", "most")
-        lines: list[tuple[str, ...]] = [(counted_tetrahedra(len(self.volume)), *head)]
-        for measure, values in self.summary().items():
-            lines.append((measure.replace("_", " "), *(f"{values[name]:.3g}" for name in names)))
-        rows = (f"{line[0]:<18}" + "".join(f"{cell:>9}" for cell in line[1:]) for line in lines)
-        return "\n".join(rows)
-
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
         """Draw the histogram of the smallest and the largest dihedral angles (extra ``plot``).
 
@@ -188,28 +152,6 @@ class TetQuality:
         ax.set_xlabel("dihedral angle in degrees")
         ax.set_ylabel("tetrahedra")
         return ax
-
-
-def counted_tetrahedra(count: int) -> str:
-    """Return a number of tetrahedra in words.
-
-    Parameters
-    ----------
-    count : int
-        How many there are.
-
-    Returns
-    -------
-    str
-        The number and the noun.
-
-    Examples
-    --------
-    >>> from delone.space.quality import counted_tetrahedra
-    >>> counted_tetrahedra(1), counted_tetrahedra(2)
-    ('1 tetrahedron', '2 tetrahedra')
-    """
-    return f"{count} {'tetrahedron' if count == 1 else 'tetrahedra'}"
 
 
 def measured(points: Floats, simplices: Indices) -> TetQuality:

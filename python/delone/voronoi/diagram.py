@@ -14,11 +14,12 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
-from delone.plane.triangulation import counted, first_rows
+from delone.plane.triangulation import first_rows
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.voronoi import clipping, dual, outline, shapes, torus
 from delone.voronoi.cells import Cell, Neighbors, Rays
@@ -609,8 +610,7 @@ class Voronoi(Immutable):
         where = "" if self._clip is None else f", clipped to {self._clip.name}"
         where += "" if self.periods is None else ", periodic"
         numbers = [counted(self.npoints, "point")]
-        vertices = len(self.vertices)
-        numbers.append(f"{vertices} vert{'ex' if vertices == 1 else 'ices'}")
+        numbers.append(counted(len(self.vertices), "vertex"))
         numbers.append(counted(len(self.ridge_points), "ridge"))
         return f"<Voronoi diagram of {numbers[0]}: {', '.join(numbers[1:])}{where}>"
 

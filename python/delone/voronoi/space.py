@@ -20,10 +20,10 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.immutable import kept, own_copy, sealed
-from delone.plane.triangulation import counted
 from delone.regular import RegularTriangulation, as_weights, triangulated
 from delone.voronoi.bodies import Bodies, SpaceCell, SpaceNeighbors
 from delone.voronoi.cells import Rays
@@ -441,10 +441,9 @@ class SpaceVoronoi(Voronoi):
         if not hasattr(self, "_clip"):  # the constructor failed, or has not run
             return "<Voronoi diagram of nothing yet>"
         where = "" if self.clip is None else f", clipped to {self.clip.name}"
-        vertices = len(self.vertices)
         return (
             f"<Voronoi diagram of {counted(self.npoints, 'point')} in space: "
-            f"{vertices} vert{'ex' if vertices == 1 else 'ices'}, "
+            f"{counted(len(self.vertices), 'vertex')}, "
             f"{counted(len(self.ridge_points), 'ridge')}{where}>"
         )
 

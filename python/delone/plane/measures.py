@@ -1,0 +1,71 @@
+"""What measures of simplices have in common, in the plane and in space: summaries and tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+import numpy as np
+
+from delone.counting import counted
+
+__all__ = ["Measures"]
+
+_PERCENTILES = (1, 10, 50, 90, 99)
+# The columns of a table: keys of a summary, and how they are called.
+_COLUMNS = {
+    "min": "least",
+    "p1": "1 %",
+    "p10": "10 %",
+    "p50": "median",
+    "p90": "90 %",
+    "p99": "99 %",
+    "max": "most",
+}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Measures:
+    """Measures of simplices: each field is an array with one entry for each, read-only."""
+
+    _noun: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            getattr(self, each.name).flags.writeable = False
+
+    def summary(self) -> dict[str, dict[str, float]]:
+        """Return least, greatest and mean values and percentiles.
+
+        Returns
+        -------
+        dict
+            For each measure ``min``, ``max``, ``mean`` and the percentiles ``p1``, ``p10``,
+            ``p50``, ``p90`` and ``p99``.
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).quality().summary()["area"]["mean"]
+        0.5
+        >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
+        >>> delone.improve(corner).quality().summary()["largest_dihedral"]["mean"]
+        90.0
+        """
+        found = {}
+        for each in fields(self):
+            values = getattr(self, each.name)
+            at = np.percentile(values, _PERCENTILES).tolist()
+            named = {f"p{p}": value for p, value in zip(_PERCENTILES, at, strict=True)}
+            ends = {"min": float(values.min()), "max": float(values.max())}
+            found[each.name] = ends | {"mean": float(values.mean())} | named
+        return found
+
+    def __str__(self) -> str:
+        count = len(getattr(self, fields(self)[0].name))
+        lines: list[tuple[str, ...]] = [(counted(count, self._noun), *_COLUMNS.values())]
+        for measure, values in self.summary().items():
+            lines.append((measure.replace("_", " "), *(f"{values[key]:.3g}" for key in _COLUMNS)))
+        rows = (f"{line[0]:<18}" + "".join(f"{cell:>9}" for cell in line[1:]) for line in lines)
+        return "\n".join(rows)
