@@ -14,6 +14,7 @@ import pytest
 
 import delone
 from delone import DtypeError, InputError, NonFiniteError, ShapeError, TetMesh
+from rational import cross, dot, exact, minus
 
 FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 Tetrahedra = tuple[np.ndarray, np.ndarray]
@@ -25,26 +26,6 @@ def determinant(a: Any, b: Any, c: Any) -> Any:
         - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
     )
-
-
-def exact(points: np.ndarray) -> list[list[Fraction]]:
-    return [[Fraction(x) for x in p] for p in points.tolist()]
-
-
-def minus(a: Any, b: Any) -> list[Fraction]:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def cross(a: Any, b: Any) -> list[Fraction]:
-    return [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-
-
-def dot(a: Any, b: Any) -> Any:
-    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def volume(points: np.ndarray, simplices: np.ndarray) -> Fraction:

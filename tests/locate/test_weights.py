@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from delone import Delaunay, _core
+from rational import Vector, area, exact
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
 
-Exact = tuple[Fraction, Fraction]
 KINDS = ["sibson", "laplace", "sibson1", "farin"]
 
 
@@ -25,10 +25,10 @@ def locator(points: Floats) -> tuple[Delaunay, _core.Locator2]:
     return mesh, _core.Locator2(mesh.points, mesh.simplices, mesh.neighbors)
 
 
-def nearer(cell: list[Exact], a: Exact, b: Exact) -> list[Exact]:
+def nearer(cell: list[Vector], a: Vector, b: Vector) -> list[Vector]:
     """The part of a convex polygon that is nearer to `a` than to `b`."""
 
-    def excess(p: Exact) -> Fraction:
+    def excess(p: Vector) -> Fraction:
         to_a, to_b = ((p[0] - s[0]) ** 2 + (p[1] - s[1]) ** 2 for s in (a, b))
         return to_a - to_b
 
@@ -43,18 +43,9 @@ def nearer(cell: list[Exact], a: Exact, b: Exact) -> list[Exact]:
     return part
 
 
-def area(cell: list[Exact]) -> Fraction:
-    pairs = zip(cell, cell[1:] + cell[:1], strict=True)
-    return sum((p[0] * q[1] - p[1] * q[0] for p, q in pairs), Fraction(0)) / 2
-
-
-def exact(p: Any) -> Exact:
-    return Fraction(p[0]), Fraction(p[1])
-
-
 def sibson(points: Floats, query: Floats) -> list[Fraction]:
     """Shares of the query's Voronoi cell that belonged to each site, by clipping."""
-    sites, q = [exact(p) for p in points], exact(query)
+    *sites, q = exact([*points, query])
     far = 10**40 * (1 + max(abs(x) for p in sites for x in p))
     cell = [(-far, -far), (far, -far), (far, far), (-far, far)]
     for site in sites:

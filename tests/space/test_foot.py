@@ -12,36 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from delone import DegenerateInputError, Delaunay
+from rational import exact, from_triangle, minus
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-Exact = list[Fraction]
-
-
-def dot(p: Exact, q: Exact) -> Fraction:
-    return sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0))
-
-
-def minus(p: Exact, q: Exact) -> Exact:
-    return [x - y for x, y in zip(p, q, strict=True)]
-
-
-def away(corners: list[Exact], q: Exact) -> tuple[Fraction, Exact]:
-    """The squared distance of q from a triangle, and the nearest point."""
-    a, b, c = corners
-    e, f, u = minus(b, a), minus(c, a), minus(q, a)
-    ee, ef, ff, ue, uf = dot(e, e), dot(e, f), dot(f, f), dot(u, e), dot(u, f)
-    v, w = ff * ue - ef * uf, ee * uf - ef * ue
-    whole = ee * ff - ef * ef
-    found = []
-    if v >= 0 and w >= 0 and v + w <= whole:
-        found.append([x + (v * y + w * z) / whole for x, y, z in zip(a, e, f, strict=True)])
-    for p, r in ((a, b), (b, c), (c, a)):
-        way = minus(r, p)
-        share = min(max(dot(way, minus(q, p)) / dot(way, way), Fraction(0)), Fraction(1))
-        found.append([x + share * y for x, y in zip(p, way, strict=True)])
-    return min((dot(minus(x, q), minus(x, q)), x) for x in found)
 
 
 def check(points: Any, queries: NDArray[np.float64]) -> None:
@@ -49,12 +23,12 @@ def check(points: Any, queries: NDArray[np.float64]) -> None:
     mesh = Delaunay(points)
     place = mesh.locate(queries)
     assert (mesh.locate(queries[::-1]).face[::-1] == place.face).all()
-    sites = [[Fraction(x) for x in p] for p in mesh.points.tolist()]
+    sites = exact(mesh.points)
     size = max(abs(x) for p in sites for x in p)
     for row in np.flatnonzero(place.simplex < 0):
-        q = [Fraction(x) for x in queries[row].tolist()]
-        _, nearest = min(away([sites[v] for v in face], q) for face in mesh.convex_hull.tolist())
-        found = [Fraction(x) for x in place.nearest[row].tolist()]
+        q, found = exact([queries[row], place.nearest[row]])
+        faces = mesh.convex_hull.tolist()
+        _, nearest = min(from_triangle(q, [sites[v] for v in face]) for face in faces)
         assert max(map(abs, minus(found, nearest))) <= size * Fraction(1, 2**51)
 
 

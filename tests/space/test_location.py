@@ -11,40 +11,9 @@ import pytest
 import delone
 from delone import Delaunay, datasets
 from delone.predicates import orient3d
+from rational import dot, exact, from_triangle, minus
 
-Vector = list[Fraction]
 SCALES = [1.0, 2.0**1019, 2.0**-1030, 5e-324]
-
-
-def less(p: Vector, q: Vector) -> Vector:
-    return [a - b for a, b in zip(p, q, strict=True)]
-
-
-def dot(p: Vector, q: Vector) -> Fraction:
-    return sum((a * b for a, b in zip(p, q, strict=True)), Fraction(0))
-
-
-def squared_distance(q: Vector, face: list[Vector]) -> Fraction:
-    """From a closed triangle: from its plane where the foot is inside, else from its edges."""
-    a, b, c = face
-    u, v, w = less(b, a), less(c, a), less(q, a)
-    uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
-    area = uu * vv - uv * uv
-    s, t = (vv * uw - uv * vw) / area, (uu * vw - uv * uw) / area
-    if s >= 0 and t >= 0 and s + t <= 1:
-        away = [x - s * y - t * z for x, y, z in zip(w, u, v, strict=True)]
-        return dot(away, away)
-    found = []
-    for start, end in ((a, b), (b, c), (c, a)):
-        way, seen = less(end, start), less(q, start)
-        along = min(max(dot(way, seen) / dot(way, way), Fraction(0)), Fraction(1))
-        away = [x - along * y for x, y in zip(seen, way, strict=True)]
-        found.append(dot(away, away))
-    return min(found)
-
-
-def exact(points: Any) -> list[Vector]:
-    return [[Fraction(x) for x in point] for point in np.asarray(points).tolist()]
 
 
 def check_outside(mesh: Any, queries: Any) -> int:
@@ -57,14 +26,13 @@ def check_outside(mesh: Any, queries: Any) -> int:
     faces = [[points[v] for v in face] for face in corners]
     rows = np.flatnonzero(place.simplex < 0)
     for i in rows:
-        query = exact([queries[i]])[0]
-        best = min(squared_distance(query, face) for face in faces)
-        away = less(query, exact([place.nearest[i]])[0])
+        query, nearest = exact([queries[i], place.nearest[i]])
+        least = min(from_triangle(query, face)[0] for face in faces)
+        away = minus(query, nearest)
         # The point is rounded: to about a unit in the last place of its coordinates.
-        size = max(map(abs, [*query, *exact([place.nearest[i]])[0]]))
+        size = max(map(abs, [*query, *nearest]))
         slack = size / 2**46 + Fraction(5e-324) * 8
-        found, least = dot(away, away), best
-        assert abs(found - least) <= slack * (slack + 2 * max(map(abs, away)))
+        assert abs(dot(away, away) - least) <= slack * (slack + 2 * max(map(abs, away)))
         assert set(place.face[i].tolist()) <= set(mesh.simplices[place.beside[i]].tolist())
         assert sorted(place.face[i].tolist()) in [sorted(face) for face in corners]
         inner = np.setdiff1d(mesh.simplices[place.beside[i]], place.face[i])[0]

@@ -12,6 +12,7 @@ import pytest
 
 from delone import Delaunay, improve
 from delone.space.quality import EDGES, dihedral_angles, measured
+from rational import cross, dot, minus
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -50,18 +51,6 @@ CONTEXT = Context(prec=60, Emin=-99999, Emax=99999)
 def root(square: Fraction) -> Decimal:
     quotient = CONTEXT.divide(Decimal(square.numerator), Decimal(square.denominator))
     return CONTEXT.sqrt(quotient)
-
-
-def cross(p: Any, q: Any) -> list[Fraction]:
-    return [p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2] for k in range(3)]
-
-
-def dot(p: Any, q: Any) -> Fraction:
-    return sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0))
-
-
-def minus(p: Any, q: Any) -> list[Fraction]:
-    return [x - y for x, y in zip(p, q, strict=True)]
 
 
 def exact(corners: NDArray[np.float64]) -> dict[str, Any]:

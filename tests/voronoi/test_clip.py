@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,20 +13,15 @@ from hypothesis import strategies as st
 from delone.datasets import tilted_grid, uniform
 from delone.errors import InputError
 from delone.voronoi import Voronoi
+from rational import area, exact
 
 shapely = pytest.importorskip("shapely")
-
-
-def exact_area(ring: Any) -> Fraction:
-    corners = [(Fraction(x), Fraction(y)) for x, y in ring.tolist()]
-    closed = pairwise([*corners, corners[0]])
-    return sum((ax * by - ay * bx for (ax, ay), (bx, by) in closed), Fraction(0)) / 2
 
 
 def exact_sum(diagram: Voronoi) -> Fraction:
     sites = np.unique(diagram.duplicate_of)
     rings = [part[0] for site in sites for part in diagram.cell(int(site)).parts]
-    return sum((exact_area(ring) for ring in rings), Fraction(0))
+    return sum((area(exact(ring)) for ring in rings), Fraction(0))
 
 
 def star(corners: int, inner: float = 0.3) -> Any:

@@ -17,6 +17,7 @@ from delone.datasets import tilted_grid, uniform
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.predicates import incircle
 from delone.voronoi import Voronoi
+from rational import ulps
 
 Exact = tuple[Fraction, Fraction]
 
@@ -28,10 +29,6 @@ def exact_center(corners: Any) -> Exact:
     d, e = dx * dx + dy * dy, ex * ex + ey * ey
     twice = 2 * (dx * ey - dy * ex)
     return ax + (ey * d - dy * e) / twice, ay + (dx * e - ex * d) / twice
-
-
-def ulps(found: float, exact: Fraction) -> Fraction:
-    return abs(Fraction(found) - exact) / Fraction(float(np.spacing(abs(float(exact)))))
 
 
 def lattice_points(draw_range: int) -> Any:

@@ -16,8 +16,7 @@ from hypothesis import strategies as st
 from delone import Voronoi
 from delone.errors import InputError
 from delone.voronoi.halfspaces import common_part
-
-Exact = tuple[Fraction, ...]
+from rational import Vector, cross, dot
 
 CORPUS = Path(__file__).parent.parent / "corpus" / "space"
 
@@ -46,15 +45,7 @@ ONE_POINT = [
 ]
 
 
-def cross(p: Exact, q: Exact) -> Exact:
-    return p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]
-
-
-def dot(p: Any, q: Any) -> Fraction:
-    return sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0))
-
-
-def corners_of(rows: list[Exact]) -> set[Exact]:
+def corners_of(rows: list[Vector]) -> set[Vector]:
     """The points of what is common at which planes of three rows meet."""
     found = set()
     for a, b, c in itertools.combinations(rows, 3):
@@ -68,7 +59,7 @@ def corners_of(rows: list[Exact]) -> set[Exact]:
     return found
 
 
-def free_directions(rows: list[Exact]) -> list[Exact]:
+def free_directions(rows: list[Vector]) -> list[Vector]:
     """Directions in which what is common has no end, if it has points."""
     normals = [row[:3] for row in rows]
     axes = [tuple(Fraction(int(i == k)) for i in range(3)) for k in range(3)]
@@ -77,12 +68,12 @@ def free_directions(rows: list[Exact]) -> list[Exact]:
     return [way for way in ways if all(dot(n, way) <= 0 for n in normals)]
 
 
-def flat(points: list[Exact]) -> bool:
+def flat(points: list[Vector]) -> bool:
     seen = [tuple(x - y for x, y in zip(p, points[0], strict=True)) for p in points]
     return all(dot(a, cross(b, c)) == 0 for a, b, c in itertools.combinations(seen, 3))
 
 
-def exact_rows(halfspaces: Any) -> list[Exact]:
+def exact_rows(halfspaces: Any) -> list[Vector]:
     return [tuple(map(Fraction, row)) for row in np.asarray(halfspaces, dtype=float).tolist()]
 
 
@@ -106,7 +97,7 @@ def check(halfspaces: Any) -> None:
 
 
 def check_faces(
-    rows: list[Exact], corners: list[Exact], faces: list[list[int]], numbers: list[int]
+    rows: list[Vector], corners: list[Vector], faces: list[list[int]], numbers: list[int]
 ) -> None:
     edges = [(u, v) for face in faces for u, v in zip(face, [*face[1:], face[0]], strict=True)]
     assert len(set(edges)) == len(edges)
@@ -220,13 +211,13 @@ def corpus(name: str) -> Any:
     return np.array(case["points"])
 
 
-def bisector(p: Exact, q: Exact) -> Exact:
+def bisector(p: Vector, q: Vector) -> Vector:
     """The half-space of the points that are not farther from p than from q."""
     way = tuple(2 * (y - x) for x, y in zip(p, q, strict=True))
     return *way, dot(p, p) - dot(q, q)
 
 
-def exact_area(row: Exact, corners: set[Exact]) -> float:
+def exact_area(row: Vector, corners: set[Vector]) -> float:
     """The area of the face of a half-space, by its shadow along the largest of its normal."""
     normal = row[:3]
     axis = max(range(3), key=lambda k: abs(normal[k]))
@@ -234,8 +225,8 @@ def exact_area(row: Exact, corners: set[Exact]) -> float:
     if len(shadow) < 3:
         return 0.0
 
-    def chain(points: list[Exact]) -> list[Exact]:
-        kept: list[Exact] = []
+    def chain(points: list[Vector]) -> list[Vector]:
+        kept: list[Vector] = []
         for p in points:
             while len(kept) > 1 and turn(kept[-2], kept[-1], p) <= 0:
                 kept.pop()
@@ -248,7 +239,7 @@ def exact_area(row: Exact, corners: set[Exact]) -> float:
     return float(twice / 2) * size
 
 
-def turn(p: Exact, q: Exact, r: Exact) -> Fraction:
+def turn(p: Vector, q: Vector, r: Vector) -> Fraction:
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -12,19 +11,12 @@ from hypothesis import strategies as st
 
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.voronoi import Voronoi
+from rational import area, exact
 
 
 def weighted(n: int, spread: float, seed: int = 0) -> tuple[Any, Any]:
     rng = np.random.default_rng(seed)
     return rng.random((n, 2)), rng.random(n) * spread
-
-
-def exact_area(ring: Any) -> Fraction:
-    corners = [(Fraction(x), Fraction(y)) for x, y in ring.tolist()]
-    twice = Fraction(0)
-    for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]], strict=True):
-        twice += ax * by - ay * bx
-    return twice / 2
 
 
 @pytest.mark.parametrize("spread", [1e-4, 0.05, 0.5])
@@ -53,7 +45,7 @@ def test_cells_tile_a_box_exactly(sites: list[tuple[int, int, int]]) -> None:
     diagram = Voronoi(table[:, :2], weights=table[:, 2], clip=(-2, -3, 6, 7))
     rows = np.setdiff1d(np.unique(diagram.duplicate_of), diagram.hidden)
     rings = [part[0] for row in rows for part in diagram.cell(int(row)).parts]
-    assert sum(map(exact_area, rings)) == 80
+    assert sum(area(exact(ring)) for ring in rings) == 80
     assert diagram.cell_areas[rows].sum() == pytest.approx(80)
     # The least power at the centroid of what is left of a cell is that of its site.
     for row in rows[diagram.cell_areas[rows] > 1e-9]:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from delone.voronoi import Voronoi
+from rational import Vector, area, exact
 
 shapely = pytest.importorskip("shapely")
 CASES = [
@@ -22,19 +23,8 @@ CASES = [
 ]
 LARGEST = float(np.finfo(np.float64).max)
 
-Exact = tuple[Fraction, Fraction]
 
-
-def exact(places: Any) -> list[Exact]:
-    return [(Fraction(x), Fraction(y)) for x, y in places.tolist()]
-
-
-def area(ring: list[Exact]) -> Fraction:
-    closed = pairwise([*ring, ring[0]])
-    return sum((ax * by - ay * bx for (ax, ay), (bx, by) in closed), Fraction(0)) / 2
-
-
-def holds(ring: list[Exact], q: Exact) -> bool:
+def holds(ring: list[Vector], q: Vector) -> bool:
     closed = pairwise([*ring, ring[0]])
     return all((bx - ax) * (q[1] - ay) > (by - ay) * (q[0] - ax) for (ax, ay), (bx, by) in closed)
 

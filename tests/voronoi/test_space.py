@@ -17,8 +17,8 @@ from delone import Delaunay, RegularTriangulation, Voronoi
 from delone.errors import DegenerateInputError, InputError, NonFiniteError, ShapeError
 from delone.predicates import insphere
 from delone.voronoi import SpaceVoronoi
-
-Exact = tuple[Fraction, Fraction, Fraction]
+from rational import Vector, cross, dot, minus, ulps
+from rational import exact as exact_points
 
 GRID = np.array(list(itertools.product(range(4), repeat=3)), dtype=float)
 
@@ -27,27 +27,7 @@ def uniform(n: int, seed: int) -> Any:
     return np.random.default_rng(seed).random((n, 3))
 
 
-def minus(p: Exact, q: Exact) -> Exact:
-    return p[0] - q[0], p[1] - q[1], p[2] - q[2]
-
-
-def dot(p: Exact, q: Exact) -> Fraction:
-    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def cross(p: Exact, q: Exact) -> Exact:
-    return (
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    )
-
-
-def exact_points(points: Any) -> list[Exact]:
-    return [tuple(map(Fraction, row)) for row in np.asarray(points, dtype=float).tolist()]
-
-
-def meeting(planes: list[tuple[Exact, Fraction]]) -> Exact | None:
+def meeting(planes: list[tuple[Vector, Fraction]]) -> Vector | None:
     """Where three planes n . x = c meet."""
     (a, ca), (b, cb), (c, cc) = planes
     det = dot(a, cross(b, c))
@@ -58,7 +38,7 @@ def meeting(planes: list[tuple[Exact, Fraction]]) -> Exact | None:
     return x, y, z
 
 
-def exact_center(corners: list[Exact], weights: list[Fraction] | None = None) -> Exact:
+def exact_center(corners: list[Vector], weights: list[Fraction] | None = None) -> Vector:
     a, *others = corners
     w, *heavy = weights or [Fraction(0)] * 4
     planes = []
@@ -70,7 +50,7 @@ def exact_center(corners: list[Exact], weights: list[Fraction] | None = None) ->
     return found
 
 
-def exact_volume(planes: list[tuple[Exact, Fraction]]) -> Fraction:
+def exact_volume(planes: list[tuple[Vector, Fraction]]) -> Fraction:
     """The volume where n . x <= c for all planes: corners by brute force, faces in turn."""
     corners = {
         p
@@ -123,10 +103,6 @@ def exact_cells(points: Any, weights: Any, bounds: Any) -> list[Fraction]:
                 planes.append((minus(q, p), offset))
         found.append(exact_volume(planes))
     return found
-
-
-def ulps(found: float, exact: Fraction) -> Fraction:
-    return abs(Fraction(found) - exact) / Fraction(float(np.spacing(abs(float(exact)))))
 
 
 @pytest.mark.parametrize("offset", [0.0, -0.5, 1e4])
