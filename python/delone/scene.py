@@ -36,7 +36,7 @@ def unstructured(mesh: Delaunay, *, values: ArrayLike | None = None, name: str =
 
     Parameters
     ----------
-    mesh : Delaunay
+    mesh : Delaunay, RegularTriangulation or TetMesh
         A triangulation in space.
     values : array_like, shape (n,) or (m,), optional
         A number for each point or each tetrahedron.
@@ -80,11 +80,11 @@ def plot(
     cmap: str = "viridis",
     bar: bool = True,
 ) -> Any:
-    """Draw a triangulation in space, or a convex hull, with its edges.
+    """Draw a triangulation or a mesh in space, or a convex hull, with its edges.
 
     Parameters
     ----------
-    shape : Delaunay or ConvexHull
+    shape : Delaunay, RegularTriangulation, TetMesh or ConvexHull, in space
         What to draw.
     plotter : pyvista.Plotter, optional
         Where to draw; by default a new one.
@@ -159,7 +159,7 @@ def draw(path: str | os.PathLike[str], shape: Delaunay | ConvexHull, **options: 
     ----------
     path : str or path-like
         The file.
-    shape : Delaunay or ConvexHull
+    shape : Delaunay, RegularTriangulation, TetMesh or ConvexHull, in space
         What to draw.
     **options
         As in `plot`.
@@ -195,7 +195,7 @@ def image(shape: Delaunay | ConvexHull, **options: Any) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    shape : Delaunay or ConvexHull
+    shape : Delaunay, RegularTriangulation, TetMesh or ConvexHull, in space
         What to draw.
     **options
         As in `plot`.

@@ -54,7 +54,7 @@ def plot(
 
     Parameters
     ----------
-    triangulation : Delaunay or ConstrainedDelaunay
+    triangulation : Delaunay, RegularTriangulation, ConstrainedDelaunay or Mesh, in the plane
         What to draw.
     ax : matplotlib Axes, optional
         Where to draw; by default on the axes of a new pyplot figure.

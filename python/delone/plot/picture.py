@@ -39,7 +39,7 @@ def save_picture(
     ----------
     path : str or path-like
         The file.
-    triangulation : Delaunay or ConstrainedDelaunay
+    triangulation : Delaunay, RegularTriangulation, ConstrainedDelaunay or Mesh, in the plane
         What to draw.
     z : array_like of float, shape (n,), optional
         Heights: triangles are coloured by them.
