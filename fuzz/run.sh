@@ -3,8 +3,8 @@
 #
 # Needs stable Rust and a C++ compiler, for libFuzzer, which is built from source; nothing is
 # installed. What cargo-fuzz would do is written out: coverage comes from stable flags, and no
-# sanitizer is used, as the code has no `unsafe` that one could watch. `cargo fuzz run --sanitizer none`
-# works as well, where it is installed.
+# sanitizer is used, as `unsafe` stands in two files alone, for memory and for one call
+# (CONTRIBUTING.md). `cargo fuzz run --sanitizer none` works as well, where it is installed.
 #
 # FUZZ_SEED (default 1) makes two runs from the same corpus alike; 0 takes a random one.
 #
