@@ -41,9 +41,7 @@ GENERATORS = {
 def test_tiles_agree_with_memory(
     name: str, tiles: int, tmp_path: Path, canonical: Callable[[Any], Any]
 ) -> None:
-    # Where exponents are mixed no disk is finite, and every doubt goes to every tile.
-    n = 150 if name == "mixed_exponents" else 640
-    points = GENERATORS[name](n)
+    points = GENERATORS[name](640)
     size = max(3, -(-len(points) // tiles))
     tin = distributed.triangulate(points, tmp_path / "tin", tile_points=size)
     right = Delaunay(points)
@@ -67,6 +65,30 @@ def test_surveys_agree_with_memory(
     heights = np.concatenate([t.attributes["z"][t.owned] for t in tin.tiles()])
     ids = np.concatenate([t.ids[t.owned] for t in tin.tiles()])
     assert np.array_equal(sample.z[ids], heights)
+
+
+@pytest.mark.parametrize("exponent", [-1040, -600, 600, 1020])
+def test_a_power_of_two_asks_no_more(
+    exponent: int, tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    # Below 2^-1022 doubles have fewer digits: 20 are enough for these.
+    points = np.round(datasets.uniform(3000) * 2**20)
+    one = distributed.triangulate(points, tmp_path / "one", tile_points=300)
+    two = distributed.triangulate(
+        np.ldexp(points, exponent - 20), tmp_path / "two", tile_points=300
+    )
+    assert np.array_equal(canonical(one.simplices()), canonical(two.simplices()))
+    assert [one.manifest[name] for name in ("rounds", "given")] == [
+        two.manifest[name] for name in ("rounds", "given")
+    ]
+
+
+def test_nobody_is_asked_about_corners_of_the_hull(tmp_path: Path) -> None:
+    points = datasets.circle(3000)
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=300)
+    assert tin.manifest["hull"] == len(points)
+    assert tin.manifest["rounds"] == 0
+    assert tin.validate()
 
 
 def test_the_order_of_rows_changes_nothing(tmp_path: Path, canonical: Callable[[Any], Any]) -> None:

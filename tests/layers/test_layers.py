@@ -148,7 +148,7 @@ CORE: dict[str, set[str]] = {
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "locate3": {"locate", "order", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
-    "distributed": {"points", "parallel", "delone_predicates"} | GROUND,
+    "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,

@@ -44,7 +44,8 @@ class Known:
     tiles : Tiles
         The cells.
     extents : ndarray of float64, shape (tiles, 4)
-        The box of the points of each tile, inside out where it has none.
+        The box of the points of each tile, inside out where it has none. Corners of the hull, which
+        all tiles know, do not count.
     """
 
     tile: int
@@ -88,8 +89,7 @@ class Known:
         center, radius = disks[:, :2], disks[:, 2]
         with np.errstate(over="ignore"):
             off = np.maximum(np.maximum(extent[:, :2] - center, center - extent[:, 2:]), 0.0)
-            squared = (off * off).sum(axis=1)
-            answer: Bools = ~(squared * (1 - 1e-14) > radius * radius)
+            answer: Bools = ~(np.hypot(*off.T) * (1 - 1e-14) > radius)
         return answer
 
 

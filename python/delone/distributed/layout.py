@@ -81,7 +81,7 @@ def collect(
 ) -> tuple[list[Slices], NDArray[np.int64]]:
     """Turn what pieces say of tiles round: the runs of each tile, and how many points it has.
 
-    The boxes of the points of all tiles are written down on the way.
+    The boxes of the points of all tiles, but for corners of the hull, are written down on the way.
     """
     slices: list[Slices] = [([], []) for _ in range(tiles)]
     counts = np.zeros(tiles, dtype=np.int64)
@@ -90,6 +90,8 @@ def collect(
         for (tile, start, stop), box in zip(summary["own"], summary["boxes"], strict=True):
             slices[tile][0].append([piece, start, stop])
             counts[tile] += stop - start
+            if box is None:
+                continue
             np.minimum(extents[tile, :2], box[:2], out=extents[tile, :2])
             np.maximum(extents[tile, 2:], box[2:], out=extents[tile, 2:])
         for tile, start, stop in summary["halo"]:

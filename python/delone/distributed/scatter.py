@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from delone.distributed.layout import Layout
     from delone.distributed.rows import Rows
 
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+
 __all__ = ["scatter"]
 
 
@@ -26,15 +29,17 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
         The rows, within each run in the order of the source.
     dict
         ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top
-        of each run of own rows.
+        of each run of own rows but for corners of the hull, which all tiles know; None where it has
+        no others.
     """
     if rows.dtype != layout.type:
         rows = widen(rows, layout.type)
+    corner = _corners(rows, layout.hull)
     tile = layout.tiles.locate(coordinates(rows))
     # A radix sort, for as long as numbers of tiles fit in 16 bits.
     narrow = tile.astype(np.uint16) if len(layout.tiles) <= 1 << 16 else tile
     order = np.argsort(narrow, kind="stable")
-    own, tile = rows.take(order), tile.take(order)
+    own, tile, corner = rows.take(order), tile.take(order), corner.take(order)
     first = np.flatnonzero(np.diff(tile, prepend=-1))
     ends = np.append(first[1:], len(tile))
     runs = [[int(tile[a]), int(a), int(b)] for a, b in zip(first, ends, strict=True)]
@@ -44,7 +49,7 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
     for number, start, stop in runs:
         x, y = (column[start:stop] for column in columns)
         low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
-        boxes.append([*low.tolist(), *high.tolist()])
+        boxes.append(_box(x, y, ~corner[start:stop]))
         near = (layout.strips[:, :2] <= high).all(axis=1) & (layout.strips[:, 2:] >= low).all(
             axis=1
         )
@@ -62,3 +67,21 @@ def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
             parts.append(own.take(chosen))
             end += len(chosen)
     return np.concatenate(parts), {"own": runs, "halo": halo, "boxes": boxes}
+
+
+def _corners(rows: Rows, hull: Rows) -> Bools:
+    """Which rows, in the order of the source, are corners of the hull."""
+    corner = np.zeros(len(rows), dtype=bool)
+    place = np.searchsorted(rows["id"], hull["id"])
+    place = place[place < len(rows)]
+    corner[place[np.isin(rows["id"][place], hull["id"])]] = True
+    return corner
+
+
+def _box(x: Floats, y: Floats, counts: Bools) -> list[float] | None:
+    """Left, bottom, right and top of the points that count."""
+    if not counts.any():
+        return None
+    if not counts.all():
+        x, y = x[counts], y[counts]
+    return [float(x.min()), float(y.min()), float(x.max()), float(y.max())]

@@ -261,7 +261,7 @@ def check_summary(stage: str, found: Any, tiles: int, path: Path) -> None:
 
     def runs(value: Any, field: str) -> None:
         _record({"own": _listed(run), "halo": _listed(run)})(value, field)
-        _record({"boxes": _listed(_box, len(value["own"]))})(value, field)
+        _record({"boxes": _listed(_or_null(_box), len(value["own"]))})(value, field)
 
     fields: dict[str, Check] = {
         "look": _record({"rows": place, "bad": _listed(_whole()), "bad_count": place}),

@@ -7,8 +7,9 @@
 
 use delone_predicates::{Point2, Sign, incircle_canonical};
 
-use super::disk::disk;
+use super::disk::{LEAST, disk};
 use crate::error::Result;
+use crate::locate::{in_unit, unit_of};
 use crate::memory::with_room;
 use crate::parallel;
 use crate::points::Extent;
@@ -46,6 +47,8 @@ struct Node {
 
 struct Tree<'a> {
     points: &'a [Point2],
+    /// In which boxes and distances are measured, so that their squares are doubles.
+    unit: f64,
     rows: Vec<u32>,
     nodes: Vec<Node>,
 }
@@ -54,7 +57,18 @@ impl<'a> Tree<'a> {
     fn of(points: &'a [Point2]) -> Result<Self> {
         let mut rows: Vec<u32> = with_room(points.len())?;
         rows.extend(0..points.len() as u32);
-        let mut nodes = vec![Self::node(points, &rows, 0, points.len())];
+        let unit = unit_of(points);
+        let node = |rows: &[u32], start: usize, end: usize| Node {
+            extent: Extent::of(
+                rows[start..end]
+                    .iter()
+                    .map(|&row| measured(points[row as usize], unit)),
+            ),
+            start: start as u32,
+            end: end as u32,
+            children: 0,
+        };
+        let mut nodes = vec![node(&rows, 0, points.len())];
         let mut i = 0;
         while i < nodes.len() {
             let (start, end) = (nodes[i].start as usize, nodes[i].end as usize);
@@ -67,32 +81,24 @@ impl<'a> Tree<'a> {
                     points[p as usize][axis].total_cmp(&points[q as usize][axis])
                 });
                 nodes[i].children = nodes.len() as u32;
-                nodes.push(Self::node(points, &rows, start, start + middle));
-                nodes.push(Self::node(points, &rows, start + middle, end));
+                nodes.push(node(&rows, start, start + middle));
+                nodes.push(node(&rows, start + middle, end));
             }
             i += 1;
         }
         Ok(Self {
             points,
+            unit,
             rows,
             nodes,
         })
-    }
-
-    fn node(points: &[Point2], rows: &[u32], start: usize, end: usize) -> Node {
-        let own = rows[start..end].iter().map(|&row| points[row as usize]);
-        Node {
-            extent: Extent::of(own),
-            start: start as u32,
-            end: end as u32,
-            children: 0,
-        }
     }
 
     /// The rows of up to `most` points in conflict with a triangle, deepest first; and whether that
     /// was all.
     fn query(&self, corners: [Point2; 3], most: usize, found: &mut Vec<(f64, u32)>) -> bool {
         let [x, y, radius] = disk(corners);
+        let ([x, y], radius) = (measured([x, y], self.unit), radius / self.unit + LEAST);
         let reach = radius * radius;
         let mut all = true;
         found.clear();
@@ -147,7 +153,8 @@ impl<'a> Tree<'a> {
         if corners.contains(&p) || incircle_canonical(a, b, c, p) != Sign::Positive {
             return true;
         }
-        let (dx, dy) = (p[0] - center[0], p[1] - center[1]);
+        let [x, y] = measured(p, self.unit);
+        let (dx, dy) = (x - center[0], y - center[1]);
         let depth = -(dx * dx + dy * dy);
         let at = found.partition_point(|&(other, _)| other >= depth);
         found.insert(at, (depth, row));
@@ -155,6 +162,12 @@ impl<'a> Tree<'a> {
         found.truncate(most);
         !more
     }
+}
+
+/// A point in a unit of length.
+#[inline]
+fn measured(p: Point2, unit: f64) -> Point2 {
+    in_unit([0.0; 2], p, unit)
 }
 
 /// For each triangle, counter-clockwise, up to `most` of the `points` that are in conflict with it:

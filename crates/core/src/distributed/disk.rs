@@ -15,14 +15,16 @@
 //! last addition of a moves the centre by u times the result: `PAD` = 64 u of radius and centre covers
 //! these, and the caller's centre ± radius.
 //!
-//! Underflow changes a product by less than 2^-1074. Where |D| > `TINY` = 1e-200 one of b and c is
+//! Large and small b and c are measured in a power of two, so that their products are doubles. Underflow
+//! changes a coordinate or a product by less than 2^-1074. Where |D| > `TINY` = 1e-200 one of b and c is
 //! longer than 1e-100, the radius is more than half of that, and PAD times the radius exceeds all
-//! that underflow can have done, which has been divided by D. Overflow makes infinities or NaN, and
-//! a comparison fail. Whatever fails is answered by the whole plane.
+//! that underflow can have done, which has been divided by D. `LEAST` stands for what underflows on the way
+//! back. Overflow makes infinities or NaN, and a comparison fail. Whatever fails is answered by the whole plane.
 
 use delone_predicates::Point2;
 
 use crate::error::Result;
+use crate::locate::seen_from;
 use crate::memory::with_room;
 use crate::parallel;
 use crate::watch::Watch;
@@ -31,6 +33,8 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 const ROUND: f64 = 16.0 * UNIT;
 const PAD: f64 = 64.0 * UNIT;
 const TINY: f64 = 1e-200;
+/// Eight times the smallest double.
+pub const LEAST: f64 = f64::from_bits(8);
 
 /// Triangles that one thread looks at before it takes the next ones.
 const TASK: usize = 1 << 16;
@@ -39,7 +43,7 @@ const TASK: usize = 1 << 16;
 /// infinite where none is certain.
 pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
     let whole = [0.0, 0.0, f64::INFINITY];
-    let [b, c] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+    let ([b, c], unit) = seen_from(a, [b, c]);
     let [s, t] = [b[0] * c[1], b[1] * c[0]];
     let (det, magnitude) = (s - t, s.abs() + t.abs());
     let off = ROUND * magnitude;
@@ -54,9 +58,9 @@ pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
     };
     let (x, wrong_x) = part(c[1] * bb, b[1] * cc);
     let (y, wrong_y) = part(b[0] * cc, c[0] * bb);
-    let center = [a[0] + x, a[1] + y];
-    let length = (x * x + y * y).sqrt() + wrong_x + wrong_y;
-    let radius = length + PAD * (length + center[0].abs() + center[1].abs());
+    let center = [a[0] + x * unit, a[1] + y * unit];
+    let length = ((x * x + y * y).sqrt() + wrong_x + wrong_y) * unit;
+    let radius = length + PAD * (length + center[0].abs() + center[1].abs()) + LEAST;
     if radius.is_finite() {
         [center[0], center[1], radius]
     } else {
@@ -128,13 +132,22 @@ mod tests {
     }
 
     #[test]
+    fn units_change_nothing() {
+        for exponent in [-1070, -600, 600, 1018] {
+            let unit = 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
+            let [x, y, r] = disk([[0.0, 0.0], [6.0 * unit, 0.0], [0.0, 8.0 * unit]]);
+            assert_eq!([x, y], [3.0 * unit, 4.0 * unit]);
+            assert!((5.0 * unit..=5.0 * unit * (1.0 + 1e-12) + 2.0 * LEAST).contains(&r));
+        }
+    }
+
+    #[test]
     fn what_is_not_certain_is_the_whole_plane() {
         for corners in [
             [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
             [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0 + 1e-15]],
-            [[0.0, 0.0], [1e-150, 0.0], [0.0, 1e-150]],
-            [[-1e308, 0.0], [1e308, 0.0], [0.0, 1e308]],
-            [[0.0, 0.0], [1e200, 0.0], [0.0, 1e200]],
+            [[0.0, 0.0], [1e-150, 0.0], [1.0, 1e-290]],
+            [[0.0, 0.0], [1.5e308, 0.0], [0.0, 1.5e308]],
         ] {
             assert_eq!(disk(corners)[2], f64::INFINITY, "{corners:?}");
         }
