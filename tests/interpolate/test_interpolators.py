@@ -305,7 +305,7 @@ def test_bad_arguments(kind: Any) -> None:
     with pytest.raises(InputError, match="workers"):
         kind(points, workers=0)
     for bad in (linear(points)[:-1], 3.0, linear(points)[None]):
-        with pytest.raises(ShapeError, match="values"):
+        with pytest.raises(ShapeError, match=r"values must have shape \(20,\) or \(20, ...\)"):
             kind(points, bad)
     for bad in (["a"] * 20, [None] * 20, np.ma.masked_array(linear(points))):
         with pytest.raises(DtypeError, match="values"):

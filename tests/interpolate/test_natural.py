@@ -133,3 +133,14 @@ def test_smooth_at_sites(kind: str) -> None:
         around = site + 1e-7 * np.column_stack((np.cos(turn), np.sin(turn)))
         slopes = made.gradient(around)
         np.testing.assert_allclose(slopes, np.tile(made.gradient(site), (12, 1)), atol=1e-4)
+
+
+@pytest.mark.parametrize("extrapolate", ["nan", "linear"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_kinds_without_gradients_say_which_have_them(kind: str, extrapolate: str) -> None:
+    points = datasets.uniform(30, seed=1)
+    found = NaturalNeighbor(points, points[:, 0], kind=kind, extrapolate=extrapolate)
+    with pytest.raises(InputError, match=f"kind='{kind}'.*'sibson1' or kind='farin'"):
+        found.site_gradients()
+    with pytest.raises(InputError, match=f"kind='{kind}'"):
+        found.site_gradients(values=points[:, 1])

@@ -217,3 +217,5 @@ def test_what_there_is_in_the_plane_alone_is_refused_by_name() -> None:
         height.gradient(points[:1])
     with pytest.raises(InputError, match="hessian"):
         height.hessian(points[:1])
+    with pytest.raises(InputError, match="site_gradients"):
+        height.site_gradients()

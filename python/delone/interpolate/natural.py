@@ -149,6 +149,17 @@ class NaturalNeighbor(Smooth):
         threads = as_workers(self._workers)
         return plane_gradients(self._sheet.points, self._around(), columns, threads)
 
+    def _require_gradients(self) -> None:
+        if self._kind in _WITH_GRADIENTS:
+            return
+        if self._ndim == SPACE:
+            refuse("site_gradients", f"kind={self._kind!r} is made without gradients")
+        instead = " or ".join(f"kind={kind!r}" for kind in _WITH_GRADIENTS)
+        raise InputError(
+            f"kind={self._kind!r} is made without gradients at the sites: choose {instead}, "
+            "or ask for the slope of the interpolant anywhere else by gradient(xi)"
+        )
+
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         if self._ndim == SPACE:
             return self._in_space(queries, columns, order)

@@ -133,6 +133,12 @@ class Smooth(Interpolator):
             One for each point of `triangulation`, of the shape of one value and 2. With constraints
             respected the points on them have one on each side; these come after the others.
 
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError, InputError
+            As for values; or the interpolant is made without gradients, as those of natural
+            neighbours of the kinds ``"sibson"`` and ``"laplace"`` are.
+
         Examples
         --------
         >>> import numpy as np
@@ -142,9 +148,13 @@ class Smooth(Interpolator):
         >>> np.allclose(bowl.site_gradients(), 2 * points)
         True
         """
+        self._require_gradients()
         interpolator, field, columns = self._with(values)
         found = interpolator.gradients(columns)
         return shaped_derivatives(found, field, found.shape[:1])
+
+    def _require_gradients(self) -> None:
+        """Refuse where the interpolant is made without gradients at the sites."""
 
     def gradients(self, columns: Floats) -> Floats:
         """Return gradients at the sites; see `Interpolator.gradients`."""

@@ -199,7 +199,7 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     if array.dtype.kind not in "iufc":
         raise DtypeError(f"{name} must hold numbers, got dtype {array.dtype}")
     if array.ndim == 0 or len(array) != count:
-        raise ShapeError(f"{name} must have shape ({count},) or ({count}, k), got {array.shape}")
+        raise ShapeError(f"{name} must have shape ({count},) or ({count}, ...), got {array.shape}")
     is_complex = array.dtype.kind == "c"
     plain = np.require(array, np.complex128 if is_complex else np.float64, ["C", "A"])
     _refuse_rounded(array, plain, name)
