@@ -106,3 +106,18 @@ def test_progress_is_words():
 def test_json_is_json(survey, tmp_path, command):
     _, out, _ = command("tile", survey, "--dry-run", "--json")
     assert json.loads(out)["tasks"] > 0
+
+
+def test_progress_has_room_in_eighty_columns(monkeypatch, capsys):
+    from delone.cli.tiles import _live
+
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    with _live(False) as tell:
+        tell(distributed.Progress("deal", 123_456, 654_321))
+        tell(distributed.Progress("proceed-0012", 12_345, 54_321, 54_321, 4_321, 12, 10**9, 2**37))
+    err = capsys.readouterr().err
+    for words in ("inserting, round 12", "12345/54321", "0:00:00"):
+        assert words in err
+    assert "54,321 tiles · 4,321 open · 1,000,000,000 foreign points · 131,072 MiB" in err

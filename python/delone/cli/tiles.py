@@ -160,19 +160,20 @@ def _live(silent: bool) -> Iterator[Callable[[Progress], None] | None]:
     if silent or not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
+    from rich.console import Console, Group
+    from rich.live import Live
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bars
 
-    columns = [
+    columns = (
         TextColumn("{task.description}"),
-        BarColumn(),
+        BarColumn(bar_width=_BAR),
         MofNCompleteColumn(),
-        TextColumn("{task.fields[more]}"),
         TimeElapsedColumn(),
-    ]
-    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
-        task = bars.add_task("beginning", total=None, more="")
+    )
+    bars, counters = Bars(*columns), Bars(TextColumn("{task.description}"))
+    with Live(Group(bars, counters), console=Console(stderr=True), transient=True):
+        task, line = bars.add_task("beginning", total=None), counters.add_task("")
 
         def tell(progress: Progress) -> None:
             description, more = _words(progress)
@@ -181,12 +182,14 @@ def _live(silent: bool) -> Iterator[Callable[[Progress], None] | None]:
                 description=description,
                 completed=progress.done,
                 total=progress.total or None,
-                more=more,
             )
+            counters.update(line, description=more)
 
         yield tell
 
 
+# With the longest stage, a million tasks and the time, no line is longer than 80 columns.
+_BAR = 30
 _STAGES = {
     "look": "looking at pieces",
     "deal": "dealing points to tiles",
