@@ -73,3 +73,11 @@ def test_what_cannot_be_is_said(lake: Path, capsys: pytest.CaptureFixture[str]) 
     assert run(["mesh", str(lake), "--max-area", "1e-9"]) == 4
     assert "max_points" in capsys.readouterr().err
     assert run(["mesh", str(lake), "-o", "lake.xyz"]) == 5
+
+
+def test_the_report_names_what_it_says(lake: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["mesh", str(lake)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    column = lines[1].index("points") + len("peak memory  ")
+    for line in lines[1 : lines.index("")]:
+        assert line[column - 1] == " " and line[column] != " "

@@ -46,6 +46,18 @@ def test_report_for_people(survey, command):
     assert command("triangulate", survey, "--quiet") == (0, "", "")
 
 
+def test_names_of_files_are_whole(tmp_path, command):
+    # Shorter than any table of a report, and longer than a line of a terminal.
+    for name in ("a" * 40, "b" * 180):
+        file = tmp_path / f"{name}.csv"
+        file.write_text("0,0\n1,0\n0,1\n")
+        out = tmp_path / f"{name}.npz"
+        code, said, _ = command("triangulate", file, "-o", out)
+        assert code == 0
+        assert said.splitlines()[0] == str(file)
+        assert any(line.endswith(f" {out}") for line in said.splitlines())
+
+
 def test_the_smallest_angle(tmp_path, figures):
     (tmp_path / "a.csv").write_text("0,0\n1,0\n0.5,0.8660254037844386\n")
     found = figures("triangulate", tmp_path / "a.csv")

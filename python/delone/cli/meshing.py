@@ -90,7 +90,6 @@ def make_mesh(
         for path, write in writers.items():
             with watch.stage(f"write {path.name}"):
                 write(stack.enter_context(replacing(path)), found, crs=survey.crs)
-    report = found.report
     figures: dict[str, Any] = {
         "delone": __version__,
         "input": str(source),
@@ -105,9 +104,7 @@ def make_mesh(
         print_json(figures)
     elif not quiet:
         rows = [("points", f"{found.npoints:,}"), ("triangles", f"{found.nsimplex:,}")]
-        for line in str(report).splitlines():
-            name, _, what = line.partition(": ")
-            rows.append((name, what))
+        rows.append(("quality", str(found.report)))
         rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
         rows += [("written", str(path)) for path in writers]
         print_rows(str(source), rows)

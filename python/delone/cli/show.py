@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from delone.cli.constraints import constraint_rows
 from delone.cli.exits import Exit, Failure
@@ -27,6 +28,9 @@ __all__ = [
 ]
 
 Row = tuple[str, str]
+
+# Longer than any line of a report: Linux has names of files of up to 4096 bytes.
+_UNBOUNDED = 1 << 16
 
 
 def print_json(figures: dict[str, Any]) -> None:
@@ -50,12 +54,12 @@ def print_rows(title: str, rows: list[Row]) -> None:
     rows : list of tuple of str
         Names and values.
     """
-    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
     for name, value in rows:
         table.add_row(name, value)
-    print_text(_rendered(table))
+    print_text(f"{_heading(title)}\n{_rendered(table)}")
 
 
 def print_stages(stages: list[dict[str, Any]]) -> None:
@@ -171,13 +175,26 @@ def print_text(text: str) -> None:
         raise Failure("", Exit.OUTPUT) from None
 
 
+def _heading(title: str) -> str:
+    # Whole whatever its length, so that the name of a file can be copied and searched for.
+    console = _console()
+    with console.capture() as captured:
+        console.print(Text(title, style="italic"), soft_wrap=True, end="")
+    heading: str = captured.get()
+    return heading
+
+
 def _rendered(table: Table) -> str:
-    # Reports are read from files and pipes too: those are not to be cut at 80 columns.
-    width = None if sys.stdout.isatty() else 160
-    console = Console(highlight=False, markup=False, width=width)
+    console = _console()
     with console.capture() as captured:
         console.print(table)
     return "\n".join(line.rstrip() for line in captured.get().splitlines())
+
+
+def _console() -> Console:
+    # Reports are read from files and pipes too, where no line is too long.
+    width = None if sys.stdout.isatty() else _UNBOUNDED
+    return Console(highlight=False, markup=False, width=width)
 
 
 @contextmanager
