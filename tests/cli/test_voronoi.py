@@ -43,6 +43,19 @@ def test_cells_carry_the_attributes_of_their_sites(suffix, sites, outline, figur
     assert cells.geometry[inside].covers(given.geometry[inside]).all()
 
 
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".fgb", ".parquet"])
+def test_empty_cells_are_written(suffix, figures, tmp_path):
+    # The third site is hidden by the first, the last one is far from the box.
+    (tmp_path / "a.csv").write_text("x,y,w\n0,0,9\n4,0,0\n1,0,0\n90,90,0\n")
+    path = tmp_path / f"cells{suffix}"
+    figures("voronoi", tmp_path / "a.csv", "--clip=-2,-1,6,1", "--weights", "w", "-o", path)
+    cells = (geopandas.read_parquet if suffix == ".parquet" else geopandas.read_file)(path)
+    assert cells["w"].tolist() == [9, 0, 0, 0]
+    there = ~(cells.geometry.isna() | cells.geometry.is_empty)
+    assert there.tolist() == [True, True, False, False]
+    assert shapely.area(cells.geometry.values[there]).sum() == pytest.approx(16)
+
+
 def test_boxes_and_weights(sites, figures, command):
     found = figures("voronoi", sites, "--clip=-1,-1,11,7")
     assert found["area"] == 96

@@ -219,8 +219,13 @@ def _write_table(table: Any, path: Path, suffix: str) -> None:
         table.to_parquet(path, index=False)
         return
     pyogrio = require("pyogrio", extra="geo", what="writing cells")
-    # Seventeen digits bring back every double.
-    exact = {"SIGNIFICANT_FIGURES": 17} if suffix == ".geojson" else {}
+    options: dict[str, Any] = {}
+    if suffix == ".geojson":
+        # Seventeen digits bring back every double.
+        options["SIGNIFICANT_FIGURES"] = 17
+    elif suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
+        # The index of FlatGeobuf has no place for cells that are empty.
+        options["SPATIAL_INDEX"] = "NO"
     pyogrio.write_dataframe(
-        table, path, layer="cells", driver=_DRIVERS[suffix], promote_to_multi=True, **exact
+        table, path, layer="cells", driver=_DRIVERS[suffix], promote_to_multi=True, **options
     )
