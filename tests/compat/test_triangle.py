@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
-from delone.compat.triangle import triangulate
-from delone.errors import DtypeError, InputError
+from delone.compat.triangle import convex_hull, delaunay, triangulate, voronoi
+from delone.errors import DtypeError, InputError, ShapeError
 
 SQUARE: dict[str, Any] = {"vertices": [(0, 0), (1, 0), (1, 1), (0, 1)]}
 
@@ -28,3 +29,9 @@ def test_without_segments_nothing_is_enclosed() -> None:
     with pytest.raises(InputError, match="no ring of segments encloses anything"):
         triangulate(SQUARE, "p")
     assert len(triangulate(SQUARE, "pc")["triangles"]) == 2
+
+
+@pytest.mark.parametrize("call", [delaunay, convex_hull, voronoi])
+def test_points_are_of_the_plane(call: Any) -> None:
+    with pytest.raises(ShapeError, match=r"pts must have shape \(n, 2\), got \(5, 3\)"):
+        call(np.eye(5, 3))

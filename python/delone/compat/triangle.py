@@ -308,7 +308,7 @@ def delaunay(pts: ArrayLike) -> Indices:
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points.
+        `pts` is no array of finite points in the plane.
 
     Examples
     --------
@@ -316,7 +316,7 @@ def delaunay(pts: ArrayLike) -> Indices:
     >>> len(delaunay([(0, 0), (0, 1), (0.5, 0.5), (1, 1), (1, 0)]))
     4
     """
-    return Delaunay(pts).simplices.copy()
+    return _of_the_plane(pts).simplices.copy()
 
 
 def convex_hull(pts: ArrayLike) -> Indices:
@@ -337,7 +337,7 @@ def convex_hull(pts: ArrayLike) -> Indices:
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points.
+        `pts` is no array of finite points in the plane.
 
     Examples
     --------
@@ -345,7 +345,7 @@ def convex_hull(pts: ArrayLike) -> Indices:
     >>> len(convex_hull([(0, 0), (0, 1), (1, 1), (1, 0)]))
     4
     """
-    return Delaunay(pts).convex_hull.copy()
+    return _of_the_plane(pts).convex_hull.copy()
 
 
 def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
@@ -372,7 +372,7 @@ def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points.
+        `pts` is no array of finite points in the plane.
 
     Examples
     --------
@@ -381,7 +381,7 @@ def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
     >>> points.shape, edges.shape, direction.shape
     ((4, 2), (4, 2), (4, 2))
     """
-    found = Delaunay(pts)
+    found = _of_the_plane(pts)
     t, k = np.nonzero(found.neighbors > np.arange(found.nsimplex, dtype=np.int32)[:, None])
     edges = np.column_stack((t, found.neighbors[t, k])).astype(np.int32)
     origin, k = np.nonzero(found.neighbors < 0)
@@ -389,3 +389,7 @@ def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
     along = found.points[head] - found.points[tail]
     direction = np.column_stack((along[:, 1], -along[:, 0]))
     return found.circumcenters.copy(), edges, origin.astype(np.int32), direction
+
+
+def _of_the_plane(pts: ArrayLike) -> Delaunay:
+    return Delaunay(as_points(pts, ndim=2, name="pts"))
