@@ -6,6 +6,7 @@ import pytest
 
 from delone import Delaunay
 from delone.io import write_mesh
+from delone.io.registry import mesh_suffixes
 
 SQUARE = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.0)])
 KITE = np.array([(0, 0, 0), (4, -1, 0), (8, 0, 0), (4, 1, 0.0)])
@@ -25,6 +26,13 @@ def test_what_delone_writes_passes(tmp_path, figures, suffix):
     found = figures("check", file, "--canonical")
     assert found["ok"] and found["delaunay"] and found["canonical"]
     assert found["faults"] == {}
+
+
+def test_help_names_every_suffix_that_is_read(command):
+    code, out, _ = command("check", "--help")
+    assert code == 0
+    for suffix in mesh_suffixes():
+        assert suffix in out
 
 
 def test_duplicates_are_no_fault(tmp_path, command):

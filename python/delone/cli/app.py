@@ -52,7 +52,7 @@ from delone.cli.solid import (
 )
 from delone.errors import MissingExtraError, NonFiniteError
 from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
-from delone.io.registry import writer
+from delone.io.registry import mesh_suffixes, writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -240,7 +240,9 @@ def triangulate(
 def check(
     mesh: Annotated[
         Path,
-        typer.Argument(metavar="MESH", help="File of triangles: .npz .vtu .ply .obj .stl .msh"),
+        typer.Argument(
+            metavar="MESH", help="File of triangles or tetrahedra: " + " ".join(mesh_suffixes())
+        ),
     ],
     *,
     canonical: Annotated[

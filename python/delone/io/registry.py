@@ -35,6 +35,7 @@ __all__ = [
     "MeshFile",
     "holds_geometries",
     "input_suffixes",
+    "mesh_suffixes",
     "output_suffixes",
     "read_geometries",
     "read_mesh",
@@ -112,6 +113,23 @@ def input_suffixes() -> tuple[str, ...]:
     True
     """
     return tuple(_READERS)
+
+
+def mesh_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of the files that `read_mesh` reads.
+
+    Returns
+    -------
+    tuple of str
+        With the dot.
+
+    Examples
+    --------
+    >>> from delone.io.registry import mesh_suffixes
+    >>> ".ele" in mesh_suffixes()
+    True
+    """
+    return tuple(_MESH_READERS)
 
 
 def output_suffixes() -> tuple[str, ...]:
