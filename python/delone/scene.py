@@ -51,7 +51,7 @@ def unstructured(mesh: Delaunay, *, values: ArrayLike | None = None, name: str =
     Raises
     ------
     InputError
-        The triangulation is in the plane, or there is another number of values.
+        `mesh` is no triangulation in space, or there is another number of values.
     MissingExtraError
         pyvista is not installed.
 
@@ -63,8 +63,7 @@ def unstructured(mesh: Delaunay, *, values: ArrayLike | None = None, name: str =
     True
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in space")
-    if mesh.ndim != 3:
-        raise InputError("a scene needs points in space: draw those in the plane by delone.plot")
+    _require_space(mesh, corners=(4,))
     return _grid(pyvista, mesh.points, mesh.simplices, values, name)
 
 
@@ -111,7 +110,7 @@ def plot(
     Raises
     ------
     InputError
-        `shape` is in the plane, or an option is none of its choices.
+        `shape` is in the plane or has no simplices, or an option is none of its choices.
     MissingExtraError
         pyvista is not installed.
 
@@ -124,16 +123,15 @@ def plot(
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in space")
     as_choice(cut, ("none", *_AXES), name="cut")
-    if shape.ndim != 3:
-        raise InputError("a scene needs points in space: draw those in the plane by delone.plot")
+    _require_space(shape, corners=(3, 4))
     if not 0 < shrink <= 1:
         raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
     if plotter is None:
         plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(_SIZE))
         plotter.set_background("white")
-    rows = _kept(shape, cut)
+    rows, nsimplex = _kept(shape, cut), len(shape.simplices)
     chosen = None if values is None else np.asarray(values, dtype=np.float64)
-    if chosen is not None and len(chosen) == shape.nsimplex != shape.npoints:
+    if chosen is not None and len(chosen) == nsimplex != len(shape.points):
         chosen = chosen[rows]
     grid = _grid(pyvista, shape.points, shape.simplices[rows], chosen, "values")
     if shrink < 1:
@@ -227,6 +225,18 @@ def image(shape: Delaunay | ConvexHull, **options: Any) -> NDArray[np.uint8]:
     return picture
 
 
+def _require_space(shape: Any, *, corners: tuple[int, ...]) -> None:
+    """Refuse what has no simplices in space, and say what draws it."""
+    if getattr(shape, "ndim", 3) != 3:
+        raise InputError("a scene needs points in space: draw those in the plane by delone.plot")
+    places, simplices = (np.shape(getattr(shape, each, ())) for each in ("points", "simplices"))
+    if places[1:] == (3,) and simplices[1:] in ((width,) for width in corners):
+        return
+    name, hull = type(shape).__name__, " and no convex hull" if 3 in corners else ""
+    hint = "use its own plot()" if hasattr(shape, "plot") else "draw delone.Delaunay(points)"
+    raise InputError(f"a {name} is no triangulation in space{hull}: {hint}")
+
+
 def _quiet() -> Any:
     """Let VTK not warn that there is no screen: none is needed."""
     return require("pyvista", extra="pyvista", what="drawing in space").vtk_verbosity("error")
@@ -244,7 +254,7 @@ def _aimed(plotter: Any) -> Any:
 def _kept(shape: Delaunay | ConvexHull, cut: str) -> NDArray[np.intp]:
     """The simplices whose centre is on the nearer side of the middle of the box."""
     if cut == "none":
-        return np.arange(shape.nsimplex)
+        return np.arange(len(shape.simplices))
     axis = _AXES[cut]
     along = shape.points[:, axis]
     middle = along.min() / 2 + along.max() / 2

@@ -17,6 +17,7 @@ from delone import (
     improve,
 )
 from delone.atomic import replacing
+from delone.compat.scipy import Delaunay as DropIn
 from delone.io import input_suffixes, output_suffixes, read_mesh, read_points, write_mesh
 
 # It asks once, when it is imported, which libraries are there: before tests take some away.
@@ -187,4 +188,25 @@ def test_npz_holds_what_can_be_loaded(tmp_path):
 def test_improved_tetrahedra_have_a_picture(tmp_path):
     pytest.importorskip("pyvista")
     write_mesh(tmp_path / "a.png", improve(Delaunay([*CUBE, (0.4, 0.5, 0.6)])))
+    assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".gpkg", ".geojson", ".png", ".svg"])
+def test_the_drop_in_is_written_but_for_its_edges(tmp_path, suffix):
+    """It has the attributes of SciPy's class, and edges are none of them."""
+    drop_in = DropIn(MESH.points)
+    with pytest.raises(InputError, match=r"edges: write delone\.Delaunay"):
+        write_mesh(tmp_path / f"a{suffix}", drop_in, edges=True)
+    if suffix in (".png", ".svg"):
+        with pytest.raises(InputError, match=r"compat\.scipy\.Delaunay.*draw delone\.Delaunay"):
+            write_mesh(tmp_path / f"a{suffix}", drop_in)
+        assert not list(tmp_path.iterdir())
+    else:
+        write_mesh(tmp_path / f"a{suffix}", drop_in)
+        assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_the_drop_in_in_space_has_a_picture(tmp_path):
+    pytest.importorskip("pyvista")
+    write_mesh(tmp_path / "a.png", DropIn([*CUBE, (0.4, 0.5, 0.6)]))
     assert (tmp_path / "a.png").stat().st_size > 1000

@@ -13,7 +13,15 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from PIL import Image
 
-from delone import Delaunay, InputError, MissingExtraError, ShapeError, datasets
+from delone import (
+    ConvexHull,
+    Delaunay,
+    InputError,
+    MissingExtraError,
+    ShapeError,
+    Voronoi,
+    datasets,
+)
 from delone.plot import plot, save_picture
 
 FIVE = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
@@ -186,3 +194,25 @@ def test_what_no_picture_can_hold_is_refused(tmp_path, points, suffix):
 def test_heights_of_which_nothing_shows_are_refused(tmp_path):
     with pytest.raises(InputError, match="row 2"):
         save_picture(tmp_path / "a.png", Delaunay([(0, 0), (1, 0), (0, 1)]), z=[1, 2, np.nan])
+
+
+SPACE = datasets.uniform(20, ndim=3)
+
+
+@pytest.mark.parametrize(
+    ("other", "instead"),
+    [
+        (Delaunay(SPACE), "delone.scene"),
+        (ConvexHull(SPACE), "delone.scene"),
+        (ConvexHull(FIVE.points), "draw delone.Delaunay"),
+        (Voronoi(FIVE.points), "own plot"),
+        (Voronoi(SPACE), "own plot"),
+        (FIVE.points, "draw delone.Delaunay"),
+    ],
+)
+def test_what_is_no_triangulation_in_the_plane_is_refused(tmp_path, other, instead):
+    with pytest.raises(InputError, match=instead):
+        plot(other)
+    with pytest.raises(InputError, match=instead):
+        save_picture(tmp_path / "a.png", other)
+    assert list(tmp_path.iterdir()) == []

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from delone import ConvexHull, Delaunay, InputError, datasets, scene
+from delone import ConvexHull, Delaunay, InputError, Voronoi, datasets, lawson, scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -55,3 +55,16 @@ def test_what_is_refused() -> None:
     for options in ({"cut": "w"}, {"shrink": 0}, {"values": [1, 2, 3]}):
         with pytest.raises(InputError):
             scene.plot(mesh, off_screen=True, **options)
+
+
+def test_what_has_no_simplices_in_space_is_refused() -> None:
+    flat = Delaunay(datasets.uniform(20))
+    for other in (lawson(flat.points, flat.simplices), None):
+        for draw in (scene.unstructured, scene.plot, scene.image):
+            with pytest.raises(InputError, match="no triangulation in space"):
+                draw(other)
+    for draw in (scene.unstructured, scene.plot, scene.image):
+        with pytest.raises(InputError, match="use its own plot"):
+            draw(Voronoi(solid().points))
+    with pytest.raises(InputError, match="no triangulation in space: "):
+        scene.unstructured(ConvexHull(solid().points))

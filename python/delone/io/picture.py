@@ -56,7 +56,8 @@ def _draw_space(
     mesh: Any = triangulation
     # pyvista tells formats by suffixes, and what replaces a file has one of its own.
     picture = path.with_name(path.name + ".png")
+    # Triangulations of others have no volumes, and one colour.
     with np.errstate(divide="ignore"):
-        size = np.log10(mesh.volumes)
+        size = np.log10(getattr(mesh, "volumes", 0.0))
     draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut="x", bar=False)
     picture.replace(path)

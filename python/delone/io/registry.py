@@ -416,6 +416,8 @@ def write_mesh(
     # Sides of a hull have a corner less.
     if np.shape(getattr(triangulation, "simplices", ()))[1:] != (ndim + 1,):
         raise InputError(f"a {name} is no triangulation: there is nothing to write")
+    if edges and not hasattr(triangulation, "edges"):
+        raise InputError(f"this {name} has no array of edges: write delone.Delaunay(points)")
     write = writer(path, space=ndim == 3)
     if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
         raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")

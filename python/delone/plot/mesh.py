@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
-__all__ = ["plot", "require_drawable"]
+__all__ = ["plot", "require_drawable", "require_flat"]
 
 # A triangle of fewer pixels than this is no triangle to the eye.
 _VISIBLE = 14.0
@@ -87,7 +87,8 @@ def plot(
     MissingExtraError
         matplotlib is not installed.
     InputError
-        `z` has the wrong length or no finite value, or there are too many triangles for circles.
+        `triangulation` is none in the plane; `z` has the wrong length or no finite value; there
+        are too many triangles for circles.
 
     Notes
     -----
@@ -109,6 +110,7 @@ def plot(
     1.0
     """
     require("matplotlib", extra="plot", what="drawing")
+    require_flat(triangulation)
     if circumcircles and triangulation.nsimplex > _MOST_CIRCLES:
         raise InputError(
             f"the circles of {triangulation.nsimplex} triangles would hide each other; "
@@ -138,6 +140,25 @@ def plot(
         _draw_dots(ax, _dots(triangulation))
     _finish(ax, triangulation, circumcircles, title)
     return ax
+
+
+def require_flat(triangulation: Mesh) -> None:
+    """Refuse what is no triangulation of delone in the plane, and say what draws it."""
+    corners = np.shape(getattr(triangulation, "simplices", ()))[1:]
+    if corners == (3,) and hasattr(triangulation, "edges") and hasattr(triangulation, "min_bound"):
+        return
+    kind = type(triangulation)
+    if getattr(triangulation, "ndim", 2) == 3 and corners:
+        raise InputError(
+            f"this {kind.__name__} is in space, and matplotlib draws what is in the plane: "
+            "use delone.scene"
+        )
+    own = hasattr(triangulation, "plot")
+    hint = "use its own plot()" if own else "draw delone.Delaunay(points)"
+    raise InputError(
+        f"{kind.__module__}.{kind.__name__} is no triangulation in the plane that can be drawn: "
+        f"{hint}"
+    )
 
 
 def require_drawable(triangulation: Mesh, heights: Floats | None) -> None:

@@ -8,7 +8,7 @@ from delone.atomic import replacing
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.io.extras import require
 from delone.io.heights import as_values
-from delone.plot.mesh import plot, require_drawable
+from delone.plot.mesh import plot, require_drawable, require_flat
 from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
@@ -94,6 +94,7 @@ def draw_picture(
 ) -> None:
     """Draw into the file itself; `save_picture` is the same by way of a temporary file."""
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
+    require_flat(triangulation)
     require_drawable(triangulation, as_values(z, triangulation.npoints))
     width, height = _figure_size(triangulation, size, with_bar=z is not None)
     if isinstance(triangulation, QualityMesh):
