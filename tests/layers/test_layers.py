@@ -151,7 +151,7 @@ CORE: dict[str, set[str]] = {
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
-    "regular3": {"locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
+    "regular3": {"regular", "locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {"regular3", "voronoi", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "wide", "delone_predicates"} | GROUND,

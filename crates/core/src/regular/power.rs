@@ -36,9 +36,9 @@ const RANGE: (f64, f64) = (
 
 /// Distinct points and their weights.
 #[derive(Clone, Copy)]
-pub struct Weighted<'a> {
+pub struct Weighted<'a, const D: usize = 2> {
     /// Coordinates.
-    pub points: &'a [Point2],
+    pub points: &'a [[f64; D]],
     /// Weights.
     pub weights: &'a [f64],
 }

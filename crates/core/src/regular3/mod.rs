@@ -7,12 +7,11 @@ use delone_predicates::{Point3, orient3d};
 
 use crate::arrays::Arrays;
 use crate::error::Result;
-use crate::memory::{filled, with_room};
 use crate::order::space::arrange;
 use crate::points;
+use crate::regular::{Heaviest, Weighted, heaviest};
 use crate::watch::Watch;
 
-pub use insertion::Weighted;
 pub(crate) use power::determinant;
 pub use power::{power_canonical, power_sign};
 
@@ -29,40 +28,24 @@ pub struct Regular {
 pub fn regular(points: &[Point3], weights: &[f64], watch: &Watch) -> Result<Regular> {
     points::scan(points)?;
     let arranged = arrange(points, watch)?;
-    let mut heaviest = arranged.rows.clone();
-    let mut place = filled(points.len(), 0_u32)?;
-    for (i, &row) in (0_u32..).zip(&arranged.rows) {
-        place[row as usize] = i;
-    }
-    for &[row, first] in &arranged.duplicates {
-        let best = &mut heaviest[place[first as usize] as usize];
-        if weights[row as usize] > weights[*best as usize] {
-            *best = row;
-        }
-    }
-    let mut stands_for = with_room(points.len())?;
-    stands_for.extend(0..points.len() as i32);
-    for &[row, first] in &arranged.duplicates {
-        stands_for[row as usize] = heaviest[place[first as usize] as usize] as i32;
-    }
-    for (&row, &best) in arranged.rows.iter().zip(&heaviest) {
-        stands_for[row as usize] = best as i32;
-    }
-    let mut own = with_room(heaviest.len())?;
-    own.extend(heaviest.iter().map(|&row| weights[row as usize]));
     let Some(first) = spanning(&arranged.points) else {
         return Err(points::degenerate_in_space(
             &arranged.points,
             &arranged.rows,
         ));
     };
+    let Heaviest {
+        rows,
+        weights,
+        stands_for,
+    } = heaviest(weights, &arranged.rows, &arranged.duplicates)?;
     let sites = Weighted {
         points: &arranged.points,
-        weights: &own,
+        weights: &weights,
     };
     let mut tetrahedra = insertion::insert_all(sites, first, watch)?;
     for corners in &mut tetrahedra.simplices {
-        *corners = corners.map(|v| heaviest[v as usize] as i32);
+        *corners = corners.map(|v| rows[v as usize] as i32);
     }
     Ok(Regular {
         tetrahedra,

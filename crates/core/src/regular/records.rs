@@ -1,0 +1,148 @@
+//! Simplices with ghosts while sites are inserted: what is the same in the plane and in space.
+
+use crate::arrays::Arrays;
+use crate::error::{Error, Result};
+use crate::memory::{filled, with_room};
+
+/// The vertex at infinity.
+pub const GHOST: u32 = u32::MAX;
+/// No simplex.
+pub const NONE: u32 = u32::MAX;
+
+/// The simplices that go for a site, and the sides that they leave: a simplex that goes and the corner
+/// opposite its side.
+pub type Hole = (Vec<u32>, Vec<(u32, usize)>);
+
+/// Simplices with `N` corners. Those that are free have nothing but ghosts.
+pub struct Records<const N: usize> {
+    /// The vertices of each.
+    pub vertices: Vec<[u32; N]>,
+    /// The simplex opposite each corner.
+    pub neighbors: Vec<[u32; N]>,
+    /// Where the next walk starts.
+    pub last: u32,
+    free: Vec<u32>,
+    /// The insertion in which a simplex was last looked at, and whether it has to go.
+    seen: Vec<(u32, bool)>,
+    stamp: u32,
+}
+
+impl<const N: usize> Records<N> {
+    /// None yet, with room for some.
+    pub fn with_room(n: usize) -> Result<Self> {
+        Ok(Self {
+            vertices: with_room(n)?,
+            neighbors: with_room(n)?,
+            last: 0,
+            free: Vec::new(),
+            seen: with_room(n)?,
+            stamp: 0,
+        })
+    }
+
+    /// One more.
+    pub fn push(&mut self, vertices: [u32; N], neighbors: [u32; N]) -> u32 {
+        self.vertices.push(vertices);
+        self.neighbors.push(neighbors);
+        self.seen.push((0, false));
+        self.vertices.len() as u32 - 1
+    }
+
+    /// One that is free, or one more.
+    pub fn take(&mut self) -> u32 {
+        match self.free.pop() {
+            Some(t) => {
+                self.seen[t as usize] = (0, false);
+                t
+            }
+            None => self.push([GHOST; N], [NONE; N]),
+        }
+    }
+
+    /// Makes simplices free, to be taken for others.
+    pub fn release(&mut self, hole: &[u32]) {
+        self.free.extend_from_slice(hole);
+    }
+
+    /// Empties those of a hole that nothing has taken: they could be taken for simplices.
+    pub fn empty(&mut self, hole: &[u32]) {
+        let from = self.free.len().saturating_sub(hole.len());
+        for &t in &self.free[from..] {
+            self.vertices[t as usize] = [GHOST; N];
+        }
+    }
+
+    /// The simplex that holds site `p`, boundary included, or a ghost outside the hull; `is_beyond`
+    /// tells whether `p` is strictly beyond the side opposite a corner.
+    #[inline]
+    pub fn locate(&self, p: u32, is_beyond: impl Fn([u32; N], usize) -> bool) -> Result<u32> {
+        let (mut t, mut from) = (self.last, NONE);
+        // No walk in a regular triangulation comes back to a simplex, so it has no more steps.
+        for _ in 0..=self.vertices.len() {
+            let (corners, around) = (self.vertices[t as usize], self.neighbors[t as usize]);
+            let step = (0..N).find(|&k| around[k] != from && is_beyond(corners, k));
+            let Some(k) = step else { return Ok(t) };
+            (t, from) = (around[k], t);
+            if self.vertices[t as usize].contains(&GHOST) {
+                return Ok(t);
+            }
+        }
+        Err(Error::Internal(format!(
+            "the walk to site {p} does not end"
+        )))
+    }
+
+    /// The simplices that have to go, connected with `start`; nothing where that stays.
+    #[inline]
+    pub fn hole(&mut self, start: u32, must_go: impl Fn(&Self, u32) -> bool) -> Option<Hole> {
+        self.stamp += 1;
+        if !must_go(self, start) {
+            return None;
+        }
+        self.seen[start as usize] = (self.stamp, true);
+        let mut stack = vec![start];
+        let (mut hole, mut rim) = (Vec::new(), Vec::new());
+        // Each simplex is seen once in an insertion, and pushed then at most.
+        while let Some(t) = stack.pop() {
+            hole.push(t);
+            for k in 0..N {
+                let other = self.neighbors[t as usize][k];
+                let (stamp, mut goes) = self.seen[other as usize];
+                if stamp != self.stamp {
+                    goes = must_go(self, other);
+                    self.seen[other as usize] = (self.stamp, goes);
+                    if goes {
+                        stack.push(other);
+                    }
+                }
+                if !goes {
+                    rim.push((t, k));
+                }
+            }
+        }
+        Some((hole, rim))
+    }
+
+    /// The simplices that are no ghosts, in their order.
+    pub fn export(self) -> Result<Arrays<N>> {
+        let mut number = filled(self.vertices.len(), -1)?;
+        let mut count = 0;
+        for (corners, number) in self.vertices.iter().zip(&mut number) {
+            if !corners.contains(&GHOST) {
+                *number = count;
+                count += 1;
+            }
+        }
+        let mut out = Arrays {
+            simplices: with_room(count as usize)?,
+            neighbors: with_room(count as usize)?,
+        };
+        let all = self.vertices.iter().zip(&self.neighbors).zip(&number);
+        for ((corners, around), _) in all.filter(|(_, number)| **number >= 0) {
+            out.simplices.push(corners.map(|v| v as i32));
+            let around = around.map(|other| number[other as usize]);
+            out.neighbors.push(around);
+        }
+        Ok(out)
+    }
+}
