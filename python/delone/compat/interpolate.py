@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
+from delone.compat.qhull import DimensionError, QhullError, as_low_points
+from delone.compat.scipy_delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
@@ -70,8 +72,6 @@ class _Triangulated:
 
     def _set(self, points: Any, values: ArrayLike, fill_value: Any, rescale: bool) -> None:
         """Triangulate, and keep what SciPy keeps."""
-        from delone.compat import scipy as drop_in
-
         self.tri = None
         if hasattr(points, "simplices"):
             if rescale:
@@ -87,9 +87,9 @@ class _Triangulated:
         if self.points.shape[1] == _SPACE:
             self._mesh: delaunay.Delaunay = self._in_space()
         else:
-            own = self.tri if isinstance(self.tri, drop_in.Delaunay) else None
+            own = self.tri if isinstance(self.tri, Delaunay) else None
             if own is None:
-                own = drop_in.Delaunay(self._scale(self.points))
+                own = Delaunay(self._scale(self.points))
             if self.tri is None:
                 self.tri = own
             if own.furthest_site:
@@ -101,14 +101,12 @@ class _Triangulated:
 
     def _in_space(self) -> delaunay.Delaunay:
         """The triangulation of points in space, kept as `tri` unless one was given."""
-        from delone.compat import scipy as drop_in
-
         if isinstance(self.tri, delaunay.Delaunay):
             return self.tri
         try:
             mesh = delaunay.Delaunay(self._scale(self.points))
         except DegenerateInputError as error:
-            raise drop_in.QhullError(str(error)) from error
+            raise QhullError(str(error)) from error
         if self.tri is None:
             self.tri = mesh
         return mesh
@@ -467,8 +465,6 @@ def estimate_gradients_2d_global(
 
 def _coordinates(points: Any) -> Floats:
     """Points from an array, or from one array for each coordinate, as SciPy takes them."""
-    from delone.compat import scipy as drop_in
-
     if isinstance(points, tuple) and points and np.ndim(points[0]) == 1:
         lengths = {np.shape(part) for part in points}
         if len(lengths) > 1:
@@ -476,10 +472,10 @@ def _coordinates(points: Any) -> Floats:
         points = np.column_stack(points)
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
-        raise drop_in.DimensionError(
+        raise DimensionError(
             "delone interpolates in the plane and in space; on a line use scipy.interpolate"
         )
-    return drop_in.as_low_points(points, _SPACE)
+    return as_low_points(points, _SPACE)
 
 
 def _queries(args: tuple[Any, ...], ndim: int) -> Floats:

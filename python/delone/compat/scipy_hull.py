@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import hull, predicates
-from delone.compat.qhull_options import QhullOptions, UnknownOptionError
-from delone.errors import DegenerateInputError, InputError, NonFiniteError, ShapeError
+from delone.compat.qhull import Incremental, QhullError, told_as_qhull_does
+from delone.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["ConvexHull"]
 
 
-class ConvexHull:
+class ConvexHull(Incremental):
     """Convex hull with the interface of ``scipy.spatial.ConvexHull``.
 
     Parameters
@@ -103,83 +103,20 @@ class ConvexHull:
         incremental: bool = False,
         qhull_options: str | None = None,
     ) -> None:
-        from delone.compat import scipy
-
-        self._open = bool(incremental)
         options, self._viewer = _viewer("Qt" if qhull_options is None else qhull_options)
-        try:
-            self._options = QhullOptions.parse(options, incremental=self._open)
-        except UnknownOptionError as error:
-            raise scipy.QhullError(str(error)) from error
-        self._set(scipy.as_low_points(points, 3))
+        self._begin(points, options, incremental)
 
     def _set(self, points: Floats) -> None:
-        """Compute the hull; nothing changes where that fails."""
-        from delone.compat import scipy
-
-        if len(points) == 0:
-            raise ShapeError("no points given")
         rows = np.arange(len(points), dtype=np.int32)
-        if self._viewer is not None:
-            if self._viewer[0] >= len(points):
-                raise scipy.QhullError(f"option QG names point {self._viewer[0]}, beyond the last")
-            rows = np.delete(rows, self._viewer[0])
-        try:
+        with told_as_qhull_does(points):
+            if self._viewer is not None:
+                if self._viewer[0] >= len(points):
+                    raise QhullError(f"option QG names point {self._viewer[0]}, beyond the last")
+                rows = np.delete(rows, self._viewer[0])
             found = hull.ConvexHull(points[rows] if self._viewer else points)
-        except DegenerateInputError as error:
-            raise scipy.QhullError(str(error)) from error
-        except NonFiniteError as error:
-            # SciPy looks for NaN itself and leaves infinity to Qhull.
-            if np.isnan(points).any():
-                raise
-            raise scipy.QhullError(str(error)) from error
         self._points, self._hull, self._rows = points, found, rows
-        for name in _FOLLOWING:
-            self.__dict__.pop(name, None)
+        self._forget()
         self.ndim, self.npoints, self.nsimplex = found.ndim, len(points), found.nsimplex
-
-    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Add points and compute the hull anew.
-
-        Parameters
-        ----------
-        points : array_like, shape (k, ndim)
-            What to append to `points`.
-        restart : bool, optional
-            Accepted as in SciPy. The result is the same.
-
-        Raises
-        ------
-        RuntimeError
-            `incremental` was not set, or `close` has been called.
-        QhullError, ValueError
-            As in the constructor; then nothing has changed.
-
-        Examples
-        --------
-        >>> from delone.compat.scipy import ConvexHull
-        >>> hull = ConvexHull([(0, 0), (1, 0), (0, 1)], incremental=True)
-        >>> hull.add_points([(1, 1)])
-        >>> hull.volume
-        1.0
-        """
-        from delone.compat import scipy
-
-        if not self._open:
-            raise RuntimeError("points can be added with incremental=True only, and before close()")
-        more = scipy.as_low_points(points, 3)
-        if more.shape[1] != self.ndim:
-            raise ShapeError(f"points must have {self.ndim} coordinates, got shape {more.shape}")
-        self._set(np.concatenate((self._points, more)))
-
-    def close(self) -> None:
-        """End incremental mode; `add_points` is refused from then on."""
-        self._open = False
-
-    @property
-    def points(self) -> Floats:
-        """Coordinates."""
-        return self._points
 
     @cached_property
     def vertices(self) -> Indices:
@@ -245,10 +182,6 @@ class ConvexHull:
         """The greatest coordinates."""
         bound: Floats = self._points.max(axis=0)
         return bound
-
-
-# What is computed from the hull on first use.
-_FOLLOWING = [name for name, v in vars(ConvexHull).items() if isinstance(v, cached_property)]
 
 
 def _viewer(options: str) -> tuple[str, tuple[int, bool] | None]:

@@ -20,8 +20,9 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
-from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.compat.qhull import Incremental, triangulate
 from delone.errors import ShapeError
+from delone.plane.triangulation import first_rows
 from delone.voronoi.space import ridge_lists
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Voronoi", "voronoi_plot_2d"]
 
 
-class Voronoi:
+class Voronoi(Incremental):
     """Voronoi diagram with the interface of ``scipy.spatial.Voronoi``.
 
     Parameters
@@ -107,69 +108,18 @@ class Voronoi:
         incremental: bool = False,
         qhull_options: str | None = None,
     ) -> None:
-        from delone.compat import scipy
-
         self.furthest_site = bool(furthest_site)
-        self._open = bool(incremental)
         if qhull_options is None:
-            qhull_options = "Qc" if self._open else "Qbb Qc Qz"
-        try:
-            self._options = QhullOptions.parse(qhull_options, incremental=self._open)
-        except UnknownOptionError as error:
-            raise scipy.QhullError(str(error)) from error
-        self._set(scipy.as_low_points(points, 2 if self.furthest_site else 3))
+            qhull_options = "Qc" if incremental else "Qbb Qc Qz"
+        self._begin(points, qhull_options, incremental, 2 if self.furthest_site else 3)
 
     def _set(self, points: Floats) -> None:
-        """Compute the diagram; nothing changes where that fails."""
-        from delone.compat import scipy
-
-        mesh = scipy.triangulate(points, self.furthest_site)
+        mesh = triangulate(points, self.furthest_site)
         dual = _core.voronoi2 if mesh.ndim == 2 else _core.voronoi3
         arrays = dual(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
         self._points, self._mesh, self._dual = points, mesh, arrays
-        for name in _FOLLOWING:
-            self.__dict__.pop(name, None)
+        self._forget()
         self.ndim, self.npoints = mesh.ndim, mesh.npoints
-
-    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Add points and compute the diagram anew.
-
-        Parameters
-        ----------
-        points : array_like, shape (k, ndim)
-            What to append to `points`.
-        restart : bool, optional
-            Accepted as in SciPy. The result is the same.
-
-        Raises
-        ------
-        RuntimeError
-            `incremental` was not set, or `close` has been called.
-        QhullError, ValueError
-            As in the constructor; then nothing has changed.
-
-        Examples
-        --------
-        >>> from delone.compat.scipy import Voronoi
-        >>> vor = Voronoi([(0, 0), (2, 0), (0, 2)], incremental=True)
-        >>> vor.add_points([(2, 2)])
-        >>> vor.vertices
-        array([[1., 1.]])
-        """
-        from delone.compat import scipy
-
-        if not self._open:
-            raise RuntimeError("points can be added with incremental=True only, and before close()")
-        self._set(scipy.joined(self._points, points))
-
-    def close(self) -> None:
-        """End incremental mode; `add_points` is refused from then on."""
-        self._open = False
-
-    @property
-    def points(self) -> Floats:
-        """The sites."""
-        return self._points
 
     @cached_property
     def vertices(self) -> Floats:
@@ -217,8 +167,6 @@ class Voronoi:
 
     @cached_property
     def _first_rows(self) -> NDArray[np.int64]:
-        from delone.plane.triangulation import first_rows
-
         return first_rows(self._mesh.points)
 
     @property
@@ -240,10 +188,6 @@ class Voronoi:
     def max_bound(self) -> Floats:
         """The greatest coordinates."""
         return self._mesh.max_bound.copy()
-
-
-# What is computed from the diagram on first use.
-_FOLLOWING = [name for name, value in vars(Voronoi).items() if isinstance(value, cached_property)]
 
 
 def _gaps_once(region: list[int]) -> list[int]:

@@ -1,0 +1,264 @@
+"""What the classes share that take the places of Qhull's: errors, points, adding more of them."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import delaunay
+from delone._arrays import as_points, as_vectors
+from delone.compat.furthest import furthest_site as furthest_triangles
+from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
+from delone.plane import topology
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+    class QhullError(RuntimeError):
+        """Degenerate input or an unknown option: ``scipy.spatial.QhullError``."""
+
+else:
+    try:
+        from scipy.spatial import QhullError
+    except ImportError:
+
+        class QhullError(RuntimeError):
+            """Degenerate input or an unknown option; SciPy's own class where it is installed."""
+
+            # Users know it by this name.
+            __module__ = "delone.compat.scipy"
+
+
+__all__ = [
+    "DimensionError",
+    "Incremental",
+    "QhullError",
+    "as_low_points",
+    "as_queries",
+    "told_as_qhull_does",
+    "triangulate",
+]
+
+
+class DimensionError(InputError, NotImplementedError):
+    """The points have more coordinates than there is an answer for."""
+
+    __module__ = "delone.compat.scipy"
+
+
+class Incremental:
+    """Points, and what follows from them anew when more are added; the base of the drop-ins."""
+
+    _open: bool
+    _options: QhullOptions
+    _points: Floats
+
+    def _begin(
+        self, points: ArrayLike, options: str | None, incremental: bool, most: int = 3
+    ) -> None:
+        """Read the options, then take points of up to `most` coordinates."""
+        self._open = bool(incremental)
+        try:
+            self._options = QhullOptions.parse(options, incremental=self._open)
+        except UnknownOptionError as error:
+            raise QhullError(str(error)) from error
+        self._set(as_low_points(points, most))
+
+    def _set(self, points: Floats) -> None:
+        """Compute what there is of the points; nothing changes where that fails."""
+        raise NotImplementedError
+
+    def _forget(self) -> None:
+        """Drop what was computed on first use."""
+        for name in list(self.__dict__):
+            if isinstance(getattr(type(self), name, None), cached_property):
+                del self.__dict__[name]
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Add points, and compute everything anew.
+
+        Parameters
+        ----------
+        points : array_like, shape (k, ndim)
+            What to append to `points`.
+        restart : bool, optional
+            Accepted as in SciPy. The result is the same.
+
+        Raises
+        ------
+        RuntimeError
+            `incremental` was not set, or `close` has been called.
+        QhullError, ValueError
+            As in the constructor; then nothing has changed.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import ConvexHull, Delaunay, Voronoi
+        >>> tri = Delaunay([(0, 0), (1, 0), (0, 1)], incremental=True)
+        >>> tri.add_points([(1, 1)])
+        >>> tri.nsimplex
+        2
+        >>> hull = ConvexHull([(0, 0), (1, 0), (0, 1)], incremental=True)
+        >>> hull.add_points([(1, 1)])
+        >>> hull.volume
+        1.0
+        >>> vor = Voronoi([(0, 0), (2, 0), (0, 2)], incremental=True)
+        >>> vor.add_points([(2, 2)])
+        >>> vor.vertices
+        array([[1., 1.]])
+        """
+        if not self._open:
+            raise RuntimeError("points can be added with incremental=True only, and before close()")
+        more, ndim = as_low_points(points, 3), self._points.shape[1]
+        if more.shape[1] != ndim:
+            raise ShapeError(f"points must have {ndim} coordinates, got shape {more.shape}")
+        self._set(np.concatenate((self._points, more)))
+
+    def close(self) -> None:
+        """End incremental mode; `add_points` is refused from then on."""
+        self._open = False
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates, (npoints, ndim)."""
+        return self._points
+
+
+@contextmanager
+def told_as_qhull_does(points: Floats) -> Iterator[None]:
+    """Turn errors about points into those that SciPy raises.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, d)
+        The points that are worked on.
+
+    Returns
+    -------
+    context manager
+        In which the work is done.
+    """
+    if len(points) == 0:
+        raise ShapeError("no points given")
+    try:
+        yield
+    except DegenerateInputError as error:
+        raise QhullError(str(error)) from error
+    except NonFiniteError as error:
+        # SciPy looks for NaN itself and leaves infinity to Qhull.
+        if np.isnan(points).any():
+            raise
+        raise QhullError(str(error)) from error
+
+
+def triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
+    """Triangulate as SciPy does, and refuse with its kinds of errors.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Points.
+    furthest : bool
+        Whether circles are to hold all points, rather than none.
+
+    Returns
+    -------
+    delone.Delaunay
+        The triangulation.
+    """
+    with told_as_qhull_does(points):
+        mesh = delaunay.Delaunay(points)
+    if not furthest:
+        return mesh
+    simplices = furthest_triangles(mesh.points, mesh.hull)
+    arrays: dict[str, NDArray[Any]] = {
+        "points": mesh.points,
+        "simplices": simplices,
+        "neighbors": topology.neighbors(simplices, mesh.npoints),
+        "duplicates": np.empty((0, 2), dtype=np.int32),
+    }
+    return delaunay.Delaunay._from_arrays(arrays, {}, None)
+
+
+def as_low_points(points: ArrayLike, most: int) -> Floats:
+    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+        Points.
+    most : {2, 3}
+        The largest number of coordinates.
+
+    Returns
+    -------
+    ndarray of float64, of the same shape
+        The same.
+    """
+    ndim = 2 if most == 2 else None
+    if isinstance(points, np.ma.MaskedArray):
+        return as_points(points, ndim=ndim)  # which refuses it by name
+    try:
+        array = np.asarray(points)
+    except ValueError:
+        return as_points(points, ndim=ndim)
+    if array.ndim != 2:
+        raise ShapeError(f"points must have two dimensions (npoints, ndim), got {array.shape}")
+    if array.shape[1] < 2:
+        raise ShapeError(f"points must have at least two coordinates, got shape {array.shape}")
+    if array.shape[1] > most:
+        where = "in the plane" if most == 2 else "in the plane and in space"
+        raise DimensionError(
+            f"this answer of delone.compat.scipy is for points {where}; for "
+            f"{array.shape[1]} coordinates use scipy.spatial"
+        )
+    if array.dtype.kind in "bO":
+        return _unboxed(array)
+    return as_points(points, ndim=ndim)
+
+
+def _unboxed(array: NDArray[Any]) -> Floats:
+    """Booleans and Python objects as numbers, if these are the same numbers."""
+    numbers = array.astype(np.float64)
+    if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
+        wrong = array[(numbers != array) & ~np.isnan(numbers)]
+        raise DtypeError(f"points hold {wrong.flat[0]!r}, which float64 cannot")
+    return numbers
+
+
+def as_queries(xi: ArrayLike, ndim: int) -> Floats:
+    """Coerce points to locate as SciPy does where that is exact.
+
+    Parameters
+    ----------
+    xi : array_like, shape (..., ndim)
+        Points.
+    ndim : int
+        The number of coordinates.
+
+    Returns
+    -------
+    ndarray of float64, of the same shape
+        The same.
+
+    Raises
+    ------
+    IndexError
+        `xi` is a number.
+    ShapeError, DtypeError
+        It has another number of coordinates, or is none of numbers.
+    """
+    array = np.asanyarray(xi)
+    if array.ndim == 0:
+        raise IndexError("points to locate need a last axis of coordinates, got a single value")
+    if array.shape[-1] != ndim:
+        raise ShapeError(f"points must have {ndim} coordinates, got shape {array.shape}")
+    return _unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, ndim, name="xi")
