@@ -3,6 +3,12 @@
 >>> from delone import Delaunay
 >>> Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
 <Delaunay of 5 points: 4 triangles>
+
+`Delaunay` is of points in the plane or in space, `ConstrainedDelaunay` and `from_geometry` of
+segments and polygons, too. `mesh` and `improve` make triangles and tetrahedra of good shape;
+`Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay` are their kin. The modules
+`interpolate`, `distributed`, `io`, `plot`, `scene`, `predicates`, `datasets`, `testing`,
+`reference` and `compat` have the rest. What goes wrong is a `DeloneError`.
 """
 
 from __future__ import annotations

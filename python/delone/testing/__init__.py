@@ -3,7 +3,8 @@
 Nothing here uses the compiled core: coordinates become Python integers at one common power of two,
 which no arithmetic on them can round, and every test is a few lines of textbook geometry over NumPy
 arrays of such integers. What passes is the Delaunay triangulation of the real numbers that the
-doubles denote. `assert_delaunay` also takes points in space; the rest is two-dimensional.
+doubles denote. `assert_delaunay` takes points in space, too, and `same_tetrahedra` is for them; the
+rest is of the plane.
 """
 
 from delone.testing.constrained import ConstrainedArrays, assert_constrained_delaunay
