@@ -123,6 +123,18 @@ class _Triangulated:
         -------
         ndarray of float64 or complex128
             Values; the fill value outside of the hull.
+
+        Raises
+        ------
+        ValueError
+            The points have another number of coordinates than the sites, or are no numbers.
+
+        Examples
+        --------
+        >>> from delone.compat.scipy import LinearNDInterpolator
+        >>> height = LinearNDInterpolator([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0])
+        >>> height([(1, 1), (9, 9)]), height([1, 2], [1, 0])
+        (array([ 4., nan]), array([4., 3.]))
         """
         queries = self._scale(_queries(args, self.points.shape[1]))
         found = self._interpolator(queries)
@@ -240,7 +252,7 @@ class CloughTocher2DInterpolator(_Triangulated):
         self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))
 
     def __call__(self, *args: ArrayLike) -> NDArray[Any]:
-        """Interpolate at points; see `LinearNDInterpolator`."""
+        """Interpolate at points, as `LinearNDInterpolator` does when it is called."""
         self._interpolator.given = self.grad  # type: ignore[union-attr]
         return super().__call__(*args)
 

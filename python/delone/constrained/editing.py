@@ -149,6 +149,14 @@ class Editing:
         ------
         NonFiniteError, ShapeError, DtypeError
             As for `ConstrainedDelaunay`.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2)])
+        >>> with mesh.edit() as edit:
+        ...     print(edit.insert_points([(2, 1), (1, 2)]))
+        [4 5]
         """
         self._require_open()
         new = as_points(points, ndim=2).copy()
@@ -171,6 +179,15 @@ class Editing:
             A row is out of range, or a vertex that was added where segments cross.
         ShapeError, DtypeError
             `rows` are no integers in one row.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)], [(0, 2)])
+        >>> with mesh.edit() as edit:
+        ...     edit.remove_points([4])
+        >>> edit.result.npoints, edit.rows.points.tolist()
+        (4, [0, 1, 2, 3, -1])
         """
         self._require_open()
         gone = _rows(rows, self._npoints, "points")
@@ -189,6 +206,10 @@ class Editing:
         ------
         InputError, DtypeError
             As for `insert_segments`.
+
+        Examples
+        --------
+        See `Editing`.
         """
         self.insert_segments([(_row(a), _row(b))])
 
@@ -211,6 +232,14 @@ class Editing:
             A row is out of range, or a vertex that was added where segments cross.
         ShapeError, DtypeError
             `segments` are no pairs of integers.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2)])
+        >>> with mesh.edit() as edit:
+        ...     print(edit.insert_segments([(0, 1), (1, 2)]))
+        [1 2]
         """
         self._require_open()
         new = as_segments(segments, self._npoints).copy()
@@ -234,6 +263,10 @@ class Editing:
         ------
         InputError, DtypeError
             As for `remove_segments`.
+
+        Examples
+        --------
+        See `Editing` and `ConstrainedDelaunay.edit`.
         """
         first = _row(row)
         self.remove_segments([first] if end is None else [(first, _row(end))])
@@ -253,6 +286,15 @@ class Editing:
             A row is out of range, or no segment joins the two vertices.
         ShapeError, DtypeError
             `segments` are no integers in one or two columns.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> mesh = ConstrainedDelaunay([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2), (0, 1)])
+        >>> with mesh.edit() as edit:
+        ...     edit.remove_segments([(2, 0)])
+        >>> edit.result.segments.tolist()
+        [[0, 1]]
         """
         self._require_open()
         if np.ndim(segments) == 2:
