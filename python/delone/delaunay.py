@@ -49,8 +49,8 @@ class Delaunay(Spatial):
         How to compute it: ``"auto"`` (what is fastest), ``"bowyer-watson"`` (cavities, along a
         space-filling curve), ``"divide-and-conquer"`` (halves, merged), ``"incremental"``
         (randomised insertion and flips), ``"sweep"`` (a line over the plane) or ``"lifting"`` (the
-        convex hull of points lifted to a paraboloid). The triangles are the same. In space the
-        choices are ``"auto"`` and ``"bowyer-watson"``.
+        convex hull of points lifted to a paraboloid). The triangles are the same. In space, and
+        with `periodic`, the choices are ``"auto"`` and ``"bowyer-watson"``.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
 
