@@ -40,7 +40,8 @@ class Delaunay(Spatial):
     ----------
     points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
-        copied and taken as the exact numbers which they denote.
+        copied and taken as the exact numbers which they denote. Three columns are points in space:
+        of a surface with heights, give the first two.
     periodic : tuple of two floats or None, optional
         ``(Lx, Ly)``: the points come again after these distances in x and in y; None for a
         direction in which they do not. Then the result is no `Delaunay` but a
