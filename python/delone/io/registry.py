@@ -167,8 +167,8 @@ def read_points(
         mesh.
     columns : sequence of str or int, optional
         Columns of x, y and (if wanted) z, by name or by number from 0. By default columns are
-        recognised by their names; without names the first two or three are taken. For files of
-        geometries: the one attribute that is z.
+        recognised by their names; without names the first two or three are taken, also where the
+        first has the numbers of the points. For files of geometries: the one attribute that is z.
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
