@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,26 @@ def table(path: Path, points: Any, **columns: Any) -> Path:
     columns = {"x": points[:, 0], "y": points[:, 1], **columns}
     pyarrow.parquet.write_table(pyarrow.table(columns), path, row_group_size=100)
     return path
+
+
+def test_decimals_of_parquet_are_the_doubles_of_their_digits(tmp_path: Path) -> None:
+    import pyarrow
+
+    rng = np.random.default_rng(6)
+    texts = [[f"{number / 1000:.3f}" for number in rng.integers(0, 10**9, 400)] for _ in "xyz"]
+    x, y, z = (
+        pyarrow.array([Decimal(text) for text in column], pyarrow.decimal128(20, 3))
+        for column in texts
+    )
+    path = table(tmp_path / "a.parquet", np.zeros((400, 2)), x=x, y=y, z=z)
+    tin = distributed.triangulate(path, tmp_path / "tin", tile_points=100)
+    right = np.array(texts, dtype=float).T
+    for tile in tin.tiles():
+        assert np.array_equal(tile.points, right[tile.ids, :2])
+        assert np.array_equal(tile.attributes["z"], right[tile.ids, 2])
+    table(path, np.zeros((400, 2)), x=x, y=pyarrow.array([Decimal(2**60 + 1)] * 400))
+    with pytest.raises(FileFormatError, match="more digits"):
+        distributed.triangulate(path, tmp_path / "again", tile_points=100)
 
 
 def test_parquet_in_several_files(

@@ -1,5 +1,7 @@
 """Tables by pyarrow: Parquet, Arrow, Feather."""
 
+from decimal import Decimal
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.feather
@@ -48,6 +50,57 @@ def test_integers_beyond_doubles_are_refused(tmp_path):
     save(tmp_path / "a.parquet", pa.table({"x": [2**53 + 1, 0], "y": [1, 2]}))
     with pytest.raises(FileFormatError, match=r"2\*\*53"):
         read_points(tmp_path / "a.parquet")
+
+
+@pytest.mark.parametrize("name", ["a.parquet", "a.feather"])
+@pytest.mark.parametrize("bits", [32, 64, 128, 256])
+def test_decimals_are_the_doubles_that_their_digits_denote(tmp_path, name, bits):
+    """A cast by pyarrow has every seventh of them beside the nearest double."""
+    rng = np.random.default_rng(bits)
+    digits = {32: 9, 64: 15, 128: 15, 256: 15}[bits]
+    whole = rng.integers(-(10**digits), 10**digits, (500, 2)).tolist()
+    texts = [[f"{Decimal(number).scaleb(-3)}" for number in row] for row in whole]
+    kind = getattr(pa, f"decimal{bits}")(digits + 3 * (bits > 64), 3)
+    x, y = (
+        pa.array([Decimal(text) for text in column], kind) for column in zip(*texts, strict=True)
+    )
+    # In pieces, one of them empty, so that buffers begin in the middle.
+    pieces = pa.chunked_array([y[:100], y[:0], y[100:]])
+    table = pa.table({"x": x, "y": pieces})
+    save(tmp_path / name, table)
+    right = [[float(text) for text in row] for row in texts]
+    assert read_points(tmp_path / name).points.tolist() == right
+
+
+@pytest.mark.parametrize(
+    ("value", "kind"),
+    [
+        ("0.90071992547409921", pa.decimal128(17, 17)),
+        ("9007199254740993", pa.decimal128(20, 0)),
+        ("0.12345678901234567890123", pa.decimal128(38, 23)),
+        ("1" * 60 + ".5", pa.decimal256(61, 1)),
+    ],
+)
+def test_decimals_of_which_digits_would_be_lost_are_refused(tmp_path, value, kind):
+    column = pa.array([Decimal(0), Decimal(value)], kind)
+    save(tmp_path / "a.parquet", pa.table({"x": column, "y": [1, 2]}))
+    with pytest.raises(FileFormatError, match=f"column 'x' holds {value}, with more digits"):
+        read_points(tmp_path / "a.parquet")
+
+
+def test_long_decimals_that_doubles_tell_apart_are_read(tmp_path):
+    kinds = {
+        "0.0625000000000001": pa.decimal128(16, 16),
+        "-23456789012.34568": pa.decimal128(16, 5),
+        "0.25": pa.decimal128(38, 25),
+        "-9007199254740992": pa.decimal256(50, 0),
+        "1234567890123456000000": pa.decimal128(20, -6),
+    }
+    for text, kind in kinds.items():
+        column = pa.array([None, Decimal(text)], kind)
+        save(tmp_path / "a.feather", pa.table({"x": column, "y": [1, 2]}))
+        found = read_points(tmp_path / "a.feather").points
+        assert np.isnan(found[0, 0]) and found[1, 0] == float(text)
 
 
 def test_unnamed_columns(tmp_path):

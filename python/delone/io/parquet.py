@@ -5,7 +5,9 @@ Only the columns of the coordinates are read. A Parquet file with geometries is 
 
 from __future__ import annotations
 
+import sys
 from contextlib import contextmanager
+from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +26,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.io.geometryset import GeometrySet
+
+# What every double tells from its neighbours, and the largest power of ten that is a double.
+_DIGITS, _LARGEST_EXACT_POWER = 15, 22
+# Digits that 128 bits hold, and some more than 256 do.
+_WIDEST, _DIGITS_OF_DECIMALS = 38, 100
 
 __all__ = ["holds_geometries", "look", "read_geometries", "read_points", "read_range"]
 
@@ -188,10 +195,59 @@ def _column(table: Any, name: str) -> NDArray[Any]:
     """Return a column as doubles; what is missing is NaN, so that it is refused by its row."""
     column = table.column(name)
     _refuse_large_integers(column, name)
-    if str(column.type).startswith("decimal"):
-        column = column.cast("float64")
+    types = require("pyarrow.types", extra="geo", what="reading tables")
+    if types.is_decimal(column.type):
+        return _nearest_doubles(column, name)
     values: NDArray[Any] = column.to_numpy()
     return values.astype(np.float64, copy=False)
+
+
+def _nearest_doubles(column: Any, name: str) -> NDArray[np.float64]:
+    """Return what a text file with the same digits would hold; pyarrow's cast rounds twice.
+
+    Refuse digits that doubles do not tell from others: 15 they always do.
+    """
+    arrow = require("pyarrow", extra="geo", what="reading tables")
+    scale = column.type.scale
+    parts = [np.empty(0)]
+    for chunk in column.chunks:
+        there = chunk.is_valid().to_numpy(zero_copy_only=False)
+        found = np.full(len(chunk), np.nan)
+        few, digits = _few_digits(arrow, chunk)
+        few &= there
+        if 0 <= scale <= _LARGEST_EXACT_POWER:
+            # Both are doubles, so that the quotient is rounded once.
+            found[few] = digits[few] / 10.0**scale
+            there &= ~few
+        for row in np.flatnonzero(there).tolist():
+            found[row] = _nearest_double(chunk[row].as_py(), scale, name)
+        parts.append(found)
+    return np.concatenate(parts)
+
+
+def _few_digits(arrow: Any, chunk: Any) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    """Return which decimals have 15 digits at most, and their digits as integers."""
+    none = np.zeros(len(chunk), dtype=bool), np.zeros(len(chunk), dtype=np.int64)
+    if not len(chunk) or chunk.type.precision > _WIDEST:
+        return none
+    wide = chunk.cast(arrow.decimal128(_WIDEST, chunk.type.scale))
+    words = np.frombuffer(wide.buffers()[1], dtype=np.int64).reshape(-1, 2)
+    words = words[wide.offset : wide.offset + len(wide)]
+    low, high = words.T if sys.byteorder == "little" else words[:, ::-1].T
+    few: NDArray[np.bool_] = (high == low >> 63) & (low < 10**_DIGITS) & (low > -(10**_DIGITS))
+    return few, low
+
+
+def _nearest_double(value: Decimal, scale: int, name: str) -> float:
+    nearest = float(value)
+    with localcontext(prec=_DIGITS_OF_DECIMALS):
+        back = Decimal(nearest).quantize(Decimal((0, (1,), -scale)))
+    if back != value:
+        raise InputError(
+            f"column {name!r} holds {value}, with more digits than a double keeps: round the "
+            "column to fewer digits, or subtract an offset"
+        )
+    return nearest
 
 
 def _refuse_large_integers(column: Any, name: str) -> None:

@@ -193,8 +193,9 @@ def read_points(
 
     Notes
     -----
-    Coordinates are the doubles that the file denotes. No memory is set aside for what a header
-    claims before the size of the file has confirmed it.
+    Coordinates are the doubles that the file denotes: of decimals the nearest ones. Integers beyond
+    2**53 and, in tables, decimals with more digits than a double tells from others are refused. No
+    memory is set aside for what a header claims before the size of the file has confirmed it.
 
     Examples
     --------
