@@ -94,6 +94,44 @@ def test_torn(tmp_path, mesh, suffix):
             read_mesh(file)
 
 
+@pytest.mark.parametrize(
+    ("suffix", "dimension", "end"),
+    [
+        (".vtu", 2, b">"),
+        (".vtu", 3, b">"),
+        (".stl", 2, b"endsolid"),
+        (".msh", 2, b"$End"),
+        (".msh", 3, b"$End"),
+    ],
+)
+def test_meshes_are_refused_wherever_they_are_cut(tmp_path, suffix, dimension, end):
+    file = tmp_path / f"a{suffix}"
+    points = np.random.default_rng(7).random((8, dimension))
+    write_mesh(file, Delaunay(points))
+    whole = file.read_bytes()
+    for size in range(whole.rindex(end)):
+        file.write_bytes(whole[:size])
+        with pytest.raises(FileFormatError):
+            read_mesh(file)
+
+
+@pytest.mark.parametrize("form", ["binary_little_endian", "ascii"])
+def test_a_ply_file_is_refused_wherever_it_is_cut(tmp_path, form):
+    file = tmp_path / "a.ply"
+    points = np.random.default_rng(7).integers(0, 9, (12, 3)).astype(np.float64)
+    cells = [("triangle", np.arange(12).reshape(4, 3))]
+    for faces in ([], cells):
+        meshio.write(file, meshio.Mesh(points, faces), "ply", binary=form != "ascii")
+        whole = file.read_bytes()
+        assert form.encode() in whole
+        assert len(meshio.read(file).points) == 12
+        # In the last number of a text nothing tells that there are digits to come.
+        for size in range(len(whole) if form != "ascii" else whole.rstrip().rindex(b" ")):
+            file.write_bytes(whole[:size])
+            with pytest.raises(FileFormatError):
+                (read_mesh if faces else read_points)(file)
+
+
 @pytest.mark.parametrize("count", [10**7, 10**12, 10**18, 10**25])
 def test_counts_that_are_false(tmp_path, count):
     text = {

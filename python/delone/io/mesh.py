@@ -112,7 +112,8 @@ def _read(path: Path) -> Any:
     # The module of the format: the general reader prints, and ends the interpreter on an error.
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     _check_claim(path, suffix)
-    if suffix == ".ply" and _is_empty(path):
+    announced = _announced(path) if suffix == ".ply" else {}
+    if announced.get("vertex") == 0:
         # meshio reads no such file as text; and nothing else can be in it.
         return meshio.Mesh(np.empty((0, 3)), [])
     try:
@@ -124,20 +125,33 @@ def _read(path: Path) -> Any:
             warnings.catch_warnings(),
         ):
             warnings.simplefilter("ignore")
-            return module.read(_absolute(path) if suffix == ".obj" else path)
+            mesh = module.read(_absolute(path) if suffix == ".obj" else path)
     except (DeloneError, FileNotFoundError, PermissionError):
         raise
     except (Exception, SystemExit) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise FileFormatError(f"{path} is torn or no {suffix} file: {reason}") from error
+    found = {"vertex": len(mesh.points), "face": sum(len(block.data) for block in mesh.cells)}
+    for item, count in found.items():
+        if count != announced.get(item, count):
+            raise FileFormatError(
+                f"{path} announces {announced[item]} items of type {item} and holds {count}: "
+                "it is cut short"
+            )
+    return mesh
 
 
-def _is_empty(path: Path) -> bool:
-    """Tell whether a PLY file announces no vertices."""
+def _announced(path: Path) -> dict[str, int]:
+    """Return how many elements of each type a PLY file announces.
+
+    meshio looks for the end of a header for ever.
+    """
     with path.open("rb") as file:
         head, end, _ = file.read(_HEAD).partition(b"end_header")
-    announced = re.search(rb"^element +vertex +(\d+) *\r?$", head, re.MULTILINE)
-    return bool(head.startswith(b"ply") and end and announced and int(announced[1]) == 0)
+    if not (head.startswith(b"ply") and end):
+        raise FileFormatError(f"{path} is torn or no .ply file: it has no whole header")
+    items = re.findall(rb"^element +(\w+) +(\d+) *\r?$", head, re.MULTILINE)
+    return {name.decode("ascii"): int(count) for name, count in items}
 
 
 def _absolute(path: Path) -> Path | IO[str]:
@@ -167,14 +181,17 @@ def _check_claim(path: Path, suffix: str) -> None:
     with path.open("rb") as file:
         claims = _claims(file, suffix, size)
         file.seek(max(0, size - _TAIL))
-        ended = suffix != ".stl" or not _is_text_stl(path) or b"endsolid" in file.read()
-    if not ended:
-        raise FileFormatError(f"{path} has no endsolid at its end: it is cut short")
+        tail = file.read()
     worst = max(claims, default=0)
     if worst > size:
         raise FileFormatError(
             f"{path} announces {worst} items and has only {size} bytes: it is cut short"
         )
+    end = {".stl": "endsolid", ".msh": "$End"}.get(suffix)
+    if suffix == ".stl" and not _is_text_stl(path):
+        end = None
+    if end is not None and not tail.rstrip().rpartition(b"\n")[2].lstrip().startswith(end.encode()):
+        raise FileFormatError(f"{path} has no {end} at its end: it is cut short")
 
 
 def _claims(file: IO[bytes], suffix: str, size: int) -> list[int]:
