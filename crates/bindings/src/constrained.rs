@@ -4,17 +4,16 @@ use delone_core::Point2;
 use delone_core::constrained::{
     Constrained, Options, Rule, components, constrain, polygon, simple_ring,
 };
-use delone_core::delaunay2::Method;
 use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{column, frozen, in_range, number_rows, numbers, rows, table};
 use crate::errors::raise;
+use crate::given::pairs;
 use crate::signals::watched;
-use crate::triangulation::methods2;
+use crate::triangulation::method_of;
 
 /// The constrained triangulation of points and segments, by name.
 #[pyfunction]
@@ -29,12 +28,7 @@ pub fn constrained2<'py>(
     method: &str,
     workers: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let method = Method::named(method).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "unknown method {method:?}: one of {:?}",
-            methods2()
-        ))
-    })?;
+    let method = method_of(method)?;
     let options = Options {
         split,
         conforming,
@@ -43,16 +37,9 @@ pub fn constrained2<'py>(
         workers,
     };
     let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let segments = pairs(&segments, points.len()).map_err(|e| raise(py, &e))?;
+    let segments = pairs(&segments, points.len(), "segments").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| constrain(points, &segments, options, watch))?;
     by_name(py, made)
-}
-
-/// Pairs of rows of `n` points.
-fn pairs(segments: &PyReadonlyArray2<'_, i32>, n: usize) -> Result<Vec<[u32; 2]>> {
-    let segments: &[[i32; 2]] = rows(segments, "segments")?;
-    in_range(segments, 0, n, "segments")?;
-    Ok(segments.iter().map(|s| s.map(|v| v as u32)).collect())
 }
 
 fn by_name(py: Python<'_>, made: Constrained) -> PyResult<Bound<'_, PyDict>> {

@@ -1,12 +1,13 @@
-//! Triangulations that are given as arrays: borrowed and checked for one call, or held for many.
+//! Triangulations that are given as arrays: borrowed and checked for one call, or held for many; and
+//! what else is given beside points: weights, edges.
 
 use delone_core::arrays::Given;
 use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{in_range, rows};
+use crate::arrays::{flat, in_range, rows};
 use crate::errors::attached;
 use crate::signals::watched;
 
@@ -103,4 +104,52 @@ pub fn answered<T: Send>(
         return attached(py, || work(&Watch::idle()));
     }
     watched(py, work)
+}
+
+/// What is wrong with arrays that do not fit together.
+pub fn unequal() -> Error {
+    Error::Shape("arrays that belong together differ in length".into())
+}
+
+/// Weights of `n` points; none where nothing is given.
+pub fn weights_of<'a>(
+    weights: Option<&'a PyReadonlyArray1<'_, f64>>,
+    n: usize,
+) -> Result<&'a [f64]> {
+    let Some(given) = weights else { return Ok(&[]) };
+    let found = flat(given, "weights")?;
+    if found.len() == n {
+        return Ok(found);
+    }
+    Err(unequal())
+}
+
+/// The same, and all of them finite.
+pub fn finite_weights<'a>(
+    weights: Option<&'a PyReadonlyArray1<'_, f64>>,
+    n: usize,
+) -> Result<&'a [f64]> {
+    let wrong = || Error::Shape("each point needs one finite weight".into());
+    let found = weights_of(weights, n).map_err(|_| wrong())?;
+    if found.iter().all(|w| w.is_finite()) {
+        return Ok(found);
+    }
+    Err(wrong())
+}
+
+/// Segments, or other edges, as vertices among `n` points.
+pub fn pairs(array: &PyReadonlyArray2<'_, i32>, n: usize, name: &str) -> Result<Vec<[u32; 2]>> {
+    let all: &[[i32; 2]] = rows(array, name)?;
+    in_range(all, 0, n, name)?;
+    Ok(all.iter().map(|s| s.map(|v| v as u32)).collect())
+}
+
+/// Borrowed simplices whose vertices among `n` points have been checked.
+pub fn simplices_of<'a, const N: usize>(
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    n: usize,
+) -> Result<&'a [[i32; N]]> {
+    let simplices = rows(simplices, "simplices")?;
+    in_range(simplices, 0, n, "simplices")?;
+    Ok(simplices)
 }

@@ -1,21 +1,14 @@
 //! Flips of arbitrary triangulations, and their neighbours, as arrays.
 
 use delone_core::delaunay2::lawson::lawson;
-use delone_core::error::Result;
 use delone_core::mesh2::import::adjacency;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{in_range, rows, table};
+use crate::arrays::{rows, table};
 use crate::errors::{detached, raise};
+use crate::given::simplices_of;
 use crate::signals::watched;
-
-/// Borrowed triangles whose vertices have been checked.
-fn checked<'a>(simplices: &'a PyReadonlyArray2<'_, i32>, points: usize) -> Result<&'a [[i32; 3]]> {
-    let simplices = rows(simplices, "simplices")?;
-    in_range(simplices, 0, points, "simplices")?;
-    Ok(simplices)
-}
 
 /// `(simplices, neighbors, flips, sequence)`.
 type Flipped = (Py<PyAny>, Py<PyAny>, usize, Option<Py<PyAny>>);
@@ -29,7 +22,7 @@ pub fn lawson2(
     record: bool,
 ) -> PyResult<Flipped> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let simplices = checked(&simplices, points.len()).map_err(|e| raise(py, &e))?;
+    let simplices = simplices_of(&simplices, points.len()).map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| lawson(points, simplices, record, watch))?;
     let sequence = if record {
         Some(table(py, made.sequence)?)
@@ -51,7 +44,7 @@ pub fn neighbors2(
     simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
 ) -> PyResult<Py<PyAny>> {
-    let simplices = checked(&simplices, npoints).map_err(|e| raise(py, &e))?;
+    let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
     let neighbors = detached(py, || adjacency(simplices, npoints))?;
     table(py, neighbors)
 }

@@ -15,6 +15,7 @@ mod locate3;
 mod locator;
 mod predicates;
 mod refine;
+mod regular;
 mod signals;
 mod space;
 mod triangulation;
@@ -62,11 +63,11 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(voronoi::measures2, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::measures3, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi3::regular3, m)?)?;
+    m.add_function(wrap_pyfunction!(regular::regular3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::regular2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::periodic2, m)?)?;
-    m.add_function(wrap_pyfunction!(voronoi::periodic_centers2, m)?)?;
+    m.add_function(wrap_pyfunction!(regular::regular2, m)?)?;
+    m.add_function(wrap_pyfunction!(regular::periodic2, m)?)?;
+    m.add_function(wrap_pyfunction!(regular::periodic_centers2, m)?)?;
     Ok(())
 }

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{column, in_range, rows, table};
 use crate::errors::raise;
+use crate::given::pairs;
 use crate::signals::watched;
 
 /// A vector of one entry for each of `n` things.
@@ -27,13 +28,6 @@ fn each<'a, T: Element>(
         let found = values.len();
         Err(Error::Shape(format!("{name} has {found} entries, not {n}")))
     }
-}
-
-/// Segments as vertices among `n` points.
-fn vertices(array: &PyReadonlyArray2<'_, i32>, n: usize, name: &str) -> Result<Vec<[u32; 2]>> {
-    let all: &[[i32; 2]] = rows(array, name)?;
-    in_range(all, 0, n, name)?;
-    Ok(all.iter().map(|s| s.map(|v| v as u32)).collect())
 }
 
 /// `(of, ends, on)`: the line of each segment, the ends of lines, the line of each point or -1.
@@ -68,8 +62,8 @@ pub fn refine2<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = || -> Result<_> {
         let n = rows::<f64, 2>(&points, "points")?.len();
-        let ends = lines.as_ref().map(|l| vertices(&l.1, n, "ends"));
-        Ok((vertices(&segments, n, "segments")?, ends.transpose()?))
+        let ends = lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
+        Ok((pairs(&segments, n, "segments")?, ends.transpose()?))
     };
     let (pieces, ends) = found().map_err(|e| raise(py, &e))?;
     let task = || -> Result<Task<'_>> {

@@ -7,11 +7,11 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{in_range, number_rows, numbers, rows, table};
+use crate::arrays::{number_rows, rows, table};
 use crate::errors::{attached, raise};
-use crate::given::checked;
+use crate::given::{checked, simplices_of};
 use crate::signals::watched;
-use crate::triangulation::Made;
+use crate::triangulation::{Made, Report};
 
 /// The triangulation of the points as arrays.
 #[pyfunction]
@@ -51,27 +51,16 @@ pub fn validate3<'py>(
         delaunay,
         ties,
     } = found;
-    let report = PyDict::new(py);
-    let lists = [
-        ("orientation", orientation),
-        ("neighbors", neighbors),
-        ("missing", missing),
-        ("repeats", repeats),
-    ];
-    for (name, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
-        report.set_item(name, numbers(py, rows))?;
-    }
-    for (name, rows) in [("facets", facets), ("hull", hull)] {
-        if !rows.is_empty() {
-            report.set_item(name, number_rows(py, rows)?)?;
-        }
-    }
-    for (name, rows) in [("delaunay", delaunay), ("ties", ties)] {
-        if !rows.is_empty() {
-            report.set_item(name, number_rows(py, rows)?)?;
-        }
-    }
-    Ok(report)
+    let report = Report::new(py);
+    report.list("orientation", orientation)?;
+    report.list("neighbors", neighbors)?;
+    report.list("missing", missing)?;
+    report.list("repeats", repeats)?;
+    report.table("facets", facets)?;
+    report.table("hull", hull)?;
+    report.table("delaunay", delaunay)?;
+    report.table("ties", ties)?;
+    Ok(report.found)
 }
 
 /// Every edge once: the smaller vertex first, rows ascending.
@@ -82,11 +71,7 @@ pub fn edges3(
     npoints: usize,
     workers: usize,
 ) -> PyResult<Py<PyAny>> {
-    let simplices = attached(py, || {
-        let simplices = rows(&simplices, "simplices")?;
-        in_range(simplices, 0, npoints, "simplices")?;
-        Ok(simplices)
-    })?;
+    let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| {
         skeleton3::edges(simplices, npoints, workers, watch)
     })?;
@@ -103,12 +88,10 @@ pub fn faces3(
     workers: usize,
 ) -> PyResult<Py<PyAny>> {
     let (simplices, neighbors) = attached(py, || {
-        let (simplices, neighbors) = (
-            rows(&simplices, "simplices")?,
+        Ok((
+            simplices_of(&simplices, npoints)?,
             rows(&neighbors, "neighbors")?,
-        );
-        in_range(simplices, 0, npoints, "simplices")?;
-        Ok((simplices, neighbors))
+        ))
     })?;
     let found = watched(py, |watch| {
         skeleton3::faces(simplices, neighbors, npoints, workers, watch)

@@ -18,6 +18,12 @@ pub fn methods2() -> Vec<&'static str> {
     Method::NAMES.iter().map(|&(name, _)| name).collect()
 }
 
+/// The method of a name.
+pub fn method_of(name: &str) -> PyResult<Method> {
+    let message = || format!("unknown method {name:?}: one of {:?}", methods2());
+    Method::named(name).ok_or_else(|| PyValueError::new_err(message()))
+}
+
 /// `(simplices, neighbors, duplicates, stages)`.
 pub type Made = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Vec<(&'static str, f64)>);
 
@@ -29,12 +35,7 @@ pub fn triangulate2(
     method: &str,
     workers: usize,
 ) -> PyResult<Made> {
-    let method = Method::named(method).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "unknown method {method:?}: one of {:?}",
-            methods2()
-        ))
-    })?;
+    let method = method_of(method)?;
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
     Ok((
@@ -69,25 +70,47 @@ pub fn validate2<'py>(
         ties,
         count,
     } = found;
-    let report = PyDict::new(py);
-    let lists = [
-        ("orientation", orientation),
-        ("neighbors", neighbors),
-        ("missing", missing),
-        ("repeats", repeats),
-    ];
-    for (name, rows) in lists.into_iter().filter(|(_, rows)| !rows.is_empty()) {
-        report.set_item(name, numbers(py, rows))?;
+    let report = Report::new(py);
+    report.list("orientation", orientation)?;
+    report.list("neighbors", neighbors)?;
+    report.list("missing", missing)?;
+    report.list("repeats", repeats)?;
+    report.table("edges", edges)?;
+    report.table("hull", hull)?;
+    report.table("delaunay", delaunay)?;
+    report.table("ties", ties)?;
+    report.table("count", count)?;
+    Ok(report.found)
+}
+
+/// What was found, by name, where something was.
+pub struct Report<'py> {
+    /// The names, and numbers or rows of numbers.
+    pub found: Bound<'py, PyDict>,
+}
+
+impl<'py> Report<'py> {
+    /// Nothing yet.
+    pub fn new(py: Python<'py>) -> Self {
+        Self {
+            found: PyDict::new(py),
+        }
     }
-    let tables = [
-        ("edges", edges),
-        ("hull", hull),
-        ("delaunay", delaunay),
-        ("ties", ties),
-        ("count", count),
-    ];
-    for (name, pairs) in tables.into_iter().filter(|(_, pairs)| !pairs.is_empty()) {
-        report.set_item(name, number_rows(py, pairs)?)?;
+
+    /// Numbers.
+    pub fn list(&self, name: &str, found: Vec<u32>) -> PyResult<()> {
+        if found.is_empty() {
+            return Ok(());
+        }
+        self.found.set_item(name, numbers(self.found.py(), found))
     }
-    Ok(report)
+
+    /// Rows of numbers.
+    pub fn table<const D: usize>(&self, name: &str, found: Vec<[u32; D]>) -> PyResult<()> {
+        if found.is_empty() {
+            return Ok(());
+        }
+        self.found
+            .set_item(name, number_rows(self.found.py(), found)?)
+    }
 }

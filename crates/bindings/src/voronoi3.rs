@@ -1,7 +1,6 @@
 //! Voronoi and power diagrams of space, their measures, and cells cut to a polyhedron, as arrays.
 
 use delone_core::error::Result;
-use delone_core::regular3::regular;
 use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -9,8 +8,9 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{are_starts, column, each_in_range, flat, in_range, rows, table};
 use crate::errors::{attached, detached, raise};
+use crate::given::{unequal, weights_of};
 use crate::signals::watched;
-use crate::voronoi::{finite_weights, given, item, unequal, weights_of};
+use crate::voronoi::{given, item};
 
 /// The diagram of a triangulation; of the regular one, where there are weights.
 #[pyfunction]
@@ -167,26 +167,4 @@ pub fn voronoi_clip3<'py>(
     out.set_item("corners", column(py, made.corners))?;
     out.set_item("labels", column(py, made.labels))?;
     Ok(out)
-}
-
-/// `(simplices, neighbors, stands_for)`.
-type Weighed = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
-
-/// The regular triangulation of weighted points of space.
-#[pyfunction]
-pub fn regular3(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    weights: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Weighed> {
-    let (points, weights) = attached(py, || {
-        let points = rows(&points, "points")?;
-        Ok((points, finite_weights(Some(&weights), points.len())?))
-    })?;
-    let made = watched(py, |watch| regular(points, weights, watch))?;
-    Ok((
-        table(py, made.tetrahedra.simplices)?,
-        table(py, made.tetrahedra.neighbors)?,
-        column(py, made.stands_for),
-    ))
 }
