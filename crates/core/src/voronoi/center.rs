@@ -30,6 +30,7 @@ use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point2, lexicographic};
 use num_bigint::{BigInt, Sign};
 
+use super::component::component;
 use super::vertices::{Center, Centered};
 use crate::wide::{lowest, ratio, scaled};
 
@@ -39,8 +40,6 @@ const U: f64 = f64::EPSILON / 2.0;
 const SMALL: f64 = f64::from_bits((1023 - 700) << 52);
 /// Differences and weights up to here cannot overflow in degree 3.
 const LARGE: f64 = f64::from_bits((1023 + 300) << 52);
-/// More than what underflow can take from the last sums of pairs: 2^-1000.
-const FLOOR: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Three sites, counter-clockwise, and their weights.
 #[derive(Clone, Copy, Debug)]
@@ -145,19 +144,9 @@ impl Corners {
         let (big_l, big_m) = (dd.hi + dw.hi.abs(), ee.hi + ew.hi.abs());
         let px = ey.hi.abs() * big_l + dy.hi.abs() * big_m;
         let py = dx.hi.abs() * big_m + ex.hi.abs() * big_l;
-        let component = |origin: f64, n: Pair, p: f64| {
-            let q = quotient(n, half) * Pair::difference(0.5, 0.0);
-            let sum = Pair::difference(origin, 0.0) + q;
-            // N errs by 30 u^2 P, D by 13 u^2 of its size, the quotient by 32 u^2 of itself, the sum
-            // by 4 u^2 of both parts: doubled, with room for the rounding of the bound.
-            let error = 64.0 * U * U * ((p + q.hi.abs() * size) / half.hi)
-                + 128.0 * U * U * (q.hi.abs() + origin.abs())
-                + FLOOR;
-            let (low, high) = (sum.hi + (sum.lo - error), sum.hi + (sum.lo + error));
-            (low == high).then_some(low)
-        };
-        let x = component(a[0], ey * l - dy * m, px)?;
-        let y = component(a[1], dx * m - ex * l, py)?;
+        // N errs by 30 u^2 P, D by 13 u^2 of its size: doubled, with room.
+        let x = component(a[0], ey * l - dy * m, px, half, size, 64.0)?;
+        let y = component(a[1], dx * m - ex * l, py, half, size, 64.0)?;
         Some([x, y])
     }
 
@@ -194,16 +183,6 @@ pub(super) fn meeting(
             ])
         }
     }
-}
-
-/// `n / d` to about 100 bits.
-fn quotient(n: Pair, d: Pair) -> Pair {
-    let as_pair = |x: f64| Pair::difference(x, 0.0);
-    let first = n.hi / d.hi;
-    let rest = n - d * as_pair(first);
-    let second = rest.hi / d.hi;
-    let rest = rest - d * as_pair(second);
-    (as_pair(first) + as_pair(second)) + as_pair(rest.hi / d.hi)
 }
 
 #[cfg(test)]

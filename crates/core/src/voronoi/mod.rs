@@ -10,6 +10,7 @@
 mod axis;
 mod center;
 mod clip;
+pub(crate) mod component;
 mod dual;
 mod given;
 mod measure;

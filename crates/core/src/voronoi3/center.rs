@@ -31,6 +31,7 @@ use delone_predicates::{Point3, lexicographic};
 use num_bigint::{BigInt, Sign};
 
 use crate::regular3::determinant;
+use crate::voronoi::component::component;
 use crate::voronoi::vertices::{Center, Centered};
 use crate::wide::{lowest, ratio, scaled};
 
@@ -40,8 +41,6 @@ const U: f64 = f64::EPSILON / 2.0;
 const SMALL: f64 = f64::from_bits((1023 - 700) << 52);
 /// Squared differences and weights up to here cannot overflow in degree 4.
 const LARGE: f64 = f64::from_bits((1023 + 400) << 52);
-/// More than what underflow can take from the last sums of pairs: 2^-1000.
-const FLOOR: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Four sites that span space, and their weights, in lexicographic order.
 #[derive(Clone, Copy, Debug)]
@@ -152,9 +151,11 @@ impl Corners {
         if half.hi.abs() <= 128.0 * U * U * size {
             return None;
         }
+        // With the bounds of `Pair`, a numerator errs by 51 u^2 P, the determinant by 30 u^2 of its
+        // size: doubled, with room.
         let mut at = [0.0; 3];
         for k in 0..3 {
-            at[k] = component(a[k], n[k], p[k], half, size)?;
+            at[k] = component(a[k], n[k], p[k], half, size, 128.0)?;
         }
         Some(at)
     }
@@ -186,31 +187,6 @@ impl Corners {
             _ => Center::Beyond(direction(&numerators)),
         }
     }
-}
-
-/// A coordinate of the centre, where its rounding is certain.
-///
-/// With the bounds of `Pair`, a numerator errs by 51 u^2 P, the determinant by 30 u^2 of its size,
-/// the quotient by 32 u^2 of itself, the sum by 4 u^2 of both parts: doubled, with room for the
-/// rounding of the bound.
-fn component(origin: f64, n: Pair, p: f64, half: Pair, size: f64) -> Option<f64> {
-    let q = quotient(n, half) * Pair::difference(0.5, 0.0);
-    let sum = Pair::difference(origin, 0.0) + q;
-    let error = 128.0 * U * U * ((p + q.hi.abs() * size) / half.hi.abs())
-        + 128.0 * U * U * (q.hi.abs() + origin.abs())
-        + FLOOR;
-    let (low, high) = (sum.hi + (sum.lo - error), sum.hi + (sum.lo + error));
-    (low == high).then_some(low)
-}
-
-/// `n / d` to about 100 bits.
-fn quotient(n: Pair, d: Pair) -> Pair {
-    let as_pair = |x: f64| Pair::difference(x, 0.0);
-    let first = n.hi / d.hi;
-    let rest = n - d * as_pair(first);
-    let second = rest.hi / d.hi;
-    let rest = rest - d * as_pair(second);
-    (as_pair(first) + as_pair(second)) + as_pair(rest.hi / d.hi)
 }
 
 /// The direction of a vector that is not zero, of length 1.
