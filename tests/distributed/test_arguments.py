@@ -100,6 +100,11 @@ def test_arguments_of_plan(source: Any, options: dict[str, Any]) -> None:
         distributed.plan(source, **options)
 
 
+def test_a_name_with_a_null_character(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="output holds a null character"):
+        distributed.triangulate(POINTS, str(tmp_path / "a\0b"))
+
+
 def test_a_plan_of_a_number_of_numpy() -> None:
     assert distributed.plan(np.int64(10**7)) == distributed.plan(10**7)
 

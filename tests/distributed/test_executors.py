@@ -26,6 +26,88 @@ def test_processes_agree_with_memory(tmp_path: Path, canonical: Callable[[Any], 
     assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
 
 
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """The worker processes, as they start."""
+    processes: list[Any] = []
+
+    def start(*args: Any, **kwargs: Any) -> Any:
+        processes.append(subprocess.Popen(*args, **kwargs))
+        return processes[-1]
+
+    monkeypatch.setattr("delone.distributed.worker.Popen", start)
+    return processes
+
+
+def test_a_process_that_dies_changes_nothing(
+    started: list[Any], tmp_path: Path, canonical: Callable[[Any], Any]
+) -> None:
+    def kill(progress: distributed.Progress) -> None:
+        if progress.stage == "begin" and progress.done == 2:
+            started[0].kill()
+
+    tin = distributed.triangulate(
+        POINTS, tmp_path / "tin", tile_points=300, executor="processes", progress=kill
+    )
+    assert started[0].returncode not in (None, 0)
+    assert all(worker.returncode == 0 for worker in started[1:])
+    assert np.array_equal(canonical(tin.simplices()), canonical(Delaunay(POINTS).simplices))
+
+
+def test_processes_that_die_on_and_on_are_an_error(started: list[Any], tmp_path: Path) -> None:
+    def kill(progress: distributed.Progress) -> None:
+        for worker in started if progress.stage == "begin" else []:
+            worker.kill()
+
+    with pytest.raises(DeloneError, match=r"died .* times in the stage 'begin'.*memory"):
+        distributed.triangulate(
+            POINTS, tmp_path / "tin", tile_points=100, executor="processes", progress=kill
+        )
+    tin = distributed.triangulate(POINTS, tmp_path / "tin", tile_points=100)
+    assert tin.validate()
+
+
+SCRIPT = """
+import os, signal, sys
+from delone import datasets, distributed
+
+def tell(progress):
+    if progress.stage == "begin" and sys.argv[2:]:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+points = datasets.gaussian_clusters(3000)
+tin = distributed.triangulate(
+    points, sys.argv[1], tile_points=300, executor="processes", progress=tell
+)
+print(tin.ntiles, "tiles")
+"""
+
+
+def test_a_script_needs_no_guard(tmp_path: Path) -> None:
+    (tmp_path / "script.py").write_text(SCRIPT)
+    of_file = [str(tmp_path / "script.py"), str(tmp_path / "one")]
+    of_input = ["-", str(tmp_path / "two")]
+    for arguments in (of_file, of_input):
+        done = subprocess.run(
+            [sys.executable, *arguments], input=SCRIPT, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stdout, done.stderr) == (0, "10 tiles\n", "")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="the process is killed by a signal")
+def test_processes_end_with_who_started_them(tmp_path: Path) -> None:
+    # A pipe that all inherit ends when the last of them does.
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, str(tmp_path / "tin"), "kill"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.returncode == -signal.SIGKILL
+    assert done.stderr == ""
+
+
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
     library = pytest.importorskip("distributed")

@@ -19,6 +19,7 @@ from delone.errors import (
     InputError,
     NonFiniteError,
 )
+from delone.io import read_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -176,6 +177,36 @@ def test_torn_and_lying_lidar_files(lidar: Any, tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="has no 'colour'"):
         distributed.triangulate(LIDAR, tmp_path / "tin", attributes=["colour"])
     assert not (tmp_path / "tin").exists()
+
+
+@pytest.mark.parametrize("change", ["move", "shift", "shorten", "remove"])
+def test_a_file_that_changes_under_a_run_is_noticed(change: str, tmp_path: Path) -> None:
+    source, points = tmp_path / "a.npy", datasets.uniform(2000)
+    other = {"move": datasets.uniform(2000, seed=5), "shift": points + 10, "shorten": points[1:]}
+    np.save(source, points)
+
+    def tell(progress: distributed.Progress) -> None:
+        if progress.stage == "deal" and progress.done == 0:
+            source.unlink()
+            if change in other:
+                np.save(source, other[change])
+
+    with pytest.raises(FileFormatError, match=r"a\.npy has changed since"):
+        distributed.triangulate(source, tmp_path / "tin", tile_points=300, progress=tell)
+    assert not (tmp_path / "tin" / "manifest.json").exists()
+
+
+def test_arrays_in_files_are_taken_whole_or_refused(tmp_path: Path) -> None:
+    source = tmp_path / "a.npy"
+    np.save(source, datasets.uniform(50))
+    whole = source.read_bytes()
+    for content in (whole + b"more", whole[:-1], whole[:90], b"hello"):
+        source.write_bytes(content)
+        with pytest.raises(FileFormatError) as error:
+            distributed.triangulate(source, tmp_path / "tin")
+        with pytest.raises(FileFormatError) as same:
+            read_points(source)
+        assert str(error.value) == str(same.value)
 
 
 def test_missing_files_and_columns(tmp_path: Path) -> None:

@@ -53,10 +53,10 @@ def triangulate(
     output : path
         A folder, new or of an interrupted run.
     tile_points : int, optional
-        Points in a tile, on average. A worker needs some 200 bytes for each.
+        Points in a tile, on average, from 3 to 2^27. A worker needs some 200 bytes for each.
     executor : {"serial", "processes"} or dask.distributed.Client, optional
-        Who works: this process, with all cores; one process for each core; a Dask cluster whose
-        machines see the folder of the output.
+        Who works: this process, with all cores; one process for each core, which ends with this
+        one; a Dask cluster whose machines see the folder of the output.
     resume : bool, optional
         Whether to go on with an interrupted run of the same source and arguments. Tiles that are
         finished are not done again.

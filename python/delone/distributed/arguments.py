@@ -25,8 +25,12 @@ def as_path(path: Any, *, name: str) -> Path:
     ------
     DtypeError
         It is none.
+    InputError
+        It holds a null character.
     """
-    if isinstance(path, str | os.PathLike) and isinstance(os.fspath(path), str):
+    if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str):
+        if "\0" in text:
+            raise InputError(f"{name} holds a null character: {text!r:.60}")
         # Folders are made where they are missing, one called ~ nobody wants.
         return Path(path).expanduser()
     raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")

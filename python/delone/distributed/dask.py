@@ -11,7 +11,6 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
-from delone.distributed.executors import AHEAD
 from delone.distributed.stages import perform
 from delone.errors import DeloneError, InputError
 from delone.io.extras import require
@@ -21,6 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["DaskExecutor"]
 
+# Tasks that are handed out for each worker before one of them has come back.
+_AHEAD = 3
 # Seconds that a client may be without a scheduler, and between two looks at it.
 _PATIENCE, _GLANCE = 5.0, 0.005
 # Seconds for tasks at work to end, when one has failed: those of large tiles take some.
@@ -78,7 +79,7 @@ class DaskExecutor:
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
         queue = iter(list(tasks.items()))
-        room = AHEAD * self.workers
+        room = _AHEAD * self.workers
         waiting = self._distributed.as_completed()
         keys: dict[str, tuple[int, Any]] = {}
         try:

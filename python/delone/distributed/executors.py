@@ -1,28 +1,26 @@
 """Who does the tasks of a stage: this process, or others on this machine.
 
-An executor takes tasks by their keys and hands back summaries as they come. It holds a few tasks
+An executor takes tasks by their keys and hands back summaries as they come. It hands out a few
 for each worker at a time, however many a stage has.
 """
 
 from __future__ import annotations
 
 import os
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Protocol
 
 from delone.distributed.stages import perform
+from delone.distributed.worker import Worker, WorkerDiedError
 from delone.errors import DeloneError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from concurrent.futures import Future
 
-__all__ = ["AHEAD", "Executor", "Processes", "Serial"]
+__all__ = ["Executor", "Processes", "Serial"]
 
-# Tasks that are handed out for each worker before one of them has come back.
-AHEAD = 3
 # How often a worker may die before it is taken for the tasks' fault.
 _DEATHS = 3
 
@@ -71,52 +69,56 @@ class Processes:
 
     def __init__(self, workers: int | None = None) -> None:
         self.workers = workers or os.cpu_count() or 1
-        self._pool: ProcessPoolExecutor | None = None
+        self._idle: list[Worker] = []
 
     def close(self) -> None:
         """End the processes."""
-        if self._pool is not None:
-            self._pool.shutdown(wait=True, cancel_futures=True)
-            self._pool = None
+        while self._idle:
+            self._idle.pop().close()
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
-        """Do all tasks of a stage; where a process dies, another one does its tasks again."""
-        left = dict(tasks)
-        for _ in range(_DEATHS):
+        """Do all tasks of a stage; where a process dies, another one does its task again."""
+        queue, deaths = deque(tasks.items()), 0
+        running: dict[Future[dict[str, Any]], tuple[int, Sequence[Any]]] = {}
+        # Each of these waits for a process.
+        with ThreadPoolExecutor(self.workers) as pool:
             try:
-                for key, summary in self._once(root, stage, left):
-                    del left[key]
-                    yield key, summary
-                return
-            except BrokenProcessPool:
-                self.close()
-        raise DeloneError(
-            f"worker processes died {_DEATHS} times in the stage {stage!r}: is there enough memory "
-            "for tiles of this size? What is done is kept; run the same again to go on"
-        )
-
-    def _once(
-        self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
-    ) -> Iterator[tuple[int, dict[str, Any]]]:
-        queue = iter(list(tasks.items()))
-        if self._pool is None:
-            # Fresh interpreters: a fork of one that has threads may never wake up.
-            self._pool = ProcessPoolExecutor(self.workers, mp_context=get_context("spawn"))
-        running: dict[Future[dict[str, Any]], int] = {}
-        try:
-            while True:
-                while len(running) < AHEAD * self.workers:
-                    task = next(queue, None)
-                    if task is None:
+                while queue or running:
+                    while queue and len(running) < self.workers:
+                        task = queue.popleft()
+                        running[pool.submit(self._perform, root, stage, *task)] = task
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        task = running.pop(future)
+                        try:
+                            yield task[0], future.result()
+                        except WorkerDiedError:
+                            queue.append(task)
+                            deaths += 1
+                    if deaths >= _DEATHS:
                         break
-                    running[self._pool.submit(perform, root, stage, *task)] = task[0]
-                if not running:
-                    return
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    yield running.pop(future), future.result()
-        finally:
-            for future in running:
-                future.cancel()
-            wait(running)
+            finally:
+                for future in running:
+                    future.cancel()
+        if queue:
+            raise DeloneError(
+                f"worker processes died {deaths} times in the stage {stage!r}: is there enough "
+                "memory for tiles of this size? What is done is kept; run the same again to go on"
+            )
+
+    def _perform(self, *task: Any) -> dict[str, Any]:
+        try:
+            worker = self._idle.pop()
+        except IndexError:
+            worker = Worker()
+        try:
+            found: dict[str, Any] = worker.perform(*task)
+        except WorkerDiedError:
+            worker.close()
+            raise
+        except Exception:
+            self._idle.append(worker)
+            raise
+        self._idle.append(worker)
+        return found

@@ -47,24 +47,30 @@ class Choice:
 
 @dataclass(frozen=True)
 class Piece:
-    """Some rows of a file."""
+    """Some rows of a file, which had a size and a time when it was looked at."""
 
     path: str
     kind: str
     start: int
     stop: int
     first: int
+    stamp: tuple[int, int] = (0, 0)
 
     def read(self, choice: Choice) -> Rows:
         """Return the rows, with their numbers in the source."""
+        self._check()
         found = self._points(choice)
-        if len(found) != self.stop - self.start:
-            raise FileFormatError(f"{self.path} has changed since it was looked at")
+        self._check()
         attributes = {name: _number(found, name) for name in choice.attributes}
         rows = make_rows(self.first + self.start, found.points, found.z, attributes)
         if choice.classes is not None:
             rows = rows[np.isin(_number(found, "classification"), choice.classes)]
         return rows
+
+    def _check(self) -> None:
+        path = Path(self.path)
+        if not path.exists() or _stamp(path) != self.stamp:
+            raise FileFormatError(f"{path} has changed since it was looked at")
 
     def _points(self, choice: Choice) -> PointSet:
         path = Path(self.path)
@@ -126,13 +132,19 @@ def find(source: Given, choice: Choice) -> Source:
     systems: dict[str | None, str] = {}
     flat: dict[bool, str] = {}
     count = 0
+    files: list[list[str | int]] = []
     for path in paths:
+        if not path.exists():
+            raise FileNotFoundError(f"{path}: no such file")
+        # Before the look: what changes during it is found later.
+        stamp = _stamp(path)
+        files.append([os.path.abspath(path), *stamp])
         kind, rows, crs, heights = _look(path, choice)
         systems.setdefault(crs, str(path))
         flat.setdefault(heights, str(path))
         size = PIECE if kind != "file" else max(rows, 1)
         cuts = range(0, rows, size)
-        pieces += [Piece(str(path), kind, i, min(i + size, rows), count) for i in cuts]
+        pieces += [Piece(str(path), kind, i, min(i + size, rows), count, stamp) for i in cuts]
         count += rows
     if len(systems) > 1:
         (one, first), (other, second), *_ = systems.items()
@@ -142,10 +154,13 @@ def find(source: Given, choice: Choice) -> Source:
         )
     if len(flat) > 1:
         raise InputError(f"{flat[True]} has heights and {flat[False]} has none: choose columns")
-    stats = [path.stat() for path in paths]
-    names = [os.path.abspath(path) for path in paths]
-    files = [[n, s.st_size, s.st_mtime_ns] for n, s in zip(names, stats, strict=True)]
     return Source(tuple(pieces), count, next(iter(systems), None), {"files": files})
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    """Size and time of a file."""
+    stat = path.stat()
+    return stat.st_size, stat.st_mtime_ns
 
 
 def _paths(source: Given) -> list[Path] | None:
@@ -185,8 +200,6 @@ def _matching(part: str | os.PathLike[str]) -> list[Path]:
 def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
     """Kind, rows and reference system of a file, and whether it has heights."""
     suffix = path.suffix.lower()
-    if not path.exists():
-        raise FileNotFoundError(f"{path}: no such file")
     if not path.is_file():
         raise FileFormatError(f"{path} is a pipe or device; write what it gives to a file first")
     if path.stat().st_size == 0:
@@ -207,14 +220,15 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
 
 
 def _mappable(path: Path, choice: Choice) -> tuple[int, int] | None:
-    """The shape of an array of which parts can be read; None where there is more to it."""
+    """The shape of an array of which parts can be read; None where there is more to it, or less."""
     if choice.columns is not None or choice.attributes:
         return None
     try:
         array = np.load(path, mmap_mode="r")
-    except ValueError as error:
-        raise FileFormatError(f"{path} is torn or no npy file: {error}") from error
+    except ValueError:
+        return None
     fits = array.ndim == 2 and array.shape[1] in (2, 3) and array.dtype == np.float64
+    fits = fits and array.offset + array.nbytes == path.stat().st_size
     return array.shape if fits else None
 
 
