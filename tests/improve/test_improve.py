@@ -363,6 +363,12 @@ def test_a_mesh_is_immutable_and_travels() -> None:
     assert repr(TetMesh.__new__(TetMesh)) == "<TetMesh of nothing yet>"
 
 
+@pytest.mark.parametrize("given", [(), ([(0, 0, 0)],), (None, None)])
+def test_the_class_is_not_called(given: tuple[Any, ...]) -> None:
+    with pytest.raises(DtypeError, match=r"made by delone\.improve"):
+        TetMesh(*given)
+
+
 def test_the_volume_is_that_of_the_hull() -> None:
     mesh = delone.improve(uniform(100))
     assert mesh.volumes.sum() == pytest.approx(float(volume(mesh.points, mesh.simplices) / 6))

@@ -15,7 +15,13 @@ import numpy as np
 import pytest
 
 import delone
-from delone import BudgetExceededError, ConstrainedDelaunay, CrossingSegmentsError, InputError
+from delone import (
+    BudgetExceededError,
+    ConstrainedDelaunay,
+    CrossingSegmentsError,
+    DtypeError,
+    InputError,
+)
 from delone.refine.refine import MOST_ADDED
 from delone.testing import assert_mesh
 
@@ -310,3 +316,9 @@ def test_the_default_limit_on_points_keeps_memory_bounded() -> None:
         mesh = delone.mesh(loops(wavy(60, 5)), min_angle=59, max_points=5000)
     assert mesh.report.exhausted
     assert mesh.nadded == 5000
+
+
+@pytest.mark.parametrize("given", [(), (SQUARE,), (SQUARE, RING)])
+def test_the_class_is_not_called(given: tuple[Any, ...]) -> None:
+    with pytest.raises(DtypeError, match=r"made by delone\.mesh"):
+        delone.Mesh(*given)

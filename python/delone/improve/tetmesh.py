@@ -13,6 +13,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_number
 from delone.counting import counted
+from delone.errors import DtypeError
 from delone.immutable import Immutable, kept, sealed
 from delone.space import location as places
 from delone.space import topology
@@ -72,6 +73,9 @@ class TetMesh(Immutable):
     _region: Indices
     _report: ImproveReport
     _simplices: Indices
+
+    def __init__(self, *given: Any, **options: Any) -> None:
+        raise DtypeError("a TetMesh is made by delone.improve(mesh), not by its class")
 
     @classmethod
     def _of(cls, arrays: dict[str, NDArray[Any]], report: ImproveReport) -> Self:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone.counting import counted
+from delone.errors import DtypeError
 from delone.immutable import kept, sealed
 from delone.plane import quality, topology
 from delone.plane.triangulation import Triangulation
@@ -103,6 +104,9 @@ class Mesh(Triangulation):
     _sides: Indices
     _source: Indices
     _start: NDArray[np.int64]
+
+    def __init__(self, *given: Any, **options: Any) -> None:
+        raise DtypeError("a Mesh is made by delone.mesh(domain), not by its class")
 
     @classmethod
     def _of(
