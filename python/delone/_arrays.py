@@ -510,6 +510,40 @@ def as_flag(flag: bool, *, name: str) -> bool:
     raise DtypeError(f"{name} must be True or False, got {flag!r:.60}")
 
 
+def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
+    """Return a truth value as that of Python, and None where the choice is left open.
+
+    Parameters
+    ----------
+    flag : bool or None
+        As for `as_flag`, or None.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    bool or None
+        The value.
+
+    Raises
+    ------
+    DtypeError
+        It is none.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_optional_flag
+    >>> as_optional_flag(None, name="shade")
+    >>> as_optional_flag("no", name="shade")
+    Traceback (most recent call last):
+    ...
+    delone.errors.DtypeError: shade must be True, False or None, got 'no'
+    """
+    if flag is None or isinstance(flag, bool | np.bool_):
+        return None if flag is None else bool(flag)
+    raise DtypeError(f"{name} must be True, False or None, got {flag!r:.60}")
+
+
 def as_workers(workers: int | None) -> int:
     """Return how many threads to use.
 

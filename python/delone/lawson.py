@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_points, as_simplices
+from delone._arrays import as_flag, as_points, as_simplices
 from delone.counting import counted
 from delone.errors import LimitError
 
@@ -141,7 +141,9 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
     """
     points = as_points(points, ndim=2)
     simplices = as_simplices(simplices, len(points), 2)
-    flipped, neighbors, flips, sequence = _core.lawson2(points, simplices, bool(record))
+    flipped, neighbors, flips, sequence = _core.lawson2(
+        points, simplices, as_flag(record, name="record")
+    )
     angles = None if sequence is None else _sealed(_angles(points, simplices, sequence))
     return LawsonResult(
         simplices=_sealed(flipped),

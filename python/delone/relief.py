@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._arrays import as_flag
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.plot.colours import add_bar, scale, shaded
@@ -83,6 +84,7 @@ def plot_raster(
     >>> plot_raster(ramp.values, ramp.x, ramp.y, contours=4).get_aspect()
     1.0
     """
+    lit, bar = as_flag(shade, name="shade"), as_flag(colorbar, name="colorbar")
     if not np.isfinite(values).any():
         raise InputError("the raster has no finite value to be drawn")
     if ax is None:
@@ -90,7 +92,7 @@ def plot_raster(
     colours = scale(values, cmap)
     rgba = colours.to_rgba(values)
     extent = _extent(x, y)
-    if shade:
+    if lit:
         light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
         rgba[..., :3] = shaded(rgba[..., :3], light)
     rgba[..., 3] = np.isfinite(values)
@@ -107,7 +109,7 @@ def plot_raster(
             linestyles="solid",
             alpha=0.45,
         )
-    if colorbar:
+    if bar:
         add_bar(ax, colours, values, label)
     if title:
         ax.set_title(title, fontsize="medium")

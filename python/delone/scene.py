@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice
+from delone._arrays import as_choice, as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.io.extras import require
 
@@ -123,11 +123,13 @@ def plot(
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in space")
     as_choice(cut, ("none", *_AXES), name="cut")
+    dots, scale = as_flag(points, name="points"), as_flag(bar, name="bar")
+    hidden = as_optional_flag(off_screen, name="off_screen")
     _require_space(shape, corners=(3, 4))
     if not 0 < shrink <= 1:
         raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
     if plotter is None:
-        plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(_SIZE))
+        plotter = pyvista.Plotter(off_screen=hidden, window_size=list(_SIZE))
         plotter.set_background("white")
     rows, nsimplex = _kept(shape, cut), len(shape.simplices)
     chosen = None if values is None else np.asarray(values, dtype=np.float64)
@@ -138,12 +140,12 @@ def plot(
         grid = grid.shrink(shrink)
     colours: dict[str, Any] = {"color": _FACE}
     if values is not None:
-        colours = {"scalars": "values", "cmap": cmap, "show_scalar_bar": bar}
+        colours = {"scalars": "values", "cmap": cmap, "show_scalar_bar": scale}
     # Some light on all sides, so that colours are seen in the shade, too.
     plotter.add_mesh(
         grid, show_edges=shrink == 1, edge_color=_EDGE, line_width=1, ambient=0.4, **colours
     )
-    if points:
+    if dots:
         plotter.add_points(
             np.array(shape.points), color=_POINT, point_size=6, render_points_as_spheres=True
         )

@@ -85,9 +85,9 @@ PYTHON: dict[str, set[str]] = {
     "datasets": FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
     "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays"},
-    "plot": PUBLIC | {"atomic", "io"},
+    "plot": PUBLIC | {"atomic", "io", "_arrays"},
     "scene": PUBLIC | {"io", "_arrays"},
-    "relief": PUBLIC | {"io", "plot"},
+    "relief": PUBLIC | {"io", "plot", "_arrays"},
     "cli": PUBLIC
     | {
         "atomic",

@@ -17,6 +17,7 @@ from delone import _core, location
 from delone._arrays import (
     as_choice,
     as_count,
+    as_flag,
     as_seeds,
     as_segments,
     as_workers,
@@ -168,7 +169,7 @@ class ConstrainedDelaunay(Segmented):
         options = Options(
             boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
             crossing=as_choice(crossing, _CROSSINGS, name="crossing"),
-            conforming=bool(conforming),
+            conforming=as_flag(conforming, name="conforming"),
             max_vertices=_budget(max_vertices),
             method=as_choice(method, tuple(_core.methods2()), name="method"),
             workers=workers,

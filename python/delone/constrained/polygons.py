@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_choice, as_points, require_finite
+from delone._arrays import as_choice, as_flag, as_points, require_finite
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError, NonFiniteError
@@ -110,7 +110,7 @@ def from_geometry(
         regions=regions,
         boundary=boundary,
         crossing=crossing,
-        conforming=bool(conforming),
+        conforming=as_flag(conforming, name="conforming"),
         max_vertices=max_vertices,
         method=method,
         workers=workers,

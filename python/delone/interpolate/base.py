@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from delone import location
-from delone._arrays import as_vectors, as_workers
+from delone._arrays import as_flag, as_vectors, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.immutable import own_copy
@@ -84,7 +84,7 @@ class Interpolator:
         self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
         self._nan = chosen("nan", nan, NAN)
         self._workers = workers
-        self._respect_constraints = bool(respect_constraints)
+        self._respect_constraints = as_flag(respect_constraints, name="respect_constraints")
         self._cache: dict[str, Any] = {}
         self._other: Self | None = None
         as_workers(workers)

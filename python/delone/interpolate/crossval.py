@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count, as_points, as_workers
+from delone._arrays import as_count, as_optional_flag, as_points, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.interpolate.methods import METHODS, interpolator
@@ -181,6 +181,7 @@ def cross_validate(
     >>> cross_validate(points, 2 * x, "linear", folds=5).rmse.round(9)
     np.float64(0.0)
     """
+    leave_one_out = as_optional_flag(leave_one_out, name="leave_one_out")
     if leave_one_out is None:
         leave_one_out = folds is None
     if leave_one_out == (folds is not None):

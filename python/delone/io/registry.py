@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from delone._arrays import as_flag
 from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.io.compressed import SUFFIXES
@@ -417,13 +418,14 @@ def write_mesh(
     # Sides of a hull have a corner less.
     if np.shape(getattr(triangulation, "simplices", ()))[1:] != (ndim + 1,):
         raise InputError(f"a {name} is no triangulation: there is nothing to write")
-    if edges and not hasattr(triangulation, "edges"):
+    lines = as_flag(edges, name="edges")
+    if lines and not hasattr(triangulation, "edges"):
         raise InputError(f"this {name} has no array of edges: write delone.Delaunay(points)")
     write = writer(path, space=ndim == 3)
     if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
         raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
     with replacing(path) as beside:
-        write(beside, triangulation, z=z, crs=crs, edges=edges, attributes=attributes)
+        write(beside, triangulation, z=z, crs=crs, edges=lines, attributes=attributes)
 
 
 def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from delone._arrays import as_flag, as_optional_flag
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
 from delone.io.extras import require
@@ -111,6 +112,9 @@ def plot(
     """
     require("matplotlib", extra="plot", what="drawing")
     require_flat(triangulation)
+    for name, flag in {"hull": hull, "circumcircles": circumcircles, "segments": segments}.items():
+        as_flag(flag, name=name)
+    as_optional_flag(vertices, name="vertices")
     if circumcircles and triangulation.nsimplex > _MOST_CIRCLES:
         raise InputError(
             f"the circles of {triangulation.nsimplex} triangles would hide each other; "
@@ -120,7 +124,11 @@ def plot(
     require_drawable(triangulation, heights)
     if ax is None:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
-    look: dict[str, Any] = {"cmap": cmap, "shade": shade, "colorbar": colorbar}
+    look: dict[str, Any] = {
+        "cmap": cmap,
+        "shade": as_optional_flag(shade, name="shade"),
+        "colorbar": as_flag(colorbar, name="colorbar"),
+    }
     pixels = _pixels(ax, triangulation)
     dense = _is_dense(triangulation, pixels)
     constrained = triangulation if isinstance(triangulation, _SEGMENTED) else None

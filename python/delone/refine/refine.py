@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_number, as_workers
+from delone._arrays import as_choice, as_count, as_flag, as_number, as_workers
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError
@@ -176,12 +176,12 @@ def mesh(
     >>> bool(10 * left < right)
     True
     """
-    if not conforming:
+    if not as_flag(conforming, name="conforming"):
         raise InputError("a mesh always conforms to its segments: conforming must be True")
     limits = Limits(
         as_min_angle(min_angle),
         MOST_ADDED if max_points is None else as_count(max_points, name="max_points"),
-        bool(delaunay),
+        as_flag(delaunay, name="delaunay"),
         progress,
         workers,
     )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from delone._arrays import as_points, require_finite
+from delone._arrays import as_flag, as_points, require_finite
 from delone.testing.checks import (
     assert_counter_clockwise,
     assert_hull_and_area,
@@ -223,6 +223,8 @@ def assert_constrained_delaunay(
     AssertionError: 1 segment is not covered from end to end:
       row 1: 1 (2.0, -1.0), 2 (4.0, 0.0)
     """
+    for name, flag in {"complete": complete, "split": split, "canonical": canonical}.items():
+        as_flag(flag, name=name)
     exact = _exact(mesh)
     if complete and spans_no_area(exact):
         require(

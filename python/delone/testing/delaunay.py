@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from delone._arrays import as_points, require_finite
+from delone._arrays import as_flag, as_points, require_finite
 from delone.testing.checks import (
     assert_counter_clockwise,
     assert_hull_and_area,
@@ -76,6 +76,7 @@ def assert_delaunay(
     AssertionError: 1 edge is not canonical: the smallest of four cocircular points is not on it:
       edge 1 (1.0, 0.0), 3 (0.0, 1.0) between 0 (0.0, 0.0), 2 (1.0, 1.0)
     """
+    as_flag(canonical, name="canonical")
     points = as_points(points)
     require_finite(points)
     if points.shape[1] == 3:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._arrays import as_flag, as_workers
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError
@@ -197,6 +197,7 @@ class Voronoi(Immutable):
         if hasattr(self, "_points"):
             raise AttributeError("a Voronoi never changes: make another one")
         threads = as_workers(workers)
+        repair = as_flag(fix, name="fix")
         own = own_copy(points)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
@@ -207,7 +208,7 @@ class Voronoi(Immutable):
             mesh, arrays = _power_dual(own, heavy, threads)
         else:
             mesh, arrays = _dual(own, threads)
-        where = outline.as_clip(clip, own, fix=fix, periods=lengths)
+        where = outline.as_clip(clip, own, fix=repair, periods=lengths)
         self._fill(
             points=own,
             weights=heavy,

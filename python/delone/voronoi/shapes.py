@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -143,6 +144,8 @@ def draw(
     """
     from delone.io.extras import require
 
+    bar = as_flag(colorbar, name="colorbar")
+    dots = as_optional_flag(points, name="points")
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     paths = require("matplotlib.path", extra="plot", what="drawing")
     if ax is None:
@@ -164,9 +167,9 @@ def draw(
         cells = collections.PathCollection(outlines, edgecolors=_EDGE, linewidths=thin, cmap=cmap)
         cells.set_array(colours[sites])
     ax.add_collection(cells, autolim=False)
-    if colours is not None and colorbar:
+    if colours is not None and bar:
         ax.figure.colorbar(cells, ax=ax, shrink=0.75, pad=0.02)
-    if points or (points is None and diagram.npoints <= _MOST_DOTS):
+    if dots or (dots is None and diagram.npoints <= _MOST_DOTS):
         size = float(np.clip(60 / np.sqrt(diagram.npoints), 0.8, 5.0))
         ax.plot(*diagram.points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")

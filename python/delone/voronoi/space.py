@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_workers
+from delone._arrays import as_flag, as_workers
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InputError
@@ -153,6 +153,7 @@ class SpaceVoronoi(Voronoi):
         if periodic is not None:
             raise InputError("periodic is for points in the plane")
         threads = as_workers(workers)
+        as_flag(fix, name="fix")
         own = own_copy(points, ndim=3)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh, arrays = _dual(own, heavy, threads)
