@@ -107,3 +107,11 @@ def test_faults_of_the_data_have_their_code_and_the_words_of_the_command(tmp_pat
         code, _, err = command(name[0], holed, *name[1:])
         assert code == 4 and "first: 3; choose --nan drop or --nan propagate" in err
         assert err.count("3") == 1
+
+
+def test_speeds_are_those_of_what_was_worked_on(soundings, figures):
+    found = figures("interpolate", soundings, "--value", "depth", "--grid", "200x100")
+    for stage in found["stages"]:
+        worked = stage["seconds"] * stage["points_per_second"]
+        right = 20_000 if stage["name"] == "interpolate" else 300
+        assert worked == pytest.approx(right, rel=0.05)

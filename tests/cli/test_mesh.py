@@ -81,3 +81,14 @@ def test_the_report_names_what_it_says(lake: Path, capsys: pytest.CaptureFixture
     column = lines[1].index("points") + len("peak memory  ")
     for line in lines[1 : lines.index("")]:
         assert line[column - 1] == " " and line[column] != " "
+
+
+def test_speeds_are_those_of_what_was_worked_on(
+    lake: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["mesh", str(lake), "--max-area", "40", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    speeds = {each["name"]: each["seconds"] * each["points_per_second"] for each in found["stages"]}
+    assert speeds["read"] == pytest.approx(9, rel=0.05)
+    assert speeds["refine"] == pytest.approx(found["points"], rel=0.05)
+    assert found["points"] > 1000

@@ -110,7 +110,9 @@ def interpolate(
             found = grid(made, **where, progress=_told(say, "interpolating"))
         _write(writers, found, name, survey.crs, watch, say)
         figures = _figures(source, survey, made, method, found) | {
-            "stages": watch.rows(found.values.size),
+            "stages": watch.rows(
+                found.values.size, others=dict.fromkeys(("read", "triangulate"), len(survey))
+            ),
             "outputs": [str(path) for path in writers],
             "peak_memory_bytes": peak_memory(),
         }

@@ -96,7 +96,10 @@ def make_mesh(
         "crs": survey.crs,
         **summary(found),
         "mesh": _figures(found),
-        "stages": watch.rows(found.npoints),
+        "stages": watch.rows(
+            found.npoints,
+            others=dict.fromkeys(("read", "triangulate"), found.npoints - found.nadded),
+        ),
         "outputs": [str(path) for path in writers],
         "peak_memory_bytes": peak_memory(),
     }

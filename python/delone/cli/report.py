@@ -19,7 +19,7 @@ from delone import ConstrainedDelaunay
 from delone import Mesh as QualityMesh
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import NDArray
 
@@ -50,24 +50,27 @@ class Stopwatch:
         yield
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
 
-    def rows(self, points: int) -> list[dict[str, Any]]:
+    def rows(self, points: int, *, others: Mapping[str, int] | None = None) -> list[dict[str, Any]]:
         """Return a row for each stage.
 
         Parameters
         ----------
         points : int
             How many points were worked on.
+        others : mapping of str to int, optional
+            How many in stages of which that does not hold.
 
         Returns
         -------
         list of dict
             Name, seconds and points per second.
         """
+        counts = dict.fromkeys(self.seconds, points) | dict(others or {})
         return [
             {
                 "name": name,
                 "seconds": round(seconds, 6),
-                "points_per_second": round(points / seconds) if seconds > 0 else None,
+                "points_per_second": round(counts[name] / seconds) if seconds > 0 else None,
             }
             for name, seconds in self.seconds.items()
         ]
