@@ -17,6 +17,7 @@ from delone.plane import quality, topology
 from delone.plane.triangulation import Triangulation
 from delone.refine import domains
 from delone.refine.domains import Counts, Domain, Lines
+from delone.refine.handover import HandedOver
 from delone.refine.report import reported
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Mesh"]
 
 
-class Mesh(Triangulation):
+class Mesh(HandedOver, Triangulation):
     """A mesh of triangles, as `delone.mesh` makes it.
 
     Attributes
@@ -574,124 +575,6 @@ class Mesh(Triangulation):
         from delone import archive
 
         return cls._from_arrays(archive.read(path, archive.MESH), {}, None)
-
-    def to_meshio(self) -> Any:
-        """Return the mesh as a mesh of meshio.
-
-        Returns
-        -------
-        meshio.Mesh
-            Triangles, and segments as lines, with ``region`` and ``marker`` as their values, and
-            again as tags of gmsh: regions from 1 on, markers as they are.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed (extra ``mesh``).
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).to_meshio().cells_dict["triangle"].shape
-        (2, 3)
-        """
-        from delone.io import exchange
-
-        return exchange.to_meshio(self)
-
-    def to_skfem(self) -> Any:
-        """Return the mesh as a mesh of scikit-fem.
-
-        Returns
-        -------
-        skfem.MeshTri
-            With subdomains ``"region 0"`` and so on, and boundaries ``"marker 0"`` and so on, which
-            are the segments by their markers.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed (extra ``fem``).
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).to_skfem().nelements
-        2
-        """
-        from delone.io import exchange
-
-        return exchange.to_skfem(self)
-
-    def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the mesh as the arrays of which DOLFINx makes one.
-
-        Returns
-        -------
-        dict of ndarray
-            ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, ``cell_tags`` (regions),
-            ``facets`` (segments as pairs of points) and ``facet_tags`` (markers).
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> sorted(delone.mesh(square).to_dolfinx_arrays())
-        ['cell_tags', 'cells', 'facet_tags', 'facets', 'x']
-        """
-        from delone.io import exchange
-
-        return exchange.to_dolfinx_arrays(self)
-
-    def to_pyvista(self) -> Any:
-        """Return the mesh as a surface of PyVista.
-
-        Returns
-        -------
-        pyvista.PolyData
-            In the plane z = 0, with ``region`` of triangles and ``marker`` of points.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed (extra ``pyvista``).
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).to_pyvista().n_cells
-        2
-        """
-        from delone.io import exchange
-
-        return exchange.to_pyvista(self)
-
-    def to_matplotlib(self) -> Any:
-        """Return the mesh as a triangulation of matplotlib.
-
-        Returns
-        -------
-        matplotlib.tri.Triangulation
-            For ``tripcolor``, ``tricontour`` and their like.
-
-        Raises
-        ------
-        MissingExtraError
-            The library is not installed (extra ``plot``).
-
-        Examples
-        --------
-        >>> import delone
-        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).to_matplotlib().triangles.shape
-        (2, 3)
-        """
-        from delone.io import exchange
-
-        return exchange.to_matplotlib(self)
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):
