@@ -23,7 +23,7 @@ from delone._arrays import as_workers
 from delone.compat.qhull import Incremental, triangulate
 from delone.errors import ShapeError
 from delone.plane.triangulation import first_rows
-from delone.voronoi.space import ridge_lists
+from delone.voronoi.lists import gaps_once, ridge_lists
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -151,7 +151,7 @@ class Voronoi(Incremental):
     def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
         entries = self._dual["region_vertices"].tolist()
         starts = self._dual["starts" if self.ndim == 2 else "region_starts"].tolist()
-        cells = [_gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
+        cells = [gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
         of_point = self._dual["region"].astype(np.int64)
         infinite = self._options.infinite_point and not self.furthest_site
         lists: list[list[int]] = [[]] if infinite else []
@@ -188,11 +188,6 @@ class Voronoi(Incremental):
     def max_bound(self) -> Floats:
         """The greatest coordinates."""
         return self._mesh.max_bound.copy()
-
-
-def _gaps_once(region: list[int]) -> list[int]:
-    """A cell with each run of -1 written once, also where it runs over the end."""
-    return [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0] or region[:1]
 
 
 def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:

@@ -12,30 +12,28 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from delone import _core
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
-from delone.delaunay import Delaunay
-from delone.errors import DegenerateInputError
 from delone.immutable import Immutable, kept, own_copy, sealed
-from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
-from delone.plane.triangulation import first_rows
-from delone.regular import RegularTriangulation, as_weights, triangulated
-from delone.voronoi import clipping, dual, outline, shapes, torus
+from delone.regular import as_weights
+from delone.voronoi import clipping, dual, outline, shapes, sites
 from delone.voronoi.cells import Cell, Neighbors, Rays
+from delone.voronoi.lists import compressed, gaps_once
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.delaunay import Delaunay
+    from delone.periodic import PeriodicDelaunay
+    from delone.regular import RegularTriangulation
     from delone.voronoi.clipping import Clipped
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Voronoi", "compressed"]
+__all__ = ["Voronoi"]
 
 _SPACE = 3
-_NO_SITE = "there is no point; a diagram needs one"
 
 
 class Voronoi(Immutable):
@@ -202,12 +200,10 @@ class Voronoi(Immutable):
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
         lengths = None
-        if periodic is not None:
-            mesh, arrays, lengths = _periodic_dual(own, heavy, periodic, threads)
-        elif heavy is not None:
-            mesh, arrays = _power_dual(own, heavy, threads)
+        if periodic is None:
+            mesh, arrays = sites.in_plane(own, heavy, threads)
         else:
-            mesh, arrays = _dual(own, threads)
+            mesh, arrays, lengths = sites.repeated(own, heavy, periodic, threads)
         where = outline.as_clip(clip, own, fix=repair, periods=lengths)
         self._fill(
             points=own,
@@ -337,7 +333,7 @@ class Voronoi(Immutable):
         indptr, indices = (array.tolist() for array in self.region_vertices)
         lists = [indices[a:b] for a, b in itertools.pairwise(indptr)]
         if len(self._dual["rays"]):
-            return [_without_repeated_gaps(region) for region in lists]
+            return [gaps_once(region) for region in lists]
         return lists
 
     @property
@@ -461,8 +457,8 @@ class Voronoi(Immutable):
         """
         lengths = self._clipped.ridge_lengths()
         rows = np.flatnonzero(lengths > 0) if self._clip is not None else np.arange(len(lengths))
-        sites = self.ridge_points[rows].astype(np.int64)
-        indptr, indices, beside = compressed(sites, lengths[rows], self.npoints)
+        pairs = self.ridge_points[rows].astype(np.int64)
+        indptr, indices, beside = compressed(pairs, lengths[rows], self.npoints)
         return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
     def cell(self, i: int) -> Cell:
@@ -616,57 +612,6 @@ class Voronoi(Immutable):
         return f"<Voronoi diagram of {numbers[0]}: {', '.join(numbers[1:])}{where}>"
 
 
-def _dual(points: Floats, workers: int) -> tuple[Delaunay | None, dict[str, NDArray[Any]]]:
-    """The triangulation, where there is one, and the arrays of the diagram."""
-    try:
-        mesh = Delaunay(points, workers=workers)
-    except DegenerateInputError as error:
-        if not len(error.chain):
-            raise DegenerateInputError(_NO_SITE, reason="too few points") from None
-        arrays = dual.of_chain(points, error.chain.astype(np.int32))
-        arrays["region"] = arrays["region"][first_rows(points)]
-        return None, arrays
-    arrays = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, workers)
-    duplicate, first = mesh._duplicates.T
-    arrays["region"][duplicate] = arrays["region"][first]
-    return mesh, arrays
-
-
-def _power_dual(
-    points: Floats, weights: Floats, workers: int
-) -> tuple[RegularTriangulation | None, dict[str, NDArray[Any]]]:
-    """The same with weights."""
-    found, chain = triangulated(points, weights)
-    mesh = None
-    if len(found["simplices"]):
-        mesh = RegularTriangulation._from_arrays(found, {}, None)
-        arrays = _core.voronoi2(points, weights, mesh.simplices, mesh.neighbors, workers)
-    elif len(chain):
-        arrays = dual.of_chain(points, chain)
-    else:
-        raise DegenerateInputError(_NO_SITE, reason="too few points")
-    duplicate, first = found["duplicates"].T
-    arrays["region"][duplicate] = arrays["region"][first]
-    return mesh, arrays
-
-
-def _periodic_dual(
-    points: Floats, weights: Floats | None, periods: Any, workers: int
-) -> tuple[PeriodicDelaunay | None, dict[str, NDArray[Any]], tuple[float | None, float | None]]:
-    """The same with periods, which come third."""
-    torus.require_room(points, as_periods(periods))
-    try:
-        mesh = PeriodicDelaunay(points, periods, weights=weights)
-    except DegenerateInputError as error:
-        if not len(error.chain):
-            raise
-        lengths = as_periods(periods)
-        arrays = torus.of_line(points, error.chain.astype(np.int32), lengths)
-        arrays["region"] = arrays["region"][vertex_of(points, weights)]
-        return None, arrays, lengths
-    return mesh, torus.of_periodic(mesh, workers), mesh.periods
-
-
 def _columns(points: ArrayLike | None) -> int:
     """How many coordinates points have; 0 where they are no table."""
     try:
@@ -674,36 +619,3 @@ def _columns(points: ArrayLike | None) -> int:
     except ValueError:  # rows of different lengths, which the constructor refuses
         return 0
     return int(shape[1]) if len(shape) > 1 else 0
-
-
-def _without_repeated_gaps(region: list[int]) -> list[int]:
-    """A cell with each run of -1 written once, also where it runs over the end."""
-    kept = [v for i, v in enumerate(region) if v >= 0 or region[i - 1] >= 0]
-    return kept or region[:1]
-
-
-def compressed(
-    pairs: NDArray[np.int64], lengths: Floats, npoints: int
-) -> tuple[Indices, Indices, Floats]:
-    """Return symmetric pairs as compressed rows, with what belongs to each pair.
-
-    Parameters
-    ----------
-    pairs : ndarray of int64, shape (r, 2)
-        Rows that belong together.
-    lengths : ndarray of float64, shape (r,)
-        What belongs to each pair.
-    npoints : int
-        Number of rows.
-
-    Returns
-    -------
-    tuple of ndarray
-        Where each row begins, its partners ascending, and what belongs to them.
-    """
-    here = np.concatenate((pairs[:, 0], pairs[:, 1]))
-    there = np.concatenate((pairs[:, 1], pairs[:, 0]))
-    order = np.argsort(here * npoints + there)
-    indptr = np.zeros(npoints + 1, dtype=np.int32)
-    np.cumsum(np.bincount(here, minlength=npoints), out=indptr[1:])
-    return indptr, there[order].astype(np.int32), np.tile(lengths, 2)[order]

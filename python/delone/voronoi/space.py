@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import _core
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
-from delone.delaunay import Delaunay
 from delone.errors import InputError
 from delone.immutable import kept, own_copy, sealed
-from delone.regular import RegularTriangulation, as_weights, triangulated
+from delone.regular import as_weights
+from delone.voronoi import sites
 from delone.voronoi.bodies import Bodies, SpaceCell, SpaceNeighbors
 from delone.voronoi.cells import Rays
-from delone.voronoi.diagram import Voronoi, compressed
+from delone.voronoi.diagram import Voronoi
+from delone.voronoi.lists import compressed, ridge_lists
 from delone.voronoi.polyhedra import Polyhedron, as_polyhedron
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["SpaceVoronoi", "ridge_lists"]
+__all__ = ["SpaceVoronoi"]
 
 
 class SpaceVoronoi(Voronoi):
@@ -156,7 +156,7 @@ class SpaceVoronoi(Voronoi):
         as_flag(fix, name="fix")
         own = own_copy(points, ndim=3)
         heavy = None if weights is None else as_weights(weights, len(own))
-        mesh, arrays = _dual(own, heavy, threads)
+        mesh, arrays = sites.in_space(own, heavy, threads)
         where = as_polyhedron(clip, own)
         self._fill(
             points=own,
@@ -288,8 +288,8 @@ class SpaceVoronoi(Voronoi):
         """
         areas = self._bodies.ridge_areas
         rows = np.flatnonzero(areas > 0) if self._bodies.clipped else np.arange(len(areas))
-        sites = self.ridge_points[rows].astype(np.int64)
-        indptr, indices, beside = compressed(sites, areas[rows], self.npoints)
+        pairs = self.ridge_points[rows].astype(np.int64)
+        indptr, indices, beside = compressed(pairs, areas[rows], self.npoints)
         return SpaceNeighbors(sealed(indptr), sealed(indices), sealed(beside))
 
     def cell(self, i: int) -> SpaceCell:  # type: ignore[override]
@@ -375,7 +375,7 @@ class SpaceVoronoi(Voronoi):
         pyvista = require("pyvista", extra="pyvista", what="polyhedra of Voronoi cells")
         points: list[Floats] = []
         streams: list[list[int]] = []
-        sites: list[int] = []
+        rows: list[int] = []
         count = 0
         for cell in self._cells_with_an_end():
             stream = [len(cell.faces)]
@@ -383,7 +383,7 @@ class SpaceVoronoi(Voronoi):
                 stream += [len(face), *(face + count).tolist()]
             streams.append([len(stream), *stream])
             points.append(cell.vertices)
-            sites.append(cell.site)
+            rows.append(cell.site)
             count += len(cell.vertices)
         polyhedron = 42  # VTK's number of that kind of cell
         kinds = np.full(len(streams), polyhedron, dtype=np.uint8)
@@ -392,8 +392,8 @@ class SpaceVoronoi(Voronoi):
             kinds,
             np.concatenate([*points, np.empty((0, 3))]),
         )
-        grid.cell_data["site"] = np.array(sites, dtype=np.int32)
-        grid.cell_data["volume"] = self.cell_volumes[sites]
+        grid.cell_data["site"] = np.array(rows, dtype=np.int32)
+        grid.cell_data["volume"] = self.cell_volumes[rows]
         return grid
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
@@ -447,49 +447,3 @@ class SpaceVoronoi(Voronoi):
             f"{counted(len(self.vertices), 'vertex')}, "
             f"{counted(len(self.ridge_points), 'ridge')}{where}>"
         )
-
-
-def _dual(
-    points: Floats, weights: Floats | None, workers: int
-) -> tuple[Delaunay | RegularTriangulation, dict[str, NDArray[Any]]]:
-    """The triangulation and the arrays of the diagram."""
-    mesh: Delaunay | RegularTriangulation
-    if weights is None:
-        mesh = Delaunay(points, workers=workers)
-    else:
-        found, _ = triangulated(points, weights)
-        mesh = RegularTriangulation._from_arrays(found, {}, None)
-    arrays = _core.voronoi3(points, weights, mesh.simplices, mesh.neighbors, workers)
-    duplicate, first = mesh._duplicates.T
-    arrays["region"][duplicate] = arrays["region"][first]
-    return mesh, arrays
-
-
-def ridge_lists(dual: dict[str, NDArray[Any]]) -> list[list[int]]:
-    """Return the vertices of each ridge in their order around it; -1, which comes first, if open.
-
-    Parameters
-    ----------
-    dual : dict of ndarray
-        The arrays of the core.
-
-    Returns
-    -------
-    list of list of int
-        Vertices, ridge by ridge.
-    """
-    starts, entries = dual["starts"].tolist(), dual["entries"].tolist()
-    return [_from_the_gap(entries[a:b]) for a, b in itertools.pairwise(starts)]
-
-
-def _from_the_gap(entries: list[int]) -> list[int]:
-    """The vertices of a ridge, those that follow its gap first; -1 for the gap."""
-    if min(entries) >= 0:
-        return entries
-    found = [v for v in entries if v >= 0]
-    if entries[0] < 0:
-        return [-1, *found]
-    # Closed, with a vertex beyond the range of doubles.
-    gap = next(i for i, v in enumerate(entries) if v < 0)
-    turned = entries[gap:] + entries[:gap]
-    return [-1, *(v for v in turned if v >= 0)]
