@@ -194,6 +194,22 @@ def lloyd(
             workers=workers,
         )
         return _scaled_back(found_in_units, domain, unit, workers)
+    return _iterated(
+        diagram, iterations, tol, density=density, quasi_newton=quasi_newton, progress=progress
+    )
+
+
+def _iterated(
+    diagram: Voronoi,
+    iterations: int,
+    tol: float | None,
+    *,
+    density: Density | None,
+    quasi_newton: bool,
+    progress: Callable[[int, float, float], object] | None,
+) -> LloydResult:
+    """Move the sites of a diagram until they hardly move, or often enough."""
+    workers = diagram._workers
     at = _state(diagram, density)
     displacements: list[float] = []
     energies = [at.energy]
@@ -209,7 +225,7 @@ def lloyd(
             evaluations += tries
         if found is None:
             memory.forget()
-            found = _state(Voronoi(at.centers, clip=domain, workers=workers), density)
+            found = _state(Voronoi(at.centers, clip=diagram.clip, workers=workers), density)
             evaluations += 1
         if quasi_newton:
             memory.learn(at, found)

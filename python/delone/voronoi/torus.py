@@ -63,12 +63,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         A vertex lies beyond the range of doubles.
     """
     lengths = np.array([length or 0.0 for length in mesh.periods])
-    bounded = mesh.partners >= 0
-    partners = np.where(bounded, mesh.partners, np.arange(mesh.partners.size).reshape(-1, 3))
-    triangle, corner = np.divmod(partners.astype(np.int64), 3)
-    # By how much each neighbour is moved against its own place.
-    tau = mesh.offsets[:, _BEFORE] - mesh.offsets[triangle, (corner + 1) % 3]
-    tau[~bounded] = 0
+    bounded, partners, triangle, corner, tau = _across(mesh)
     apexes = np.dstack((mesh.simplices[triangle, corner], mesh.offsets[triangle, corner] + tau))
     centers, shared = _centers(mesh, lengths, apexes, workers)
     shared &= bounded
@@ -89,10 +84,10 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         axis=1,
     )
     everywhere = np.column_stack((first, shift))
-    listed = np.concatenate((entries, ends.reshape(-1, 3), everywhere))
-    vertices, number = np.unique(listed, axis=0, return_inverse=True)
-    number = number.reshape(-1).astype(np.int32)
-    ends = number[len(entries) : len(entries) + 2 * len(edges)].reshape(-1, 2).copy()
+    vertices, (of_cells, of_ends, of_triangles) = _numbered(
+        entries, ends.reshape(-1, 3), everywhere
+    )
+    ends = of_ends.reshape(-1, 2)
     open_ridges = np.flatnonzero(~bounded[left, e])
     ends[open_ridges, 0] = ~np.arange(len(open_ridges))
     a, b = mesh.simplices[left, (e + 1) % 3], mesh.simplices[left, (e + 2) % 3]
@@ -108,7 +103,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         raise LimitError("a vertex lies beyond the range of doubles")
     return {
         "vertices": places,
-        "triangle_vertex": number[len(entries) + 2 * len(edges) :].copy(),
+        "triangle_vertex": of_triangles,
         "sites": np.column_stack((a, b)),
         "ends": ends,
         "rays": _outward(mesh, a[open_ridges]),
@@ -117,11 +112,33 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         "region": region[mesh.duplicate_of],
         "site": cells["site"],
         "starts": cells["starts"],
-        "region_vertices": np.where(gaps, _GAP, number[: len(entries)]).astype(np.int32),
+        "region_vertices": np.where(gaps, _GAP, of_cells).astype(np.int32),
         "region_ridges": leads,
         "beside": np.where(of_first, b[leads], a[leads]),
         "beside_moved": np.where(of_first[:, None], moved[leads], -moved[leads]),
     }
+
+
+def _across(mesh: PeriodicDelaunay) -> tuple[NDArray[Any], ...]:
+    """What lies across each edge; an edge without a neighbour is across from itself.
+
+    Whether there is one, the edge from its side, its number, its corner, and by how many periods it
+    is moved against its own place.
+    """
+    bounded = mesh.partners >= 0
+    partners = np.where(bounded, mesh.partners, np.arange(mesh.partners.size).reshape(-1, 3))
+    triangle, corner = np.divmod(partners.astype(np.int64), 3)
+    tau = mesh.offsets[:, _BEFORE] - mesh.offsets[triangle, (corner + 1) % 3]
+    tau[~bounded] = 0
+    return bounded, partners, triangle, corner, tau
+
+
+def _numbered(*parts: NDArray[Any]) -> tuple[NDArray[Any], list[Indices]]:
+    """The distinct rows of some tables, and for each table the numbers of its rows."""
+    rows, number = np.unique(np.concatenate(parts), axis=0, return_inverse=True)
+    cuts = np.cumsum([len(part) for part in parts[:-1]])
+    numbers = np.split(number.reshape(-1).astype(np.int32), cuts)
+    return rows, [each.copy() for each in numbers]
 
 
 def require_room(points: Floats, periods: tuple[float | None, float | None]) -> None:
