@@ -148,6 +148,59 @@ def test_memory_that_cannot_be_had() -> None:
     assert finish(process).split() == ["refused", "refused", "True"]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="RLIMIT_AS is kept on Linux alone")
+def test_memory_that_runs_out_on_the_way() -> None:
+    process = start(
+        """
+        import os, resource
+        import numpy as np
+        from delone import Voronoi, lloyd, mesh
+        points = np.random.default_rng(0).random((200_000, 2))
+        square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        cells = lambda: Voronoi(points, clip="box")
+        tasks = [
+            (cells, lambda cells: cells.cell_areas),
+            (cells, lambda cells: cells.neighbors),
+            (lambda: None, lambda _: lloyd(points, (0, 0, 1, 1), iterations=1)),
+            (lambda: None, lambda _: mesh(square, max_area=4e-6)),
+        ]
+        for before, task in tasks:
+            outcomes = set()
+            # With nothing at all no thread starts, and the system itself gives up.
+            for megabytes in (5, 10, 15, 20, 25, 40, 80, 400):
+                child = os.fork()
+                if child == 0:
+                    given = before()
+                    size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+                    resource.setrlimit(resource.RLIMIT_AS, (size + megabytes * 2**20,) * 2)
+                    try:
+                        task(given)
+                    except MemoryError:
+                        os._exit(3)
+                    os._exit(0)
+                outcomes.add(os.waitpid(child, 0)[1])
+            print(outcomes <= {0, 3 << 8})
+        """
+    )
+    assert finish(process).split() == ["True"] * 4
+
+
+def test_threads_that_cannot_be_had() -> None:
+    process = start(
+        """
+        import os
+        # No system has room for such a stack.
+        os.environ["RUST_MIN_STACK"] = str(2**60)
+        import numpy as np
+        from delone import Delaunay
+        points = np.random.default_rng(0).random((200_000, 2))
+        one, many = (Delaunay(points, workers=workers).simplices for workers in (1, 8))
+        print(np.array_equal(one, many))
+        """
+    )
+    assert finish(process).split() == ["True"]
+
+
 @posix
 def test_a_forked_process_uses_what_its_parent_made() -> None:
     process = start(

@@ -23,12 +23,26 @@ pub fn with_room<T>(n: usize) -> Result<Vec<T>> {
 /// Puts `x` at the end of `v`.
 #[inline]
 pub fn push<T>(v: &mut Vec<T>, x: T) -> Result<()> {
-    if v.len() == v.capacity() {
-        let bytes = 2 * v.len().saturating_mul(size_of::<T>());
-        v.try_reserve(1).map_err(|_| Error::Memory { bytes })?;
-    }
+    make_room(v, 1)?;
     v.push(x);
     Ok(())
+}
+
+/// Makes sure that `n` more items fit at the end of `v`, which grows by shares as it would on its own.
+#[inline]
+pub fn make_room<T>(v: &mut Vec<T>, n: usize) -> Result<()> {
+    if v.capacity() - v.len() < n {
+        let bytes = (v.len() + n).saturating_mul(size_of::<T>());
+        v.try_reserve(n).map_err(|_| Error::Memory { bytes })?;
+    }
+    Ok(())
+}
+
+/// A copy of `items`.
+pub fn copied<T: Clone>(items: &[T]) -> Result<Vec<T>> {
+    let mut v = with_room(items.len())?;
+    v.extend_from_slice(items);
+    Ok(v)
 }
 
 /// Empties `v` and gives it room for `n` items.

@@ -72,7 +72,8 @@ class ConstrainedDelaunay(Segmented):
         Whether segments that cross are an error, or get a vertex where they do.
     conforming : bool, optional
         Add vertices on segments until the circle over each subsegment holds no vertex in its
-        inside, so that each is an edge of the plain Delaunay triangulation of all vertices.
+        inside, so that each is an edge of a plain Delaunay triangulation of all vertices. (On a
+        circle with other vertices it may not be that of the canonical one.)
     max_vertices : int, optional
         How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing
         segments that are looked at, too, at 8 for each vertex and a million more.

@@ -30,7 +30,7 @@ def require(module: str, *, extra: str, what: str) -> Any:
     Raises
     ------
     MissingExtraError
-        The library, or one that it needs itself, is not installed.
+        The library, or one that it needs itself, is not installed or cannot be imported.
 
     Examples
     --------
@@ -40,7 +40,10 @@ def require(module: str, *, extra: str, what: str) -> Any:
     """
     try:
         return importlib.import_module(module)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         library = (error.name or module).partition(".")[0]
         message = f'{what} needs {library}, which is not installed: pip install "delone[{extra}]"'
+        raise MissingExtraError(message, extra=extra) from error
+    except ImportError as error:
+        message = f"{what} needs {module}, which is there and cannot be imported: {error}"
         raise MissingExtraError(message, extra=extra) from error

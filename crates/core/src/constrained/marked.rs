@@ -6,7 +6,7 @@ use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use crate::delaunay2::walk::walk_within;
 use crate::error::{Error, Result};
-use crate::memory::filled;
+use crate::memory::{filled, make_room};
 use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
 
 /// Triangles that a walk to a new vertex meets before all triangles are searched, and for each of
@@ -147,6 +147,8 @@ impl Marked {
         let used = self.triangles();
         let more = room + room / 2 + 1024;
         self.mesh.resize(more, used)?;
+        let rest = more + 1 - self.points.len();
+        make_room(&mut self.points, rest)?;
         self.points.resize(more + 1, [f64::NAN; 2]);
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Threads for one call: started for it and gone with it, so that a fork finds none.
 
 use std::sync::Mutex;
+use std::thread::Builder;
 
 /// Does `work` on each task with up to `workers` threads; the results come in the tasks' order.
 /// A panic in a task is a panic here.
@@ -25,7 +26,10 @@ pub fn map<T: Send, R: Send>(
     };
     std::thread::scope(|scope| {
         for _ in 1..threads {
-            scope.spawn(run);
+            // Where the system gives no more threads, those that there are do it all.
+            if Builder::new().spawn_scoped(scope, run).is_err() {
+                break;
+            }
         }
         run();
     });

@@ -27,7 +27,7 @@ use self::work::Work;
 use crate::constrained::marked::Marked;
 use crate::delaunay2::lawson::compact;
 use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::memory::{copied, filled, with_room};
 use crate::mesh2::{import, next, prev, triangle};
 use crate::watch::Watch;
 
@@ -43,9 +43,11 @@ pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> 
         return refine_as_is(task, watch, tell);
     }
     let scaled = |p: &Point2| p.map(|x| x * scale);
-    let points: Vec<Point2> = task.points.iter().map(scaled).collect();
+    let mut points = with_room(task.points.len())?;
+    points.extend(task.points.iter().map(scaled));
     // Twice, as the square of the scale may be beyond the range.
-    let areas: Vec<f64> = task.areas.iter().map(|a| a * scale * scale).collect();
+    let mut areas = with_room(task.areas.len())?;
+    areas.extend(task.areas.iter().map(|a| a * scale * scale));
     let task = Task {
         points: &points,
         areas: &areas,
@@ -123,14 +125,15 @@ fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result
     let mut row_of = with_room(count)?;
     row_of.extend_from_slice(rows);
     row_of.extend((given as u32..).take(count - rows.len()));
-    let added = work.marked.points[rows.len()..count].to_vec();
-    let on = work.on[rows.len()..count].to_vec();
+    let added = copied(&work.marked.points[rows.len()..count])?;
+    let on = copied(&work.on[rows.len()..count])?;
     let triangles = work.marked.triangles();
     let mesh = work.marked.patch();
     let mut number = filled(triangles as usize, -1)?;
     let infinite = mesh.infinite();
     let finite = |t: &u32| !mesh.corners(*t).contains(&infinite);
-    let all: Vec<u32> = (0..triangles).filter(finite).collect();
+    let mut all = with_room(triangles as usize)?;
+    all.extend((0..triangles).filter(finite));
     for (i, &t) in (0..).zip(&all) {
         number[t as usize] = i;
     }

@@ -5,6 +5,9 @@
 //! Lengths fall in buckets that grow by a factor of 2^(1/4); within a bucket the last one in is the
 //! first one out, so that work stays where it is.
 
+use crate::error::Result;
+use crate::memory::push;
+
 /// Buckets a factor of two of the squared length: the top bits of its fraction.
 const FINE: u32 = 1;
 const BUCKETS: usize = 2048 << FINE;
@@ -37,10 +40,11 @@ impl Default for Queue {
 
 impl Queue {
     /// Adds a triangle whose shortest edge has the squared length `key`.
-    pub fn push(&mut self, bad: Bad, key: f64) {
+    pub fn push(&mut self, bad: Bad, key: f64) -> Result<()> {
         let bucket = (key.to_bits() >> (52 - FINE)) as usize % BUCKETS;
-        self.buckets[bucket].push(bad);
+        push(&mut self.buckets[bucket], bad)?;
         self.filled[bucket / 64] |= 1 << (bucket % 64);
+        Ok(())
     }
 
     /// Takes the next one.
@@ -74,7 +78,7 @@ mod tests {
             (2, 1.0),
             (5, 1e300),
         ] {
-            queue.push(bad(t), key);
+            queue.push(bad(t), key).unwrap();
         }
         for t in 0..6 {
             assert_eq!(queue.pop(), Some(bad(t)));

@@ -21,7 +21,7 @@ use super::task::{Counts, Task, Tell};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
 use crate::error::Result;
-use crate::memory::with_room;
+use crate::memory::{make_room, push, with_room};
 use crate::mesh2::{Code, next, prev, triangle};
 use crate::watch::Watch;
 
@@ -130,9 +130,9 @@ impl<'a> Work<'a> {
     /// Works until nothing is bad; false where the limit on vertices came first.
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         for t in 0..self.marked.triangles() {
-            self.judge(t);
+            self.judge(t)?;
             for e in 8 * t..8 * t + 3 {
-                self.look(e);
+                self.look(e)?;
             }
         }
         let mut until_watch = 1;
@@ -193,10 +193,10 @@ impl<'a> Work<'a> {
     }
 
     /// Puts a triangle in the queue if it is bad.
-    fn judge(&mut self, t: u32) {
+    fn judge(&mut self, t: u32) -> Result<()> {
         let mesh = self.marked.patch();
         if mesh.label(t) == 0 {
-            return;
+            return Ok(());
         }
         let corners = mesh.corners(t);
         let seen = self.shape.see(corners.map(|v| self.at(v)));
@@ -205,18 +205,28 @@ impl<'a> Work<'a> {
                 triangle: t,
                 corners,
             };
-            self.queue.push(bad, seen.shortest);
+            self.queue.push(bad, seen.shortest)?;
         }
+        Ok(())
     }
 
     /// Puts the edge `e` aside if it is a subsegment upon which its apex encroaches.
-    fn look(&mut self, e: Code) {
+    fn look(&mut self, e: Code) -> Result<()> {
         let mesh = self.marked.patch();
         if mesh.is_marked(e) && self.encroaches(e) {
             let mesh = self.marked.patch();
             let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
-            self.encroached.push(Waiting { edge: e, ends });
+            push(&mut self.encroached, Waiting { edge: e, ends })?;
         }
+        Ok(())
+    }
+
+    /// Room for a vertex more.
+    fn grow(&mut self) -> Result<()> {
+        self.marked.grow()?;
+        make_room(&mut self.marked.near, 1)?;
+        make_room(&mut self.on, 1)?;
+        make_room(&mut self.caps, 2)
     }
 
     /// Whether the apex of `e`, in a triangle inside, lies in the lens of e.
@@ -256,7 +266,7 @@ impl<'a> Work<'a> {
         else {
             return Ok(false);
         };
-        self.marked.grow()?;
+        self.grow()?;
         let w = self.marked.count as u32;
         self.marked.points[w as usize] = x;
         match place {
@@ -267,7 +277,7 @@ impl<'a> Work<'a> {
         self.on.push(segment);
         self.settle()?;
         self.counts.segment += 1;
-        self.greet(w);
+        self.greet(w)?;
         Ok(true)
     }
 
@@ -350,19 +360,19 @@ impl<'a> Work<'a> {
     }
 
     /// Looks at all triangles of a new vertex.
-    fn greet(&mut self, w: u32) {
+    fn greet(&mut self, w: u32) -> Result<()> {
         let start = self.marked.near[w as usize];
         let mut corner = start;
         loop {
-            self.judge(triangle(corner));
+            self.judge(triangle(corner))?;
             for e in [corner, next(corner)] {
-                self.look(e);
+                self.look(e)?;
                 let o = self.marked.patch().opposite(e);
-                self.look(o);
+                self.look(o)?;
             }
             corner = turn(&self.marked.patch(), corner);
             if corner == start {
-                return;
+                return Ok(());
             }
         }
     }
@@ -497,7 +507,7 @@ impl<'a> Work<'a> {
 
     /// Fills the cavity that was dug.
     fn insert(&mut self, p: Point2, reason: Reason) -> Result<()> {
-        self.marked.grow()?;
+        self.grow()?;
         self.cavity.fill(&mut self.marked, p, &mut self.caps);
         self.marked.near.push(8 * self.cavity.triangles[0]);
         self.on.push(-1);
@@ -506,7 +516,7 @@ impl<'a> Work<'a> {
             Reason::Size => self.counts.size += 1,
         }
         for i in 0..self.cavity.triangles.len() {
-            self.judge(self.cavity.triangles[i]);
+            self.judge(self.cavity.triangles[i])?;
         }
         Ok(())
     }
@@ -533,7 +543,7 @@ impl<'a> Work<'a> {
             }
         }
         if parted && self.marked.patch().corners(t) == corners {
-            self.judge(t);
+            self.judge(t)?;
         }
         Ok(parted)
     }

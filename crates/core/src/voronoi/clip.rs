@@ -17,7 +17,7 @@ use delone_predicates::Point2;
 
 use super::axis::{crossing, foot};
 use crate::error::{Error, Result};
-use crate::memory::with_room;
+use crate::memory::{push, with_room};
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -64,6 +64,14 @@ pub struct Polygons {
     pub ridges: Vec<i32>,
 }
 
+impl Polygons {
+    /// Adds a corner to the last polygon.
+    fn add(&mut self, corner: Point2, ridge: i32) -> Result<()> {
+        push(&mut self.points, corner)?;
+        push(&mut self.ridges, ridge)
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
     At(Point2),
@@ -97,7 +105,8 @@ pub fn clip(
     workers: usize,
     watch: &Watch,
 ) -> Result<Polygons> {
-    let rows: Vec<usize> = (0..cells.site.len()).collect();
+    let mut rows = with_room(cells.site.len())?;
+    rows.extend(0..cells.site.len());
     let parts = parallel::map(workers, rows.chunks(SHARE).collect(), |rows| {
         watch.check()?;
         part(cells, min, max, rows)
@@ -136,15 +145,15 @@ fn part(cells: Cells, min: Point2, max: Point2, rows: &[usize]) -> Result<Polygo
                 cells.cut(&corners, half, &mut cut);
                 std::mem::swap(&mut corners, &mut cut);
             }
-            keep(&mut corners, &mut out);
+            keep(&mut corners, &mut out)?;
         }
-        out.starts.push(out.points.len() as i32);
+        push(&mut out.starts, out.points.len() as i32)?;
     }
     Ok(out)
 }
 
 /// Adds what is left of a cell, without repeated corners; nothing where it has no area.
-fn keep(corners: &mut Vec<Corner>, out: &mut Polygons) {
+fn keep(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
     // The point that stood for a whole line has served.
     let mut before = corners.last().map(|c| c.1);
     corners.retain(|&(_, edge)| {
@@ -157,22 +166,23 @@ fn keep(corners: &mut Vec<Corner>, out: &mut Polygons) {
         End::Towards(d) => *d, // The box is bounded: none is left.
     };
     let Some(first) = corners.first().map(at) else {
-        return;
+        return Ok(());
     };
     let flat = |k: usize| corners.iter().all(|c| at(c)[k] == first[k]);
     if flat(0) || flat(1) {
-        return;
+        return Ok(());
     }
     for (i, corner) in corners.iter().enumerate() {
         let (p, next) = (at(corner), at(&corners[(i + 1) % corners.len()]));
         if p != next {
-            out.points.push(p);
-            out.ridges.push(match corner.1 {
+            let ridge = match corner.1 {
                 Edge::Ridge(r) => r,
                 _ => -1,
-            });
+            };
+            out.add(p, ridge)?;
         }
     }
+    Ok(())
 }
 
 impl Cells<'_> {
@@ -199,8 +209,7 @@ impl Cells<'_> {
             let (p, next) = (v, vertices[(i + 1) % vertices.len()]);
             let p = self.vertices[p as usize];
             if p != self.vertices[next as usize] {
-                out.points.push(p);
-                out.ridges.push(ridge);
+                out.add(p, ridge)?;
             }
         }
         Ok(true)

@@ -7,7 +7,7 @@
 use delone_predicates::Point2;
 
 use crate::error::Result;
-use crate::memory::{filled, with_room};
+use crate::memory::{copied, filled, with_room};
 use crate::points::Extent;
 
 /// Most columns and rows of the grid.
@@ -104,7 +104,7 @@ fn sorted(grid: &Grid, segments: &[[f64; 4]]) -> Result<(Vec<u32>, Vec<u32>)> {
     for field in 0..grid.size * grid.size {
         first[field + 1] += first[field];
     }
-    let mut place = first.clone();
+    let mut place = copied(&first)?;
     let mut members = filled(first[grid.size * grid.size] as usize, 0)?;
     for (number, segment) in (0_u32..).zip(segments) {
         grid.along(ends(segment), |field| {

@@ -5,7 +5,7 @@ use delone_predicates::Point2;
 
 use super::given::Given;
 use crate::error::Result;
-use crate::memory::{with_room, zeroed};
+use crate::memory::{push, with_room, zeroed};
 use crate::parallel;
 
 /// The mask of a triangle: bit k where it shares its centre across edge k, bit 3 + k where the ridge
@@ -55,11 +55,12 @@ pub(super) fn ridges(
     });
     let (mut rays, mut beyond) = (Vec::new(), Vec::new());
     for (open, &start) in open.into_iter().zip(&starts) {
-        for row in open.into_iter().map(|row| start + row) {
+        for row in open?.into_iter().map(|row| start + row) {
             for end in ends[row].into_iter().filter(|end| *end < 0) {
-                beyond.push(far.get(!end as usize).copied().unwrap_or([f64::NAN; 2]));
+                let at = far.get(!end as usize).copied().unwrap_or([f64::NAN; 2]);
+                push(&mut beyond, at)?;
             }
-            close(given, &mut sites[row], &mut ends[row], &mut rays);
+            close(given, &mut sites[row], &mut ends[row], &mut rays)?;
         }
     }
     let ridges = Ridges {
@@ -98,7 +99,7 @@ fn fill(
     from: usize,
     sites: &mut [[i32; 2]],
     ends: &mut [[i32; 2]],
-) -> Vec<usize> {
+) -> Result<Vec<usize>> {
     let mut open = Vec::new();
     let mut row = 0;
     for (t, mask) in (from..).zip(&masks[from..masks.len().min(from + SHARE)]) {
@@ -113,16 +114,21 @@ fn fill(
             sites[row] = [s[(k + 1) % 3], s[(k + 2) % 3]];
             ends[row] = [right, vertex[t]];
             if right < 0 || vertex[t] < 0 {
-                open.push(row);
+                push(&mut open, row)?;
             }
             row += 1;
         }
     }
-    open
+    Ok(open)
 }
 
 /// Gives a ridge rays for the ends that are no vertices.
-fn close(given: Given<2, 3>, sites: &mut [i32; 2], ends: &mut [i32; 2], rays: &mut Vec<Point2>) {
+fn close(
+    given: Given<2, 3>,
+    sites: &mut [i32; 2],
+    ends: &mut [i32; 2],
+    rays: &mut Vec<Point2>,
+) -> Result<()> {
     let [a, b] = sites.map(|v| given.point(v));
     let normal = unit([a[1], b[0]], [b[1], a[0]]);
     let back = normal.map(|x| 0.0 - x);
@@ -131,12 +137,13 @@ fn close(given: Given<2, 3>, sites: &mut [i32; 2], ends: &mut [i32; 2], rays: &m
             continue;
         }
         *end = !(rays.len() as i32);
-        rays.push(outward);
+        push(rays, outward)?;
     }
     if ends[1] < 0 && ends[0] >= 0 {
         ends.swap(0, 1);
         sites.swap(0, 1);
     }
+    Ok(())
 }
 
 /// The vector from `b` to `a`, which differ, made of length 1.

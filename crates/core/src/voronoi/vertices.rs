@@ -2,7 +2,7 @@
 
 use super::given::Given;
 use crate::error::Result;
-use crate::memory::{filled, zeroed};
+use crate::memory::{filled, make_room, push, zeroed};
 use crate::parallel;
 
 /// Simplices that one task does.
@@ -63,15 +63,21 @@ pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
                 *slot = match corners.center() {
                     Center::At(at) => at,
                     Center::Beyond(at) => {
-                        beyond.push((t, at));
+                        push(&mut beyond, (t, at))?;
                         [f64::NAN; D]
                     }
                 };
             }
         }
-        beyond
+        Ok(beyond)
     });
-    Ok((centers, found.into_iter().flatten().collect()))
+    let mut beyond = Vec::new();
+    for part in found {
+        let part: Vec<Far<D>> = part?;
+        make_room(&mut beyond, part.len())?;
+        beyond.extend(part);
+    }
+    Ok((centers, beyond))
 }
 
 /// For each simplex a mask: bit k where it shares its centre across the side opposite corner k, which
@@ -142,7 +148,7 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
             at = rounded;
         }
         let number = if let Some(place) = place {
-            far.push(place);
+            push(&mut far, place)?;
             !(far.len() as i32 - 1)
         } else {
             centers[count] = at;
@@ -153,14 +159,14 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
         if shares(t) == 0 {
             continue;
         }
-        stack.push(t);
+        push(&mut stack, t)?;
         // Each simplex is numbered once and pushed then.
         while let Some(t) = stack.pop() {
             for k in (0..N).filter(|k| shares(t) >> k & 1 == 1) {
                 let other = given.neighbors[t][k] as usize;
                 if vertex[other] == NONE {
                     vertex[other] = number;
-                    stack.push(other);
+                    push(&mut stack, other)?;
                 }
             }
         }
