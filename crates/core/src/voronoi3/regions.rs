@@ -49,26 +49,9 @@ pub(super) fn regions(
     let around = gathered(cells, corners().map(cell_of), |i| vertex[i / 4].max(-1))?;
     let (mut starts, mut around) = around;
     watch.check()?;
-    let mut open = vec![false; cells];
-    for (t, row) in given.neighbors.iter().enumerate() {
-        for k in (0..4).filter(|&k| row[k] < 0) {
-            for i in (0..4).filter(|&i| i != k) {
-                open[cell_of(&given.simplices[t][i])] = true;
-            }
-        }
-    }
+    let open = open_cells(given, cells, cell_of);
     let kept = sorted(&starts, &mut around, workers);
-    let mut vertices = with_room(kept.iter().sum::<usize>() + cells)?;
-    for (cell, &kept) in kept.iter().enumerate() {
-        let from = starts[cell] as usize;
-        starts[cell] = vertices.len() as i32;
-        let mine = &around[from..from + kept];
-        if open[cell] && mine.first() != Some(&-1) {
-            vertices.push(-1);
-        }
-        vertices.extend_from_slice(mine);
-    }
-    starts[cells] = vertices.len() as i32;
+    let vertices = closed_up(&mut starts, &around, &kept, &open)?;
     let (ridge_starts, ridges) = gathered(
         cells,
         ridges.sites.as_flattened().iter().map(cell_of),
@@ -82,6 +65,41 @@ pub(super) fn regions(
         ridge_starts,
         ridges,
     })
+}
+
+/// Which cells go on for ever: those of the corners of faces on the boundary.
+fn open_cells(given: Given<3, 4>, cells: usize, cell_of: impl Fn(&i32) -> usize) -> Vec<bool> {
+    let mut open = vec![false; cells];
+    for (t, row) in given.neighbors.iter().enumerate() {
+        for k in (0..4).filter(|&k| row[k] < 0) {
+            for i in (0..4).filter(|&i| i != k) {
+                open[cell_of(&given.simplices[t][i])] = true;
+            }
+        }
+    }
+    open
+}
+
+/// The first `kept` vertices of each cell, close together, and -1 before those of open ones.
+fn closed_up(
+    starts: &mut [i32],
+    around: &[i32],
+    kept: &[usize],
+    open: &[bool],
+) -> Result<Vec<i32>> {
+    let cells = kept.len();
+    let mut vertices = with_room(kept.iter().sum::<usize>() + cells)?;
+    for (cell, &kept) in kept.iter().enumerate() {
+        let from = starts[cell] as usize;
+        starts[cell] = vertices.len() as i32;
+        let mine = &around[from..from + kept];
+        if open[cell] && mine.first() != Some(&-1) {
+            vertices.push(-1);
+        }
+        vertices.extend_from_slice(mine);
+    }
+    starts[cells] = vertices.len() as i32;
+    Ok(vertices)
 }
 
 /// Compressed rows of what belongs to each owner, in order.
