@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 import numpy as np
 
+from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
@@ -174,14 +175,17 @@ def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None
     >>> require_finite(np.array([[0.0, 1.0], [np.nan, 2.0]]))
     Traceback (most recent call last):
     ...
-    delone.errors.NonFiniteError: points: 1 of 2 rows hold NaN or infinity; first: 1
+    delone.errors.NonFiniteError: points: 1 of 2 rows holds NaN or infinity; first: 1
     """
     finite = np.isfinite(points)
     if finite.all():
         return
     rows = np.flatnonzero(~finite.all(axis=1))
     first = ", ".join(map(str, rows[:10].tolist()))
-    message = f"{name}: {len(rows)} of {len(points)} rows hold NaN or infinity; first: {first}"
+    message = (
+        f"{name}: {len(rows)} of {counted(len(points), 'row')} "
+        f"{agreed(len(rows), 'holds', 'hold')} NaN or infinity; first: {first}"
+    )
     raise NonFiniteError(message, rows=rows[:10], count=len(rows))
 
 
@@ -273,8 +277,9 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
         rows = np.flatnonzero(((array < 0) | (array >= npoints)).any(axis=1))
         first = ", ".join(map(str, rows[:10].tolist()))
         raise InputError(
-            f"{name}: {len(rows)} of {len(array)} rows leave the range 0 to {npoints - 1} of "
-            f"points; first: {first}"
+            f"{name}: {len(rows)} of {counted(len(array), 'row')} "
+            f"{agreed(len(rows), 'leaves', 'leave')} the range 0 to {npoints - 1} of points; "
+            f"first: {first}"
         )
     return np.require(array, dtype=np.int32, requirements=["C", "A"])
 

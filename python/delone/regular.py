@@ -12,7 +12,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_vectors
-from delone.counting import counted
+from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.immutable import kept, own_copy, sealed
 from delone.space.plane import plane_of, twins
@@ -173,7 +173,8 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
     bad = np.flatnonzero(~np.isfinite(found))
     if len(bad):
         raise NonFiniteError(
-            f"{len(bad)} weights are NaN or infinite; the first is row {bad[0]}",
+            f"{len(bad)} {agreed(len(bad), 'weight is', 'weights are')} NaN or infinite; "
+            f"first: {bad[0]}",
             rows=bad[:10],
             count=len(bad),
         )

@@ -49,7 +49,7 @@ def test_every_code_is_documented(command):
         (["check", "torn.npz"], 3, "torn"),
         (["triangulate", "line.csv"], 4, "line"),
         (["triangulate", "two.csv"], 4, "two|few"),
-        (["triangulate", "nan.csv"], 4, "rows 1"),
+        (["triangulate", "nan.csv"], 4, "row 1"),
         (["triangulate", "S", "-o", "a.doc"], 5, "known are .vtu"),
         (["triangulate", "S", "-o", "nowhere/a.vtu"], 5, "does not exist"),
         (["triangulate", "S", "-o", "a.vtu", "-o", "a.stl", "--edges"], 5, "not edges"),

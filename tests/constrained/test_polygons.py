@@ -156,7 +156,7 @@ class TestFromGeometry:
 
     def test_nan_names_geometries(self) -> None:
         bad = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (np.nan, 1)]]}
-        with pytest.raises(errors.NonFiniteError, match="1 geometries") as caught:
+        with pytest.raises(errors.NonFiniteError, match="1 geometry holds") as caught:
             from_geometry([FRAME, bad])
         assert caught.value.rows.tolist() == [1]
 

@@ -2,11 +2,17 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from delone import errors
+import delone
+from delone import errors, interpolate, reference
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 CASES = [
     errors.DeloneError("m"),
@@ -89,3 +95,35 @@ def test_missing_extra_says_what_to_install() -> None:
     error = errors.MissingExtraError(extra="plot")
     assert 'pip install "delone[plot]"' in str(error)
     assert error.extra == "plot"
+
+
+def one_is_one() -> dict[str, Callable[[], object]]:
+    """What goes wrong with one of something."""
+    nan, inf = float("nan"), float("inf")
+    three = [(0, 0), (1, 0), (0, 1)]
+    survey = [*three, (1, 0)]
+    line = {"type": "LineString", "coordinates": [(0, 0), (nan, 1)]}
+    return {
+        "1 row has a coordinate that is NaN or infinite: row 1; drop or repair it": lambda: (
+            delone.Delaunay([(0, 0), (1, inf), (0, 1)])
+        ),
+        "1 distinct point is too few": lambda: delone.Delaunay([(0, 0), (0, 0)]),
+        "1 point comes again with another value": lambda: interpolate.Linear(survey, [0, 1, 2, 3]),
+        "values: 1 of 3 rows holds NaN": lambda: interpolate.Linear(three, [0, nan, 0]),
+        "xi: 1 of 1 query is outside of the hull: row 0;": lambda: interpolate.Linear(
+            three, [0, 1, 2], extrapolate="error"
+        )([(5, 5)]),
+        "1 weight is NaN": lambda: delone.RegularTriangulation(three, [0, nan, 0]),
+        "1 geometry holds NaN": lambda: delone.from_geometry(line),
+        "segments: 1 of 1 row leaves": lambda: delone.ConstrainedDelaunay(three, [(0, 7)]),
+        "1 row holds NaN": lambda: reference.bowyer_watson([(0, 0), (1, 0), (nan, 1)]),
+        "1 pair of segments crosses": lambda: reference.constrained_delaunay(
+            [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 2), (1, 3)]
+        ),
+    }
+
+
+@pytest.mark.parametrize("words", one_is_one())
+def test_messages_do_not_speak_of_one_as_of_many(words: str) -> None:
+    with pytest.raises(delone.DeloneError, match=re.escape(words)):
+        one_is_one()[words]()

@@ -89,7 +89,7 @@ def test_without_a_triangle_everything_is_outside(method: str, count: int) -> No
 def test_outside_of_nothing_is_refused_where_that_is_asked() -> None:
     mesh = nothing_left()
     for kind in (Linear, NaturalNeighbor, Nearest):
-        with pytest.raises(ValueError, match="1 of 1 queries are outside"):
+        with pytest.raises(ValueError, match="1 of 1 query is outside"):
             made = kind(mesh, np.zeros(4), extrapolate="error", respect_constraints=True)
             made([(1, 1)])
 
@@ -104,7 +104,7 @@ def test_infinity_is_outside_and_nan_is_nowhere(method: str, count: int) -> None
     for far in (np.inf, -np.inf):
         queries[0] = (1, far)
         for call in (made, made.gradient, made.weights):
-            with pytest.raises(ValueError, match=f"1 of {count} queries are outside"):
+            with pytest.raises(ValueError, match=f"1 of {count} (query|queries) is outside"):
                 call(queries)
     queries[0] = (np.nan, np.inf)
     assert np.isnan(made(queries)[0])

@@ -41,7 +41,7 @@ PUBLIC = {
 }
 PYTHON: dict[str, set[str]] = {
     "errors": set(),
-    "_arrays": {"errors"},
+    "_arrays": {"counting", "errors"},
     "counting": set(),
     "_core": set(),
     "immutable": {"_arrays"},
@@ -84,13 +84,14 @@ PYTHON: dict[str, set[str]] = {
     "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     "datasets": FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays"},
+    "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays", "counting"},
     "plot": PUBLIC | {"atomic", "io", "_arrays"},
     "scene": PUBLIC | {"io", "_arrays"},
     "relief": PUBLIC | {"io", "plot", "_arrays"},
     "cli": PUBLIC
     | {
         "atomic",
+        "counting",
         "distributed",
         "interpolate",
         "io",

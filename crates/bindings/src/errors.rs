@@ -48,7 +48,10 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             details.set_item("rows", rows)?;
             details.set_item("count", count)?;
             let first = rows.first().copied().unwrap_or(0);
-            let message = format!("{error}; the first is row {first}: drop or repair them");
+            let message = match count {
+                1 => format!("{error}: row {first}; drop or repair it"),
+                _ => format!("{error}; the first is row {first}: drop or repair them"),
+            };
             ("NonFiniteError", message)
         }
         Error::TooFew { chain } => {

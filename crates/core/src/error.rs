@@ -9,7 +9,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Coordinates that are NaN or infinite: the first rows, and how many there are.
-    #[error("{count} rows have a coordinate that is NaN or infinite")]
+    #[error("{} a coordinate that is NaN or infinite", agreed(*count, "row has", "rows have"))]
     NonFinite {
         /// The first bad rows, ascending.
         rows: Vec<u32>,
@@ -17,13 +17,13 @@ pub enum Error {
         count: usize,
     },
     /// Fewer than three distinct points: their rows in lexicographic order.
-    #[error("{} distinct points are too few", chain.len())]
+    #[error("{} too few", agreed(chain.len(), "distinct point is", "distinct points are"))]
     TooFew {
         /// First rows of the distinct points, lexicographic.
         chain: Vec<u32>,
     },
     /// Fewer than four distinct points of space: their rows in lexicographic order.
-    #[error("{} distinct points are too few", chain.len())]
+    #[error("{} too few", agreed(chain.len(), "distinct point is", "distinct points are"))]
     TooFewInSpace {
         /// First rows of the distinct points, lexicographic.
         chain: Vec<u32>,
@@ -87,4 +87,9 @@ pub enum Error {
     /// A promise of the core that did not hold: always a bug.
     #[error("{0}")]
     Internal(String),
+}
+
+/// A number with the words that go with it.
+fn agreed(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }

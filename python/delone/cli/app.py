@@ -50,6 +50,7 @@ from delone.cli.solid import (
     space_summary,
     triangulated_space,
 )
+from delone.counting import agreed
 from delone.errors import MissingExtraError, NonFiniteError
 from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
 from delone.io.registry import mesh_suffixes, writer
@@ -417,9 +418,12 @@ def _said(error: BaseException) -> int:
     else:
         code = code_of(error)
         message = as_options(str(error))
-        if isinstance(error, NonFiniteError) and not re.search(r"first: \d", message):
+        if isinstance(error, NonFiniteError) and not re.search(
+            r"first: \d|infinite: row \d", message
+        ):
             more = ", ..." if error.count > len(error.rows) else ""
-            message += f" (rows {', '.join(map(str, error.rows.tolist()))}{more})"
+            noun = agreed(error.count, "row", "rows")
+            message += f" ({noun} {', '.join(map(str, error.rows.tolist()))}{more})"
         if code == Exit.INTERNAL:
             message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
     if message:

@@ -12,6 +12,7 @@ from delone.cli.constraints import read_input
 from delone.cli.exits import reading
 from delone.cli.report import finite_or_none
 from delone.cli.solid import is_space
+from delone.counting import agreed
 from delone.io import GeometrySet
 
 if TYPE_CHECKING:
@@ -135,7 +136,12 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         ("reference system", (figures["crs"] or "not told").partition("\n")[0][:100]),
     ]
     if figures["not_finite"]:
-        rows.append(("NaN or infinity", f"{figures['not_finite']:,} rows"))
+        rows.append(
+            (
+                "NaN or infinity",
+                f"{figures['not_finite']:,} {agreed(figures['not_finite'], 'row', 'rows')}",
+            )
+        )
     for axis in "xyz":
         if figures[axis] is not None:
             low, high = figures[axis]

@@ -14,6 +14,7 @@ import numpy as np
 from delone import Delaunay, improve
 from delone.cli.exits import Exit, Failure
 from delone.cli.report import finite_or_none
+from delone.counting import counted
 from delone.errors import FileFormatError
 from delone.io import PointSet, read_mesh
 
@@ -179,7 +180,7 @@ def improvement_rows(figures: dict[str, Any]) -> list[Row]:
         (f"below {figures['goal']:g} degrees", below or "none"),
         ("edges removed", f"{figures['edge_removals']:,}"),
         ("faces removed", f"{figures['face_removals']:,}"),
-        ("vertices moved", f"{figures['moves']:,} times in {figures['passes']} passes"),
+        ("vertices moved", f"{figures['moves']:,} times in {counted(figures['passes'], 'pass')}"),
     ]
 
 

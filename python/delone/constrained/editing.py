@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone._arrays import as_points, as_segments, require_finite
+from delone.counting import agreed, counted
 from delone.errors import DeloneError, DtypeError, InputError, ShapeError
 from delone.plane.topology import among, edge_keys
 from delone.plane.triangulation import first_rows
@@ -361,7 +362,8 @@ class Editing:
                 f"{row} ({segments[row, 0]}-{segments[row, 1]})" for row in lost[:10].tolist()
             )
             raise InputError(
-                f"{len(lost)} segments would lose an end; remove them, too: rows {shown}"
+                f"{counted(len(lost), 'segment')} would lose an end; remove "
+                f"{agreed(len(lost), 'it, too: row', 'them, too: rows')} {shown}"
             )
 
 

@@ -15,6 +15,7 @@ from delone import _core
 from delone._arrays import as_choice, as_flag, as_points, require_finite
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.counting import agreed
 from delone.errors import InputError, NonFiniteError
 from delone.plane.triangulation import first_rows
 
@@ -124,7 +125,8 @@ def _require_finite(parts: geodata.Parts) -> None:
         bad = np.unique(parts.geometries[part])
         first = ", ".join(map(str, bad[:10].tolist()))
         raise NonFiniteError(
-            f"{len(bad)} geometries hold NaN or infinity; first: {first}",
+            f"{len(bad)} {agreed(len(bad), 'geometry holds', 'geometries hold')} NaN or infinity; "
+            f"first: {first}",
             rows=bad[:10],
             count=len(bad),
         )

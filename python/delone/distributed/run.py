@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.counting import agreed
 from delone.distributed.files import Store
 from delone.distributed.hull import extreme_rows
 from delone.distributed.layout import Layout, Slices, collect
@@ -236,7 +237,8 @@ class Run:
         if bad and self.nan == "raise":
             worst = [row for key in sorted(looks) for row in looks[key]["bad"]]
             raise NonFiniteError(
-                f"{bad} points have NaN or infinity for x, y or height; nan='drop' leaves them out",
+                f"{bad} {agreed(bad, 'point has', 'points have')} NaN or infinity for x, y or "
+                f"height; nan='drop' leaves {agreed(bad, 'it', 'them')} out",
                 rows=worst,
                 count=bad,
             )

@@ -17,6 +17,7 @@ import numpy as np
 
 from delone import location
 from delone._arrays import as_flag, as_vectors, as_workers
+from delone.counting import agreed
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.immutable import own_copy
@@ -388,7 +389,9 @@ class Interpolator:
         more = ", ..." if len(rows) > _NAMED else ""
         *most, last = (f"'{each}'" for each in self.EXTRAPOLATE if each != "error")
         raise InputError(
-            f"xi: {len(rows)} of {count} queries are outside of the hull: rows {first}{more}; "
+            f"xi: {len(rows)} of {count} {agreed(count, 'query', 'queries')} "
+            f"{agreed(len(rows), 'is', 'are')} outside of the hull: "
+            f"{agreed(len(rows), 'row', 'rows')} {first}{more}; "
             f"choose extrapolate={', '.join(most)} or {last}"
         )
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.counting import agreed, counted
 from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
 if TYPE_CHECKING:
@@ -114,7 +115,8 @@ class Field:
         more = ", ..." if len(rows) > _NAMED else ""
         choices = ", ".join(map(repr, DUPLICATES[1:]))
         return ConflictingValuesError(
-            f"{len(rows)} points come again with another value: rows {named}{more}; "
+            f"{len(rows)} {agreed(len(rows), 'point comes', 'points come')} again with another "
+            f"value: rows {named}{more}; "
             f"choose duplicates={choices}",
             rows=np.column_stack((rows, first[rows])),
         )
@@ -262,7 +264,8 @@ def require_finite_values(field: Field, name: str = "values") -> None:
     if rows.size:
         first = ", ".join(map(str, rows[:10].tolist()))
         raise NonFiniteError(
-            f"{name}: {len(rows)} of {len(field)} rows hold NaN or infinity; first: {first}; "
+            f"{name}: {len(rows)} of {counted(len(field), 'row')} "
+            f"{agreed(len(rows), 'holds', 'hold')} NaN or infinity; first: {first}; "
             "choose nan='drop' or nan='propagate'",
             rows=rows[:10],
             count=len(rows),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.counting import agreed, counted
 from delone.errors import FileFormatError
 from delone.io.extras import require
 from delone.io.heights import as_values
@@ -107,7 +108,8 @@ class GeometrySet:
             empty = "an empty " if kinds[row] in _POINTS else ""
             raise FileFormatError(
                 f"{self.source}: feature {row} is {empty}{kind}; delone reads points. "
-                f"{int(other.sum())} of {len(other)} features are not points"
+                f"{int(other.sum())} of {counted(len(other), 'feature')} "
+                f"{agreed(int(other.sum()), 'is', 'are')} not points"
             )
         return self.coordinates()
 

@@ -16,6 +16,7 @@ from fractions import Fraction
 from math import lcm
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from delone.counting import agreed
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.reference.exact import exact_point, incircle_canonical, orient
 from delone.reference.space import tetrahedra
@@ -166,7 +167,10 @@ def exact_rows(points: Sequence[Sequence[Any]]) -> list[ExactPoint]:
             bad.append(row)
     if bad:
         raise NonFiniteError(
-            f"{len(bad)} rows hold NaN or infinity; first: {bad[0]}", rows=bad, count=len(bad)
+            f"{len(bad)} {agreed(len(bad), 'row holds', 'rows hold')} NaN or infinity; "
+            f"first: {bad[0]}",
+            rows=bad,
+            count=len(bad),
         )
     scale = lcm(*(Fraction(number).denominator for point in exact for number in point))
     return [(int(x * scale), int(y * scale)) for x, y in exact]

@@ -19,6 +19,7 @@ from fractions import Fraction
 from itertools import combinations, pairwise, product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from delone.counting import agreed
 from delone.errors import CrossingSegmentsError, InputError
 from delone.reference.bowyer_watson import Triangle, bowyer_watson, exact_rows
 from delone.reference.exact import exact_point, orient
@@ -182,8 +183,9 @@ def refuse_crossings(
             found[min(i, j), max(i, j)] = place
     if found:
         rows = sorted(found)
+        what = agreed(len(rows), "pair of segments crosses", "pairs of segments cross")
         raise CrossingSegmentsError(
-            f"{len(rows)} pairs of segments cross; first: {rows[0]}",
+            f"{len(rows)} {what}; first: {rows[0]}",
             pairs=rows,
             points=[found[pair] for pair in rows],
         )

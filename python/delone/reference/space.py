@@ -15,6 +15,7 @@ from itertools import combinations
 from math import lcm
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from delone.counting import agreed
 from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
 from delone.reference.exact import exact_number, sign
 
@@ -235,7 +236,10 @@ def _exact_rows(points: Sequence[Sequence[Any]]) -> list[Vector]:
             bad.append(row)
     if bad:
         raise NonFiniteError(
-            f"{len(bad)} rows hold NaN or infinity; first: {bad[0]}", rows=bad, count=len(bad)
+            f"{len(bad)} {agreed(len(bad), 'row holds', 'rows hold')} NaN or infinity; "
+            f"first: {bad[0]}",
+            rows=bad,
+            count=len(bad),
         )
     scale = lcm(*(Fraction(number).denominator for point in exact for number in point))
     return [(int(x * scale), int(y * scale), int(z * scale)) for x, y, z in exact]
