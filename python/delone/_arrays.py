@@ -87,7 +87,7 @@ def as_points(
     """
     if _is_right(points, ndim):
         return points
-    array = _as_plain_array(points, name)
+    array = as_plain_array(points, name)
     _refuse_kind(array, name)
     _refuse_shape(array, ndim, name)
     if array.dtype.kind in "iu":
@@ -138,7 +138,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         and values.shape[-1] == d
     ):
         return values
-    array = _as_plain_array(values, name)
+    array = as_plain_array(values, name)
     if array.shape == (0,):
         # An empty list says of nothing how many numbers it would have.
         return np.empty((0, d))
@@ -266,7 +266,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
     ...
     delone.errors.InputError: segments: 2 of 3 rows leave the range 0 to 2 of points; first: 1, 2
     """
-    array = _as_plain_array(segments, name)
+    array = as_plain_array(segments, name)
     if array.shape in ((0,), (0, 2)):
         return np.empty((0, 2), dtype=np.int32)
     if array.ndim != 2 or array.shape[1] != 2:
@@ -318,7 +318,7 @@ def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray
     """
     if seeds is None:
         return np.empty((0, 2))
-    array = _as_plain_array(seeds, name)
+    array = as_plain_array(seeds, name)
     if array.size == 0 and array.ndim <= 2:
         return np.empty((0, 2))
     found = as_points(seeds, ndim=2 if columns == 2 else None, name=name)
@@ -628,8 +628,36 @@ def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
     )
 
 
-def _as_plain_array(points: Any, name: str) -> NDArray[Any]:
-    """Convert to a base-class array, refusing masks before they are dropped silently."""
+def as_plain_array(points: Any, name: str) -> NDArray[Any]:
+    """Return an array of the base class, of any kind and shape.
+
+    Parameters
+    ----------
+    points : array_like
+        What the caller passed.
+    name : str
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray
+        Masks are refused before they are dropped silently.
+
+    Raises
+    ------
+    DtypeError
+        A masked array.
+    ShapeError
+        Rows of unequal length.
+
+    Examples
+    --------
+    >>> from delone._arrays import as_plain_array
+    >>> as_plain_array([[1, 2], [3]], "values")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    delone.errors.ShapeError: values has rows of unequal length: ...
+    """
     rows = points if isinstance(points, list | tuple) else ()
     if isinstance(points, np.ma.MaskedArray) or any(
         isinstance(row, np.ma.MaskedArray) for row in rows
@@ -716,7 +744,7 @@ def _refuse_lossy_longdouble(array: NDArray[Any], name: str) -> None:
 def _as_indices(
     values: ArrayLike, columns: int, lowest: int, end: int, name: str
 ) -> NDArray[np.int32]:
-    array = _as_plain_array(values, name)
+    array = as_plain_array(values, name)
     if array.ndim != 2 or array.shape[1] != columns:
         raise ShapeError(f"{name} must have shape (m, {columns}), got {array.shape}")
     if array.dtype.kind not in "iu":

@@ -178,7 +178,7 @@ class Delaunay(Spatial):
 
         if cls is not Delaunay:
             raise InputError(f"periodic goes with Delaunay itself, not with {cls.__name__}")
-        if method not in ("auto", "bowyer-watson"):
+        if not isinstance(method, str) or method not in ("auto", "bowyer-watson"):
             raise InputError(f"periodic goes with 'auto' and 'bowyer-watson', got {method!r}")
         as_workers(workers)
         return PeriodicDelaunay(points, periodic)
@@ -196,7 +196,7 @@ class Delaunay(Spatial):
         threads = as_workers(workers)
         own = own_copy(points, ndim=None)
         methods = _core.methods2() if own.shape[1] == 2 else _METHODS3
-        if method not in methods:
+        if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
             where = "" if own.shape[1] == 2 else " in space"
             raise InputError(f"method must be one of {names}{where}, got {method!r}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_vectors
+from delone._arrays import as_plain_array, as_vectors
 from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.immutable import kept, own_copy, sealed
@@ -166,7 +166,7 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
     NonFiniteError
         One is NaN or infinite.
     """
-    shape = np.shape(weights)
+    shape = as_plain_array(weights, "weights").shape
     if shape != (npoints,):
         raise ShapeError(f"weights must have shape ({npoints},), one for each point, got {shape}")
     found = as_vectors(weights, npoints, name="weights").copy() if npoints else np.empty(0)

@@ -16,6 +16,7 @@ from delone._arrays import (
     as_count,
     as_flag,
     as_number,
+    as_plain_array,
     as_points,
     as_simplices,
     require_finite,
@@ -203,7 +204,7 @@ def _require_positive(points: Floats, simplices: Indices) -> None:
 def _labels(region: ArrayLike | None, own: Indices | None, count: int) -> Indices:
     if region is None:
         return np.empty(0, dtype=np.int32) if own is None else own
-    array = np.asarray(region)
+    array = as_plain_array(region, "region")
     if array.dtype.kind not in "iu":
         raise DtypeError(f"region must be integers, got {array.dtype}")
     if array.shape != (count,):
@@ -216,13 +217,13 @@ def _labels(region: ArrayLike | None, own: Indices | None, count: int) -> Indice
 def _mask(fixed: ArrayLike | None, count: int) -> Bools:
     if fixed is None:
         return np.empty(0, dtype=bool)
-    array = np.asarray(fixed)
+    array = as_plain_array(fixed, "fixed")
     if array.dtype == bool:
         if array.shape != (count,):
             raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
         return np.ascontiguousarray(array)
     held = np.zeros(count, dtype=bool)
-    if not array.size:
+    if array.shape == (0,):
         return held
     if array.dtype.kind not in "iu":
         raise DtypeError(f"fixed must be booleans or rows, got {array.dtype}")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._arrays import as_plain_array
 from delone.counting import agreed, counted
 from delone.errors import ConflictingValuesError, DtypeError, InputError, NonFiniteError, ShapeError
 
@@ -197,7 +198,7 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     """
     if isinstance(values, np.ma.MaskedArray):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
-    array = np.asarray(values)
+    array = as_plain_array(values, name)
     if array.dtype.kind not in "iufc":
         raise DtypeError(f"{name} must hold numbers, got dtype {array.dtype}")
     if array.ndim == 0 or len(array) != count:
@@ -240,7 +241,7 @@ def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
     >>> chosen("nan", "drop", ("error", "drop"))
     'drop'
     """
-    if value not in choices:
+    if not isinstance(value, str) or value not in choices:
         raise InputError(f"{what} must be one of {', '.join(map(repr, choices))}, got {value!r}")
     return value
 

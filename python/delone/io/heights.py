@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone._arrays import as_plain_array
 from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def as_values(
         return None
     if isinstance(values, np.ma.MaskedArray):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
-    array = np.asarray(values)
+    array = as_plain_array(values, name)
     if array.dtype.kind not in "iufb":
         raise DtypeError(f"{name} must hold real numbers, got dtype {array.dtype}")
     if array.shape != (count,):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_flag, as_number, as_workers
+from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array, as_workers
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError
@@ -373,7 +373,7 @@ def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
     """
     if values is None:
         return np.zeros(count, dtype=np.int32)
-    array = np.asarray(values)
+    array = as_plain_array(values, name)
     if array.shape not in ((count,), (count, 1)):
         raise ShapeError(f"{name} must have shape ({count},), got {array.shape}")
     if array.dtype.kind not in "iu" and array.size:
@@ -388,7 +388,7 @@ def _frozen(frozen: bool | str | ArrayLike, count: int) -> Bools:
     if isinstance(frozen, str):
         as_choice(frozen, ("boundary",), name="frozen")
         return np.zeros(count, dtype=bool)
-    array = np.asarray(frozen)
+    array = as_plain_array(frozen, "frozen")
     if array.dtype.kind != "b":
         raise DtypeError(f"frozen must be booleans or 'boundary', got dtype {array.dtype}")
     if array.shape not in ((), (count,)):

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from delone.errors import DtypeError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -12,7 +15,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Cell", "Neighbors", "Rays"]
+__all__ = ["Cell", "Neighbors", "Rays", "as_site"]
 
 
 class Rays(NamedTuple):
@@ -112,3 +115,33 @@ class Cell:
     area: float
     perimeter: float
     centroid: Floats
+
+
+def as_site(i: Any) -> int:
+    """Return the row of a site as a Python integer.
+
+    Parameters
+    ----------
+    i : int
+        What the caller passed.
+
+    Returns
+    -------
+    int
+        The row, of which it is not known whether it is there.
+
+    Raises
+    ------
+    DtypeError
+        It is no integer.
+
+    Examples
+    --------
+    >>> from delone.voronoi.cells import as_site
+    >>> as_site(2)
+    2
+    """
+    try:
+        return operator.index(i)
+    except TypeError:
+        raise DtypeError(f"i must be the row of a site, got {i!r:.60}") from None

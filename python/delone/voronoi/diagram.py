@@ -17,7 +17,7 @@ from delone.counting import counted
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.voronoi import clipping, dual, outline, shapes, sites
-from delone.voronoi.cells import Cell, Neighbors, Rays
+from delone.voronoi.cells import Cell, Neighbors, Rays, as_site
 from delone.voronoi.lists import compressed, gaps_once
 
 if TYPE_CHECKING:
@@ -488,7 +488,8 @@ class Voronoi(Immutable):
         >>> [ring.tolist() for ring in cell.parts[0]]
         [[[-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]]]
         """
-        region, site = int(self.point_region[i]), int(self.duplicate_of[i])
+        row = as_site(i)
+        region, site = int(self.point_region[row]), int(self.duplicate_of[row])
         start, end = self._dual["starts"][region : region + 2] if region >= 0 else (0, 0)
         entries = self._dual["region_vertices"][start:end]
         bounded = region < 0 or (bool(len(entries)) and bool((entries >= 0).all()))
@@ -503,9 +504,9 @@ class Voronoi(Immutable):
             parts=self._clipped.parts(region) if region >= 0 else (),
             neighbors=indices[beside],
             lengths=lengths[beside],
-            area=float(self.cell_areas[i]),
-            perimeter=float(self.cell_perimeters[i]),
-            centroid=self.cell_centroids[i],
+            area=float(self.cell_areas[row]),
+            perimeter=float(self.cell_perimeters[row]),
+            centroid=self.cell_centroids[row],
         )
 
     def polygons(self) -> NDArray[Any]:

@@ -25,7 +25,7 @@ from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.voronoi import sites
 from delone.voronoi.bodies import Bodies, SpaceCell, SpaceNeighbors
-from delone.voronoi.cells import Rays
+from delone.voronoi.cells import Rays, as_site
 from delone.voronoi.diagram import Voronoi
 from delone.voronoi.lists import compressed, ridge_lists
 from delone.voronoi.polyhedra import Polyhedron, as_polyhedron
@@ -318,7 +318,8 @@ class SpaceVoronoi(Voronoi):
         >>> cell.volume, cell.bounded, len(cell.faces)
         (8.0, False, 6)
         """
-        region, site = int(self.point_region[i]), int(self.duplicate_of[i])
+        row = as_site(i)
+        region, site = int(self.point_region[row]), int(self.duplicate_of[row])
         corners, ridges = np.empty((0, 3)), np.empty(0, dtype=np.int32)
         faces: tuple[Indices, ...] = ()
         bounded = True
@@ -338,9 +339,9 @@ class SpaceVoronoi(Voronoi):
             beyond=beyond.astype(np.int32),
             neighbors=indices[beside],
             areas=areas[beside],
-            volume=float(self.cell_volumes[i]),
-            area=float(self.cell_areas[i]),
-            centroid=self.cell_centroids[i],
+            volume=float(self.cell_volumes[row]),
+            area=float(self.cell_areas[row]),
+            centroid=self.cell_centroids[row],
         )
 
     def _cells_with_an_end(self) -> Iterator[SpaceCell]:
