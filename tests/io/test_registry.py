@@ -9,10 +9,12 @@ import pytest
 from delone import (
     ConvexHull,
     Delaunay,
+    DtypeError,
     FileFormatError,
     InputError,
     MissingExtraError,
     RegularTriangulation,
+    ShapeError,
     Voronoi,
     improve,
 )
@@ -210,3 +212,34 @@ def test_the_drop_in_in_space_has_a_picture(tmp_path):
     pytest.importorskip("pyvista")
     write_mesh(tmp_path / "a.png", DropIn([*CUBE, (0.4, 0.5, 0.6)]))
     assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".npz", ".png"])
+def test_heights_of_points_in_space_are_their_own(tmp_path, suffix):
+    cube = Delaunay(CUBE)
+    for solid in (cube, improve(cube)):
+        with pytest.raises(FileFormatError, match="z must be None"):
+            write_mesh(tmp_path / f"a{suffix}", solid, z=np.zeros(8))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".vtu", ".msh", ".ply"])
+@pytest.mark.parametrize(
+    ("attributes", "error"),
+    [
+        (5, DtypeError),
+        ({"a": [None] * 5}, DtypeError),
+        ({"a": [[1, 2], [3]]}, ShapeError),
+        ({"a": [1.0, 2.0]}, ShapeError),
+    ],
+)
+def test_attributes_that_fit_nothing_are_refused(tmp_path, suffix, attributes, error):
+    with pytest.raises(error, match="attribute"):
+        write_mesh(tmp_path / f"a{suffix}", MESH, attributes=attributes)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".ply"])
+def test_meshes_hold_numbers(tmp_path, suffix):
+    with pytest.raises(DtypeError, match="real numbers"):
+        write_mesh(tmp_path / f"a{suffix}", MESH, attributes={"a": ["x"] * 5})

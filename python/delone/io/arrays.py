@@ -18,7 +18,7 @@ import numpy as np
 from delone._arrays import as_points, as_simplices
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
-from delone.io.heights import as_values
+from delone.io.heights import as_values, split_attributes
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.registry import MeshFile
 
@@ -111,8 +111,9 @@ def write_mesh(
     if edges:
         raise FileFormatError(f"{path.suffix} files hold the whole triangulation, not edges alone")
     heights = as_values(z, triangulation.npoints)
-    triangulation.save(path)
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    split_attributes(further, triangulation.npoints, triangulation.nsimplex)
+    triangulation.save(path)
     if heights is not None:
         further["z"] = heights
     if crs is not None:

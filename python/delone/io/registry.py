@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone._arrays import as_flag
+from delone._arrays import as_flag, as_plain_array
 from delone.atomic import replacing
-from delone.errors import FileFormatError, InputError
+from delone.errors import DtypeError, FileFormatError, InputError
 from delone.io.compressed import SUFFIXES
 
 if TYPE_CHECKING:
@@ -421,11 +421,35 @@ def write_mesh(
     lines = as_flag(edges, name="edges")
     if lines and not hasattr(triangulation, "edges"):
         raise InputError(f"this {name} has no array of edges: write delone.Delaunay(points)")
+    if ndim == 3 and z is not None:
+        raise FileFormatError("points in space have their heights already: z must be None")
+    given = _plain(attributes, Path(path).suffix.lower())
     write = writer(path, space=ndim == 3)
     if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
         raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
     with replacing(path) as beside:
-        write(beside, triangulation, z=z, crs=crs, edges=lines, attributes=attributes)
+        write(beside, triangulation, z=z, crs=crs, edges=lines, attributes=given)
+
+
+def _plain(
+    attributes: Mapping[str, ArrayLike] | None, suffix: str
+) -> dict[str, NDArray[Any]] | None:
+    """Attributes as arrays of what the format can hold."""
+    if attributes is None:
+        return None
+    if not hasattr(attributes, "items"):
+        raise DtypeError(f"attributes must be arrays by name, got {attributes!r:.60}")
+    found = {}
+    for name, values in attributes.items():
+        array = as_plain_array(values, f"attribute {name!r}")
+        kind = array.dtype.kind
+        if (suffix in _MESHES and kind not in "iufb") or (suffix == ".npz" and kind == "O"):
+            raise DtypeError(
+                f"attribute {name!r} must hold real numbers in {suffix} files, got dtype "
+                f"{array.dtype}"
+            )
+        found[name] = array
+    return found
 
 
 def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:
