@@ -140,3 +140,33 @@ def test_neighbours_share_their_corners_on_fine_outlines() -> None:
     star = shapely.Polygon(0.5 + radius * np.column_stack((np.cos(angle), np.sin(angle))))
     cells = Voronoi(np.random.default_rng(0).random((3000, 2)), clip=star).polygons()
     assert shapely.coverage_is_valid(cells[~shapely.is_empty(cells)])
+
+
+@pytest.mark.parametrize(
+    ("points", "box"),
+    [
+        ([(0, 0), (0, 1)], (0.3, -5e307, 1, 2)),
+        ([(0, 0), (1, 0)], (0, 0, 1, 8e307)),
+        ([(0, 0)], (0, 0, 1, 5e307)),
+        ([(0, 0), (1, 0)], (0, 0, 1e-300, 8e307)),
+        ([(0, 0), (0, 1)], (0, -LARGEST / 4, 5e-324, LARGEST / 4)),
+        ([(0, 0), (0, 1)], (-LARGEST / 4, -1e-200, LARGEST / 4, 1e-200)),
+    ],
+)
+def test_cells_as_long_as_the_range_have_their_measures(points: Any, box: Any) -> None:
+    # A scale that was taken back with another power made areas four times too large.
+    diagram = Voronoi(points, clip=box)
+    for row in range(len(points)):
+        cell = diagram.cell(row)
+        rings = [exact(part[0]) for part in cell.parts]
+        size = sum(map(area, rings), Fraction(0))
+        assert diagram.cell_areas[row] == pytest.approx(float(size), rel=1e-15)
+        if size:
+            (ring,) = rings
+            xs, ys = ([corner[k] for corner in ring] for k in range(2))
+            # Each is a rectangle along the axes.
+            around = 2 * (max(xs) - min(xs) + max(ys) - min(ys))
+            assert cell.perimeter == pytest.approx(float(around), rel=1e-15)
+            for k, side in enumerate((xs, ys)):
+                away = Fraction(diagram.cell_centroids[row, k]) - (min(side) + max(side)) / 2
+                assert abs(away) <= (max(side) - min(side)) / 10**15 + Fraction(5e-324)

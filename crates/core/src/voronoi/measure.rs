@@ -56,34 +56,48 @@ pub fn measures(starts: &[i32], points: &[Point2], workers: usize) -> Result<Mea
 }
 
 fn measure(corners: &[Point2]) -> (f64, Point2, f64) {
-    let size = |scale: f64| measure_in_units(corners, scale);
-    let (area, centroid, around) = size(1.0);
-    // Nothing over- or underflows to any effect between these, which NaN is not.
-    if corners.is_empty() || (area > TINY && area < HUGE) || (area == 0.0 && around == 0.0) {
+    let (area, centroid, around) = measure_in_units(corners, [1.0; 2]);
+    // Between these nothing over- or underflows to any effect, which NaN is not, but for moments.
+    let usual = area > TINY && area < HUGE && centroid.iter().all(|x| x.is_finite());
+    if corners.is_empty() || usual || (area == 0.0 && around == 0.0) {
         return (area, centroid, around);
     }
-    // A power of two, by which the largest coordinate comes near 1.
-    let largest = corners
-        .as_flattened()
-        .iter()
-        .fold(0.0_f64, |m, x| m.max(x.abs()));
-    let exponent = (largest.to_bits() >> 52) as i64 - 1023;
-    let power = |e: i64| f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52);
-    let (scale, back) = (power(-exponent - 2), power(exponent + 2));
-    let (area, [x, y], around) = size(scale);
-    (area * back * back, [x * back, y * back], around * back)
+    // Powers of two by which the largest coordinates come near 1, by axis: a cell may be as long as
+    // the range and as thin as its smallest double.
+    let [wide, high] = [0, 1].map(|k| exponent(corners, k));
+    let (area, [x, y], _) = measure_in_units(corners, [power_of_two(-wide), power_of_two(-high)]);
+    let long = wide.max(high);
+    let (_, _, around) = measure_in_units(corners, [power_of_two(-long); 2]);
+    let (half, both) = ((wide + high) / 2, wide + high);
+    (
+        area * power_of_two(half) * power_of_two(both - half),
+        [x * power_of_two(wide), y * power_of_two(high)],
+        around * power_of_two(long),
+    )
 }
 
-/// Measures in which the unit of length is the inverse of a power of two.
-fn measure_in_units(corners: &[Point2], scale: f64) -> (f64, Point2, f64) {
+/// Two more than the exponent of the largest coordinate of an axis, so far as that and its negative
+/// are exponents of doubles.
+fn exponent(corners: &[Point2], axis: usize) -> i32 {
+    let largest = corners.iter().fold(0.0_f64, |m, p| m.max(p[axis].abs()));
+    ((largest.to_bits() >> 52) as i32 - 1021).clamp(-1022, 1022)
+}
+
+/// 2^exponent, from -1022 to 1023.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}
+
+/// Measures in which the units of length, by axis, are the inverses of powers of two.
+fn measure_in_units(corners: &[Point2], scale: [f64; 2]) -> (f64, Point2, f64) {
     let Some(first) = corners.first() else {
         return (0.0, [f64::NAN; 2], 0.0);
     };
-    let [ox, oy] = first.map(|x| x * scale);
+    let [ox, oy] = [first[0] * scale[0], first[1] * scale[1]];
     let (mut twice, mut x, mut y, mut around) = (0.0, 0.0, 0.0, 0.0);
     let mut last = [0.0, 0.0];
     for p in corners[1..].iter().chain(&corners[..1]) {
-        let here = [p[0] * scale - ox, p[1] * scale - oy];
+        let here = [p[0] * scale[0] - ox, p[1] * scale[1] - oy];
         let cross = last[0] * here[1] - last[1] * here[0];
         twice += cross;
         x += cross * (last[0] + here[0]);
@@ -100,7 +114,8 @@ fn measure_in_units(corners: &[Point2], scale: f64) -> (f64, Point2, f64) {
     }
     // As thin as rounding allows, or too large: the middle of the corners stands for the centre.
     let n = corners.len() as f64;
-    let mean = |k: usize, o: f64| o + corners.iter().map(|p| (p[k] * scale - o) / n).sum::<f64>();
+    let part = |p: &Point2, k: usize, o: f64| (p[k] * scale[k] - o) / n;
+    let mean = |k: usize, o: f64| o + corners.iter().map(|p| part(p, k, o)).sum::<f64>();
     let area = if twice.is_nan() { twice } else { 0.0 };
     (area, [mean(0, ox), mean(1, oy)], around)
 }
@@ -138,5 +153,18 @@ mod tests {
             (0.0, [5e-201, 5e-201])
         );
         assert_eq!(found.perimeters, [4e-200]);
+        // As long as the range, and as thin: areas, places and ways round are doubles all the same.
+        for (w, h) in [
+            (1.0, huge),
+            (1.0, huge / 2.0),
+            (1e-300, huge),
+            (5e-324, huge),
+        ] {
+            let corners = [[0.0, 0.0], [w, 0.0], [w, h / 2.0], [0.0, h / 2.0]];
+            let found = measures(&[0, 4], &corners, 1).unwrap();
+            assert_eq!(found.areas, [w * (h / 2.0)]);
+            assert_eq!(found.centroids, [[w / 2.0, h / 4.0]]);
+            assert_eq!(found.perimeters, [h]);
+        }
     }
 }
