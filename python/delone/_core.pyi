@@ -251,6 +251,7 @@ def gradients_global2(
     tol: float,
     maxiter: int,
     workers: int,
+    floor: float | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
 def gradients_local2(
     points: NDArray[np.float64],

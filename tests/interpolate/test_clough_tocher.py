@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets
+from delone.compat.scipy import CloughTocher2DInterpolator
 from delone.errors import DtypeError
 from delone.interpolate import CloughTocher, GradientWarning, interpolator
 from delone.reference import clough_tocher
@@ -147,3 +148,44 @@ def test_local_gradients_do_not_swing_between_tracks(kind: str) -> None:
 def test_a_tolerance_that_is_no_number(tol: Any) -> None:
     with pytest.raises(DtypeError, match="tol must be a real number"):
         CloughTocher([(0, 0), (1, 0), (0, 1)], tol=tol)
+
+
+@pytest.mark.parametrize("k", [-600, -100, -20, 20, 100, 600])
+@pytest.mark.parametrize("kind", ["clough-tocher", "sibson1", "farin"])
+def test_units_change_nothing_in_global_gradients(kind: str, k: int) -> None:
+    # An absolute tolerance ended the sweeps after the first one where slopes were small.
+    mesh = datasets.uniform(200, seed=15)
+    queries = np.random.default_rng(16).random((100, 2))
+    plain = interpolator(kind, mesh, bumps(mesh), gradients="global")
+    value, slopes = plain(queries), plain.site_gradients()
+    longer = interpolator(kind, mesh * 2.0**k, bumps(mesh), gradients="global")
+    higher = interpolator(kind, mesh, bumps(mesh) * 2.0**k, gradients="global")
+    assert np.array_equal(longer.site_gradients(), slopes / 2.0**k)
+    assert np.array_equal(higher.site_gradients(), slopes * 2.0**k)
+    np.testing.assert_allclose(longer(queries * 2.0**k), value, rtol=1e-12)
+    np.testing.assert_allclose(higher(queries) / 2.0**k, value, rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e4, 1e7])
+def test_the_tolerance_holds_in_any_unit(unit: float) -> None:
+    points = np.random.default_rng(0).random((300, 2))
+    queries = 0.1 + 0.8 * np.random.default_rng(1).random((300, 2))
+    exact = CloughTocher(points, bumps(points), tol=1e-14)(queries)
+    assert np.abs(CloughTocher(points * unit, bumps(points))(queries * unit) - exact).max() < 1e-6
+
+
+def test_values_without_a_slope_need_one_sweep() -> None:
+    points = datasets.uniform(50, seed=17)
+    made = CloughTocher(points, np.full((50, 2), [3.0, 0.0]), maxiter=1)
+    assert not made.site_gradients().any()
+
+
+def test_the_interface_of_scipy_keeps_its_tolerance() -> None:
+    interpolate = pytest.importorskip("scipy.interpolate")
+    points = datasets.uniform(300, seed=12)
+    queries = 1e6 * (0.1 + 0.8 * np.random.default_rng(13).random((300, 2)))
+    sites, values = points * 1e6, bumps(points)
+    theirs = interpolate.CloughTocher2DInterpolator(sites, values)(queries)
+    ours = CloughTocher2DInterpolator(sites, values)(queries)
+    np.testing.assert_allclose(ours, theirs, atol=1e-9)
+    assert np.abs(ours - CloughTocher(sites, values)(queries)).max() > 1e-5

@@ -237,6 +237,7 @@ pub fn combine2(
 
 /// Gradients of least bending, and the sweeps for each column.
 #[pyfunction]
+#[pyo3(signature = (points, indptr, indices, values, tol, maxiter, workers, floor=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "the door takes arrays one by one"
@@ -250,6 +251,7 @@ pub fn gradients_global2(
     tol: f64,
     maxiter: usize,
     workers: usize,
+    floor: Option<f64>,
 ) -> PyResult<(Array, Array)> {
     let fail = |e: Error| raise(py, &e);
     let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
@@ -260,7 +262,7 @@ pub fn gradients_global2(
     let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
     let (found, sweeps) = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
-        global_gradients(rows, edges, field, tol, maxiter, workers, watch)
+        global_gradients(rows, edges, field, tol, floor, maxiter, workers, watch)
     })?;
     Ok((shaped(py, found, [n, columns, 2])?, column(py, sweeps)))
 }

@@ -204,7 +204,8 @@ class CloughTocher2DInterpolator(_Triangulated):
     fill_value : float, optional
         What there is outside of the hull.
     tol : float, optional
-        Tolerance of the estimation of gradients.
+        Tolerance of the estimation of gradients: relative for gradients above 1 and absolute for
+        others, as in SciPy.
     maxiter : int, optional
         Its greatest number of sweeps.
     rescale : bool, optional
@@ -262,6 +263,7 @@ class _GivenGradients(CloughTocher):
     """Clough-Tocher interpolation from gradients that somebody else may change."""
 
     given: NDArray[Any] | None = None
+    _floor = 1.0
 
     def gradients(self, columns: Floats) -> Floats:
         """Return the gradients given, those that are estimated where there are none."""
@@ -458,7 +460,7 @@ def estimate_gradients_2d_global(
     maxiter : int, optional
         Greatest number of sweeps.
     tol : float, optional
-        Relative change at which sweeps end.
+        Change at which sweeps end: relative for gradients above 1 and absolute for others.
 
     Returns
     -------

@@ -44,7 +44,9 @@ class CloughTocher(Smooth):
         neighbours. A quadric swings where it moves with the values more than three times as much as
         the plane, which then takes its place: between the tracks of soundings.
     tol : float, optional
-        Relative change at which the global estimation ends.
+        Change at which the global estimation ends, as a share of the gradient, or of the range of
+        the values over the longer side of the box of the sites where that is larger. So units of
+        length and of values do not matter.
     maxiter : int, optional
         Number of sweeps after which it ends in any case, with a `GradientWarning`.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional

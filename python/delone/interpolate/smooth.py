@@ -70,6 +70,9 @@ class Sheet(NamedTuple):
 class Smooth(Interpolator):
     """Interpolation from values and gradients; the base of `CloughTocher` and `NaturalNeighbor`."""
 
+    # Gradients below this converge by absolute changes; None for one by which no unit matters.
+    _floor: float | None = None
+
     def __init__(
         self,
         points: ArrayLike | Triangulation,
@@ -174,7 +177,7 @@ class Smooth(Interpolator):
             degree = _DEGREES[self._estimate]
             return _core.gradients_local2(points, *around, columns, degree, workers)
         found, iterations = _core.gradients_global2(
-            points, *around, columns, self._tol, self._maxiter, workers
+            points, *around, columns, self._tol, self._maxiter, workers, self._floor
         )
         if len(columns) and not iterations.all():
             warnings.warn(

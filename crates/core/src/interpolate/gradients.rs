@@ -6,7 +6,7 @@ use super::adjacency::Adjacency;
 use super::field::Field;
 use super::hubs::Hubs;
 use crate::error::Result;
-use crate::locate::{Output, in_unit, unit_of};
+use crate::locate::{Output, in_unit, longer_side, unit_of};
 use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::watch::Watch;
@@ -33,23 +33,30 @@ struct Edge {
 /// A cubic along an edge of length L with ends f, f' and derivatives p, p' by the edge (not by its
 /// length) bends by 4 (p^2 + p p' + p'^2 - 3 (p + p')(f' - f) + 3 (f' - f)^2) / L^3. The minimum over
 /// one gradient, all others fixed, is a system of two equations; sweeps over all vertices go on until
-/// no gradient changes by more than `tol`, relative to itself where it is above 1 (R. J. Renka and A.
-/// K. Cline, 1984, and SciPy, whose sweeps are the same). Returns gradients, and for each column
-/// the sweeps, or 0 where `maxiter` were not enough.
+/// none changes its gradient by more than `tol` of that, or of a floor if that is larger (R. J. Renka
+/// and A. K. Cline, 1984, and SciPy, whose sweeps are the same). `floor` is 1 in SciPy, which hangs on
+/// the units of points and values; without one it is the slope of a plane that has the range of the
+/// values over the longer side of the box of the points. Returns gradients, and for each column the
+/// sweeps, or 0 where `maxiter` were not enough.
+#[expect(clippy::too_many_arguments, reason = "two ends, threads and the watch")]
 pub fn global_gradients(
     points: &[Point2],
     adjacency: Adjacency,
     field: Field,
     tol: f64,
+    floor: Option<f64>,
     maxiter: usize,
     workers: usize,
     watch: &Watch,
 ) -> Result<(Vec<f64>, Vec<i64>)> {
+    let unit = unit_of(points);
     let plan = Sweeps {
         points,
         adjacency,
-        unit: unit_of(points),
+        unit,
+        side: longer_side(points, unit),
         tol,
+        floor,
         maxiter,
     };
     // All columns without gaps have the same equations.
@@ -87,8 +94,27 @@ struct Sweeps<'a> {
     points: &'a [Point2],
     adjacency: Adjacency<'a>,
     unit: f64,
+    side: f64,
     tol: f64,
+    floor: Option<f64>,
     maxiter: usize,
+}
+
+impl Sweeps<'_> {
+    /// The size of gradients of a column below which changes are not measured against themselves.
+    fn floor(&self, field: &Field, column: usize) -> f64 {
+        if let Some(floor) = self.floor {
+            return floor;
+        }
+        let values = (0..self.points.len() as i32).map(|v| field.value(v, column));
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in values.filter(|value| value.is_finite()) {
+            (low, high) = (low.min(value), high.max(value));
+        }
+        let floor = (high - low).min(f64::MAX) / self.side;
+        // No value, or one that all have, has no slope; neither have points in one place.
+        if floor.is_finite() { floor } else { 0.0 }
+    }
 }
 
 /// The equations of all vertices.
@@ -143,6 +169,7 @@ impl Network {
         watch: &Watch,
     ) -> Result<(Vec<[f64; 2]>, i64)> {
         let n = self.inverses.len();
+        let floor = plan.floor(field, column);
         let mut gradients = filled(n, [0.0; 2])?;
         for sweep in 1..=plan.maxiter {
             let mut worst: f64 = 0.0;
@@ -155,8 +182,10 @@ impl Network {
                 };
                 let old = std::mem::replace(&mut gradients[v], new);
                 let change = (new[0] - old[0]).abs().max((new[1] - old[1]).abs());
-                let size = new[0].abs().max(new[1].abs()).max(1.0);
-                worst = worst.max(change / size);
+                let size = new[0].abs().max(new[1].abs()).max(floor);
+                if change > 0.0 {
+                    worst = worst.max(change / size);
+                }
             }
             if worst < plan.tol {
                 return Ok((gradients, sweep as i64));

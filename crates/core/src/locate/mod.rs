@@ -33,7 +33,7 @@ pub use coordinates::{Coordinates, coordinates};
 pub use cross::{certain, cross, plain};
 pub use nearest::nearest;
 pub use output::Output;
-pub use range::{in_unit, seen_from, unit_of};
+pub use range::{in_unit, longer_side, seen_from, unit_of};
 pub use segment::along;
 pub use star::{Place, Star};
 pub use start::Start;

@@ -40,6 +40,13 @@ pub fn unit_of(points: &[Point2]) -> f64 {
     seen_from(extent.min, [extent.max]).1
 }
 
+/// The longer side of the box of points, in a unit.
+pub fn longer_side(points: &[Point2], unit: f64) -> f64 {
+    let extent = Extent::of(points.iter().copied());
+    let [x, y] = in_unit(extent.min, extent.max, unit);
+    x.max(y)
+}
+
 #[inline]
 fn largest(points: &[Point2]) -> f64 {
     let coordinates = points.as_flattened();
