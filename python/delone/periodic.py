@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import require_finite
+from delone._arrays import as_number, require_finite
 from delone.counting import counted
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
 from delone.immutable import Immutable, kept, own_copy, sealed
@@ -264,7 +264,7 @@ def as_periods(periods: Any) -> tuple[float | None, float | None]:
         They are something else, or there is none.
     """
     try:
-        x, y = (None if length is None else float(length) for length in periods)
+        x, y = (None if length is None else as_number(length, name="periods") for length in periods)
     except (TypeError, ValueError):
         raise InputError(f"periods must be two numbers or None, got {periods!r}") from None
     given = [length for length in (x, y) if length is not None]

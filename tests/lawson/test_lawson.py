@@ -322,6 +322,8 @@ def test_other_errors() -> None:
         lawson(SQUARE, [(0, 1, 5)])
     with pytest.raises(DtypeError):
         lawson(SQUARE, [(0.0, 1.0, 2.0)])
+    with pytest.raises(DtypeError, match="record must be True or False, got 'a'"):
+        lawson(SQUARE[:4], [(0, 1, 3), (1, 2, 3)], record="a")  # type: ignore[arg-type]
 
 
 def test_records_have_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -180,6 +180,7 @@ def test_nothing_can_be_changed_and_it_pickles() -> None:
         ([(0, 0)], (0, 1), "positive"),
         ([(0, 0)], (1, np.inf), "finite"),
         ([(0, 0)], 3, "two numbers"),
+        ([(0, 0)], (True, 1), "two numbers"),
     ],
 )
 def test_bad_periods_are_refused(points: Any, periods: Any, message: str) -> None:

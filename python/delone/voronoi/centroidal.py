@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice
-from delone.errors import InputError
+from delone._arrays import as_choice, as_count, as_number
+from delone.errors import DtypeError, InputError
 from delone.voronoi import outline
 from delone.voronoi.diagram import Voronoi
 
@@ -125,9 +125,9 @@ def lloyd(
         End as soon as no site is further than this from the centroid of its cell, in the unit of
         the points.
     density : callable, optional
-        Takes places, (k, 2), and returns a positive number for each, (k,): sites will be denser
-        where it is larger. It may be asked for places outside an outline that is not convex, but
-        within its box. By default it is 1 everywhere.
+        Takes places, (k, 2), and returns a number for each, (k,), none negative and not all of them
+        0: sites will be denser where it is larger. It may be asked for places outside an outline
+        that is not convex, but within its box. By default it is 1 everywhere.
     method : {"lloyd", "l-bfgs"}, optional
         How to make the steps: to the centroids, or with a quasi-Newton method, which needs fewer of
         them to come to rest.
@@ -146,8 +146,11 @@ def lloyd(
     ------
     InputError
         `clip` is None or not what `Voronoi` takes; `iterations` or `tol` is negative; `method` is
-        unknown; or `density` returns another number of values, or some that are negative or not
-        finite.
+        unknown; or `density` returns another number of values, some that are negative or not
+        finite, or nothing but zeros.
+    DtypeError
+        `iterations` is no integer, `tol` no number, `density` or `progress` no function, or
+        `density` returns no numbers.
 
     Notes
     -----
@@ -169,10 +172,13 @@ def lloyd(
     """
     if clip is None:
         raise InputError("lloyd needs a clip: without one, cells have no centroids")
-    if iterations < 0:
-        raise InputError(f"iterations must not be negative, got {iterations}")
+    iterations = as_count(iterations, name="iterations")
+    tol = None if tol is None else as_number(tol, name="tol")
     if tol is not None and not tol >= 0:
         raise InputError(f"tol must not be negative, got {tol}")
+    for name, function in (("density", density), ("progress", progress)):
+        if function is not None and not callable(function):
+            raise DtypeError(f"{name} must be a function, got {function!r:.60}")
     quasi_newton = as_choice(method, _METHODS, name="method") == "l-bfgs"
     diagram = Voronoi(points, clip=clip, workers=workers)
     if diagram.ndim != _PLANE:
@@ -357,6 +363,8 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
         energy += float((amount * (way * way).sum(axis=1)).sum())
     centers = site.copy()
     filled = mass > 0
+    if density is not None and not filled.any():
+        raise InputError("density returned nothing but zeros: no cell has a centroid")
     centers[filled] = origin[filled] + moment[filled] / mass[filled, None]
     return _State(diagram, diagram.points, centers[region], mass[region], energy)
 
@@ -364,7 +372,10 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
 def _density(density: Density | None, places: Floats) -> Floats | float:
     if density is None:
         return 1.0
-    values = np.asarray(density(places), dtype=np.float64)
+    given = np.asarray(density(places))
+    if given.dtype.kind not in "biuf":
+        raise DtypeError(f"density must return real numbers, got dtype {given.dtype}")
+    values = given.astype(np.float64)
     if values.shape != (len(places),):
         raise InputError(f"density returned shape {values.shape} for {len(places)} places")
     if not (np.isfinite(values) & (values >= 0)).all():

@@ -158,12 +158,24 @@ def _of_mapping(mapping: Any) -> Any:
     """A geometry from a mapping of the form of GeoJSON, a feature's included."""
     shape = shapely_or_say().geometry.shape
     mapping = getattr(mapping, "__geo_interface__", mapping)
-    if mapping.get("type") == "FeatureCollection":
-        return _together([shape(each["geometry"]) for each in mapping["features"]])
     try:
-        return shape(mapping["geometry"] if mapping.get("type") == "Feature" else mapping)
+        if mapping.get("type") == "FeatureCollection":
+            return _together([shape(_typed(each["geometry"])) for each in mapping["features"]])
+        plain = mapping["geometry"] if mapping.get("type") == "Feature" else mapping
+        return shape(_typed(plain))
     except Exception as error:
+        if isinstance(error, InputError):
+            raise
         raise InputError(f"clip {mapping!r:.80} is no geometry: {error}") from error
+
+
+def _typed(mapping: Any) -> Any:
+    """A mapping that says which geometry it is; others would fail without a word of that."""
+    kind = mapping.get("type") if isinstance(mapping, dict) else None
+    if not isinstance(kind, str):
+        why = "it has no type" if kind is None else f"its type is {kind!r:.40}"
+        raise InputError(f"clip {mapping!r:.80} is no geometry: {why}")
+    return mapping
 
 
 def _box(numbers: Any) -> Clip:
