@@ -309,19 +309,22 @@ impl<'a> Work<'a> {
         found.map(|(e, ..)| Place::Beside(e))
     }
 
-    /// Puts the vertex `w` on the subsegment `e`. What to flip is on the stack.
+    /// Puts the vertex `w` on the subsegment `e`. What to flip is on the stack: also the edges of
+    /// `w` itself, since a place that is rounded may lie outside of the circle of a needle.
     fn part(&mut self, e: Code, w: u32) {
         let mut mesh = self.marked.patch();
         let o = mesh.opposite(e);
         let star = mesh.split_marked_edge(e, w);
         self.marked.count += 1;
         self.marked.near.push(0);
+        let spokes = star.map(next);
         let [_, r, _, s] = star.map(triangle);
         self.caps.resize(self.marked.triangles() as usize, 0.0);
         self.caps[r as usize] = self.caps[triangle(e) as usize];
         self.caps[s as usize] = self.caps[triangle(o) as usize];
         self.marked.stack.clear();
         self.marked.stack.extend(star);
+        self.marked.stack.extend(spokes);
     }
 
     /// Leads the subsegment `e` over the vertex `w` in its triangle. The thin triangle that is cut
