@@ -171,3 +171,26 @@ def test_measures() -> None:
     assert q.largest_angle == pytest.approx(angles.max(axis=0))
     assert q.area == pytest.approx(mesh.areas)
     assert q.summary()["smallest_angle"]["min"] == q.smallest_angle.min()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("k", [-1000, -920, -600, -300, 300, 600, 900, 1000])
+def test_changes_at_any_magnitude(k: int) -> None:
+    """Powers of two change nothing: areas and squares of lengths are not asked of doubles."""
+    points = np.array([(0.0, 0), (10, 0), (10, 10), (0, 10), (5, 0.5)])
+    segments = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    plain, scaled = (delone.mesh((points * unit, segments)) for unit in (1, 2.0**k))
+    assert np.array_equal(scaled.points, plain.points * 2.0**k)
+    changes = [
+        lambda mesh: mesh.refine(range(mesh.nsimplex), ratio=0.1),
+        lambda mesh: mesh.refine(range(9)).coarsen(),
+        lambda mesh: mesh.smooth(2, "lloyd"),
+        lambda mesh: mesh.smooth(2, "odt"),
+        lambda mesh: mesh.smooth(2, "laplace"),
+    ]
+    for change in changes:
+        expected, found = change(plain), change(scaled)
+        assert not np.array_equal(expected.points, plain.points)
+        assert np.array_equal(found.points, expected.points * 2.0**k)
+        assert np.array_equal(found.simplices, expected.simplices)
+        assert str(found.report) == str(expected.report)

@@ -121,11 +121,11 @@ def test_sizes_whose_squares_leave_the_range_are_refused() -> None:
     """A cap that cannot be compared is never passed over in silence."""
     points, ring = np.array(SQUARE[0], dtype=float), SQUARE[1]
     for scale, options in (
-        (1e300, {"size": 1e299}),
         (1e300, {"max_area": 1.0}),
-        (1e-300, {"size": 1e-301}),
-        (1e-300, {"size": {0: 1e-301}}),
-        (1e-300, {"size": lambda xy: np.full(len(xy), 1e-301)}),
+        (1.0, {"size": 1e-200}),
+        (1.0, {"size": {0: 1e-200}}),
+        (1e300, {"size": lambda xy: np.full(len(xy), 1e100)}),
+        (1.0, {"size": 1e200}),
     ):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -134,6 +134,28 @@ def test_sizes_whose_squares_leave_the_range_are_refused() -> None:
     for scale in (1e300, 1e-300):
         mesh = delone.mesh((points * scale, ring), min_angle=33)
         assert mesh.nsimplex == 2
+
+
+@pytest.mark.parametrize("k", [-1000, -920, -600, -300, 300, 600, 1000])
+def test_sizes_of_any_magnitude(k: int) -> None:
+    """Areas need not be doubles where lengths are."""
+    unit, outline = 2.0**k, (np.array(SQUARE[0], dtype=float) * 2.0**k, SQUARE[1])
+
+    def graded(places: Any) -> Any:
+        return 0.1 + places[:, 0] / 4
+
+    for plain, scaled in (
+        ({"size": 0.2}, {"size": 0.2 * unit}),
+        ({"size": {0: 0.3}}, {"size": {0: 0.3 * unit}}),
+        ({"size": graded}, {"size": lambda places: graded(places / unit) * unit}),
+    ):
+        expected = delone.mesh(SQUARE, **plain)
+        found = delone.mesh(outline, **scaled)
+        assert expected.nsimplex > 20
+        assert np.array_equal(found.points, expected.points * unit)
+        assert np.array_equal(found.simplices, expected.simplices)
+        again = found.refine(size=scaled["size"])
+        assert np.array_equal(again.points, found.points)
 
 
 @pytest.mark.parametrize(

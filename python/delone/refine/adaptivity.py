@@ -14,11 +14,11 @@ import numpy as np
 
 from delone._arrays import as_count, as_number
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
-from delone.plane import topology
+from delone.plane import geometry, topology
 from delone.refine import domains
 from delone.refine.domains import Counts
 from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, rounds
-from delone.refine.sizing import EQUILATERAL, Sizing
+from delone.refine.sizing import EQUILATERAL
 from delone.refine.smoothing import rebuilt, worse
 
 if TYPE_CHECKING:
@@ -56,11 +56,11 @@ def finer(
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:
         wanted = _by_place(mesh, _chosen(marked, mesh.nsimplex), ratio)
-        domain, more = rounds(domain, Sizing(None, wanted, domain.regions), limits)
+        domain, more = rounds(domain, (None, wanted), limits)
         counts = counts.plus(more)
         limits = limits._replace(max_points=most - more.total)
     if (marked is None or max_area is not None or size is not None) and not counts.exhausted:
-        domain, more = rounds(domain, Sizing(max_area, size, domain.regions), limits)
+        domain, more = rounds(domain, (max_area, size), limits)
         counts = counts.plus(more)
     return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
 
@@ -86,7 +86,9 @@ def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
 def _by_place(mesh: Mesh, chosen: NDArray[np.intp], ratio: float) -> Callable[[Floats], Floats]:
     """Return the sizes that make chosen triangles smaller, by the triangle that has a place."""
     sizes = np.full(mesh.nsimplex, math.inf)
-    sizes[chosen] = np.sqrt(ratio * mesh.areas[chosen] / EQUILATERAL)
+    unit = domains.unit_of(mesh.points)
+    areas = geometry.areas(mesh.points / unit, mesh.simplices[chosen])
+    sizes[chosen] = np.sqrt(ratio * areas / EQUILATERAL) * unit
 
     def size(places: Floats) -> Floats:
         found = mesh.locate(places)

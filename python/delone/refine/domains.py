@@ -8,6 +8,7 @@ to the left of a subsegment keep their region.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -37,11 +38,14 @@ __all__ = [
     "sides_at",
     "sides_of",
     "triangulated",
+    "unit_of",
 ]
 
 # Tail and head of the half-edge opposite vertex k, counter-clockwise.
 _TAIL = [1, 2, 0]
 _HEAD = [2, 0, 1]
+# Largest coordinates between which products of four differences are doubles, as in the core.
+_USUAL = 1e-60, 1e60
 
 
 class Lines(NamedTuple):
@@ -238,6 +242,35 @@ def refined(
     return new, Counts(segment, angle, size, exhausted=made["exhausted"])
 
 
+def unit_of(points: Floats) -> float:
+    """Return a unit of length in which areas are doubles.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+
+    Returns
+    -------
+    float
+        A power of two; 1 unless all coordinates are very small or some very large, and where others
+        would be rounded in it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.refine.domains import unit_of
+    >>> unit_of(np.array([(0.0, 3.0)])), unit_of(np.array([(0.0, 2.0**-600)])) == 2.0**-599
+    (1.0, True)
+    """
+    largest = float(np.abs(points).max(initial=0.0))
+    if largest == 0 or _USUAL[0] <= largest <= _USUAL[1]:
+        return 1.0
+    # Both it and its inverse are doubles.
+    unit = math.ldexp(1.0, min(max(math.frexp(largest)[1], -1022), 1022))
+    return unit if np.array_equal(points / unit * unit, points) else 1.0
+
+
 def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[Indices, Indices]:
     """Return the subsegments among the edges of triangles, each once, and their lines.
 
@@ -287,6 +320,8 @@ def triangulated(
         The label of each triangle of the hull; -1 where there is no such edge.
     """
     count = as_workers(workers)
+    # The order of the triangles, in which sums are taken, is then that of usual magnitudes.
+    points = points / unit_of(points)
     found = _core.constrained2(points, segments, False, False, 0, "auto", count)
     simplices, constrained = found["simplices"], found["constrained"]
     component = _core.components2(found["neighbors"], constrained)

@@ -88,8 +88,8 @@ def mesh(
         and below 60. Up to 26 the end is proven, up to 33 it comes in practice, and above often not
         before the limit on points.
     max_area : float or mapping, optional
-        No triangle is larger, in the square of the unit of the points; a mapping has areas by
-        region.
+        No triangle is larger, but for the rounding of its area, in the square of the unit of the
+        points; a mapping has areas by region.
     size : float, mapping, callable, tuple or DataArray, optional
         The length of edges that is wanted: no triangle is larger than the equilateral one with that
         edge. A number; a mapping of regions to numbers; a function that takes places (k, 2) and
@@ -253,20 +253,20 @@ def filled(
     )
     if isinstance(frozen, str):
         start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
-    made, counts = rounds(start, Sizing(*sizes, start.regions), limits)
+    made, counts = rounds(start, sizes, limits)
     stages["refine"] = time.perf_counter() - clock
     return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)
 
 
-def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Counts]:
+def rounds(domain: Domain, sizes: tuple[Any, Any], limits: Limits) -> tuple[Domain, Counts]:
     """Refine a domain until no triangle is too large for where it is.
 
     Parameters
     ----------
     domain : Domain
         What is refined.
-    sizing : Sizing
-        How large triangles may be.
+    sizes : tuple
+        How large triangles may be: `max_area` and `size` of `mesh`.
     limits : Limits
         The bound of angles and the limit on points.
 
@@ -277,6 +277,18 @@ def rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Coun
     counts : Counts
         The points added.
     """
+    unit = domains.unit_of(domain.points)
+    if unit != 1:
+        # Areas are compared where they are doubles, whatever the lengths are.
+        scaled = domain._replace(points=domain.points / unit)
+        found, counts = _rounds(scaled, Sizing(*sizes, domain.regions, unit), limits)
+        points = found.points * unit
+        if np.array_equal(points / unit, found.points):
+            return found._replace(points=points), counts
+    return _rounds(domain, Sizing(*sizes, domain.regions), limits)
+
+
+def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Counts]:
     samples = sizing.samples(domain, limits.workers)
     if limits.refuse:
         sizing.require_within(domain, samples, limits.max_points)

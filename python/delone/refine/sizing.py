@@ -52,19 +52,25 @@ class Sizing:
         Lengths of edges; see `delone.mesh`.
     regions : ndarray of int32
         The regions that there are.
+    unit : float, optional
+        The power of two by which the coordinates of domains are divided; areas and places are in
+        this unit, what callers give and are asked for is not.
 
     Raises
     ------
+    LimitError
+        A size is so small that its square is no double in that unit, or so large without one.
     InputError
         A number is NaN, zero or negative, or `size` is nothing of the kind.
     """
 
-    def __init__(self, max_area: Any, size: Any, regions: Indices) -> None:
+    def __init__(self, max_area: Any, size: Any, regions: Indices, unit: float = 1.0) -> None:
         self._by_region = np.full(len(regions), math.inf)
         self._evaluate: Callable[[Floats], Floats] | None = None
-        self._set(max_area, regions, "max_area", lambda area: area)
+        self._unit = unit
+        self._set(max_area, regions, "max_area", lambda area: area / unit / unit)
         if isinstance(size, Mapping) or size is None or _is_number(size):
-            self._set(size, regions, "size", lambda length: EQUILATERAL * length * length)
+            self._set(size, regions, "size", lambda length: _equilateral(length / unit))
         else:
             self._evaluate = _evaluator(size)
 
@@ -72,7 +78,7 @@ class Sizing:
         if given is None:
             return
         if not isinstance(given, Mapping):
-            self._by_region = np.minimum(self._by_region, _cap(given, name, area))
+            self._by_region = np.minimum(self._by_region, self._cap(given, name, area))
             return
         unknown = sorted(set(given) - set(regions.tolist()))
         if unknown:
@@ -80,8 +86,15 @@ class Sizing:
             raise InputError(f"{name}: there is no region {unknown[0]!r}; there are {known}")
         for region, value in given.items():
             at = np.flatnonzero(regions == region)
-            cap = _cap(value, f"{name} of region {region}", area)
+            cap = self._cap(value, f"{name} of region {region}", area)
             self._by_region[at] = np.minimum(self._by_region[at], cap)
+
+    def _cap(self, value: Any, name: str, area: Callable[[float], float]) -> float:
+        number = _positive(value, name)
+        cap = area(number)
+        if cap == 0 or (self._unit == 1 and math.isinf(cap) and math.isfinite(number)):
+            raise LimitError(_out_of_range(f"{name} {value!r}"))
+        return cap
 
     @property
     def varies(self) -> bool:
@@ -93,12 +106,15 @@ class Sizing:
         caps = self._by_region[labels]
         if self._evaluate is None or not len(places):
             return caps
-        sizes = _checked(self._evaluate(places), places)
+        asked = places * self._unit
+        sizes = _checked(self._evaluate(asked), asked)
         with np.errstate(over="ignore", under="ignore"):
-            areas = EQUILATERAL * sizes * sizes
-        lost = np.flatnonzero((areas == 0) | (np.isinf(areas) & np.isfinite(sizes)))
+            areas = _equilateral(sizes / self._unit)
+        # In a unit of their own all areas are below any that is infinite.
+        large = np.isinf(areas) & np.isfinite(sizes) & (self._unit == 1)
+        lost = np.flatnonzero((areas == 0) | large)
         if lost.size:
-            raise LimitError(_out_of_range(f"size {sizes[lost[0]]} at {_place(places[lost[0]])}"))
+            raise LimitError(_out_of_range(f"size {sizes[lost[0]]} at {_place(asked[lost[0]])}"))
         found: Floats = np.minimum(caps, areas)
         return found
 
@@ -250,6 +266,10 @@ def _centres(domain: Domain, inside: NDArray[np.intp]) -> Floats:
     return np.ascontiguousarray((corners / 3).sum(axis=1))
 
 
+def _equilateral(length: Any) -> Any:
+    return EQUILATERAL * length * length
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float | np.integer | np.floating)
 
@@ -259,14 +279,6 @@ def _positive(value: Any, name: str) -> float:
     if not number > 0:
         raise InputError(f"{name} must be above 0, got {value!r}")
     return number
-
-
-def _cap(value: Any, name: str, area: Callable[[float], float]) -> float:
-    number = _positive(value, name)
-    cap = area(number)
-    if cap == 0 or (math.isinf(cap) and math.isfinite(number)):
-        raise LimitError(_out_of_range(f"{name} {value!r}"))
-    return cap
 
 
 def _out_of_range(what: str) -> str:

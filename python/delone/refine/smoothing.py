@@ -44,8 +44,7 @@ def smoothed(mesh: Mesh, iterations: int, method: str) -> Mesh:
         free = _free(mesh)
         if not free.any():
             break
-        target = _targets(mesh, method)
-        moved = _tried(mesh, np.where(free[:, None], target, mesh.points))
+        moved = _tried(mesh, free, method)
         if moved is None:
             break
         mesh = moved
@@ -59,10 +58,9 @@ def _free(mesh: Mesh) -> Bools:
     return free
 
 
-def _targets(mesh: Mesh, method: str) -> Floats:
+def _targets(mesh: Mesh, points: Floats, method: str) -> Floats:
     """Return where each point would be best, for its triangles as they are."""
-    simplices, points = mesh.simplices, mesh.points
-    n = mesh.npoints
+    simplices, n = mesh.simplices, mesh.npoints
     if method == "laplace":
         pairs = mesh.edges
         ends = np.concatenate((pairs, pairs[:, ::-1]))
@@ -95,14 +93,17 @@ def _means(owner: Indices, places: Floats, weight: Floats, count: int) -> Floats
     return mean
 
 
-def _tried(mesh: Mesh, target: Floats) -> Mesh | None:
-    """Move points as far as nothing becomes worse; None where nothing moves."""
-    points = mesh.points
-    target = np.where(np.isfinite(target), target, points)
+def _tried(mesh: Mesh, free: Bools, method: str) -> Mesh | None:
+    """Move free points as far as nothing becomes worse; None where nothing moves."""
+    # In a unit in which areas and squares of lengths are doubles.
+    unit = domains.unit_of(mesh.points)
+    points = mesh.points / unit
+    target = _targets(mesh, points, method)
+    target = np.where(free[:, None] & np.isfinite(target), target, points)
     step = np.ones(mesh.npoints)
     while True:
-        places = points + step[:, None] * (target - points)
-        moves = (places != points).any(axis=1)
+        places = (points + step[:, None] * (target - points)) * unit
+        moves = (places != mesh.points).any(axis=1)
         if not moves.any():
             return None
         domain, lost = rebuilt(mesh, places, np.arange(mesh.npoints, dtype=np.int32))

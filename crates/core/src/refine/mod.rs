@@ -42,6 +42,20 @@ pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> 
     if scale == 1.0 {
         return refine_as_is(task, watch, tell);
     }
+    let mut made = refine_scaled(task, scale, watch, tell)?;
+    let added = made.added.as_flattened_mut();
+    if added.iter().any(|x| x / scale * scale != *x) {
+        // Rounding among the subnormal doubles could turn triangles over.
+        return refine_as_is(task, watch, tell);
+    }
+    for x in added {
+        *x /= scale;
+    }
+    Ok(made)
+}
+
+/// Refines a triangulation with all coordinates times a power of two.
+fn refine_scaled(task: Task, scale: f64, watch: &Watch, tell: Tell) -> Result<Refined> {
     let scaled = |p: &Point2| p.map(|x| x * scale);
     let mut points = with_room(task.points.len())?;
     points.extend(task.points.iter().map(scaled));
@@ -53,11 +67,7 @@ pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> 
         areas: &areas,
         ..task
     };
-    let mut made = refine_as_is(task, watch, tell)?;
-    for p in &mut made.added {
-        *p = p.map(|x| x / scale);
-    }
-    Ok(made)
+    refine_as_is(task, watch, tell)
 }
 
 /// The power of two that brings coordinates to where products of four of their differences neither
@@ -67,10 +77,11 @@ fn scale(points: &[Point2]) -> f64 {
         .as_flattened()
         .iter()
         .fold(0.0, |m: f64, x| m.max(x.abs()));
-    if (1e-60..1e60).contains(&largest) || largest < 1e-270 {
+    if (1e-60..1e60).contains(&largest) || largest == 0.0 {
         return 1.0;
     }
-    let scale = 2_f64.powi(-(largest.log2() as i32));
+    // Both it and its inverse are doubles.
+    let scale = 2_f64.powi(-(largest.log2() as i32).clamp(-1022, 1022));
     let exact = |x: &f64| x * scale / scale == *x;
     let all = points.as_flattened().iter().all(exact);
     if all { scale } else { 1.0 }
