@@ -38,8 +38,8 @@ class SpaceLocation(Places):
         Weights of the corners of that tetrahedron: none below 0, of sum 1 up to rounding, exactly 1
         at a corner. NaN outside.
     nearest : ndarray of float64, shape (..., 3)
-        The point itself inside; outside the nearest point of the boundary, rounded; where the
-        boundary is not convex its distance is the least but for rounding. NaN where the query is
+        The point itself inside; outside the nearest point of the boundary, rounded: it is on the
+        face that is nearest by exact distances, of several the first one. NaN where the query is
         not finite.
     beside : ndarray of int32, shape (...)
         Outside, the tetrahedron at that point of the boundary; else -1.

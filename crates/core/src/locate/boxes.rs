@@ -88,9 +88,24 @@ impl<const D: usize> Boxes<D> {
         } else {
             1.0
         };
-        let mut within = hint.map_or(f64::INFINITY, |item| visit(item, unit));
+        let bound = |extent: &Extent<D>| bound_from(extent, q, unit);
+        self.search(hint, bound, |item| visit(item, unit));
+    }
+
+    /// The same by any measure of which `bound` tells the least that it can be in a box.
+    #[inline]
+    pub fn search(
+        &self,
+        hint: Option<usize>,
+        bound: impl Fn(&Extent<D>) -> f64,
+        mut visit: impl FnMut(usize) -> f64,
+    ) {
+        if self.order.is_empty() {
+            return;
+        }
+        let mut within = hint.map_or(f64::INFINITY, &mut visit);
         let mut open = Vec::with_capacity(WIDTH * self.levels.len());
-        open.push((0.0, self.levels.len() - 1, 0));
+        open.push((f64::NEG_INFINITY, self.levels.len() - 1, 0));
         while let Some((away, level, i)) = open.pop() {
             if away > within {
                 continue;
@@ -99,7 +114,7 @@ impl<const D: usize> Boxes<D> {
             if level == 0 {
                 let end = (first + WIDTH).min(self.order.len());
                 for &item in &self.order[first..end] {
-                    within = visit(item as usize, unit);
+                    within = visit(item as usize);
                 }
                 continue;
             }
@@ -107,7 +122,7 @@ impl<const D: usize> Boxes<D> {
             let below = &self.levels[level - 1];
             let end = (first + WIDTH).min(below.len());
             for (child, extent) in (first..end).zip(&below[first..end]) {
-                let away = bound_from(extent, q, unit);
+                let away = bound(extent);
                 if away <= within {
                     open.push((away, level - 1, child));
                     // The nearest box comes last, that is, next.

@@ -1,6 +1,6 @@
-//! The boundary of a tiling: whether it is convex, and its nearest point.
+//! The boundary of a tiling: whether it is convex, and its nearest point, exactly.
 //!
-//! On a convex one that is exact. From a face that the query does not lie behind, a walk goes on to faces with
+//! Of any boundary that is found among all faces (`excess`), on a convex one from face to face. From a face that the query does not lie behind, a walk goes on to faces with
 //! nearer points: where the foot is on an edge, to the face across if the query is on that face's side
 //! of the edge; where it is a corner x, to a face there, not to be behind, along one of whose edges the query q lies
 //! ahead. Distances fall, so it ends. Where it ends the point is the nearest one of the body: otherwise some d
@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 
 use delone_predicates::{Point3, Sign, orient3d};
 
+use super::excess;
 use super::face::on_face;
 use super::foot::{Foot, Triangle};
 use super::tiling::{FACES, Side, Tetrahedra};
@@ -60,23 +61,26 @@ impl Boundary {
         q: Point3,
         last: &mut Option<usize>,
     ) -> Result<Option<(Side, [f64; 3])>> {
+        if !self.convex {
+            let found = self.of_any_shape(given, q, *last)?;
+            *last = found.map(|(i, _)| i);
+            return Ok(found.map(|(i, shares)| (self.sides[i], shares)));
+        }
         let in_front = |&i: &usize| self.turn(given, i, q) != Sign::Negative;
         let beyond = |&i: &usize| self.turn(given, i, q) == Sign::Positive;
-        let mut start = last.filter(|i| self.convex && in_front(i));
+        let mut start = last.filter(in_front);
         let mut found = None;
-        if start.is_none() && !(self.convex && self.is_remote(q)) {
+        if start.is_none() && !self.is_remote(q) {
             found = self.by_boxes(given, q, *last)?;
             start = found.map(|(i, _)| i).filter(in_front);
         }
-        if self.convex {
-            start = start.or_else(|| (0..self.sides.len()).find(beyond));
-            found = start.map(|i| self.walk(given, i, q)).or(found);
-        }
+        start = start.or_else(|| (0..self.sides.len()).find(beyond));
+        found = start.map(|i| self.walk(given, i, q)).or(found);
         *last = found.map(|(i, _)| i);
         Ok(found.map(|(i, shares)| (self.sides[i], shares)))
     }
 
-    /// The same by rounded distances, of any boundary.
+    /// The same by rounded distances.
     fn by_boxes(
         &self,
         given: &Tetrahedra,
@@ -84,10 +88,30 @@ impl Boundary {
         last: Option<usize>,
     ) -> Result<Option<(usize, [f64; 3])>> {
         let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
-        let boxes = kept(&self.boxes, || {
-            Boxes::over(self.sides.len(), |i| Extent::of(corners(i)))
-        })?;
+        let boxes = self.boxes(given)?;
         Ok(boxes.nearest(q, last, |i, unit| on_face(corners(i), q, unit)))
+    }
+
+    /// The same by exact ones, of any boundary.
+    fn of_any_shape(
+        &self,
+        given: &Tetrahedra,
+        q: Point3,
+        last: Option<usize>,
+    ) -> Result<Option<(usize, [f64; 3])>> {
+        let face = |i: usize| {
+            let vertices = given.face(self.sides[i]);
+            (vertices, vertices.map(|v| given.point(v)))
+        };
+        let boxes = self.boxes(given)?;
+        Ok(excess::nearest(boxes, &self.extent, q, last, face))
+    }
+
+    fn boxes(&self, given: &Tetrahedra) -> Result<&Boxes<3>> {
+        let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
+        kept(&self.boxes, || {
+            Boxes::over(self.sides.len(), |i| Extent::of(corners(i)))
+        })
     }
 
     /// Whether `q` is so far away that rounded distances tell nothing of the boundary.

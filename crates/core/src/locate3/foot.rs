@@ -99,6 +99,37 @@ impl Triangle {
         shares
     }
 
+    /// The square of the distance of the nearest point, as a quotient, in the unit 2^(2 `low`), of whose
+    /// root all coordinates are multiples.
+    pub fn square(&self, foot: Foot, low: i64) -> (BigInt, BigInt) {
+        let of = |roles: [usize; 3]| {
+            let [e, f, q] = self.seen(roles, |a, b| scaled(a, low) - scaled(b, low));
+            (dot(&e, &e), dot(&f, &f), dot(&e, &f), e, f, q)
+        };
+        match foot {
+            Foot::Corner(k) => {
+                let (.., q) = of([k, k, k]);
+                (dot(&q, &q), BigInt::from(1))
+            }
+            Foot::Edge(k) => {
+                let next = (k + 1) % 3;
+                let (square, .., e, _, q) = of([k, next, next]);
+                let along = dot(&e, &q);
+                (dot(&q, &q) * &square - &along * &along, square)
+            }
+            Foot::Face => {
+                let (ee, ff, ef, e, f, q) = of([0, 1, 2]);
+                let minor = |i: usize, j: usize| &e[i] * &f[j] - &e[j] * &f[i];
+                let height = dot(&[minor(1, 2), minor(2, 0), minor(0, 1)], &q);
+                (&height * &height, ee * ff - &ef * &ef)
+            }
+        }
+    }
+
+    pub fn corners(&self) -> [Point3; 3] {
+        self.corners
+    }
+
     fn decide<F: Formula>(&self, formula: &F, roles: [usize; 3]) -> Sign {
         if self.safe {
             let size = formula.of(self.seen(roles, |a, b| Size((a - b).abs()))).0;

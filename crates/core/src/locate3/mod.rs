@@ -7,6 +7,7 @@
 mod barycentric;
 mod boundary;
 mod coordinates;
+mod excess;
 mod face;
 mod foot;
 mod nearest;
