@@ -42,6 +42,9 @@ const LOST: f64 = 4096.0;
 /// The square of an area below which it may have lost digits at the lower end of the range.
 const LEAST: f64 = 1e-250;
 
+/// Faces of a rim from which on each query asks the watch: every neighbour may take tens of microseconds.
+const LARGE: usize = 500;
+
 /// What a thread computes with.
 #[derive(Debug, Default)]
 struct Room {
@@ -86,7 +89,7 @@ pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
         let vertex = |corner| given.vertex(Side { simplex, corner });
         if let Some(corner) = place.site() {
             part.entry(vertex(corner), 1.0, [0.0; 2]);
-        } else if room.compute(given, &place, q)? {
+        } else if room.compute(batch, &place, q)? {
             for (&v, &weight) in room.cavity.vertices.keys().iter().zip(&room.weights) {
                 part.entry(v, weight, [0.0; 2]);
             }
@@ -106,9 +109,13 @@ pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
 impl Room {
     /// Computes the weights of `q`, which is at no vertex; false where they are those of its
     /// tetrahedron.
-    fn compute(&mut self, given: &Tetrahedra, place: &Place, q: Point3) -> Result<bool> {
+    fn compute(&mut self, batch: &Batch, place: &Place, q: Point3) -> Result<bool> {
+        let given = &batch.locator.given;
         let on = place.on.contains(&true);
         self.cavity.find(given, place.simplex, on, q)?;
+        if self.cavity.rim.len() > LARGE {
+            batch.watch.check()?;
+        }
         self.look(given, q);
         self.size = 0.0;
         if self.cavity.rim.iter().any(|face| face.flat) {

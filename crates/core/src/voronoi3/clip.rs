@@ -16,7 +16,7 @@ use super::measure::{Cells, Measures, dot, length, measures, seen};
 use super::meeting::{Plane, meeting};
 use super::polyhedron::Polyhedron;
 use crate::error::Result;
-use crate::memory::with_room;
+use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::watch::Watch;
 
@@ -72,8 +72,7 @@ struct Body {
 
 /// Cuts the cells.
 pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<Clipped> {
-    let inside = inside(cells.vertices, clip, workers);
-    watch.check()?;
+    let inside = inside(cells.vertices, clip, workers, watch)?;
     let is_whole = |cell: usize| {
         cells.ridges_of(cell).iter().all(|&r| {
             let entries = cells.entries_of(r as usize);
@@ -98,27 +97,35 @@ pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<C
     };
     let rest: Vec<usize> = (0..whole.len()).filter(|&c| !whole[c]).collect();
     let bodies = parallel::map(workers, rest.chunks(SHARE).collect(), |part| {
-        watch.check()?;
-        Ok(part
-            .iter()
-            .map(|&c| body(cells, c, &start, &frame))
-            .collect())
+        let cut = |&c| {
+            // With a clip of many faces a cell takes long.
+            watch.check()?;
+            Ok(body(cells, c, &start, &frame))
+        };
+        part.iter().map(cut).collect()
     });
     let bodies = bodies.into_iter().collect::<Result<Vec<Vec<Body>>>>()?;
     collected(cells, &whole, measures(cells, workers)?, bodies)
 }
 
 /// Which vertices lie inside, the boundary included.
-fn inside(vertices: &[Point3], clip: Clip, workers: usize) -> Vec<bool> {
+fn inside(vertices: &[Point3], clip: Clip, workers: usize, watch: &Watch) -> Result<Vec<bool>> {
     let within = |v: &Point3| {
         let beyond = |p: &[f64; 4]| dot([p[0], p[1], p[2]], *v) > p[3];
         !clip.planes.iter().any(beyond)
     };
-    let tasks = vertices.chunks(SHARE).collect();
-    let parts = parallel::map(workers, tasks, |part: &[Point3]| {
-        part.iter().map(within).collect::<Vec<_>>()
-    });
-    parts.into_iter().flatten().collect()
+    let mut found = filled(vertices.len(), false)?;
+    let tasks = vertices.chunks(SHARE).zip(found.chunks_mut(SHARE));
+    let look = |(part, found): (&[Point3], &mut [bool])| {
+        watch.check()?;
+        for (vertex, found) in part.iter().zip(found) {
+            *found = within(vertex);
+        }
+        Ok(())
+    };
+    let parts = parallel::map(workers, tasks.collect(), look);
+    parts.into_iter().collect::<Result<()>>()?;
+    Ok(found)
 }
 
 fn body(cells: Cells, cell: usize, start: &Polyhedron, frame: &Frame) -> Body {
