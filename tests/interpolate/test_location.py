@@ -260,3 +260,35 @@ def test_the_nearest_point_of_an_outline_that_spans_the_range_of_doubles(scale: 
     plain = ConstrainedDelaunay(corners, ring, boundary="outline").locate(queries)
     vast = ConstrainedDelaunay(corners * scale, ring, boundary="outline").locate(queries * scale)
     np.testing.assert_allclose(vast.nearest / scale, plain.nearest, rtol=1e-14)
+
+
+def nearest_exactly(corners: Any, query: Any) -> tuple[Fraction, list[Fraction]]:
+    """Squared distance and nearest point of a closed chain."""
+    best = []
+    q = [Fraction(x) for x in query]
+    for u, v in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        a, b = ([Fraction(x) for x in p] for p in (u.tolist(), v.tolist()))
+        way = [y - x for x, y in zip(a, b, strict=True)]
+        along = sum((z - x) * w for x, z, w in zip(a, q, way, strict=True))
+        share = min(max(along / sum(w * w for w in way), Fraction(0)), Fraction(1))
+        at = [x + share * w for x, w in zip(a, way, strict=True)]
+        best.append((sum((z - x) ** 2 for x, z in zip(at, q, strict=True)), at))
+    return min(best, key=lambda found: found[0])
+
+
+@pytest.mark.parametrize("exponent", [0, 3, 8, 15, 16, 20, 100, 300])
+def test_the_nearest_point_keeps_its_digits_far_away(exponent: int) -> None:
+    rng = np.random.default_rng(exponent)
+    mesh = Delaunay(rng.integers(-9, 10, (12, 2)).astype(np.float64))
+    corners = mesh.points[mesh.hull]
+    ways = np.roll(corners, -1, axis=0) - corners
+    # Straight out from places on the edges, and anywhere.
+    out = np.column_stack([ways[:, 1], -ways[:, 0]]) * 10.0**exponent
+    queries = np.concatenate(
+        [corners + 0.5 * ways + out, rng.normal(size=(40, 2)) * np.abs(out).max()]
+    )
+    queries = queries[mesh.find_simplex(queries) < 0]
+    found = mesh.locate(queries).nearest
+    for query, point in zip(queries.tolist(), found, strict=True):
+        _, right = nearest_exactly(corners, query)
+        assert np.abs(point - np.array([float(x) for x in right])).max() <= 2e-11

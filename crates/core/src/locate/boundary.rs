@@ -8,6 +8,7 @@ use super::tiling::{Side, next, prev};
 use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 use crate::points::Extent;
+use crate::wide::{lowest, ratio, scaled, sign};
 
 /// The boundary edges of a tiling.
 #[derive(Debug)]
@@ -79,6 +80,9 @@ impl Boundary {
     }
 }
 
+/// Error of a share of an edge up to which rounding will do.
+const NEAR: f64 = 1e-12;
+
 fn clamp(along: f64) -> f64 {
     // Of NaN, where the edge has no length, its start.
     if along > 0.0 { along.min(1.0) } else { 0.0 }
@@ -96,7 +100,33 @@ fn project(given: &Triangles, side: Side, q: Point2) -> f64 {
     // Each in a unit of its own: the edge may be very short beside the distance.
     let ([d], short) = seen_from(u, [v]);
     let ([w], long) = seen_from(u, [q]);
-    (w[0] * d[0] + w[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]) * (long / short)
+    let terms = [w[0] * d[0], w[1] * d[1]];
+    let square = d[0] * d[0] + d[1] * d[1];
+    let share = |x: f64| x / square * (long / short);
+    let along = share(terms[0] + terms[1]);
+    // Four roundings in each term, and one of the sum.
+    let error = 5.0 * f64::EPSILON * share(terms[0].abs() + terms[1].abs());
+    if error <= NEAR || along < -error || along > 1.0 + error || u == v {
+        along
+    } else {
+        project_exactly([u, v], q)
+    }
+}
+
+/// The same from integers: far away all digits cancel where the foot is on the edge.
+#[cold]
+fn project_exactly([u, v]: [Point2; 2], q: Point2) -> f64 {
+    let low = lowest(&[u, v, q], &[]);
+    let minus = |p: Point2| [0, 1].map(|k| scaled(p[k], low) - scaled(u[k], low));
+    let (d, w) = (minus(v), minus(q));
+    let along = &d[0] * &w[0] + &d[1] * &w[1];
+    let square = &d[0] * &d[0] + &d[1] * &d[1];
+    let beyond = if sign(&along) == Sign::Negative {
+        -1.0
+    } else {
+        2.0
+    };
+    ratio(&along, &square, 0).unwrap_or(beyond)
 }
 
 /// The distance of `q` from a boundary edge, of coordinates times `unit`, and how far along that is.
