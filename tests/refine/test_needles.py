@@ -82,3 +82,13 @@ def test_every_edge_without_a_segment_is_locally_delaunay(name: str) -> None:
     points, segments, options = CASES[name]
     mesh = delone.mesh((points, segments), crossing="split", **options)
     assert not_delaunay(mesh) == []
+
+
+@pytest.mark.filterwarnings("error")
+def test_needles_whose_centres_are_beyond_the_range_stay_in_silence() -> None:
+    points = [(TINY, 3), (2 + 4 * U, 2 + 2 * U), (0, -TINY), (0, 2), (3, 1), (2, 2), (TINY, 1 + U)]
+    points += [(0, 2 - U), (-TINY, 2 - U)]
+    segments = [*ring(9), (6, 8), (7, 3)]
+    options = {"min_angle": 20, "max_area": 0.25, "max_points": 1500, "crossing": "split"}
+    mesh = delone.mesh((points, segments), smooth=1, **options)
+    assert not_delaunay(mesh) == []

@@ -79,7 +79,9 @@ def _targets(mesh: Mesh, points: Floats, method: str) -> Floats:
         for other, sign in ((corners[:, k - 2], 1.0), (corners[:, k - 1], -1.0)):
             middle = (a + other) / 2
             u, v = middle - a, centre - a
-            weights.append(sign * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+            # The centre of a needle may be beyond the range; then its corners stay.
+            with np.errstate(all="ignore"):
+                weights.append(sign * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
             places.append((a + middle + centre) / 3)
             owners.append(simplices[:, k])
     return _means(np.concatenate(owners), np.concatenate(places), np.concatenate(weights), n)
