@@ -62,7 +62,17 @@ PYTHON: dict[str, set[str]] = {
     "improve": {"immutable", "_core", "io", "plot", "space"} | FOUNDATION,
     "regular": {"immutable", "_core", "space"} | FOUNDATION,
     "periodic": {"immutable", "_core", "plane", "regular"} | FOUNDATION,
-    "voronoi": {"immutable", "_core", "delaunay", "io", "periodic", "plane", "regular", "space"}
+    "voronoi": {
+        "immutable",
+        "_core",
+        "delaunay",
+        "hull",
+        "io",
+        "periodic",
+        "plane",
+        "regular",
+        "space",
+    }
     | FOUNDATION,
     "interpolate": {"immutable", "_core", "delaunay", "location", "plane", "space"} | FOUNDATION,
     "compat": {

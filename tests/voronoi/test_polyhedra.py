@@ -13,10 +13,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from delone import Voronoi
+from delone import ConvexHull, Delaunay, Voronoi
 from delone.errors import InputError
 from delone.voronoi.halfspaces import common_part
-from rational import Vector, cross, dot
+from rational import Vector, cross, dot, exact, minus
 
 CORPUS = Path(__file__).parent.parent / "corpus" / "space"
 
@@ -305,3 +305,67 @@ def test_a_cell_of_which_nothing_is_left_has_an_area_of_plain_zero() -> None:
     nothing = diagram.cell_areas == 0
     assert nothing.any()
     assert not np.signbit(diagram.cell_areas[nothing]).any()
+
+
+CUBE = np.array(list(itertools.product((0.0, 1.0), repeat=3)))
+
+
+def shape(points: Any, clip: Any) -> list[Any]:
+    """Corners of each cell, and what is beyond each face with the face's corners; rounded."""
+    diagram = Voronoi(points, clip=clip)
+    found = []
+    for i in range(len(points)):
+        cell = diagram.cell(i)
+        at = [tuple(round(x, 12) for x in row) for row in cell.vertices.tolist()]
+        assert len(set(at)) == len(at)
+        faces = [sorted(at[v] for v in face.tolist()) for face in cell.faces]
+        found.append((set(at), sorted(zip(cell.beyond.tolist(), faces, strict=True))))
+    return found
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_facets_of_a_hull_are_whole(turned: bool) -> None:
+    """The cells of a cube are the same as box, half-spaces, corners, lattice and hull."""
+    points = [(0.2, 0.2, 0.3), (0.7, 0.3, 0.2), (0.4, 0.8, 0.6), (0.6, 0.6, 0.9), (0.1, 0.5, 0.8)]
+    lattice = np.array(list(itertools.product((0.0, 0.5, 1.0), repeat=3)))
+    if turned:
+        lattice = lattice[::-1]
+    box = shape(points, CUBE[[0, -1]])
+    assert (len(box[0][0]), len(box[0][1])) == (10, 7)
+    for clip in (BOX, CUBE, lattice, ConvexHull(CUBE), ConvexHull(lattice), Delaunay(lattice)):
+        assert shape(points, clip) == box
+
+
+def exact_cells(points: list[Vector], rows: list[Vector]) -> list[list[set[Vector]]]:
+    """The corners of the faces of each cell within half-spaces, but for faces of no area."""
+    found = []
+    for p in points:
+        walls = [bisector(p, q) for q in points if q != p] + rows
+        corners = corners_of(walls)
+        faces = [{at for at in corners if dot(row[:3], at) + row[3] == 0} for row in walls]
+        found.append([face for face in faces if len(face) > 2])
+    return found
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_faces_of_a_hull_are_those_of_fractions(seed: int) -> None:
+    """Polytopes of small integers, whose facets have many corners, and points in their middle."""
+    rng = np.random.default_rng(seed)
+    corners = rng.integers(-2, 3, (30, 3)).astype(float)
+    sites = exact(rng.integers(-16, 17, (5, 3)) / 16)
+    hull = ConvexHull(corners)
+    rows = []
+    for facet in hull.facets:
+        a, b, c = (exact(hull.points)[v] for v in facet[:3])
+        normal = cross(minus(b, a), minus(c, a))
+        rows.append((*normal, -dot(normal, a)))
+    cells = exact_cells(sites, rows)
+    for clip in (corners, hull, hull.points[hull.vertices][::-1]):
+        diagram = Voronoi(np.array(sites, dtype=float), clip=clip)
+        for i, faces in enumerate(cells):
+            cell = diagram.cell(i)
+            assert len(cell.vertices) == len(set().union(*faces))
+            assert sorted(map(len, cell.faces)) == sorted(map(len, faces))
+            wanted = np.array(sorted(set().union(*faces)), dtype=float)
+            far = np.abs(wanted[:, None] - cell.vertices).max(axis=2).min(axis=1)
+            assert (far < 1e-12).all()

@@ -1,7 +1,7 @@
 """Convex polyhedra that cells of space are cut to: boxes, half-spaces, hulls of points.
 
 The core takes corners, faces and planes. A box has them as they are; those of half-spaces are found
-exactly (`halfspaces`) and rounded once; the faces of a hull are the triangles of its boundary.
+exactly (`halfspaces`) and rounded once; those of a hull are its facets, each a whole polygon.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from delone._arrays import as_vectors
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DeloneError, InputError
+from delone.hull import ConvexHull
 from delone.space.geometry import face_normals
 from delone.voronoi.halfspaces import common_part
 
@@ -137,17 +138,18 @@ def _box(bounds: Floats) -> Polyhedron:
 
 def _hull(points: Floats) -> Polyhedron:
     try:
-        mesh = Delaunay(points)
+        hull = ConvexHull(points)
     except DegenerateInputError as error:
         raise InputError("the points of clip span no volume") from error
-    faces = np.ascontiguousarray(mesh.convex_hull, dtype=np.int32)
-    used, corners = np.unique(faces, return_inverse=True)
-    normal = face_normals(points, faces)
+    lengths = [len(facet) for facet in hull.facets]
+    used, corners = np.unique(np.concatenate(hull.facets), return_inverse=True)
+    triangles = hull.simplices[np.unique(hull.facet_of, return_index=True)[1]]
+    normal = face_normals(points, triangles)
     # No corner may be outside of a plane by its rounding.
     offset = (normal @ points[used].T).max(axis=1)
     return Polyhedron(
         points=points[used],
-        starts=np.arange(0, 3 * len(faces) + 1, 3, dtype=np.int32),
+        starts=np.cumsum([0, *lengths]).astype(np.int32),
         corners=corners.reshape(-1).astype(np.int32),
         planes=np.column_stack((normal, offset)),
         name="a convex polyhedron",

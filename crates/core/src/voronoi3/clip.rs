@@ -10,7 +10,7 @@
 //! A ridge is measured once: as a whole where one of its two cells is, otherwise in the cell of its
 //! first site. So both cells say the same.
 
-use delone_predicates::Point3;
+use delone_predicates::{Point3, Sign, orient3d};
 
 use super::measure::{Cells, Measures, dot, length, measures, seen};
 use super::meeting::{Plane, meeting};
@@ -170,13 +170,19 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// The plane of a face as exactly as it is known: that of a triangle is the one of its corners.
+    /// The plane of a face as exactly as it is known: where all corners lie in one, as those of facets do,
+    /// that one. Corners of half-spaces may have been rounded out of theirs.
     fn plane(&self, face: usize) -> Plane {
         let bounds = self.clip.starts[face] as usize..self.clip.starts[face + 1] as usize;
-        match self.clip.corners[bounds] {
-            [a, b, c] => Plane::Through([a, b, c].map(|v| self.clip.points[v as usize])),
-            _ => Plane::Equation(self.clip.planes[face]),
+        let corners = &self.clip.corners[bounds];
+        let at = |&v: &i32| self.clip.points[v as usize];
+        if let [a, b, c, rest @ ..] = corners {
+            let [a, b, c] = [a, b, c].map(at);
+            if rest.iter().all(|v| orient3d(a, b, c, at(v)) == Sign::Zero) {
+                return Plane::Through([a, b, c]);
+            }
         }
+        Plane::Equation(self.clip.planes[face])
     }
 }
 
