@@ -108,6 +108,9 @@ def test_a_disk_without_room_for_a_raster(
     assert not list(tmp_path.iterdir())
     with pytest.raises(OSError, match="on disk"):
         tin.to_raster(1e-7, tmp_path / "dem.tif")
+    # Before even the coordinates of its columns are made.
+    with pytest.raises(OSError, match=r"needs .* on disk"):
+        tin.to_raster(1e-14, tmp_path / "dem.tif")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of processes are POSIX")

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import errno
 import shutil
-from typing import TYPE_CHECKING, Any
+from tempfile import TemporaryFile
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -49,11 +50,14 @@ def write_dem(
     if target.suffix.lower() not in (".tif", ".tiff"):
         raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
     left, bottom, right, top = tin.bounds
-    x, y = raster_nodes(([left, bottom], [right, top]), resolution=resolution, in_memory=False)
-    _require_room(target, len(x), len(y))
+    x, y = raster_nodes(
+        ([left, bottom], [right, top]),
+        resolution=resolution,
+        room=lambda columns, rows: _require_room(target, columns, rows),
+    )
     sides = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
-    with replacing(target) as beside:
-        waiting = beside.with_name(beside.name + ".values")
+    # The system takes a file without a name from a process that is killed.
+    with replacing(target) as beside, TemporaryFile(dir=beside.parent) as waiting:
         values = _empty_values(waiting, len(x), len(y))
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
@@ -78,16 +82,16 @@ def _require_room(target: Path, columns: int, rows: int) -> None:
         )
 
 
-def _empty_values(path: Path, columns: int, rows: int) -> NDArray[np.float64]:
-    """Write a file without values and map it.
+def _empty_values(file: IO[bytes], columns: int, rows: int) -> NDArray[np.float64]:
+    """Fill a file with no values and map it.
 
     Written, not mapped at once: where the disk is full a mapping ends the process.
     """
     nothing = np.full((max(1, _BLOCK // columns), columns), np.nan)
-    with path.open("wb") as file:
-        for start in range(0, rows, len(nothing)):
-            file.write(nothing[: rows - start].data)
-    return np.memmap(path, dtype=np.float64, mode="r+", shape=(rows, columns))
+    for start in range(0, rows, len(nothing)):
+        file.write(nothing[: rows - start].data)
+    file.flush()
+    return np.memmap(file, dtype=np.float64, mode="r+", shape=(rows, columns))
 
 
 def _fill(  # noqa: PLR0917

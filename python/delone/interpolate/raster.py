@@ -192,7 +192,7 @@ def raster_nodes(
     resolution: float | tuple[float, float] | None = None,
     shape: tuple[int, int] | None = None,
     bounds: Sequence[float] | None = None,
-    in_memory: bool = True,
+    room: Callable[[int, int], None] | None = None,
 ) -> tuple[Floats, Floats]:
     """Return the nodes of a raster, the centres of its cells.
 
@@ -202,8 +202,9 @@ def raster_nodes(
         Least and greatest coordinates, for the lack of bounds.
     resolution, shape, bounds
         As in `grid`.
-    in_memory : bool, optional
-        Whether memory must have room for the raster, not only for its nodes.
+    room : callable, optional
+        Is told columns and rows before anything is made, and raises where there is no room for
+        such a raster; by default memory must have it.
 
     Returns
     -------
@@ -232,8 +233,12 @@ def raster_nodes(
             raise InputError(f"resolution must be above 0, got {resolution!r}")
         cells = [cells[k] * units[k] for k in range(2)]
         counts = [max(1, _cells(_length(low[k], high[k], units[k]), cells[k])) for k in range(2)]
-    columns, rows = counts if in_memory else (sum(counts), 1)
-    require_memory(columns, rows, 1)
+    columns, rows = counts
+    if room is None:
+        require_memory(columns, rows, 1)
+    else:
+        room(columns, rows)
+        require_memory(columns + rows, 1, 1)
     x, y = (_centres(low[k], cells[k], counts[k], units[k]) for k in range(2))
     return x, y
 
