@@ -624,7 +624,7 @@ def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
         and points.dtype is _FLOAT64
         and points.flags.carray
         and points.ndim == 2
-        and points.shape[1] == ndim
+        and points.shape[1] in ((2, 3) if ndim is None else (ndim,))
     )
 
 

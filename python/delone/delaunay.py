@@ -30,7 +30,10 @@ if TYPE_CHECKING:
 __all__ = ["Delaunay"]
 
 # In space cavities along a curve are the one method; both names mean it.
+_METHODS2 = _core.methods2()
 _METHODS3 = ["auto", "bowyer-watson"]
+# Fewer points are never shared among threads.
+_FEW = 1000
 
 
 class Delaunay(Spatial):
@@ -193,9 +196,10 @@ class Delaunay(Spatial):
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Delaunay never changes: make another one")
-        threads = as_workers(workers)
         own = own_copy(points, ndim=None)
-        methods = _core.methods2() if own.shape[1] == 2 else _METHODS3
+        # Few points are one task, and to count cores takes as long as some of them.
+        threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
+        methods = _METHODS2 if own.shape[1] == 2 else _METHODS3
         if not isinstance(method, str) or method not in methods:
             names = ", ".join(map(repr, methods))
             where = "" if own.shape[1] == 2 else " in space"

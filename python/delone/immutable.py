@@ -32,8 +32,11 @@ class Immutable:
 
     def _hold(self, **values: Any) -> None:
         """Set all there is, each under its name and an underscore; afterwards nothing can be."""
-        for name, value in ({"cache": {}, "lock": threading.RLock()} | values).items():
-            object.__setattr__(self, f"_{name}", value)
+        put = object.__setattr__
+        put(self, "_cache", {})
+        put(self, "_lock", threading.RLock())
+        for name, value in values.items():
+            put(self, "_" + name, value)
 
     def __copy__(self) -> Self:
         return self
@@ -80,6 +83,8 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> NDArray[np.float64]:
     """Return points that no one else can change, neither now nor while the core runs."""
     array = as_points(points, ndim=ndim)
+    if array is points:
+        return array.copy()
     if isinstance(points, list | tuple):
         return array
     if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):
