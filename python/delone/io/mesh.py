@@ -176,7 +176,10 @@ def _absolute(path: Path) -> Path | IO[str]:
 
 
 def _check_claim(path: Path, suffix: str) -> None:
-    """Refuse a header that announces more items than the file has bytes."""
+    """Refuse a file that is cut short.
+
+    Its header announces more items than it has bytes, or its last line is missing.
+    """
     size = path.stat().st_size
     with path.open("rb") as file:
         claims = _claims(file, suffix, size)
@@ -187,10 +190,14 @@ def _check_claim(path: Path, suffix: str) -> None:
         raise FileFormatError(
             f"{path} announces {worst} items and has only {size} bytes: it is cut short"
         )
-    end = {".stl": "endsolid", ".msh": "$End"}.get(suffix)
-    if suffix == ".stl" and not _is_text_stl(path):
-        end = None
-    if end is not None and not tail.rstrip().rpartition(b"\n")[2].lstrip().startswith(end.encode()):
+    if suffix == ".msh":
+        end = "$End"
+    elif suffix == ".stl" and _is_text_stl(path):
+        end = "endsolid"
+    else:
+        return
+    last = tail.rstrip().rpartition(b"\n")[2].lstrip()
+    if not last.startswith(end.encode()):
         raise FileFormatError(f"{path} has no {end} at its end: it is cut short")
 
 
