@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from delone import Delaunay, datasets, distributed
-from delone.distributed.usage import peak_memory
+from delone.distributed.run.usage import peak_memory
 
 LIMIT = "1.5GB"
 

@@ -35,7 +35,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         processes.append(subprocess.Popen(*args, **kwargs))
         return processes[-1]
 
-    monkeypatch.setattr("delone.distributed.worker.Popen", start)
+    monkeypatch.setattr("delone.distributed.run.worker.Popen", start)
     return processes
 
 
@@ -216,7 +216,7 @@ def test_a_missing_extra_is_one_clear_line(missing: str, tmp_path: Path) -> None
 import sys
 sys.modules[{missing!r}] = None
 from delone import distributed, MissingExtraError
-from delone.distributed.dask import DaskExecutor
+from delone.distributed.run.dask import DaskExecutor
 try:
     distributed.triangulate([(0, 0), (1, 0), (0, 1)], {str(tmp_path / "tin")!r})
     DaskExecutor(7)

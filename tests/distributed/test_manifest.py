@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from delone import datasets, distributed
-from delone.distributed import files
+from delone.distributed.store import files
 from delone.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:

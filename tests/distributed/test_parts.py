@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, _core, datasets
-from delone.distributed.hull import extreme_rows
-from delone.distributed.rows import make_rows
-from delone.distributed.tiles import plant, strips
+from delone.distributed.pure.hull import extreme_rows
+from delone.distributed.pure.rows import make_rows
+from delone.distributed.pure.tiles import plant, strips
 from delone.predicates import incircle, orient2d
 
 

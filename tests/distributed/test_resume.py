@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets, distributed
-from delone.distributed import files
-from delone.distributed.lock import LOCK, locked
+from delone.distributed.store import files
+from delone.distributed.store.lock import LOCK, locked
 from delone.errors import BusyError, InputError, NonFiniteError
 
 if TYPE_CHECKING:
@@ -212,7 +212,7 @@ def test_two_runs_do_not_write_at_a_time(tmp_path: Path) -> None:
 def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
     code = f"""
 import pathlib, time
-from delone.distributed.lock import locked
+from delone.distributed.store.lock import locked
 with locked(pathlib.Path({str(tmp_path / "tin")!r})):
     print("locked", flush=True)
     time.sleep(600)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from delone import Delaunay, datasets, distributed
-from delone.distributed import sources
+from delone.distributed.run import sources
 from delone.errors import (
     DegenerateInputError,
     DtypeError,

@@ -16,7 +16,7 @@ from delone import __version__, distributed
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, reading, writing
 from delone.cli.show import memory_text, print_json, print_rows, spinner
-from delone.distributed.executors import Processes
+from delone.distributed.run.executors import Processes
 from delone.errors import DeloneError
 from delone.io import input_suffixes
 from delone.io.extras import require

@@ -7,11 +7,11 @@ them.
 """
 
 from delone.distributed.api import plan, triangulate
-from delone.distributed.costs import Plan
-from delone.distributed.opened import TiledDelaunay, open
-from delone.distributed.proof import TiledReport
-from delone.distributed.run import Progress
-from delone.distributed.tile import Tile
+from delone.distributed.read.opened import TiledDelaunay, open
+from delone.distributed.read.proof import TiledReport
+from delone.distributed.read.tile import Tile
+from delone.distributed.run.costs import Plan
+from delone.distributed.run.run import Progress
 
 __all__ = [
     "Plan",

@@ -10,12 +10,12 @@ import numpy as np
 
 from delone._arrays import as_choice, as_count, as_flag
 from delone.distributed.arguments import as_callback, as_classes, as_names, as_path
-from delone.distributed.costs import Plan, estimate
-from delone.distributed.executors import Executor, Processes, Serial
-from delone.distributed.files import Store
-from delone.distributed.opened import TiledDelaunay, open
-from delone.distributed.run import Progress, Run
-from delone.distributed.sources import Choice, find
+from delone.distributed.read.opened import TiledDelaunay, open
+from delone.distributed.run.costs import Plan, estimate
+from delone.distributed.run.executors import Executor, Processes, Serial
+from delone.distributed.run.run import Progress, Run
+from delone.distributed.run.sources import Choice, find
+from delone.distributed.store.files import Store
 from delone.errors import InputError
 from delone.io.extras import require
 
@@ -230,7 +230,7 @@ def _executor(executor: Any) -> Executor:
             f"executor must be {' or '.join(map(repr, _EXECUTORS))} or a dask.distributed.Client, "
             f"got {executor!r:.60}"
         )
-    from delone.distributed.dask import DaskExecutor
+    from delone.distributed.run.dask import DaskExecutor
 
     return DaskExecutor(executor)
 

@@ -11,8 +11,8 @@ from collections import deque
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Protocol
 
-from delone.distributed.stages import perform
-from delone.distributed.worker import Worker, WorkerDiedError
+from delone.distributed.run.stages import perform
+from delone.distributed.run.worker import Worker, WorkerDiedError
 from delone.errors import DeloneError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.distributed.output import tile_names
+from delone.distributed.store.output import tile_names
 from delone.errors import FileFormatError
 from delone.io.extras import require
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.distributed.files import Store
+    from delone.distributed.store.files import Store
 
     Floats = NDArray[np.float64]
     Numbers = NDArray[np.int64]

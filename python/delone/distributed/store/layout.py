@@ -1,79 +1,57 @@
-"""What all tasks of a run know: cells, strips, the hull, the boxes of points, the type of rows."""
+"""The layout of a run on disk, the extents of its tiles, and the rows that a tile starts from."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone.distributed.certify import Known
-from delone.distributed.rows import coordinates, first_of_each
-from delone.distributed.tiles import Tiles
+from delone.distributed.pure.certify import Known
+from delone.distributed.pure.layout import Layout
+from delone.distributed.pure.rows import coordinates, first_of_each
+from delone.distributed.pure.tiles import Tiles
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from delone.distributed.files import Store
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.rows import Rows
+    from delone.distributed.store.files import Store
 
-# Runs of rows: piece, start, stop; own ones and those of the halo.
+# Runs of rows: piece, start, stop; own rows and those of the halo.
 Slices: TypeAlias = tuple[list[list[int]], list[list[int]]]
 
-__all__ = ["Layout", "Slices", "collect", "gather"]
+__all__ = ["Slices", "collect", "gather", "known_to", "load_layout", "save_layout"]
 
 _FILE = "work/layout.npz"
 _EXTENTS = "work/extents.npy"
 
 
-@dataclass(frozen=True, eq=False)
-class Layout:
-    """The division of the plane.
+def save_layout(store: Store, layout: Layout) -> None:
+    """Write the layout of a run."""
+    tiles = layout.tiles
+    arrays: dict[str, NDArray[Any]] = {
+        "axis": tiles.axis,
+        "cut": tiles.cut,
+        "children": tiles.children,
+        "cells": tiles.cells,
+        "strips": layout.strips,
+        "hull": layout.hull,
+    }
+    store.save_all(_FILE, arrays)
 
-    Parameters
-    ----------
-    tiles : Tiles
-        The cells.
-    strips : ndarray of float64, shape (tiles, 4)
-        The box that each tile knows from the beginning.
-    hull : ndarray of records
-        The corners of the convex hull of all points, in the order of the source.
-    """
 
-    tiles: Tiles
-    strips: NDArray[np.float64]
-    hull: Rows
+def load_layout(store: Store) -> Layout:
+    """Read the layout of a run."""
+    found = store.load_all(_FILE)
+    tiles = Tiles(found["axis"], found["cut"], found["children"], found["cells"])
+    return Layout(tiles, found["strips"], found["hull"])
 
-    @property
-    def type(self) -> np.dtype[np.void]:
-        """The type of rows."""
-        return self.hull.dtype
 
-    def save(self, store: Store) -> None:
-        """Write it down."""
-        tiles = self.tiles
-        arrays: dict[str, NDArray[Any]] = {
-            "axis": tiles.axis,
-            "cut": tiles.cut,
-            "children": tiles.children,
-            "cells": tiles.cells,
-            "strips": self.strips,
-            "hull": self.hull,
-        }
-        store.save_all(_FILE, arrays)
-
-    @classmethod
-    def load(cls, store: Store) -> Layout:
-        """Read it."""
-        found = store.load_all(_FILE)
-        tiles = Tiles(found["axis"], found["cut"], found["children"], found["cells"])
-        return cls(tiles, found["strips"], found["hull"])
-
-    def known(self, store: Store, tile: int) -> Known:
-        """Return what a tile knows."""
-        return Known(tile, self.strips[tile], self.tiles, store.load(_EXTENTS))
+def known_to(store: Store, layout: Layout, tile: int) -> Known:
+    """Return what a tile knows of the others."""
+    return Known(tile, layout.strips[tile], layout.tiles, store.load(_EXTENTS))
 
 
 def collect(

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone import _core
-    from delone.distributed.opened import TiledDelaunay
-    from delone.distributed.tile import Tile
+    from delone.distributed.read.folder import TileFolder
+    from delone.distributed.read.tile import Tile
 
     Floats = NDArray[np.float64]
 
@@ -38,14 +38,14 @@ _BLOCK = 1 << 18
 
 
 def write_dem(
-    tin: TiledDelaunay,
+    tin: TileFolder,
     resolution: float | tuple[float, float],
     out: str | os.PathLike[str],
     value: str,
 ) -> Path:
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
-    tin._require(value)
+    tin.require(value)
     target = as_path(out, name="out")
     if target.suffix.lower() not in (".tif", ".tiff"):
         raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
@@ -62,7 +62,7 @@ def write_dem(
         for number, known in enumerate(tin.manifest["tiles"]):
             if known["extent"] is not None:
                 tile = tin.tile(number)
-                _fill(tin._locator(tile), tile, known["extent"], x, y, values, value)
+                _fill(tin.locator(tile), tile, known["extent"], x, y, values, value)
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
         transform = rasterio.Affine(sides[0], 0.0, corner[0], 0.0, -sides[1], corner[1])
         _write(rasterio, beside, values, transform, tin.crs, value)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone.distributed.certify import corners_of
-from delone.distributed.rows import coordinates
+from delone.distributed.pure.certify import corners_of
+from delone.distributed.pure.rows import coordinates
 from delone.errors import InternalError
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.distributed.certify import Known
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.certify import Known
+    from delone.distributed.pure.rows import Rows
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

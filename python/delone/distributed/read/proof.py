@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.distributed.files import digest
-from delone.distributed.output import box_of, tile_names
-from delone.distributed.tile import read_columns, read_tile
+from delone.distributed.read.tile import read_columns, read_tile
+from delone.distributed.store.files import digest
+from delone.distributed.store.output import box_of, tile_names
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.distributed.opened import TiledDelaunay
-    from delone.distributed.tile import Tile
+    from delone.distributed.read.folder import TileFolder
+    from delone.distributed.read.tile import Tile
 
     Floats = NDArray[np.float64]
     Numbers = NDArray[np.int64]
@@ -71,18 +71,18 @@ class TiledReport:
         return "\n".join(self.faults) or "right"
 
 
-def prove(tin: TiledDelaunay) -> TiledReport:
+def prove(tin: TileFolder) -> TiledReport:
     """Check a triangulation; see `TiledDelaunay.validate`."""
     faults: list[str] = []
     edges, foreign = [np.empty(0, _EDGE)], [np.empty(0, _VERTEX)]
-    tree = tin._tree()
+    tree = tin.tree()
     sums = _Sums(points=0, triangles=0, distinct=0)
     spans: dict[int, tuple[int, int]] = {}
     all_read = True
     for number in range(tin.ntiles):
         faults += _hashes(tin, number)
         try:
-            tile = read_tile(tin._store, tin.manifest, number)
+            tile = read_tile(tin.store, tin.manifest, number)
         except FileFormatError as error:
             faults.append(f"tile {number} cannot be read: {error}")
             all_read = False
@@ -120,12 +120,12 @@ class _Sums:
     distinct: int
 
 
-def _hashes(tin: TiledDelaunay, number: int) -> list[str]:
+def _hashes(tin: TileFolder, number: int) -> list[str]:
     """Which files of a tile are not those that were written."""
     faults = []
     for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
         try:
-            if digest(tin._store.path(name)) != tin.manifest["tiles"][number][f"{key}_sha256"]:
+            if digest(tin.store.path(name)) != tin.manifest["tiles"][number][f"{key}_sha256"]:
                 faults.append(f"{name} is not the file that was written")
         except FileNotFoundError:
             faults.append(f"{name} is lost")
@@ -168,7 +168,7 @@ def _totals(manifest: dict[str, Any], sums: _Sums, corners: int) -> list[str]:
     ]
 
 
-def _owned_twice(tin: TiledDelaunay, spans: dict[int, tuple[int, int]]) -> list[str]:
+def _owned_twice(tin: TileFolder, spans: dict[int, tuple[int, int]]) -> list[str]:
     """Whether two points are the same row, looking at a window of all rows at a time."""
     faults = []
     last = max((high for _, high in spans.values()), default=-1)
@@ -176,7 +176,7 @@ def _owned_twice(tin: TiledDelaunay, spans: dict[int, tuple[int, int]]) -> list[
         inside = {t: s for t, s in spans.items() if s[0] < start + _WINDOW and s[1] >= start}
         seen = np.zeros(min(_WINDOW, last + 1 - start), dtype=bool)
         for number in inside:
-            found = read_columns(tin._store.path(tile_names(number)[0]), {"id": "iu", "owned": "b"})
+            found = read_columns(tin.store.path(tile_names(number)[0]), {"id": "iu", "owned": "b"})
             ids = found["id"][found["owned"]].astype(np.int64) - start
             ids = ids[(ids >= 0) & (ids < len(seen))]
             if seen[ids].any():
@@ -298,12 +298,12 @@ def _foreign(tile: Tile, owner: Numbers) -> NDArray[np.void]:
     return found
 
 
-def _copies(tin: TiledDelaunay, foreign: NDArray[np.void]) -> list[str]:
+def _copies(tin: TileFolder, foreign: NDArray[np.void]) -> list[str]:
     """Check that vertices of other tiles are what their owners say."""
     faults = []
     for number in np.unique(foreign["owner"]).tolist():
         try:
-            tile = read_tile(tin._store, tin.manifest, number)
+            tile = read_tile(tin.store, tin.manifest, number)
         except FileFormatError:
             # That has been said.
             continue

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.distributed.files import digest
-from delone.distributed.rows import coordinates, first_of_each
+from delone.distributed.pure.rows import coordinates, first_of_each
+from delone.distributed.store.files import digest
 from delone.io.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.distributed.files import Store
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.rows import Rows
+    from delone.distributed.store.files import Store
 
     Indices = NDArray[np.int32]
 

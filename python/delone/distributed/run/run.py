@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.counting import agreed
-from delone.distributed.files import Store
-from delone.distributed.hull import extreme_rows
-from delone.distributed.layout import Layout, Slices, collect
-from delone.distributed.lock import LOCK, locked
-from delone.distributed.manifest import assemble, manifest_of
-from delone.distributed.rows import make_rows, widen, widened
-from delone.distributed.schema import FORMAT, check_settings, check_summary
-from delone.distributed.stages import note_of
-from delone.distributed.tiles import plant, strips
+from delone.distributed.pure.hull import extreme_rows
+from delone.distributed.pure.layout import Layout
+from delone.distributed.pure.rows import make_rows, widen, widened
+from delone.distributed.pure.tiles import plant, strips
+from delone.distributed.run.stages import note_of
+from delone.distributed.store.files import Store
+from delone.distributed.store.layout import Slices, collect, load_layout, save_layout
+from delone.distributed.store.lock import LOCK, locked
+from delone.distributed.store.manifest import assemble, manifest_of
+from delone.distributed.store.schema import FORMAT, check_settings, check_summary
 from delone.errors import (
     DegenerateInputError,
     FileFormatError,
@@ -30,9 +31,9 @@ from delone.errors import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from delone.distributed.executors import Executor
-    from delone.distributed.rows import Rows
-    from delone.distributed.sources import Choice, Source
+    from delone.distributed.pure.rows import Rows
+    from delone.distributed.run.executors import Executor
+    from delone.distributed.run.sources import Choice, Source
 
     Summaries = dict[int, dict[str, Any]]
 
@@ -253,7 +254,7 @@ class Run:
 
     def _lay_out(self, looks: Summaries) -> Layout:
         if self.store.exists("work/layout.npz"):
-            return Layout.load(self.store)
+            return load_layout(self.store)
         samples = [np.empty((0, 2))]
         hulls: list[Rows] = []
         for key in sorted(looks):
@@ -270,7 +271,7 @@ class Run:
         sample = np.concatenate(samples)
         tiles = plant(sample, self._tiles())
         layout = Layout(tiles, strips(tiles, sample, self.source.count), hulls[0])
-        layout.save(self.store)
+        save_layout(self.store, layout)
         return layout
 
     def _refuse_nothing(self, bad: int) -> None:

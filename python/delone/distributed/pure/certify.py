@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.distributed.tiles import Tiles
+    from delone.distributed.pure.tiles import Tiles
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from delone._arrays import as_points
-from delone.distributed.rows import make_rows
+from delone.distributed.pure.rows import make_rows
 from delone.errors import FileFormatError, InputError
 from delone.io import PointSet, las, parquet, read_points
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.rows import Rows
 
     Given: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | ArrayLike
 

@@ -11,7 +11,7 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
-from delone.distributed.stages import perform
+from delone.distributed.run.stages import perform
 from delone.errors import DeloneError, InputError
 from delone.io.extras import require
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone.distributed.rows import coordinates
+from delone.distributed.pure.rows import coordinates
 
 if TYPE_CHECKING:
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.rows import Rows
 
 __all__ = ["extreme_rows"]
 

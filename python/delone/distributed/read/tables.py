@@ -6,22 +6,20 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from delone._arrays import as_choice
 from delone.distributed.arguments import as_path
+from delone.distributed.read.folder import TileFolder
 from delone.errors import InputError
 from delone.io.extras import require
-
-if TYPE_CHECKING:
-    from delone.distributed.opened import TiledDelaunay
 
 __all__ = ["dask_frame", "write_geoparquet"]
 
 
-def dask_frame(tin: TiledDelaunay, table: str) -> Any:
+def dask_frame(tin: TileFolder, table: str) -> Any:
     """Return a Dask data frame; see `TiledDelaunay.to_dask_dataframe`."""
     as_choice(table, ("triangles", "vertices"), name="table")
     frames = require("dask.dataframe", extra="dask", what="a Dask data frame")
@@ -32,10 +30,8 @@ def dask_frame(tin: TiledDelaunay, table: str) -> Any:
 
 def partition(number: int, folder: str, table: str) -> Any:
     """Return what one tile has of a table, as a pandas data frame."""
-    from delone.distributed.opened import open
-
     pandas = require("pandas", extra="dask", what="a Dask data frame")
-    tile = open(folder).tile(number)
+    tile = TileFolder.at(folder).tile(number)
     if table == "triangles":
         corners = tile.ids[tile.simplices]
         return pandas.DataFrame({name: corners[:, k] for k, name in enumerate("abc")})
@@ -44,7 +40,7 @@ def partition(number: int, folder: str, table: str) -> Any:
     return frame.set_index(pandas.Index(tile.ids[tile.owned], name="id"))
 
 
-def write_geoparquet(tin: TiledDelaunay, folder: str | os.PathLike[str]) -> None:
+def write_geoparquet(tin: TileFolder, folder: str | os.PathLike[str]) -> None:
     """Write triangles as polygons; see `TiledDelaunay.to_geoparquet`."""
     geopandas = require("geopandas", extra="geo", what="writing GeoParquet")
     shapely = require("shapely", extra="geo", what="writing GeoParquet")

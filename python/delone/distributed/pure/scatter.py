@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.distributed.rows import coordinates, widen
+from delone.distributed.pure.rows import coordinates, widen
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.distributed.layout import Layout
-    from delone.distributed.rows import Rows
+    from delone.distributed.pure.layout import Layout
+    from delone.distributed.pure.rows import Rows
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from delone.distributed.output import tile_names
+from delone.distributed.store.output import tile_names
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:

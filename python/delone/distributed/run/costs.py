@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from delone.distributed.sources import PIECE
-from delone.distributed.tiles import HALO
+from delone.distributed.pure.tiles import HALO
+from delone.distributed.run.sources import PIECE
 
 __all__ = ["Plan", "estimate"]
 

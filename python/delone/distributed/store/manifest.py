@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from delone import _core
-from delone.distributed.output import tile_names
-from delone.distributed.schema import FORMAT, TIES, check_manifest
+from delone.distributed.store.output import tile_names
+from delone.distributed.store.schema import FORMAT, TIES, check_manifest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from delone.distributed.files import Store
-    from delone.distributed.layout import Layout
+    from delone.distributed.pure.layout import Layout
+    from delone.distributed.store.files import Store
 
 __all__ = ["assemble", "manifest_of"]
 

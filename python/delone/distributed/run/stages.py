@@ -14,21 +14,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.distributed.certify import corners_of
-from delone.distributed.files import Store
-from delone.distributed.hull import extreme_rows
-from delone.distributed.layout import Layout, gather
-from delone.distributed.merge import Border, advance, belongs, cut_out
-from delone.distributed.output import write_tile
-from delone.distributed.rows import coordinates
-from delone.distributed.scatter import scatter
-from delone.distributed.sources import Choice, Piece
-from delone.distributed.usage import peak_memory
+from delone.distributed.pure.certify import corners_of
+from delone.distributed.pure.hull import extreme_rows
+from delone.distributed.pure.merge import Border, advance, belongs, cut_out
+from delone.distributed.pure.rows import coordinates
+from delone.distributed.pure.scatter import scatter
+from delone.distributed.run.sources import Choice, Piece
+from delone.distributed.run.usage import peak_memory
+from delone.distributed.store.files import Store
+from delone.distributed.store.layout import gather, known_to, load_layout
+from delone.distributed.store.output import write_tile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from delone.distributed.layout import Slices
+    from delone.distributed.store.layout import Slices
 
     Summary = dict[str, Any]
 
@@ -83,7 +83,7 @@ def _finite(rows: Any) -> tuple[Any, Any]:
 
 def deal(store: Store, key: int, piece: Piece, choice: Choice) -> Summary:
     """Deal the points of a piece to the tiles; see `scatter`."""
-    layout = Layout.load(store)
+    layout = load_layout(store)
     staged = f"work/pieces/{key:06}.npy"
     rows = piece.read(choice) if piece.kind == "npy" else store.load(staged)
     rows, _ = _finite(rows)
@@ -94,8 +94,8 @@ def deal(store: Store, key: int, piece: Piece, choice: Choice) -> Summary:
 
 def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     """Triangulate what a tile knows; keep what is certain, and ask about the rest."""
-    layout = Layout.load(store)
-    known = layout.known(store, key)
+    layout = load_layout(store)
+    known = known_to(store, layout, key)
     rows, own = gather(store, slices, layout, key)
     points = coordinates(rows)
     simplices, neighbors, twins, _ = _core.triangulate2(points, "auto", threads)
@@ -157,7 +157,7 @@ def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
 
 def proceed(store: Store, key: int, turn: int, asked: Sequence[int]) -> Summary:
     """Take in the answers of a round, and ask about what is new."""
-    layout = Layout.load(store)
+    layout = load_layout(store)
     found = store.load_all(f"work/border/{turn:04}/{key:06}.npz")
     border = Border(found["rows"], found["owner"], found["edges"])
     news, secretive = [], []
@@ -167,7 +167,7 @@ def proceed(store: Store, key: int, turn: int, asked: Sequence[int]) -> Summary:
         news.append(told["rows"][slice(*told["ends"][place : place + 2])])
         if not told["all"][place]:
             secretive.append(tile)
-    known = layout.known(store, key)
+    known = known_to(store, layout, key)
     fresh = np.concatenate(news)
     left, rows, certain, corners, tiles = advance(border, known, fresh, secretive)
     owner = known.tiles.locate(coordinates(rows))
@@ -206,7 +206,7 @@ def _ask(  # noqa: PLR0917
 
 def finish(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     """Write the vertices and triangles of a tile that has asked others."""
-    layout = Layout.load(store)
+    layout = load_layout(store)
     rows, own = gather(store, slices, layout, key)
     certain = store.load(f"work/certain/{key:06}.npy")
     late = store.load_all(f"work/closed/{key:06}.npz")

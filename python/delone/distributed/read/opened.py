@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_vectors
-from delone.distributed.arguments import as_path
-from delone.distributed.files import Store
-from delone.distributed.manifest import manifest_of
-from delone.distributed.output import tile_names
-from delone.distributed.tile import Tile, read_tile
-from delone.distributed.tiles import Tiles
-from delone.errors import FileFormatError, InputError
+from delone._arrays import as_vectors
+from delone.distributed.read.dem import write_dem
+from delone.distributed.read.folder import TileFolder
+from delone.distributed.read.proof import prove
+from delone.distributed.read.tables import dask_frame, write_geoparquet
+from delone.distributed.read.tile import Tile
 
 if TYPE_CHECKING:
     import os
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone import _core
-    from delone.distributed.proof import TiledReport
+    from delone.distributed.read.proof import TiledReport
 
     Floats = NDArray[np.float64]
     Numbers = NDArray[np.int64]
@@ -60,20 +58,10 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
     ...     distributed.open(folder + "/tin")
     <TiledDelaunay of 400 points: 722 triangles in 4 tiles>
     """
-    # Tiles are read later, from wherever the process is then.
-    folder = as_path(output, name="output").absolute()
-    store = Store(folder)
-    if not folder.is_dir():
-        raise FileNotFoundError(f"{output}: no such folder")
-    manifest = manifest_of(store)
-    for tile in range(len(manifest["tiles"])):
-        for name in tile_names(tile):
-            if not store.exists(name):
-                raise FileFormatError(f"{output} has lost {name}")
-    return TiledDelaunay(store, manifest)
+    return TiledDelaunay.at(output)
 
 
-class TiledDelaunay:
+class TiledDelaunay(TileFolder):
     """A triangulation in tiles on disk, made by `open`.
 
     Attributes
@@ -104,130 +92,11 @@ class TiledDelaunay:
     (400, 722, 4, (0.0, 0.0, 19.0, 19.0))
     """
 
-    def __init__(self, store: Store, manifest: dict[str, Any]) -> None:
-        self._store = store
-        self.manifest = manifest
-        counts = [tile["triangles"] for tile in manifest["tiles"]]
-        self._starts = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
-
     def __repr__(self) -> str:
         return (
             f"<TiledDelaunay of {self.npoints} points: {self.nsimplex} triangles in "
             f"{self.ntiles} tiles>"
         )
-
-    @property
-    def npoints(self) -> int:
-        """The number of points, duplicates included."""
-        return int(self.manifest["points"])
-
-    @property
-    def nsimplex(self) -> int:
-        """The number of triangles."""
-        return int(self._starts[-1])
-
-    @property
-    def ntiles(self) -> int:
-        """The number of tiles."""
-        return len(self.manifest["tiles"])
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Left, bottom, right and top of the points."""
-        left, bottom, right, top = self.manifest["bounds"]
-        return left, bottom, right, top
-
-    @property
-    def crs(self) -> str | None:
-        """Coordinate reference system, None where the source has none."""
-        crs: str | None = self.manifest["crs"]
-        return crs
-
-    @property
-    def path(self) -> Path:
-        """The folder."""
-        return self._store.root
-
-    def _tree(self) -> Tiles:
-        tree = self.manifest["tree"]
-        return Tiles(
-            np.array(tree["axis"], dtype=np.int8),
-            np.array(tree["cut"], dtype=np.float64),
-            np.array(tree["children"], dtype=np.int64).reshape(-1, 2),
-            np.empty((self.ntiles, 4)),
-        )
-
-    def tile(self, number: int) -> Tile:
-        """Read one tile.
-
-        Parameters
-        ----------
-        number : int
-            From 0 to ``ntiles - 1``.
-
-        Returns
-        -------
-        Tile
-            Vertices and triangles.
-
-        Raises
-        ------
-        InputError
-            There is no such tile.
-        FileFormatError
-            Its files are lost or torn, lack a column, or hold something else.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from delone import datasets, distributed
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
-        ...     tile = tin.tile(0)
-        >>> int(tile.owned.sum()), len(tile.points) > 100
-        (100, True)
-        """
-        number = as_count(number, name="number")
-        if not 0 <= number < self.ntiles:
-            raise InputError(f"there are tiles 0 to {self.ntiles - 1}, not {number}")
-        tile = read_tile(self._store, self.manifest, number)
-        known = self.manifest["tiles"][number]
-        wanted = known["points"] + known["foreign"], known["triangles"]
-        for name, rows, right in zip(
-            tile_names(number), (len(tile.points), len(tile.simplices)), wanted, strict=True
-        ):
-            if rows != right:
-                raise FileFormatError(
-                    f"{self._store.path(name)} has {rows} rows; the manifest says {right}"
-                )
-        return tile
-
-    def _locator(self, tile: Tile) -> _core.Locator2:
-        """What finds triangles of a tile, whose file is to blame where they are no mesh."""
-        try:
-            return tile.locator()
-        except InputError as error:
-            path = self._store.path(tile_names(tile.number)[1])
-            raise FileFormatError(f"{path} holds no mesh: {error}") from error
-
-    def tiles(self) -> Iterator[Tile]:
-        """Read all tiles, one after another.
-
-        Returns
-        -------
-        iterator of Tile
-            In the order of their numbers; each is read when it is asked for.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from delone import datasets, distributed
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     tin = distributed.triangulate(datasets.grid(400), folder + "/tin", tile_points=100)
-        ...     [int(tile.owned.sum()) for tile in tin.tiles()]
-        [100, 100, 100, 100]
-        """
-        return (self.tile(number) for number in range(self.ntiles))
 
     def simplices(self) -> Numbers:
         """Return all triangles, (m, 3), as rows of the source, for what fits into memory.
@@ -252,7 +121,7 @@ class TiledDelaunay:
         """
         found = np.empty((self.nsimplex, 3), dtype=np.int64)
         for tile in self.tiles():
-            start, stop = self._starts[tile.number : tile.number + 2]
+            start, stop = self.starts[tile.number : tile.number + 2]
             found[start:stop] = tile.ids[tile.simplices]
         return found
 
@@ -301,8 +170,8 @@ class TiledDelaunay:
         for number, rows in self._near(queries):
             left = rows[found[rows] < 0]
             if len(left):
-                here = self._locator(self.tile(number)).find(queries[left].copy(), 1)
-                found[left[here >= 0]] = self._starts[number] + here[here >= 0]
+                here = self.locator(self.tile(number)).find(queries[left].copy(), 1)
+                found[left[here >= 0]] = self.starts[number] + here[here >= 0]
         return found.reshape(shape)
 
     def interpolate(self, xi: ArrayLike, *, value: str = "z") -> Floats:
@@ -343,7 +212,7 @@ class TiledDelaunay:
         ...     tin.interpolate([(3.25, 4.5), (-1, 0)])
         array([7.75,  nan])
         """
-        self._require(value)
+        self.require(value)
         queries, shape = _queries(xi)
         found = np.full(len(queries), np.nan)
         left = np.ones(len(queries), dtype=bool)
@@ -351,18 +220,10 @@ class TiledDelaunay:
             some = rows[left[rows]]
             if len(some):
                 tile = self.tile(number)
-                values, held = _linear(self._locator(tile), tile, queries[some], value)
+                values, held = _linear(self.locator(tile), tile, queries[some], value)
                 found[some[held]] = values[held]
                 left[some[held]] = False
         return found.reshape(shape)
-
-    def _require(self, value: str) -> None:
-        has = ["z"] if self.manifest["heights"] else []
-        has += self.manifest["attributes"]
-        if value not in has:
-            raise InputError(
-                f"{self.path} has no {value!r}; it has {', '.join(has) or 'no values'}"
-            )
 
     def validate(self) -> TiledReport:
         """Check exactly, tile by tile, that the union is the Delaunay triangulation of all points.
@@ -385,8 +246,6 @@ class TiledDelaunay:
         ...     bool(tin.validate())
         True
         """
-        from delone.distributed.proof import prove
-
         return prove(self)
 
     def to_dask_dataframe(self, table: str = "triangles") -> Any:
@@ -420,8 +279,6 @@ class TiledDelaunay:
         ...     frame.npartitions, len(frame)
         (4, 400)
         """
-        from delone.distributed.tables import dask_frame
-
         return dask_frame(self, table)
 
     def to_geoparquet(self, folder: str | os.PathLike[str]) -> None:
@@ -450,8 +307,6 @@ class TiledDelaunay:
         ...     len(list(Path(folder, "polygons").iterdir()))
         4
         """
-        from delone.distributed.tables import write_geoparquet
-
         write_geoparquet(self, folder)
 
     def to_raster(
@@ -496,8 +351,6 @@ class TiledDelaunay:
         ...     tin.to_raster(0.5, folder + "/dem.tif").name
         'dem.tif'
         """
-        from delone.distributed.dem import write_dem
-
         return write_dem(self, resolution, out, value)
 
 

@@ -14,13 +14,13 @@ import sys
 from subprocess import PIPE, Popen
 from typing import Any
 
-from delone.distributed.stages import perform
+from delone.distributed.run.stages import perform
 
 __all__ = ["Worker", "WorkerDiedError", "serve"]
 
 _BEGIN = (
     "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); "
-    "from delone.distributed.worker import serve; serve()"
+    "from delone.distributed.run.worker import serve; serve()"
 )
 
 

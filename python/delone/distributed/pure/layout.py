@@ -1,0 +1,39 @@
+"""What all tasks of a run share: the cells, the strips, the hull and the type of rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from delone.distributed.pure.rows import Rows
+    from delone.distributed.pure.tiles import Tiles
+
+__all__ = ["Layout"]
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The division of the plane.
+
+    Parameters
+    ----------
+    tiles : Tiles
+        The cells.
+    strips : ndarray of float64, shape (tiles, 4)
+        The box that each tile knows from the beginning.
+    hull : ndarray of records
+        The corners of the convex hull of all points, in the order of the source.
+    """
+
+    tiles: Tiles
+    strips: NDArray[np.float64]
+    hull: Rows
+
+    @property
+    def type(self) -> np.dtype[np.void]:
+        """The type of rows."""
+        return self.hull.dtype

@@ -1,0 +1,1 @@
+"""A run: the source in pieces, the tasks in their order, and who performs them."""
