@@ -766,3 +766,25 @@ def _usable_cores() -> int:
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def as_mesh(
+    points: NDArray[np.float64], simplices: NDArray[np.integer[Any]]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return points and simplices as the core takes them: contiguous, with 32-bit indices.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, d)
+        Coordinates.
+    simplices : ndarray of int, shape (m, k)
+        Rows of points.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (n, d)
+        The same, copied only where they are not contiguous.
+    simplices : ndarray of int32, shape (m, k)
+        The same.
+    """
+    return np.ascontiguousarray(points), np.ascontiguousarray(simplices, dtype=np.int32)

@@ -10,13 +10,23 @@ __all__ = [
     "Locator2",
     "Locator3",
     "__version__",
+    "areas2",
+    "below2",
+    "circumcenters2",
+    "circumcenters3",
     "combine2",
     "components2",
     "constrained2",
     "deepest2",
+    "dihedral_angles3",
     "disks2",
+    "edges2",
     "edges3",
+    "face_areas3",
+    "face_normals3",
     "faces3",
+    "fault2",
+    "fault3",
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
@@ -35,15 +45,20 @@ __all__ = [
     "periodic2",
     "periodic_centers2",
     "polygon2",
+    "qualities2",
+    "qualities3",
     "refine2",
     "regular2",
     "regular3",
     "ring2",
     "touched2",
+    "transforms2",
+    "transforms3",
     "triangulate2",
     "triangulate3",
     "validate2",
     "validate3",
+    "volumes3",
     "voronoi2",
     "voronoi3",
     "voronoi_clip2",
@@ -66,10 +81,61 @@ def triangulate3(
 def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> dict[str, NDArray[np.int32]]: ...
+def fault2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[str, int] | None: ...
+def fault3(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> tuple[str, int] | None: ...
+def edges2(
+    simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
+) -> NDArray[np.int32]: ...
 def edges3(simplices: NDArray[np.int32], npoints: int, workers: int) -> NDArray[np.int32]: ...
 def faces3(
     simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
 ) -> NDArray[np.int32]: ...
+def below2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], squared_cosine: float, workers: int
+) -> NDArray[np.int32]: ...
+def areas2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def volumes3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def face_areas3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def face_normals3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def circumcenters2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def circumcenters3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def qualities2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def qualities3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def dihedral_angles3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def transforms2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
+def transforms3(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], workers: int
+) -> NDArray[np.float64]: ...
 def find_simplex2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

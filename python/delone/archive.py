@@ -18,10 +18,11 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone import predicates
+from delone import _core
+from delone._arrays import as_workers
 from delone.atomic import replacing
 from delone.errors import FileFormatError
-from delone.plane.topology import among, boundary_edges, boundary_next, edge_keys, is_mutual
+from delone.plane.topology import among, boundary_edges, boundary_next, edge_keys
 from delone.space import topology as space
 
 if TYPE_CHECKING:
@@ -217,9 +218,7 @@ def _check(
     _check_range("neighbors", neighbors, -1, m)
     _check_range("duplicates", duplicates, 0, n)
     _check_duplicates(points, simplices, duplicates)
-    _require(is_mutual(simplices, neighbors).all(), "neighbours are not mutual")
-    turns = predicates.orient2d(*(points[simplices[:, k]] for k in range(3)))
-    _require((turns > 0).all(), "a triangle is not counter-clockwise")
+    _check_sound(points, simplices, neighbors)
     boundary = boundary_edges(simplices, neighbors)
     _require(len(boundary) > 0, "it has no boundary")
     cycle = boundary_next(boundary, int(boundary[0, 0]))
@@ -242,9 +241,7 @@ def _check_space(
     _check_range("neighbors", neighbors, -1, m)
     _check_range("duplicates", duplicates, 0, n)
     _check_duplicates(points, simplices, duplicates)
-    _require(space.is_mutual(simplices, neighbors).all(), "neighbours are not mutual")
-    turns = predicates.orient3d(*(points[simplices[:, k]] for k in range(4)))
-    _require((turns > 0).all(), "a tetrahedron is not positively oriented")
+    _check_sound(points, simplices, neighbors)
     boundary = space.boundary_faces(simplices, neighbors)
     _require(len(boundary) > 3, "it has no boundary")
     # Each edge of a closed surface is there once in either direction.
@@ -252,6 +249,19 @@ def _check_space(
     keys, reverse = np.sort(tail * n + head), np.sort(head * n + tail)
     closed = (keys == reverse).all() and (keys[1:] > keys[:-1]).all()
     _require(closed, "the boundary is not one closed surface")
+
+
+def _check_sound(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> None:
+    """Check that neighbors are mutual and simplices positively oriented; their range is known."""
+    check = _core.fault2 if points.shape[1] == 2 else _core.fault3
+    fault = check(points, simplices, neighbors, as_workers(None))
+    if fault is None:
+        return
+    kind, row = fault
+    wrong = {"neighbors": "has no mutual neighbors", "orientation": "is not positively oriented"}
+    raise _ContradictionError(f"simplex {row} {wrong[kind]}")
 
 
 def _check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
@@ -378,9 +388,7 @@ def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
     """Check that triangles are mutual and agree on the lines and regions between them."""
     points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
     sides, region = arrays["sides"], arrays["region"]
-    _require(is_mutual(simplices, neighbors).all(), "neighbours are not mutual")
-    turns = predicates.orient2d(*(points[simplices[:, k]] for k in range(3)))
-    _require((turns > 0).all(), "a triangle is not counter-clockwise")
+    _check_sound(points, simplices, neighbors)
     inner = neighbors >= 0
     _require((sides[~inner] >= 0).all(), "the boundary has an edge on no line")
     t, k = np.nonzero(inner)

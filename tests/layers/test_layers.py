@@ -53,7 +53,7 @@ PYTHON: dict[str, set[str]] = {
     "predicates": {"_core"} | FOUNDATION,
     "lawson": {"_core"} | FOUNDATION,
     "atomic": set(),
-    "archive": {"atomic", "plane", "predicates", "space", "errors"},
+    "archive": {"_core", "_arrays", "atomic", "plane", "space", "errors"},
     "location": {"_core"} | FOUNDATION,
     "delaunay": {"immutable", "_core", "archive", "periodic", "space", "validation"} | FOUNDATION,
     "constrained": {"immutable", "_core", "archive", "location", "plane", "validation"}
@@ -140,6 +140,7 @@ PYTHON: dict[str, set[str]] = {
 GROUND = {"arrays", "error", "memory", "watch"}
 CORE: dict[str, set[str]] = {
     "arrays": set(),
+    "consistency": {"parallel", "delone_predicates"} | GROUND,
     "error": {"delone_predicates"},
     "memory": {"error", "libc"},
     "watch": {"error"},
@@ -150,7 +151,7 @@ CORE: dict[str, set[str]] = {
     "mesh2": {"parallel"} | GROUND,
     "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "mesh3": GROUND,
-    "skeleton3": {"parallel"} | GROUND,
+    "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
@@ -161,9 +162,17 @@ CORE: dict[str, set[str]] = {
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
-    "voronoi": {"regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "voronoi": {"measure", "regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "regular3": {"regular", "locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
-    "voronoi3": {"regular3", "voronoi", "parallel", "wide", "delone_predicates"} | GROUND,
+    "voronoi3": {
+        "measure",
+        "regular3",
+        "voronoi",
+        "parallel",
+        "wide",
+        "delone_predicates",
+    }
+    | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "wide", "delone_predicates"} | GROUND,
 }

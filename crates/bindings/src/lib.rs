@@ -2,6 +2,7 @@
 //! No algorithm lives here.
 
 mod arrays;
+mod consistency;
 mod constrained;
 mod distributed;
 mod errors;
@@ -13,6 +14,7 @@ mod lawson;
 mod locate;
 mod locate3;
 mod locator;
+mod measure;
 mod predicates;
 mod refine;
 mod regular;
@@ -52,8 +54,23 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;
-    m.add_function(wrap_pyfunction!(space::edges3, m)?)?;
-    m.add_function(wrap_pyfunction!(space::faces3, m)?)?;
+    m.add_function(wrap_pyfunction!(consistency::fault2, m)?)?;
+    m.add_function(wrap_pyfunction!(consistency::fault3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::edges2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::edges3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::faces3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::areas2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::volumes3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::face_areas3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::face_normals3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::circumcenters2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::circumcenters3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::below2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::qualities2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::qualities3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::dihedral_angles3, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::transforms2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::transforms3, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull2, m)?)?;
     m.add_function(wrap_pyfunction!(hull::hull3, m)?)?;
     m.add_function(wrap_pyfunction!(lawson::lawson2, m)?)?;

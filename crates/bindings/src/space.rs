@@ -2,14 +2,13 @@
 
 use delone_core::delaunay3::triangulate;
 use delone_core::delaunay3::validate::{Findings3, validate};
-use delone_core::skeleton3;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{number_rows, rows, table};
-use crate::errors::{attached, raise};
-use crate::given::{checked, simplices_of};
+use crate::errors::raise;
+use crate::given::checked;
 use crate::signals::watched;
 use crate::triangulation::{Made, Report};
 
@@ -61,40 +60,4 @@ pub fn validate3<'py>(
     report.table("delaunay", delaunay)?;
     report.table("ties", ties)?;
     Ok(report.found)
-}
-
-/// Every edge once: the smaller vertex first, rows ascending.
-#[pyfunction]
-pub fn edges3(
-    py: Python<'_>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    npoints: usize,
-    workers: usize,
-) -> PyResult<Py<PyAny>> {
-    let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
-    let found = watched(py, |watch| {
-        skeleton3::edges(simplices, npoints, workers, watch)
-    })?;
-    table(py, found)
-}
-
-/// Every face once: vertices and rows ascending.
-#[pyfunction]
-pub fn faces3(
-    py: Python<'_>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    npoints: usize,
-    workers: usize,
-) -> PyResult<Py<PyAny>> {
-    let (simplices, neighbors) = attached(py, || {
-        Ok((
-            simplices_of(&simplices, npoints)?,
-            rows(&neighbors, "neighbors")?,
-        ))
-    })?;
-    let found = watched(py, |watch| {
-        skeleton3::faces(simplices, neighbors, npoints, workers, watch)
-    })?;
-    table(py, found)
 }

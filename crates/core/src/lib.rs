@@ -4,6 +4,7 @@
 //! `mesh2`; consumers read that mesh and hand arrays out.
 
 pub mod arrays;
+pub mod consistency;
 pub mod constrained;
 pub mod delaunay2;
 pub mod delaunay3;
@@ -15,6 +16,7 @@ pub mod interpolate;
 pub mod interpolate3;
 pub mod locate;
 pub mod locate3;
+pub mod measure;
 pub mod memory;
 pub mod mesh2;
 pub mod mesh3;
@@ -24,7 +26,6 @@ pub mod points;
 pub mod refine;
 pub mod regular;
 pub mod regular3;
-pub mod skeleton3;
 pub mod voronoi;
 pub mod voronoi3;
 pub mod watch;

@@ -1,4 +1,4 @@
-//! Doubles as integers of any width, and quotients of such integers as doubles: the last resort of
+//! Doubles as integers of any width, and quotients, roots and angles of such integers as doubles: the last resort of
 //! predicates and constructions that no filter decides, and rare enough to allocate.
 
 use delone_predicates::Sign as Turn;
@@ -28,14 +28,17 @@ pub fn scaled(x: f64, low: i64) -> BigInt {
     if x < 0.0 { -integer } else { integer }
 }
 
-/// `n / d * 2^low` correctly rounded, ties to even; `None` beyond the range. `d` is positive.
+/// `n / d * 2^low` correctly rounded, ties to even; `None` beyond the range, and where `d` is zero.
 pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
+    if d.sign() == Sign::NoSign {
+        return None;
+    }
     if n.sign() == Sign::NoSign {
         return Some(0.0);
     }
     // At least 66 bits of quotient, and one more for what is left over.
     let shift = 67 + d.bits() as i64 - n.bits() as i64;
-    let (n, positive) = (n.magnitude(), n.sign() == Sign::Plus);
+    let (n, positive) = (n.magnitude(), n.sign() == d.sign());
     let (wide_n, wide_d) = if shift >= 0 {
         (n << shift, d.magnitude().clone())
     } else {
@@ -82,6 +85,43 @@ pub fn sign(value: &BigInt) -> Turn {
         Sign::Minus => Turn::Negative,
         Sign::NoSign => Turn::Zero,
         Sign::Plus => Turn::Positive,
+    }
+}
+
+/// The cross product.
+pub fn across(p: &[BigInt; 3], q: &[BigInt; 3]) -> [BigInt; 3] {
+    [0, 1, 2].map(|k| {
+        let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+        &p[x] * &q[y] - &p[y] * &q[x]
+    })
+}
+
+/// The determinant of three vectors.
+pub fn determinant([p, q, r]: [&[BigInt; 3]; 3]) -> BigInt {
+    (&q[1] * &r[2] - &q[2] * &r[1]) * &p[0]
+        + (&q[2] * &r[0] - &q[0] * &r[2]) * &p[1]
+        + (&q[0] * &r[1] - &q[1] * &r[0]) * &p[2]
+}
+
+/// The root of a square, times 2^64 and rounded down.
+pub fn root(square: &BigInt) -> BigInt {
+    (square << 128_u32).sqrt()
+}
+
+/// The angle of a positive sine and a cosine that are times one number, in radians.
+pub fn angle(sine: &BigInt, cosine: &BigInt) -> f64 {
+    // The quotient is below 1, or all but its sign is lost in the arc tangent.
+    let quotient = |n: &BigInt, d: &BigInt| ratio(n, d, 0).unwrap_or(f64::MAX);
+    if sine.magnitude() < cosine.magnitude() {
+        let positive = BigInt::from(cosine.magnitude().clone());
+        let way = if cosine.sign() == Sign::Minus {
+            -1.0
+        } else {
+            1.0
+        };
+        quotient(sine, &positive).atan2(way)
+    } else {
+        1.0_f64.atan2(quotient(cosine, sine))
     }
 }
 

@@ -1,42 +1,29 @@
 """How good triangles are: angles, areas, ratios, and the exact comparison with a bound of angles.
 
-Measures are rounded, but right: each triangle is scaled to its own size, so that nothing exceeds
-the range of doubles, and areas that cancel in thin ones are computed with more digits. `below`
-decides by squares of cosines; where these are too close to the bound to tell, it goes on with
-fractions, so that its answer is exact.
+The core computes the measures, in stages: what cancels in a thin triangle is computed again with
+more digits. `below` compares squares of cosines, exactly.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from fractions import Fraction
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.plane.geometry import areas
+from delone import _core
+from delone._arrays import as_mesh, as_workers
 from delone.plane.measures import Measures
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
-    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["Quality", "below", "measured", "smallest_corners", "squared_cosine"]
 
-# Triangles worked on at once, so that temporary arrays stay small.
-_BLOCK = 1 << 17
-# Differences of larger coordinates may exceed the range of doubles.
-_LARGE = 1e300
-# Areas below this share of the two shorter sides' product have lost too many bits.
-_THIN = 2.0**-5
-# Squares that differ by a smaller part are compared exactly: some eight roundings each.
-_UNSURE = 1e-13
 # Squared cosines that are simple fractions, and whose double is another number.
 _SIMPLE = {30.0: 0.75, 45.0: 0.5}
 
@@ -114,7 +101,7 @@ class Quality(Measures):
         return draw_angles(self.smallest_angle, self.largest_angle, ax=ax, bound=bound)
 
 
-def measured(points: Floats, simplices: Indices) -> Quality:
+def measured(points: Floats, simplices: Indices, workers: int | None = None) -> Quality:
     """Measure triangles.
 
     Parameters
@@ -123,57 +110,18 @@ def measured(points: Floats, simplices: Indices) -> Quality:
         Coordinates.
     simplices : ndarray of int32, shape (m, 3)
         Triangles.
+    workers : int or None, optional
+        Number of threads; by default all cores.
 
     Returns
     -------
     Quality
         The measures.
     """
-    found = np.empty((4, len(simplices)))
-    for block, lengths, twice, dots in _blocks(points, simplices):
-        ordered = np.sort(lengths, axis=0)
-        dots.sort(axis=0)
-        found[0, block] = np.degrees(np.arctan2(twice, dots[2]))
-        found[1, block] = np.degrees(np.arctan2(twice, dots[0]))
-        # Where squares of lengths leave the range, ratios are infinite or NaN.
-        with np.errstate(all="ignore"):
-            around = lengths.sum(axis=0) * lengths.prod(axis=0)
-            found[2, block] = 4 * twice * (twice / around)
-            found[3, block] = ordered[2] / ordered[0]
+    found = _core.qualities2(*as_mesh(points, simplices), as_workers(workers)).T
     return Quality(
-        smallest_angle=found[0],
-        largest_angle=found[1],
-        area=areas(points, simplices),
-        radius_ratio=found[2],
-        edge_ratio=found[3],
+        **{each.name: row.copy() for each, row in zip(fields(Quality), found, strict=True)}
     )
-
-
-def _blocks(points: Floats, simplices: Indices) -> Iterator[tuple[slice, Floats, Floats, Floats]]:
-    """Lengths of edges, twice the area, and the dot products at corners, block by block."""
-    for start in range(0, len(simplices), _BLOCK):
-        block = slice(start, start + _BLOCK)
-        corners = points[simplices[block]]
-        largest = np.abs(corners).max(axis=(1, 2), initial=0)
-        corners = np.where((largest > _LARGE)[:, None, None], 0.5 * corners, corners)
-        # The edge opposite each corner, in a unit of its own that rounds nothing.
-        sides = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
-        unit = -np.frexp(np.abs(sides).max(axis=(1, 2)))[1][:, None, None]
-        sides = np.ldexp(sides, unit)
-        x, y = sides[..., 0].T, sides[..., 1].T
-        lengths = np.hypot(x, y)
-        crosses = np.array([x[k - 2] * y[k - 1] - y[k - 2] * x[k - 1] for k in range(3)])
-        dots = np.array([-(x[k - 2] * x[k - 1] + y[k - 2] * y[k - 1]) for k in range(3)])
-        # All three are twice the area; the one of the two shorter sides is rounded least.
-        best = lengths.argmax(axis=0)
-        twice = np.abs(np.take_along_axis(crosses, best[None], axis=0)[0])
-        beside = lengths.prod(axis=0) / lengths.max(axis=0)
-        thin = np.flatnonzero(~(twice > _THIN * beside))
-        if len(thin):
-            rows = np.arange(3 * len(thin), dtype=np.int32).reshape(-1, 3)
-            scaled = np.ldexp(corners[thin], unit[thin])
-            twice[thin] = 2 * areas(scaled.reshape(-1, 2), rows)
-        yield block, lengths, twice, dots
 
 
 def smallest_corners(points: Floats, simplices: Indices) -> Indices:
@@ -191,9 +139,11 @@ def smallest_corners(points: Floats, simplices: Indices) -> Indices:
     ndarray of int32, shape (m,)
         0, 1 or 2.
     """
-    found = np.empty(len(simplices), dtype=np.int32)
-    for block, lengths, _, _ in _blocks(points, simplices):
-        found[block] = lengths.argmin(axis=0)
+    corners = points[simplices]
+    # Halves, so that no difference exceeds the range of doubles.
+    sides = 0.5 * corners[:, [2, 0, 1]] - 0.5 * corners[:, [1, 2, 0]]
+    lengths = np.hypot(sides[..., 0], sides[..., 1])
+    found: Indices = lengths.argmin(axis=1).astype(np.int32)
     return found
 
 
@@ -219,7 +169,9 @@ def squared_cosine(degrees: float) -> float:
     return _SIMPLE.get(degrees, math.cos(math.radians(degrees)) ** 2)
 
 
-def below(points: Floats, simplices: Indices, min_angle: float) -> NDArray[np.int64]:
+def below(
+    points: Floats, simplices: Indices, min_angle: float, workers: int | None = None
+) -> NDArray[np.int64]:
     """Return the triangles that have an angle below a bound.
 
     Parameters
@@ -230,6 +182,8 @@ def below(points: Floats, simplices: Indices, min_angle: float) -> NDArray[np.in
         Triangles.
     min_angle : float
         The bound in degrees, from 0 to 60.
+    workers : int or None, optional
+        Number of threads; by default all cores.
 
     Returns
     -------
@@ -246,28 +200,8 @@ def below(points: Floats, simplices: Indices, min_angle: float) -> NDArray[np.in
     >>> import numpy as np
     >>> from delone.plane.quality import below
     >>> points = np.array([(0.0, 0), (1, 0), (0, 1), (0, 0.5)])
-    >>> below(points, np.array([(0, 1, 2), (0, 1, 3)]), 45)
+    >>> below(points, np.array([(0, 1, 2), (0, 1, 3)], dtype=np.int32), 45)
     array([1])
     """
     bound = squared_cosine(min_angle)
-    found = np.zeros(len(simplices), dtype=bool)
-    for block, lengths, _, dots in _blocks(points, simplices):
-        corner = lengths.argmin(axis=0)[None]
-        square = np.take_along_axis(dots, corner, axis=0)[0] ** 2
-        beside = np.take_along_axis(np.roll(lengths, -1, axis=0) * np.roll(lengths, 1, axis=0),
-                                    corner, axis=0)[0] ** 2  # fmt: skip
-        small = square > bound * beside
-        for i in np.flatnonzero(~(np.abs(square - bound * beside) > _UNSURE * beside)).tolist():
-            small[i] = _is_below(points[simplices[block][i]], bound)
-        found[block] = small
-    return np.flatnonzero(found)
-
-
-def _is_below(corners: Floats, bound: float) -> bool:
-    p = [[Fraction(x) for x in corner] for corner in corners.tolist()]
-    for k in range(3):
-        (ax, ay), (bx, by) = ((q[0] - p[k][0], q[1] - p[k][1]) for q in (p[k - 2], p[k - 1]))
-        dot = ax * bx + ay * by
-        if dot > 0 and dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by) * Fraction(bound):
-            return True
-    return False
+    return np.flatnonzero(_core.below2(*as_mesh(points, simplices), bound, as_workers(workers)))

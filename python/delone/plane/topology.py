@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core
+from delone._arrays import as_workers
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -22,7 +25,6 @@ __all__ = [
     "boundary_next",
     "edge_keys",
     "edges",
-    "is_mutual",
     "neighbors",
     "rows_among",
     "vertex_neighbor_vertices",
@@ -34,7 +36,9 @@ _TAIL = [1, 2, 0]
 _HEAD = [2, 0, 1]
 
 
-def edges(simplices: Indices, neighbors: Indices, npoints: int) -> Indices:
+def edges(
+    simplices: Indices, neighbors: Indices, npoints: int, workers: int | None = None
+) -> Indices:
     """Return every edge once.
 
     Parameters
@@ -45,6 +49,8 @@ def edges(simplices: Indices, neighbors: Indices, npoints: int) -> Indices:
         The triangle opposite each vertex.
     npoints : int
         Number of points.
+    workers : int or None, optional
+        Number of threads; by default all cores.
 
     Returns
     -------
@@ -53,23 +59,17 @@ def edges(simplices: Indices, neighbors: Indices, npoints: int) -> Indices:
 
     Notes
     -----
-    O(m log m).
+    O(m).
 
     Examples
     --------
     >>> import numpy as np
     >>> from delone.plane.topology import edges
-    >>> edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]]), 3).tolist()
+    >>> alone = np.array([[0, 1, 2]], dtype=np.int32), np.full((1, 3), -1, dtype=np.int32)
+    >>> edges(*alone, 3).tolist()
     [[0, 1], [0, 2], [1, 2]]
     """
-    # Of the two half-edges of an inner edge, the one in the later triangle counts.
-    once = neighbors < np.arange(len(simplices), dtype=np.int32)[:, None]
-    tail, head = simplices[:, _TAIL][once], simplices[:, _HEAD][once]
-    keys = np.minimum(tail, head).astype(np.int64)
-    keys *= npoints
-    keys += np.maximum(tail, head)
-    keys.sort()
-    return _unpack(keys, npoints)
+    return _core.edges2(simplices, neighbors, npoints, as_workers(workers))
 
 
 def _unpack(keys: NDArray[np.int64], npoints: int) -> Indices:
@@ -270,45 +270,6 @@ def neighbors(simplices: Indices, npoints: int) -> Indices:
     partner = order[place]
     found = np.where(keys[partner] == reverse, partner // 3, -1)
     return found.astype(np.int32).reshape(-1, 3)
-
-
-def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
-    """Tell for each triangle whether its row of neighbours is right.
-
-    Parameters
-    ----------
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    neighbors : ndarray of int32, shape (m, 3)
-        The triangle opposite each vertex, in range.
-
-    Returns
-    -------
-    ndarray of bool, shape (m,)
-        Whether each neighbour has the common edge in the other direction, and this triangle
-        across it.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.topology import is_mutual
-    >>> simplices = np.array([[0, 1, 2], [0, 2, 3]])
-    >>> is_mutual(simplices, np.array([[-1, 1, -1], [-1, -1, 0]]))
-    array([ True,  True])
-    >>> is_mutual(simplices, np.array([[-1, 1, -1], [0, -1, -1]]))
-    array([False, False])
-    """
-    here = np.arange(len(simplices), dtype=neighbors.dtype)
-    right = np.ones(len(simplices), dtype=bool)
-    for k in range(3):
-        beyond = neighbors[:, k]
-        inner = beyond >= 0
-        back = (neighbors[beyond] == here[:, None]) & (
-            (simplices[beyond][:, _TAIL] == simplices[:, _HEAD[k], None])
-            & (simplices[beyond][:, _HEAD] == simplices[:, _TAIL[k], None])
-        )
-        right &= back.any(axis=1) | ~inner
-    return right
 
 
 def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> NDArray[np.int64]:

@@ -117,7 +117,7 @@ class Triangulation(Immutable):
     @kept
     def edges(self) -> Indices:
         """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
-        return sealed(topology.edges(self._simplices, self._neighbors, self.npoints))
+        return sealed(topology.edges(self._simplices, self._neighbors, self.npoints, self._workers))
 
     @property
     @kept
@@ -186,7 +186,7 @@ class Triangulation(Immutable):
         triangle; entries have a relative error below 1e-13. What exceeds the range of doubles is
         infinite.
         """
-        return sealed(geometry.transform(self._points, self._simplices))
+        return sealed(geometry.transform(self._points, self._simplices, self._workers))
 
     @property
     @kept
@@ -195,17 +195,17 @@ class Triangulation(Immutable):
 
         All positive, with a relative error below 1e-13, except beyond the range of doubles.
         """
-        return sealed(geometry.areas(self._points, self._simplices))
+        return sealed(geometry.areas(self._points, self._simplices, self._workers))
 
     @property
     @kept
     def circumcenters(self) -> Floats:
         """Centres of the circles through the corners of triangles, (m, 2).
 
-        With an error below 1e-13 of the radius, and the rounding of the result. Those of thin
-        triangles are far away, and infinite beyond the range of doubles.
+        Each coordinate within 4 units in the last place. Those of thin triangles are far away, and
+        infinite beyond the range of doubles.
         """
-        return sealed(geometry.circumcenters(self._points, self._simplices))
+        return sealed(geometry.circumcenters(self._points, self._simplices, self._workers))
 
     @property
     @kept

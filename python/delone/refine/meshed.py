@@ -477,7 +477,7 @@ class Mesh(HandedOver, Triangulation):
         >>> delone.mesh(square).quality().largest_angle
         array([90., 90.])
         """
-        return quality.measured(self._points, self._simplices)
+        return quality.measured(self._points, self._simplices, self._workers)
 
     def plot_quality(self, ax: Any = None) -> Any:
         """Draw the histogram of the angles, with the bound (extra ``plot``).

@@ -97,7 +97,7 @@ class Spatial(Triangulation):
         """
         if self.ndim == 2:
             return super().transform
-        return sealed(geometry.transform(self._points, self._simplices))
+        return sealed(geometry.transform(self._points, self._simplices, self._workers))
 
     @property
     @kept
@@ -117,19 +117,19 @@ class Spatial(Triangulation):
         All positive, with a relative error below 1e-13, except beyond the range of doubles.
         """
         self._only(3, "volumes", "triangles have `areas`")
-        return sealed(geometry.volumes(self._points, self._simplices))
+        return sealed(geometry.volumes(self._points, self._simplices, self._workers))
 
     @property
     @kept
     def circumcenters(self) -> Floats:
         """Centres of the circles or spheres through the corners of simplices, (m, d).
 
-        With an error below 1e-13 of the radius, and the rounding of the result. Those of thin
-        simplices are far away, and infinite beyond the range of doubles.
+        Each coordinate within 4 units in the last place. Those of thin simplices are far away, and
+        infinite beyond the range of doubles.
         """
         if self.ndim == 2:
             return super().circumcenters
-        return sealed(geometry.circumcenters(self._points, self._simplices))
+        return sealed(geometry.circumcenters(self._points, self._simplices, self._workers))
 
     @property
     @kept
@@ -321,8 +321,8 @@ class Spatial(Triangulation):
         array([90.])
         """
         if self.ndim == 2:
-            return measured_triangles(self._points, self._simplices)
-        return measured_tetrahedra(self._points, self._simplices)
+            return measured_triangles(self._points, self._simplices, self._workers)
+        return measured_tetrahedra(self._points, self._simplices, self._workers)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the triangulation.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Indices = NDArray[np.int32]
 
-__all__ = ["FACES", "boundary_faces", "edges", "faces", "is_mutual", "neighbors"]
+__all__ = ["FACES", "boundary_faces", "edges", "faces", "neighbors"]
 
 # The face opposite vertex k, counter-clockwise as seen from outside.
 FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
@@ -148,43 +148,3 @@ def neighbors(simplices: Indices) -> Indices:
     one, other = order[pair], order[pair + 1]
     found[one], found[other] = other // 4, one // 4
     return found.reshape(-1, 4)
-
-
-def is_mutual(simplices: Indices, neighbors: Indices) -> NDArray[np.bool_]:
-    """Tell for each tetrahedron whether its row of neighbours is right.
-
-    Parameters
-    ----------
-    simplices : ndarray of int32, shape (m, 4)
-        Tetrahedra.
-    neighbors : ndarray of int32, shape (m, 4)
-        The tetrahedron opposite each vertex, in range.
-
-    Returns
-    -------
-    ndarray of bool, shape (m,)
-        Whether each neighbour has the same three vertices, and this tetrahedron across them.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.space.topology import is_mutual
-    >>> simplices = np.array([[0, 1, 2, 3], [4, 1, 3, 2]])
-    >>> is_mutual(simplices, np.array([[1, -1, -1, -1], [0, -1, -1, -1]]))
-    array([ True,  True])
-    >>> is_mutual(simplices, np.array([[1, -1, -1, -1], [-1, 0, -1, -1]]))
-    array([False, False])
-    """
-    here = np.arange(len(simplices), dtype=neighbors.dtype)
-    right = np.ones(len(simplices), dtype=bool)
-    # Which face of the neighbour has the same vertices: all but the one at its corner j.
-    for k in range(4):
-        beyond = neighbors[:, k]
-        inner = beyond >= 0
-        mine = np.sort(simplices[:, FACES[k]], axis=1)
-        back = np.zeros(len(simplices), dtype=bool)
-        for j in range(4):
-            theirs = np.sort(simplices[beyond][:, FACES[j]], axis=1)
-            back |= (neighbors[beyond, j] == here) & (mine == theirs).all(axis=1)
-        right &= back | ~inner
-    return right

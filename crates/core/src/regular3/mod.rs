@@ -12,7 +12,6 @@ use crate::points;
 use crate::regular::{Heaviest, Weighted, heaviest};
 use crate::watch::Watch;
 
-pub(crate) use power::determinant;
 pub use power::{power_canonical, power_sign};
 
 /// The regular triangulation of weighted points of space.

@@ -21,7 +21,7 @@
 use delone_predicates::{Point3, Sign, lexicographic, orient3d};
 use num_bigint::BigInt;
 
-use crate::wide::{lowest, scaled, sign};
+use crate::wide::{determinant, lowest, scaled, sign};
 
 const BOUND: f64 = 18.0 * f64::EPSILON / 2.0;
 /// 2^-200 and 2^200.
@@ -89,13 +89,6 @@ fn exact(points: [Point3; 5], weights: [f64; 5]) -> Sign {
     let det = |i: usize, j: usize, k: usize| determinant([&seen[i], &seen[j], &seen[k]]);
     let positive = height(0) * det(1, 2, 3) + height(2) * det(0, 1, 3);
     sign(&(positive - height(1) * det(0, 2, 3) - height(3) * det(0, 1, 2)))
-}
-
-/// The determinant of three vectors.
-pub(crate) fn determinant([p, q, r]: [&[BigInt; 3]; 3]) -> BigInt {
-    (&q[1] * &r[2] - &q[2] * &r[1]) * &p[0]
-        + (&q[2] * &r[0] - &q[0] * &r[2]) * &p[1]
-        + (&q[0] * &r[1] - &q[1] * &r[0]) * &p[2]
 }
 
 /// The sign that infinitesimals give to five sites on one lifted plane.

@@ -2,12 +2,12 @@
 
 use delone_predicates::{Point2, incircle};
 
-use super::center::Corners;
 use super::given::Given;
 use super::regions::{Regions, Walk};
 use super::ridges::{OWNED, Ridges, ridges};
 use super::vertices::{centers, masks, number};
 use crate::error::Result;
+use crate::measure::circle::Corners;
 use crate::regular::power_sign;
 use crate::watch::Watch;
 

@@ -8,9 +8,7 @@
 //! in which it goes on for ever, or to a vertex beyond the range.
 
 mod axis;
-mod center;
 mod clip;
-pub(crate) mod component;
 mod dual;
 mod given;
 mod measure;

@@ -3,9 +3,9 @@
 
 use delone_predicates::{Point2, Sign};
 
-use super::center::meeting;
-use super::vertices::Center;
 use crate::error::{Error, Result};
+use crate::measure::center::Center;
+use crate::measure::circle::meeting;
 use crate::memory::{filled, zeroed};
 use crate::parallel;
 use crate::regular::{Images, Sites};

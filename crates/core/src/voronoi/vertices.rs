@@ -2,6 +2,7 @@
 
 use super::given::Given;
 use crate::error::Result;
+use crate::measure::center::{Center, Centered};
 use crate::memory::{filled, make_room, push, zeroed};
 use crate::parallel;
 
@@ -14,35 +15,17 @@ const BATCH: usize = 64;
 /// share of it.
 const NEAR: f64 = 16.0 * f64::EPSILON;
 
-/// A centre as far as doubles reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Center<const D: usize> {
-    /// Its rounded coordinates.
-    At([f64; D]),
-    /// A coordinate is beyond the range. In the plane it is infinite here, and the other is rounded;
-    /// in space this is the direction in which the centre lies, of length 1.
-    Beyond([f64; D]),
-}
-
-/// The sites of a simplex and their weights: those of triangles and of tetrahedra have their centres
-/// each in their own way.
-pub(crate) trait Centered<const D: usize, const N: usize>: Copy {
-    /// Corners with their weights, 0 for none.
-    fn new(points: [[f64; D]; N], weights: [f64; N]) -> Self;
-    /// The centre, each coordinate within 4 units in the last place.
-    fn center(&self) -> Center<D>;
-    /// The centre, each coordinate rounded correctly.
-    fn rounded(&self) -> Center<D>;
-
-    /// The corners of simplex `t`.
-    fn of(given: Given<D, N>, t: usize) -> Self {
-        let s = given.simplices[t];
-        Self::new(s.map(|v| given.point(v)), s.map(|v| given.weight(v)))
-    }
-}
-
 /// A simplex whose centre is beyond the range of doubles, and where that is, as in `Center::Beyond`.
 pub(crate) type Far<const D: usize> = (usize, [f64; D]);
+
+/// The corners of simplex `t`, with their weights.
+fn corners_of<C: Centered<D, N>, const D: usize, const N: usize>(
+    given: Given<D, N>,
+    t: usize,
+) -> C {
+    let s = given.simplices[t];
+    C::new(s.map(|v| given.point(v)), s.map(|v| given.weight(v)))
+}
 
 /// The centre of each simplex, NaN for those beyond the range, which are listed.
 pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
@@ -53,11 +36,11 @@ pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
     let tasks = centers.chunks_mut(SHARE).enumerate().collect();
     let found = parallel::map(workers, tasks, |(i, part): (usize, &mut [[f64; D]])| {
         let mut beyond = Vec::new();
-        let mut batch = [C::of(given, i * SHARE); BATCH];
+        let mut batch = [corners_of::<C, D, N>(given, i * SHARE); BATCH];
         for (j, part) in part.chunks_mut(BATCH).enumerate() {
             let from = i * SHARE + j * BATCH;
             for (t, corners) in (from..from + part.len()).zip(&mut batch) {
-                *corners = C::of(given, t);
+                *corners = corners_of::<C, D, N>(given, t);
             }
             for (t, (slot, corners)) in (from..).zip(part.iter_mut().zip(&batch)) {
                 *slot = match corners.center() {
@@ -142,7 +125,7 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
             let found = beyond.binary_search_by_key(&t, |&(t, _)| t);
             place = found.ok().map(|i| beyond[i].1);
         } else if shares(t) != 0
-            && let Center::At(rounded) = C::of(given, t).rounded()
+            && let Center::At(rounded) = corners_of::<C, D, N>(given, t).rounded()
         {
             // Rounded correctly it is the same whichever of the simplices comes first.
             at = rounded;

@@ -2,10 +2,10 @@
 
 use delone_predicates::{Point3, insphere};
 
-use super::center::Corners;
 use super::regions::{Regions, regions};
 use super::ridges::{Ridges, ridges};
 use crate::error::Result;
+use crate::measure::sphere::Corners;
 use crate::regular3::power_sign;
 use crate::voronoi::Given;
 use crate::voronoi::vertices::{centers, masks, number};

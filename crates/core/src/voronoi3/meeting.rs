@@ -9,8 +9,7 @@
 use delone_predicates::Point3;
 use num_bigint::{BigInt, Sign};
 
-use crate::regular3::determinant;
-use crate::wide::{lowest, ratio, scaled};
+use crate::wide::{determinant, lowest, ratio, scaled};
 
 /// A plane as it is given.
 #[derive(Clone, Copy, Debug)]

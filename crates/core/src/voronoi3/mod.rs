@@ -8,7 +8,6 @@
 //! within the range of doubles, it has two *rays*: directions in which its boundary goes on for ever,
 //! or to a vertex beyond the range.
 
-mod center;
 mod clip;
 mod dual;
 mod measure;

@@ -11,8 +11,8 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point3, orient3d};
 
-use super::center::normal;
 use crate::error::{Error, Result};
+use crate::measure::sphere::normal;
 use crate::memory::with_room;
 use crate::parallel;
 use crate::voronoi::Given;

@@ -15,7 +15,7 @@
 //! 3. *Exact*: integers of any width, correctly rounded, whatever the range.
 //!
 //! The corner that serves as the origin is the lexicographically smallest one, so that the result
-//! does not hang on the order in which a triangle names its corners.
+//! is independent of the order in which a triangle names its corners.
 //!
 //! # The bound of the plain stage
 //!
@@ -30,8 +30,8 @@ use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point2, lexicographic};
 use num_bigint::{BigInt, Sign};
 
+use super::center::{Center, Centered};
 use super::component::component;
-use super::vertices::{Center, Centered};
 use crate::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
@@ -69,6 +69,11 @@ impl Centered<2, 3> for Corners {
     #[inline(never)]
     fn rounded(&self) -> Center<2> {
         self.pairs().map_or_else(|| self.exact(), Center::At)
+    }
+
+    fn coordinates(&self) -> [f64; 2] {
+        let (Center::At(at) | Center::Beyond(at)) = self.exact();
+        at
     }
 }
 
@@ -160,7 +165,7 @@ impl Corners {
 
 /// The centre of three sites whose coordinates are integers in units of 2^low, and whose weights
 /// are in units of its square.
-pub(super) fn meeting(
+pub(crate) fn meeting(
     [a, b, c]: &[[BigInt; 2]; 3],
     [wa, wb, wc]: &[BigInt; 3],
     low: i64,

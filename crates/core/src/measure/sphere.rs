@@ -9,11 +9,11 @@
 //! ```
 //!
 //! and without weights it is the centre of the sphere. The stages are those of the plane (see
-//! `voronoi::center`): doubles with a bound on the error, accepted up to 4 units in the last place;
+//! `circle`): doubles with a bound on the error, accepted up to 4 units in the last place;
 //! numbers of two doubles, accepted where the interval of the error rounds to one double; integers
 //! of any width. The last two are correctly rounded.
 //!
-//! Corners are taken in lexicographic order, so that the result does not hang on the order in which a
+//! Corners are taken in lexicographic order, so that the result is independent of the order in which a
 //! tetrahedron names them.
 //!
 //! # The bound of the plain stage
@@ -30,10 +30,9 @@ use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, lexicographic};
 use num_bigint::{BigInt, Sign};
 
-use crate::regular3::determinant;
-use crate::voronoi::component::component;
-use crate::voronoi::vertices::{Center, Centered};
-use crate::wide::{lowest, ratio, scaled};
+use super::center::{Center, Centered};
+use super::component::component;
+use crate::wide::{determinant, lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
@@ -74,6 +73,14 @@ impl Centered<3, 4> for Corners {
     #[inline(never)]
     fn rounded(&self) -> Center<3> {
         self.pairs().map_or_else(|| self.exact(), Center::At)
+    }
+
+    fn coordinates(&self) -> [f64; 3] {
+        let (numerators, den, low) = self.quotients();
+        numerators.map(|n| {
+            let far = f64::INFINITY.copysign(if n.sign() == Sign::Minus { -1.0 } else { 1.0 });
+            ratio(&n, &den, low).unwrap_or(far)
+        })
     }
 }
 
@@ -161,6 +168,16 @@ impl Corners {
     }
 
     fn exact(&self) -> Center<3> {
+        let (numerators, den, low) = self.quotients();
+        match [0, 1, 2].map(|k| ratio(&numerators[k], &den, low)) {
+            [Some(x), Some(y), Some(z)] => Center::At([x, y, z]),
+            _ => Center::Beyond(direction(&numerators)),
+        }
+    }
+
+    /// The coordinates as exact quotients: numerators, their positive denominator, and the exponent
+    /// of their unit.
+    fn quotients(&self) -> ([BigInt; 3], BigInt, i64) {
         let low = lowest(&self.points, &self.weights);
         let at = self.points.map(|p| p.map(|x| scaled(x, low)));
         let heavy = self.weights.map(|w| scaled(w, 2 * low));
@@ -182,15 +199,12 @@ impl Corners {
             let n = if half.sign() == Sign::Minus { -n } else { n };
             n + &at[0][k] * &den
         });
-        match [0, 1, 2].map(|k| ratio(&numerators[k], &den, low)) {
-            [Some(x), Some(y), Some(z)] => Center::At([x, y, z]),
-            _ => Center::Beyond(direction(&numerators)),
-        }
+        (numerators, den, low)
     }
 }
 
 /// The direction of a vector that is not zero, of length 1.
-pub(super) fn direction(vector: &[BigInt; 3]) -> Point3 {
+pub(crate) fn direction(vector: &[BigInt; 3]) -> Point3 {
     // Sixty bits of the longest one are more than a double holds.
     let bits = vector.iter().map(BigInt::bits).max().unwrap_or(0);
     let shift = bits.saturating_sub(60);
@@ -201,7 +215,7 @@ pub(super) fn direction(vector: &[BigInt; 3]) -> Point3 {
 
 /// The direction of (b - a) x (c - a), of length 1, within a few units in the last place; a, b and c
 /// are not in line.
-pub(super) fn normal(a: Point3, b: Point3, c: Point3) -> Point3 {
+pub(crate) fn normal(a: Point3, b: Point3, c: Point3) -> Point3 {
     let minus = |p: Point3| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
     let (p, q) = (minus(b), minus(c));
     let (mut v, mut size) = ([0.0; 3], 0.0_f64);

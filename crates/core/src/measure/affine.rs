@@ -1,0 +1,108 @@
+//! The affine maps to barycentric coordinates.
+//!
+//! The rows of the inverse of the matrix whose columns lead from the last corner to the others, and
+//! below them the last corner.
+
+use num_bigint::{BigInt, Sign};
+
+use super::batch::each;
+use super::corners::{
+    Corners, Integers, Measure, Number, Vectors, cross, determinant2, determinant3, in_units,
+};
+use crate::error::Result;
+use crate::watch::Watch;
+use crate::wide::{across, determinant, ratio};
+
+/// The maps of triangles. Entries have a relative error below 1e-13; those beyond the range of
+/// doubles are infinite.
+pub fn transforms2(
+    points: &[[f64; 2]],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[[f64; 2]; 3]>> {
+    each(points, simplices, workers, watch, |corners| {
+        let [first, second] = Corners::new(corners).measure(&Rows2);
+        [first, second, corners[2]]
+    })
+}
+
+/// The maps of tetrahedra. Rows have an error below 1e-13 of their length.
+pub fn transforms3(
+    points: &[[f64; 3]],
+    simplices: &[[i32; 4]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[[f64; 3]; 4]>> {
+    each(points, simplices, workers, watch, |corners| {
+        let [first, second, third] = Corners::new(corners).measure(&Rows3);
+        [first, second, third, corners[3]]
+    })
+}
+
+struct Rows2;
+
+impl Measure<2> for Rows2 {
+    type Out = [[f64; 2]; 2];
+
+    #[inline]
+    fn determinant<T: Number>(vectors: &[[T; 2]; 2]) -> T {
+        determinant2(vectors)
+    }
+
+    #[inline]
+    fn of<T: Number>(&self, vectors: &Vectors<T, 2>) -> Self::Out {
+        let [a, b] = vectors.to;
+        let size = determinant2(&vectors.to).value();
+        let rows = [[b[1], b[0].negated()], [a[1].negated(), a[0]]];
+        rows.map(|row| row.map(|x| quotient(x.value(), size, vectors.exponent)))
+    }
+
+    fn exact(&self, vectors: &Integers<2>) -> Self::Out {
+        let [a, b] = &vectors.to;
+        let size = &a[0] * &b[1] - &a[1] * &b[0];
+        let rows = [[b[1].clone(), -&b[0]], [-&a[1], a[0].clone()]];
+        rows.map(|row| row.map(|x| exact_quotient(&x, &size, vectors.low)))
+    }
+}
+
+struct Rows3;
+
+impl Measure<3> for Rows3 {
+    type Out = [[f64; 3]; 3];
+
+    #[inline]
+    fn determinant<T: Number>(vectors: &[[T; 3]; 3]) -> T {
+        determinant3(vectors)
+    }
+
+    #[inline]
+    fn of<T: Number>(&self, vectors: &Vectors<T, 3>) -> Self::Out {
+        let [a, b, c] = vectors.to;
+        let size = determinant3(&vectors.to).value();
+        let rows = [cross(c, b), cross(a, c), cross(b, a)];
+        rows.map(|row| row.map(|x| quotient(x.value(), size, vectors.exponent)))
+    }
+
+    fn exact(&self, vectors: &Integers<3>) -> Self::Out {
+        let [a, b, c] = &vectors.to;
+        let size = determinant([a, c, b]);
+        let rows = [across(c, b), across(a, c), across(b, a)];
+        rows.map(|row| row.map(|x| exact_quotient(&x, &size, vectors.low)))
+    }
+}
+
+/// A quotient of one dimension less than none. Adding 0 makes -0 the 0 that it is.
+#[inline]
+fn quotient(x: f64, size: f64, exponent: i32) -> f64 {
+    in_units(x / size, -exponent) + 0.0
+}
+
+fn exact_quotient(x: &BigInt, size: &BigInt, low: i64) -> f64 {
+    let far = if x.sign() == Sign::Minus {
+        f64::NEG_INFINITY
+    } else {
+        f64::INFINITY
+    };
+    ratio(x, size, -low).unwrap_or(far) + 0.0
+}

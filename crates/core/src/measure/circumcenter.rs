@@ -1,0 +1,48 @@
+//! The centers of the circles and spheres through the corners of simplices.
+
+use super::batch::each;
+use super::center::{Center, Centered};
+use super::{circle, sphere};
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// The centers of the circles through the corners of triangles, each coordinate within 4 units in
+/// the last place; infinite beyond the range of doubles.
+pub fn circumcenters2(
+    points: &[[f64; 2]],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[f64; 2]>> {
+    each(
+        points,
+        simplices,
+        workers,
+        watch,
+        at::<circle::Corners, 2, 3>,
+    )
+}
+
+/// The same of the spheres through the corners of tetrahedra.
+pub fn circumcenters3(
+    points: &[[f64; 3]],
+    simplices: &[[i32; 4]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[f64; 3]>> {
+    each(
+        points,
+        simplices,
+        workers,
+        watch,
+        at::<sphere::Corners, 3, 4>,
+    )
+}
+
+fn at<C: Centered<D, N>, const D: usize, const N: usize>(corners: [[f64; D]; N]) -> [f64; D] {
+    let corners = C::new(corners, [0.0; N]);
+    match corners.center() {
+        Center::At(at) => at,
+        Center::Beyond(_) => corners.coordinates(),
+    }
+}

@@ -1,0 +1,248 @@
+//! The vectors of a simplex from its last corner, in a unit of the simplex's own, and the stages in
+//! which they are measured.
+//!
+//! Coordinates enter only as differences to the last corner, so that nothing is lost far from the
+//! origin, and in a unit in which the largest is about 1, so that nothing over- or underflows. What is
+//! computed of a thin simplex cancels: its determinant D is a small share of the product P of the
+//! lengths of its vectors. So there are three stages:
+//!
+//! 1. *Plain*, in doubles, where D > 2^-5 P: at most five or six bits are lost.
+//! 2. *Pairs* of doubles, where D > 2^-48 P. The vectors are exact then, and what is of degree 3 errs
+//!    by 40 u^2 P or so (see `Pair`), a share of 2^-52 of D.
+//! 3. *Exact*, integers of any width, for what is left.
+//!
+//! Not only D is known where its share is large. So are the vectors of the faces, each at least D over
+//! the length of the edge that it lacks, and the lengths of the edges.
+
+use std::ops::{Add, Mul, Sub};
+
+use delone_predicates::arithmetic::{Pair, decode_odd};
+use num_bigint::BigInt;
+
+use crate::wide::{lowest, scaled};
+
+/// Above this share of the product of the lengths, a determinant in doubles is good enough.
+const PLAIN: f64 = 1.0 / 32.0;
+/// Above this share, one in pairs of doubles is: 2^-48.
+const PAIRED: f64 = f64::from_bits((1023 - 48) << 52);
+/// Differences between these, 2^-40 and 2^60, need no other unit.
+const SMALL: f64 = f64::from_bits((1023 - 40) << 52);
+const LARGE: f64 = f64::from_bits((1023 + 60) << 52);
+/// Coordinates above this, 2^-200, have differences whose products of four do not underflow, parts of
+/// pairs included: they are multiples of 2^-252.
+const TINY: f64 = f64::from_bits((1023 - 200) << 52);
+
+/// Numbers in which a simplex is measured.
+pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// The number, rounded.
+    fn value(self) -> f64;
+    /// The number with the other sign.
+    fn negated(self) -> Self;
+}
+
+impl Number for f64 {
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
+        -self
+    }
+}
+
+impl Number for Pair {
+    #[inline]
+    fn value(self) -> f64 {
+        self.hi
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
+        Self {
+            hi: -self.hi,
+            lo: -self.lo,
+        }
+    }
+}
+
+/// What is measured on a simplex of D dimensions.
+pub trait Measure<const D: usize> {
+    /// The result, in the units of the coordinates.
+    type Out;
+    /// D! times the size of the simplex, of its vectors.
+    fn determinant<T: Number>(vectors: &[[T; D]; D]) -> T;
+    /// The result of vectors that determine it well.
+    fn of<T: Number>(&self, vectors: &Vectors<T, D>) -> Self::Out;
+    /// The result of vectors without rounding.
+    fn exact(&self, vectors: &Integers<D>) -> Self::Out;
+}
+
+/// Vectors from the last corner to the others, in units of 2^exponent.
+#[derive(Clone, Copy)]
+pub struct Vectors<T, const D: usize> {
+    /// One vector for each corner but the last.
+    pub to: [[T; D]; D],
+    /// The exponent of the unit.
+    pub exponent: i32,
+}
+
+/// The corners of a simplex, and its vectors rounded.
+#[derive(Clone, Copy)]
+pub struct Corners<const D: usize, const N: usize> {
+    points: [[f64; D]; N],
+    rounded: Vectors<f64, D>,
+}
+
+impl<const D: usize, const N: usize> Corners<D, N> {
+    /// Corners, finite.
+    #[inline]
+    pub fn new(points: [[f64; D]; N]) -> Self {
+        let last = points[N - 1];
+        let to: [[f64; D]; D] =
+            std::array::from_fn(|i| std::array::from_fn(|k| points[i][k] - last[k]));
+        let largest = to
+            .as_flattened()
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        let rounded = Vectors { to, exponent: 0 };
+        if largest > SMALL && largest < LARGE {
+            return Self { points, rounded };
+        }
+        Self::in_own_unit(points, rounded, largest)
+    }
+
+    #[cold]
+    fn in_own_unit(points: [[f64; D]; N], mut rounded: Vectors<f64, D>, largest: f64) -> Self {
+        // Where a difference overflows, or there is none, only integers tell.
+        if largest.is_finite() && largest > 0.0 {
+            let (magnitude, odd) = decode_odd(largest);
+            let exponent = odd + 64 - magnitude.leading_zeros() as i32;
+            rounded.exponent = exponent;
+            rounded.to = rounded.to.map(|v| v.map(|x| times_power(x, -exponent)));
+        }
+        Self { points, rounded }
+    }
+
+    /// What is measured, by the first stage that is accurate.
+    #[inline]
+    pub fn measure<M: Measure<D>>(&self, measure: &M) -> M::Out {
+        let product = product_of_lengths(&self.rounded.to);
+        // Written so that NaN fails.
+        if M::determinant(&self.rounded.to) > PLAIN * product && product > TINY {
+            return measure.of(&self.rounded);
+        }
+        self.thin(measure, product)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn thin<M: Measure<D>>(&self, measure: &M, product: f64) -> M::Out {
+        let accurate = |vectors: &Vectors<Pair, D>| {
+            M::determinant(&vectors.to).hi > PAIRED * product && product > TINY
+        };
+        match self.pairs().filter(accurate) {
+            Some(vectors) => measure.of(&vectors),
+            None => measure.exact(&self.integers()),
+        }
+    }
+
+    /// The vectors without rounding; none where parts of products may underflow.
+    pub(super) fn pairs(&self) -> Option<Vectors<Pair, D>> {
+        let (last, e) = (self.points[N - 1], self.rounded.exponent);
+        let unit = |x: f64| times_power(x, -e);
+        let safe = |x: &f64| *x == 0.0 || (x.abs() > TINY && x.is_finite());
+        let points = self.points.map(|p| p.map(unit));
+        if !points.as_flattened().iter().all(safe) {
+            return None;
+        }
+        // Scaling may round what is far below the largest difference.
+        let kept = |(x, y): (&f64, &f64)| times_power(*y, e) == *x;
+        let pairs = self.points.as_flattened().iter().zip(points.as_flattened());
+        if e != 0 && !pairs.into_iter().all(kept) {
+            return None;
+        }
+        let last = last.map(unit);
+        Some(Vectors {
+            to: std::array::from_fn(|i| {
+                std::array::from_fn(|k| Pair::difference(points[i][k], last[k]))
+            }),
+            exponent: e,
+        })
+    }
+
+    pub(super) fn integers(&self) -> Integers<D> {
+        let low = lowest(&self.points, &[]);
+        let at = self.points.map(|p| p.map(|x| scaled(x, low)));
+        Integers {
+            to: std::array::from_fn(|i| std::array::from_fn(|k| &at[i][k] - &at[N - 1][k])),
+            low,
+        }
+    }
+}
+
+/// Vectors as integers, in units of 2^low.
+pub struct Integers<const D: usize> {
+    /// One vector for each corner but the last.
+    pub to: [[BigInt; D]; D],
+    /// The exponent of the unit.
+    pub low: i64,
+}
+
+#[inline]
+fn product_of_lengths<const D: usize>(vectors: &[[f64; D]; D]) -> f64 {
+    let squares = vectors.map(|v| v.iter().map(|x| x * x).sum::<f64>());
+    squares.iter().product::<f64>().sqrt()
+}
+
+/// `x * 2^exponent`, rounded at most once.
+pub fn times_power(x: f64, exponent: i32) -> f64 {
+    const STEP: i32 = 1000;
+    let power = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
+    // Only the last step may come to subnormal numbers, or the result is zero anyway.
+    let mut x = x * power(exponent % STEP);
+    for _ in 0..(exponent / STEP).abs() {
+        x *= power(STEP * exponent.signum());
+    }
+    x
+}
+
+/// `x * 2^exponent`; mostly the exponent is 0.
+#[inline]
+pub fn in_units(x: f64, exponent: i32) -> f64 {
+    if exponent == 0 {
+        x
+    } else {
+        times_power(x, exponent)
+    }
+}
+
+/// The inner product.
+#[inline]
+pub fn dot<T: Number>(p: [T; 3], q: [T; 3]) -> T {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+/// The cross product.
+#[inline]
+pub fn cross<T: Number>(p: [T; 3], q: [T; 3]) -> [T; 3] {
+    [
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    ]
+}
+
+/// Twice the area of a triangle of its vectors from the last corner.
+#[inline]
+pub fn determinant2<T: Number>([a, b]: &[[T; 2]; 2]) -> T {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Six times the volume of a tetrahedron of its vectors from the last corner. Seen from there, the
+/// others go round clockwise.
+#[inline]
+pub fn determinant3<T: Number>([a, b, c]: &[[T; 3]; 3]) -> T {
+    dot(*a, cross(*c, *b))
+}

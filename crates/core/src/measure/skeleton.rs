@@ -1,0 +1,225 @@
+//! The edges of triangles and of tetrahedra, and the faces of these, each once, in lexicographic order.
+//! Topology alone: no coordinate.
+//!
+//! Vertices are divided in ranges small enough for a cache. A first pass over the simplices puts what
+//! is to be listed in the bucket of the range of its smallest vertex; then each bucket goes to its
+//! vertices by a counting sort, and what comes to a vertex, a few rows, is sorted. In all O(m), in
+//! tasks that share nothing.
+
+use crate::error::Result;
+use crate::memory::{Zero, filled, push, with_room, zeroed};
+use crate::parallel;
+use crate::watch::Watch;
+
+/// The pairs of corners of a tetrahedron.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+/// Simplices whose rows one task puts in buckets.
+const SHARE: usize = 1 << 16;
+/// Vertices in a bucket, at least.
+const RANGE: usize = 1 << 12;
+/// Buckets at most, so that each gets many rows of a share.
+const BUCKETS: usize = 256;
+
+/// Every edge of triangles on `n` points once: the smaller vertex first, rows ascending. Of an edge
+/// between two triangles the later one counts.
+pub fn edges2(
+    simplices: &[[i32; 3]],
+    neighbors: &[[i32; 3]],
+    n: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[i32; 2]>> {
+    let rows_of = |t: usize, to: &mut Buckets<u32>| {
+        let (corners, beyond) = (simplices[t], neighbors[t]);
+        for k in 0..3 {
+            if beyond[k] < t as i32 {
+                let (a, b) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                to.put(a.min(b), a.max(b) as u32)?;
+            }
+        }
+        Ok(())
+    };
+    let row = |u: i32, v: u32| [u, v as i32];
+    distinct(simplices.len(), n, workers, watch, rows_of, row)
+}
+
+/// Every edge of tetrahedra on `n` points once: the smaller vertex first, rows ascending.
+pub fn edges3(
+    simplices: &[[i32; 4]],
+    n: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[i32; 2]>> {
+    let rows_of = |t: usize, to: &mut Buckets<u32>| {
+        let corners = simplices[t];
+        for [i, j] in EDGES {
+            to.put(
+                corners[i].min(corners[j]),
+                corners[i].max(corners[j]) as u32,
+            )?;
+        }
+        Ok(())
+    };
+    let row = |u: i32, v: u32| [u, v as i32];
+    distinct(simplices.len(), n, workers, watch, rows_of, row)
+}
+
+/// Every face of tetrahedra once: vertices and rows ascending. Of a face between two tetrahedra the
+/// later one counts.
+pub fn faces3(
+    simplices: &[[i32; 4]],
+    neighbors: &[[i32; 4]],
+    n: usize,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[i32; 3]>> {
+    let rows_of = |t: usize, to: &mut Buckets<u64>| {
+        let (corners, beyond) = (simplices[t], neighbors[t]);
+        for k in (0..4).filter(|&k| beyond[k] < t as i32) {
+            let mut face = [0, 1, 2].map(|i| corners[i + usize::from(i >= k)]);
+            face.sort_unstable();
+            let [u, v, w] = face;
+            to.put(u, u64::from(v as u32) << 32 | u64::from(w as u32))?;
+        }
+        Ok(())
+    };
+    let row = |u: i32, rest: u64| [u, (rest >> 32) as i32, rest as u32 as i32];
+    distinct(simplices.len(), n, workers, watch, rows_of, row)
+}
+
+/// The rows of some simplices, by the range of their first vertex.
+struct Buckets<T> {
+    /// A range has 2^bits vertices.
+    bits: u32,
+    rows: Vec<Vec<(i32, T)>>,
+}
+
+impl<T> Buckets<T> {
+    fn new(n: usize, bits: u32) -> Result<Self> {
+        let mut rows = with_room((n >> bits) + 1)?;
+        rows.resize_with((n >> bits) + 1, Vec::new);
+        Ok(Self { bits, rows })
+    }
+
+    #[inline]
+    fn put(&mut self, u: i32, rest: T) -> Result<()> {
+        push(&mut self.rows[u as usize >> self.bits], (u, rest))
+    }
+}
+
+/// The different ones of the rows of `count` simplices, in order. A row is its first vertex, below
+/// `n`, and the rest.
+fn distinct<T, R>(
+    count: usize,
+    n: usize,
+    workers: usize,
+    watch: &Watch,
+    rows_of: impl Fn(usize, &mut Buckets<T>) -> Result<()> + Sync,
+    row: impl Fn(i32, T) -> R + Sync,
+) -> Result<Vec<R>>
+where
+    T: Copy + Ord + Default + Send + Sync,
+    R: Zero + Send + Sync,
+{
+    let bits = n.div_ceil(BUCKETS).max(RANGE).next_power_of_two().ilog2();
+    let shares = (0..count).step_by(SHARE).collect();
+    let dealt = parallel::map(workers, shares, |start| {
+        watch.check()?;
+        let mut buckets = Buckets::new(n, bits)?;
+        for t in start..count.min(start + SHARE) {
+            rows_of(t, &mut buckets)?;
+        }
+        Ok(buckets.rows)
+    });
+    let dealt = dealt.into_iter().collect::<Result<Vec<_>>>()?;
+    let buckets = (0..(n >> bits) + 1).collect();
+    let sorted = parallel::map(workers, buckets, |b| {
+        watch.check()?;
+        let parts = dealt.iter().map(|rows| rows[b].as_slice());
+        in_order(parts, (b << bits) as i32, 1 << bits, &row)
+    });
+    drop(dealt);
+    let sorted = sorted.into_iter().collect::<Result<Vec<_>>>()?;
+    let mut found = zeroed(sorted.iter().map(Vec::len).sum())?;
+    let mut tasks = with_room(sorted.len())?;
+    let mut left = found.as_mut_slice();
+    for part in sorted {
+        let (own, later) = left.split_at_mut(part.len());
+        tasks.push((own, part));
+        left = later;
+    }
+    parallel::map(workers, tasks, |(own, part)| own.copy_from_slice(&part));
+    Ok(found)
+}
+
+/// The different ones of rows whose first vertices are the `range` ones from `first` on, in order.
+fn in_order<'a, T: Copy + Ord + Default + 'a, R>(
+    parts: impl Iterator<Item = &'a [(i32, T)]> + Clone,
+    first: i32,
+    range: usize,
+    row: &impl Fn(i32, T) -> R,
+) -> Result<Vec<R>> {
+    let mut ends = filled(range + 1, 0u32)?;
+    for &(u, _) in parts.clone().flatten() {
+        ends[(u - first) as usize + 1] += 1;
+    }
+    for v in 0..range {
+        ends[v + 1] += ends[v];
+    }
+    let mut rest = filled(ends[range] as usize, T::default())?;
+    // Afterwards each entry has moved from the start of its vertex to its end.
+    for &(u, with) in parts.flatten() {
+        let slot = &mut ends[(u - first) as usize];
+        rest[*slot as usize] = with;
+        *slot += 1;
+    }
+    let mut found = with_room(rest.len())?;
+    let mut start = 0;
+    for (u, &end) in (first..).zip(&ends[..range]) {
+        let here = &mut rest[start..end as usize];
+        start = end as usize;
+        here.sort_unstable();
+        let fresh = (0..here.len()).filter(|&i| i == 0 || here[i] != here[i - 1]);
+        found.extend(fresh.map(|i| row(u, here[i])));
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_tetrahedra_on_a_face() {
+        let simplices = [[0, 1, 2, 3], [4, 1, 3, 2]];
+        let neighbors = [[1, -1, -1, -1], [0, -1, -1, -1]];
+        for workers in [1, 3] {
+            let watch = Watch::idle();
+            let found = edges3(&simplices, 6, workers, &watch).unwrap();
+            let expected = [
+                [0, 1],
+                [0, 2],
+                [0, 3],
+                [1, 2],
+                [1, 3],
+                [1, 4],
+                [2, 3],
+                [2, 4],
+                [3, 4],
+            ];
+            assert_eq!(found, expected);
+            let found = faces3(&simplices, &neighbors, 6, workers, &watch).unwrap();
+            let expected = [
+                [0, 1, 2],
+                [0, 1, 3],
+                [0, 2, 3],
+                [1, 2, 3],
+                [1, 2, 4],
+                [1, 3, 4],
+                [2, 3, 4],
+            ];
+            assert_eq!(found, expected);
+            assert!(edges3(&[], 0, workers, &watch).unwrap().is_empty());
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! How good triangles are: angles, area, ratios of radii and of edges.
+
+use num_bigint::{BigInt, Sign};
+
+use super::batch::each;
+use super::corners::{Corners, Integers, Measure, Number, Vectors, determinant2, in_units};
+use crate::error::Result;
+use crate::watch::Watch;
+use crate::wide::{angle, lowest, ratio, root, scaled};
+
+/// Squares that differ by a smaller share are compared exactly: some eight roundings each.
+const UNSURE: f64 = 1e-13;
+
+/// For each triangle the smallest and the largest angle in degrees, the area, twice the inradius as a
+/// share of the circumradius, and the longest edge in lengths of the shortest.
+pub fn qualities2(
+    points: &[[f64; 2]],
+    simplices: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[f64; 5]>> {
+    let quality = |corners| Corners::new(corners).measure(&Quality);
+    each(points, simplices, workers, watch, quality)
+}
+
+struct Quality;
+
+impl Measure<2> for Quality {
+    type Out = [f64; 5];
+
+    #[inline]
+    fn determinant<T: Number>(vectors: &[[T; 2]; 2]) -> T {
+        determinant2(vectors)
+    }
+
+    #[inline]
+    fn of<T: Number>(&self, vectors: &Vectors<T, 2>) -> [f64; 5] {
+        let [a, b] = vectors.to;
+        let c = [b[0] - a[0], b[1] - a[1]];
+        let dot = |p: [T; 2], q: [T; 2]| (p[0] * q[0] + p[1] * q[1]).value();
+        let twice = determinant2(&vectors.to).value();
+        // At each corner the cotangent of the angle is the inner product over twice the area.
+        let dots = [dot(a, b), -dot(a, c), dot(b, c)];
+        let lengths = [a, b, c].map(|v| dot(v, v).sqrt());
+        let (least, most) = ends(dots);
+        let (short, long) = ends(lengths);
+        let around = lengths.iter().sum::<f64>() * lengths.iter().product::<f64>();
+        [
+            twice.atan2(most).to_degrees(),
+            twice.atan2(least).to_degrees(),
+            in_units(twice / 2.0, 2 * vectors.exponent),
+            // Rounding must not make an equilateral triangle better than best.
+            (4.0 * twice * (twice / around)).min(1.0),
+            long / short,
+        ]
+    }
+
+    fn exact(&self, vectors: &Integers<2>) -> [f64; 5] {
+        let [a, b] = &vectors.to;
+        let c = [&b[0] - &a[0], &b[1] - &a[1]];
+        let dot = |p: &[BigInt; 2], q: &[BigInt; 2]| &p[0] * &q[0] + &p[1] * &q[1];
+        let twice = &a[0] * &b[1] - &a[1] * &b[0];
+        let mut dots = [dot(a, b), -dot(a, &c), dot(b, &c)];
+        dots.sort();
+        let mut lengths = [a, b, &c].map(|v| root(&dot(v, v)));
+        lengths.sort();
+        let around = lengths.iter().sum::<BigInt>() * lengths.iter().product::<BigInt>();
+        // Four lengths, each times 2^64.
+        let squares = (&twice * &twice) << (2 + 4 * 64_u32);
+        let infinite = f64::INFINITY;
+        [
+            angle(&twice, &dots[2]).to_degrees(),
+            angle(&twice, &dots[0]).to_degrees(),
+            ratio(&twice, &BigInt::from(2), 2 * vectors.low).unwrap_or(infinite),
+            ratio(&squares, &around, 0).unwrap_or(1.0).min(1.0),
+            ratio(&lengths[2], &lengths[0], 0).unwrap_or(infinite),
+        ]
+    }
+}
+
+/// Which triangles have an angle below a bound, given by the square of its cosine. Exact for that
+/// double: an angle is smaller where the square of its cosine is larger.
+pub fn below(
+    points: &[[f64; 2]],
+    simplices: &[[i32; 3]],
+    squared_cosine: f64,
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<i32>> {
+    let below = Below { squared_cosine };
+    each(points, simplices, workers, watch, |corners| {
+        let corners = Corners::new(corners);
+        let found = corners.measure(&below);
+        i32::from(found.unwrap_or_else(|| below.decided(&corners.integers())))
+    })
+}
+
+/// Whether the smallest angle is below a bound; none where that is not certain.
+struct Below {
+    squared_cosine: f64,
+}
+
+impl Measure<2> for Below {
+    type Out = Option<bool>;
+
+    #[inline]
+    fn determinant<T: Number>(vectors: &[[T; 2]; 2]) -> T {
+        determinant2(vectors)
+    }
+
+    #[inline]
+    fn of<T: Number>(&self, vectors: &Vectors<T, 2>) -> Option<bool> {
+        let [a, b] = vectors.to;
+        let c = [b[0] - a[0], b[1] - a[1]];
+        let dot = |p: [T; 2], q: [T; 2]| (p[0] * q[0] + p[1] * q[1]).value();
+        let [aa, bb, cc] = [dot(a, a), dot(b, b), dot(c, c)];
+        // The smallest angle is opposite the shortest edge; where two are as short, either will do.
+        let (inner, beside) = if cc <= aa && cc <= bb {
+            (dot(a, b), aa * bb)
+        } else if aa <= bb {
+            (dot(b, c), bb * cc)
+        } else {
+            (-dot(a, c), aa * cc)
+        };
+        let over = inner * inner - self.squared_cosine * beside;
+        (over.abs() > UNSURE * beside).then_some(over > 0.0)
+    }
+
+    fn exact(&self, vectors: &Integers<2>) -> Option<bool> {
+        Some(self.decided(vectors))
+    }
+}
+
+impl Below {
+    #[cold]
+    fn decided(&self, vectors: &Integers<2>) -> bool {
+        let [a, b] = &vectors.to;
+        let c = [&b[0] - &a[0], &b[1] - &a[1]];
+        let dot = |p: &[BigInt; 2], q: &[BigInt; 2]| &p[0] * &q[0] + &p[1] * &q[1];
+        let [aa, bb, cc] = [a, b, &c].map(|v| dot(v, v));
+        let low = lowest(&[[self.squared_cosine]], &[]).min(0);
+        let bound = scaled(self.squared_cosine, low);
+        let sharp = |inner: BigInt, beside: BigInt| {
+            inner.sign() == Sign::Plus && (&inner * &inner << -low as u64) > beside * &bound
+        };
+        sharp(dot(a, b), &aa * &bb) || sharp(dot(b, &c), &bb * &cc) || sharp(-dot(a, &c), aa * cc)
+    }
+}
+
+/// The least and the greatest of three numbers.
+#[inline]
+fn ends([a, b, c]: [f64; 3]) -> (f64, f64) {
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stages_agree_where_all_are_accurate() {
+        let right = [[4.0, 0.0], [4.0, 3.0], [0.0, 0.0]];
+        let corners = Corners::new(right);
+        let plain = corners.measure(&Quality);
+        let area = 6.0;
+        assert_eq!(plain[1], 90.0);
+        assert_eq!(plain[2], area);
+        assert!((plain[0] - 0.75_f64.atan().to_degrees()).abs() < 1e-14);
+        assert!((plain[3] - 0.8).abs() < 1e-15);
+        let exact = Quality.exact(&corners.integers());
+        for (p, q) in plain.iter().zip(exact) {
+            assert!(
+                (p - q).abs() <= 4.0 * f64::EPSILON * q.abs(),
+                "{plain:?} {exact:?}"
+            );
+        }
+        let pairs = Quality.of(&corners.pairs().unwrap());
+        for (p, q) in pairs.iter().zip(exact) {
+            assert!(
+                (p - q).abs() <= 4.0 * f64::EPSILON * q.abs(),
+                "{pairs:?} {exact:?}"
+            );
+        }
+    }
+}
