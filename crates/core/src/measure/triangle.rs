@@ -141,7 +141,7 @@ impl Below {
         let low = lowest(&[[self.squared_cosine]], &[]).min(0);
         let bound = scaled(self.squared_cosine, low);
         let sharp = |inner: BigInt, beside: BigInt| {
-            inner.sign() == Sign::Plus && (&inner * &inner << -low as u64) > beside * &bound
+            inner.sign() == Sign::Plus && ((&inner * &inner) << -low as u64) > beside * &bound
         };
         sharp(dot(a, b), &aa * &bb) || sharp(dot(b, &c), &bb * &cc) || sharp(-dot(a, &c), aa * cc)
     }
