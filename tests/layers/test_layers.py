@@ -74,7 +74,8 @@ PYTHON: dict[str, set[str]] = {
         "space",
     }
     | FOUNDATION,
-    "interpolate": {"immutable", "_core", "delaunay", "location", "plane", "space"} | FOUNDATION,
+    "interpolate": {"immutable", "_core", "delaunay", "location", "periodic", "plane", "space"}
+    | FOUNDATION,
     "compat": {
         "_core",
         "delaunay",

@@ -596,3 +596,18 @@ def test_half_spaces_and_hulls_of_any_size(scale: float) -> None:
     assert diagram.cell_volumes.sum() == pytest.approx(1, rel=1e-12)
     with pytest.raises(InputError, match="normal is zero"):
         Voronoi(sites, clip=[*planes, (0, 0, 0, -1)])
+
+
+def test_a_picture_without_a_window() -> None:
+    pyvista = pytest.importorskip("pyvista")
+    diagram = Voronoi(uniform(5, 2), clip="box")
+    plotter = diagram.plot(off_screen=True, color="white", scalars=None)
+    assert plotter.off_screen and len(plotter.actors) == 1
+    plotter.close()
+    own = pyvista.Plotter(off_screen=True)
+    assert diagram.plot(own) is own
+    with pytest.raises(InputError, match="new plotter"):
+        diagram.plot(own, off_screen=True)
+    own.close()
+    with pytest.raises(InputError, match="off_screen must be True, False or None"):
+        diagram.plot(off_screen="yes")

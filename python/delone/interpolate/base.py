@@ -22,6 +22,7 @@ from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.immutable import own_copy
 from delone.interpolate.hull import summed
+from delone.interpolate.repeated import repeated
 from delone.interpolate.space import SPACE
 from delone.interpolate.values import (
     DUPLICATES,
@@ -32,6 +33,7 @@ from delone.interpolate.values import (
     require_finite_values,
 )
 from delone.interpolate.weights import joined
+from delone.periodic import PeriodicDelaunay
 from delone.plane.triangulation import Triangulation
 from delone.space import location as places
 
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.hull import Terms
+    from delone.interpolate.repeated import Repeated
     from delone.interpolate.weights import Table, Weights
 
     Floats = NDArray[np.float64]
@@ -55,7 +58,8 @@ class Interpolator:
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is.
+        Sites. A triangulation of delone is used as it is; a periodic one makes the interpolant
+        periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
     extrapolate, duplicates, nan, respect_constraints, workers
@@ -72,7 +76,7 @@ class Interpolator:
 
     def __init__(
         self,
-        points: ArrayLike | Triangulation,
+        points: ArrayLike | Triangulation | PeriodicDelaunay,
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nan",
@@ -90,7 +94,10 @@ class Interpolator:
         self._other: Self | None = None
         as_workers(workers)
         given = points if isinstance(points, Triangulation) else None
-        self._sites: Floats = points.points if isinstance(points, Triangulation) else _own(points)
+        self._periodic = points if isinstance(points, PeriodicDelaunay) else None
+        self._repeated: Repeated | None = None
+        known = given if self._periodic is None else self._periodic
+        self._sites: Floats = _own(points) if known is None else known.points
         if self._ndim == SPACE:
             self._check_space(given)
         self._constrained = getattr(given, "constrained", None) is not None
@@ -109,8 +116,22 @@ class Interpolator:
 
     @property
     def triangulation(self) -> Triangulation:
-        """The triangulation of the sites; without those that ``nan="drop"`` left out."""
+        """The triangulation of the sites; without those that ``nan="drop"`` left out.
+
+        Of periodic sites that of as many copies as are needed, those of one site side by side.
+        """
         return self._mesh
+
+    @property
+    def _box(self) -> tuple[list[float], list[float]]:
+        """Least and greatest coordinates of the sites; of periodic ones, one period."""
+        low, high = self._mesh.min_bound.copy(), self._mesh.max_bound.copy()
+        if self._repeated is not None:
+            for axis, length in enumerate(self._repeated.periods):
+                if length is not None:
+                    low[axis] = self._repeated.low[axis]
+                    high[axis] = low[axis] + length
+        return low.tolist(), high.tolist()
 
     @property
     def npoints(self) -> int:
@@ -152,9 +173,8 @@ class Interpolator:
         array(2.)
         """
         interpolator, field, columns = self._with(values)
-        queries = as_vectors(xi, self._ndim, name="xi")
-        found = interpolator._interpolated(queries.reshape(-1, self._ndim), columns)
-        return field.shaped(found, queries.shape[:-1])
+        queries, shape = interpolator._queries(xi)
+        return field.shaped(interpolator._interpolated(queries, columns), shape)
 
     def gradient(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
         """Return the slope of the interpolant.
@@ -187,9 +207,8 @@ class Interpolator:
                [nan, nan]])
         """
         interpolator, field, columns = self._with(values)
-        queries = as_vectors(xi, self._ndim, name="xi")
-        slopes = interpolator._sloped(queries.reshape(-1, self._ndim), columns)
-        return shaped_derivatives(slopes, field, queries.shape[:-1])
+        queries, shape = interpolator._queries(xi)
+        return shaped_derivatives(interpolator._sloped(queries, columns), field, shape)
 
     def weights(self, xi: ArrayLike) -> Weights:
         """Return which sites count at each query, and how much.
@@ -218,8 +237,7 @@ class Interpolator:
         >>> table @ [1.0, 5.0, 9.0], table @ [0.0, 0.0, 8.0]
         (array([4., 7.]), array([2., 4.]))
         """
-        queries = as_vectors(xi, self._ndim, name="xi")
-        return self._table(queries.reshape(-1, self._ndim), queries.shape[:-1])
+        return self._table(*self._queries(xi))
 
     # What subclasses say.
 
@@ -255,7 +273,17 @@ class Interpolator:
         """
         return None
 
+    def _needed(self) -> dict[str, bool]:
+        """What of periodic sites must be seen; as `repeated` takes it."""
+        return {}
+
     # What they share.
+
+    def _queries(self, xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
+        """Queries, flat and in the period of the sites, and their leading axes."""
+        queries = as_vectors(xi, self._ndim, name="xi")
+        flat = queries.reshape(-1, self._ndim)
+        return flat if self._repeated is None else self._repeated.wrapped(flat), queries.shape[:-1]
 
     @property
     def workers(self) -> int | None:
@@ -284,6 +312,10 @@ class Interpolator:
             field = field.at(self._kept)
         if self._nan == "error":
             require_finite_values(field)
+        if self._repeated is not None:
+            # By the sites: rounding may make copies of different sites one.
+            merged = field.merged(self._repeated.duplicate_of, self._duplicates)
+            return merged.at(self._repeated.sites(len(merged))).columns
         return field.merged(self._mesh.duplicate_of, self._duplicates).columns
 
     def caller_rows(self) -> NDArray[np.int32]:
@@ -298,8 +330,13 @@ class Interpolator:
         if self._duplicates == "last":
             # Assignments to the same row happen in order, so the last one stays.
             rows[self._mesh.duplicate_of] = rows.copy()
-        found: NDArray[np.int32] = rows[self._spoken_of()]
-        return found if self._kept is None else self._kept[found].astype(np.int32)
+        return self._as_given(rows[self._spoken_of()])
+
+    def _as_given(self, rows: NDArray[np.integer]) -> NDArray[np.int32]:
+        """The caller's rows of rows of the mesh."""
+        if self._repeated is not None:
+            rows = rows // len(self._repeated.moves)
+        return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
 
     def mixed_rows(self) -> tuple[Rows, NDArray[np.int32]] | None:
         """Return which of the caller's rows have their mean in each row that a table speaks of.
@@ -330,8 +367,7 @@ class Interpolator:
         starts, counts = starts[places], counts[places]
         indptr = np.concatenate(([0], np.cumsum(counts)))
         within = np.arange(indptr[-1]) - np.repeat(indptr[:-1] - starts, counts)
-        rows = order[within]
-        return indptr, (rows if self._kept is None else self._kept[rows]).astype(np.int32)
+        return indptr, self._as_given(order[within])
 
     def _spoken_of(self) -> NDArray[np.integer]:
         """The point of the mesh that each row of a table is."""
@@ -428,6 +464,12 @@ class Interpolator:
         if self._given is not None:
             return self._given if self._kept is None else _with_only(self._given, self._kept)
         sites = self._sites if self._kept is None else self._sites[self._kept]
+        if self._periodic is not None:
+            mesh = self._periodic
+            if self._kept is not None:
+                mesh = PeriodicDelaunay(sites, mesh.periods)
+            self._repeated = repeated(mesh, **self._needed())
+            sites = self._repeated.copies(sites)
         return Delaunay(sites, workers=self._workers)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -438,7 +480,7 @@ class Interpolator:
         return f"<{type(self).__name__} on {self._mesh!r}>"
 
 
-def _own(points: ArrayLike) -> Floats:
+def _own(points: Any) -> Floats:
     if hasattr(points, "simplices"):
         raise DtypeError(f"{type(points).__name__} is no triangulation of delone; pass its points")
     return own_copy(points, ndim=None)

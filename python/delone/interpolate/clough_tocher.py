@@ -21,6 +21,7 @@ from delone.interpolate.weights import Weights
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -93,7 +94,7 @@ class CloughTocher(Smooth):
 
     def __init__(
         self,
-        points: ArrayLike | Triangulation,
+        points: ArrayLike | Triangulation | PeriodicDelaunay,
         values: ArrayLike | None = None,
         *,
         gradients: str = "global",

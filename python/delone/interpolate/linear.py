@@ -26,7 +26,8 @@ class Linear(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is, constrained ones included.
+        Sites. A triangulation of delone is used as it is, constrained ones included. A periodic one,
+        ``Delaunay(points, periodic=(360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
@@ -59,6 +60,9 @@ class Linear(Interpolator):
     At a site the value comes back bit for bit; linear functions are reproduced up to rounding.
     Inside of the hull, its boundary included, the answer is never NaN unless a value is. Each query
     costs its location: O(1) in order along a space-filling curve, which the core sees to.
+
+    On a periodic triangulation queries are moved into one period, and the sites are copied as far
+    as they matter: at least twice on each side. In a direction with a period there is no outside.
 
     See Also
     --------

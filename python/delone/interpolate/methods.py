@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from delone.interpolate.base import Interpolator
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
 __all__ = ["METHODS", "interpolator"]
@@ -33,7 +34,7 @@ METHODS: Mapping[str, tuple[type[Interpolator], dict[str, Any]]] = {
 
 def interpolator(
     method: str,
-    points: ArrayLike | Triangulation,
+    points: ArrayLike | Triangulation | PeriodicDelaunay,
     values: ArrayLike | None = None,
     **options: Any,
 ) -> Interpolator:

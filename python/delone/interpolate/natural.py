@@ -26,6 +26,7 @@ from delone.interpolate.weights import Weights
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -95,7 +96,7 @@ class NaturalNeighbor(Smooth):
 
     def __init__(
         self,
-        points: ArrayLike | Triangulation,
+        points: ArrayLike | Triangulation | PeriodicDelaunay,
         values: ArrayLike | None = None,
         *,
         kind: str = "sibson",
@@ -132,6 +133,10 @@ class NaturalNeighbor(Smooth):
         super()._check_space(given)
         if self._kind != "laplace":
             refuse(f"kind={self._kind!r}", "choose kind='laplace'")
+
+    def _needed(self) -> dict[str, bool]:
+        rings = self._kind in _WITH_GRADIENTS and self._estimate == "global"
+        return {"far": True, "rings": rings}
 
     @property
     def kind(self) -> str:

@@ -15,6 +15,7 @@ from delone.interpolate.weights import Weights, rectangular
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -67,7 +68,7 @@ class Nearest(Interpolator):
 
     def __init__(
         self,
-        points: ArrayLike | Triangulation,
+        points: ArrayLike | Triangulation | PeriodicDelaunay,
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nearest",

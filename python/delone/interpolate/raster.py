@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -85,7 +86,7 @@ class Grid:
 
 
 def grid(
-    points: ArrayLike | Triangulation | Interpolator,
+    points: ArrayLike | Triangulation | PeriodicDelaunay | Interpolator,
     values: ArrayLike | None = None,
     *,
     resolution: float | tuple[float, float] | None = None,
@@ -178,9 +179,7 @@ def _nodes(  # noqa: PLR0917
     bounds: Sequence[float] | None,
 ) -> tuple[Floats, Floats]:
     if x is None and y is None:
-        mesh = made.triangulation
-        box = mesh.min_bound.tolist(), mesh.max_bound.tolist()
-        return raster_nodes(box, resolution=resolution, shape=shape, bounds=bounds)
+        return raster_nodes(made._box, resolution=resolution, shape=shape, bounds=bounds)
     if x is None or y is None or not (resolution is None and shape is None and bounds is None):
         raise InputError("nodes are both x and y, without resolution, shape or bounds")
     return _ascending(x, "x"), _ascending(y, "y")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core, location
-from delone._arrays import as_count, as_number, as_vectors, as_workers
+from delone._arrays import as_count, as_number, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
+    from delone.periodic import PeriodicDelaunay
     from delone.plane.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
@@ -75,7 +76,7 @@ class Smooth(Interpolator):
 
     def __init__(
         self,
-        points: ArrayLike | Triangulation,
+        points: ArrayLike | Triangulation | PeriodicDelaunay,
         values: ArrayLike | None = None,
         *,
         gradients: str,
@@ -117,9 +118,9 @@ class Smooth(Interpolator):
         if self._ndim == SPACE:
             refuse("hessian", "there are values alone")
         interpolator, field, columns = self._with(values)
-        queries = as_vectors(xi, 2, name="xi")
-        found = interpolator._derived(queries.reshape(-1, 2), columns, 2)
-        full = shaped_derivatives(found[..., [0, 1, 1, 2]], field, queries.shape[:-1])
+        queries, shape = interpolator._queries(xi)
+        found = interpolator._derived(queries, columns, 2)
+        full = shaped_derivatives(found[..., [0, 1, 1, 2]], field, shape)
         return full.reshape((*full.shape[:-1], 2, 2))
 
     def site_gradients(self, *, values: ArrayLike | None = None) -> NDArray[Any]:
@@ -156,6 +157,9 @@ class Smooth(Interpolator):
         found = interpolator.gradients(columns)
         return shaped_derivatives(found, field, found.shape[:1])
 
+    def _needed(self) -> dict[str, bool]:
+        return {"rings": self._estimate == "global"}
+
     def _require_gradients(self) -> None:
         """Refuse where the interpolant is made without gradients at the sites."""
 
@@ -166,6 +170,9 @@ class Smooth(Interpolator):
             known: Floats = self._cache["gradients"]
             return known
         found = self._estimated(columns)
+        if self._repeated is not None:
+            # Copies at the rim see only a part of what their site sees.
+            found = found[self._repeated.unmoved(len(found))]
         if own:
             self._cache["gradients"] = found
         return found

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_workers
+from delone._arrays import as_flag, as_optional_flag, as_workers
 from delone.counting import counted
 from delone.errors import InputError
 from delone.immutable import kept, own_copy, sealed
@@ -397,13 +397,15 @@ class SpaceVoronoi(Voronoi):
         grid.cell_data["volume"] = self.cell_volumes[rows]
         return grid
 
-    def plot(self, ax: Any = None, **options: Any) -> Any:
+    def plot(self, ax: Any = None, *, off_screen: bool | None = None, **options: Any) -> Any:
         """Draw the cells that have an end with pyvista (extra ``pyvista``).
 
         Parameters
         ----------
         ax : pyvista.Plotter, optional
             Where to draw; by default a new one.
+        off_screen : bool, optional
+            Whether a new plotter draws without a window. Not together with `ax`.
         **options
             As ``Plotter.add_mesh`` takes them.
 
@@ -414,6 +416,8 @@ class SpaceVoronoi(Voronoi):
 
         Raises
         ------
+        InputError
+            Both `ax` and `off_screen` are given.
         MissingExtraError
             pyvista is not installed.
 
@@ -425,8 +429,11 @@ class SpaceVoronoi(Voronoi):
         """
         from delone.io.extras import require
 
+        hidden = as_optional_flag(off_screen, name="off_screen")
+        if ax is not None and hidden is not None:
+            raise InputError("off_screen is for a new plotter: give it to that of ax")
         pyvista = require("pyvista", extra="pyvista", what="drawing in space")
-        plotter = pyvista.Plotter() if ax is None else ax
+        plotter = pyvista.Plotter(off_screen=hidden) if ax is None else ax
         grid = self.to_pyvista()
         plotter.add_mesh(grid.shrink(0.85), **({"scalars": "site", "show_edges": True} | options))
         return plotter

@@ -1,0 +1,211 @@
+"""Periodic sites: copies enough that queries of one period see what they would see of all copies.
+
+Queries are moved into one period, the window. An edge of a periodic Delaunay triangulation is no
+longer than a period in its direction: of an edge from p to q that is longer, q minus a period would
+lie in every circle through p and q on one of its sides, and p plus a period on the other. So each
+triangle at the window has its corners less than a period away from it, and copies one period
+further on each side make its neighborhood that of the endless set. Natural neighbors are as far
+away as the empty circles are wide; those count when the copies are counted.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.errors import InputError, LimitError
+from delone.plane import geometry
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.periodic import PeriodicDelaunay
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.int64]
+
+__all__ = ["Repeated", "repeated"]
+
+# Triangles at the window are right with one period on each side, their neighbors with two.
+_LEAST = 2
+# What a site says of gradients by the global estimation at least halves from each ring of neighbors
+# to the next; after so many it is below the default tolerance.
+_RINGS = 36
+
+
+class Repeated(NamedTuple):
+    """A window of one period, and the moves of the copies around it.
+
+    Parameters
+    ----------
+    periods : tuple of two floats or None
+        The periods in x and y.
+    low : ndarray of float64, shape (2,)
+        Where the window begins.
+    moves : ndarray of float64, shape (k, 2)
+        How far each copy is moved; the first is not.
+    duplicate_of : ndarray of int32, shape (n,)
+        The first row with the same coordinates, for each site.
+    """
+
+    periods: tuple[float | None, float | None]
+    low: Floats
+    moves: Floats
+    duplicate_of: NDArray[np.int32]
+
+    def copies(self, sites: Floats) -> Floats:
+        """Return all copies of sites, those of one site side by side, it itself first.
+
+        Parameters
+        ----------
+        sites : ndarray of float64, shape (n, 2)
+            The sites.
+
+        Returns
+        -------
+        ndarray of float64, shape (n * k, 2)
+            The copies, rounded.
+
+        Raises
+        ------
+        LimitError
+            A copy lies beyond the range of doubles.
+        """
+        # So the order of copies at equal distances is that of their sites.
+        with np.errstate(over="ignore"):
+            found: Floats = (sites[:, None] + self.moves).reshape(-1, 2)
+        if not np.isfinite(found).all():
+            raise LimitError("a copy of a site lies beyond the range of doubles")
+        return found
+
+    def sites(self, count: int) -> Rows:
+        """Return the site of each copy.
+
+        Parameters
+        ----------
+        count : int
+            How many sites there are.
+
+        Returns
+        -------
+        ndarray of int64, shape (count * k,)
+            Rows of sites.
+        """
+        return np.repeat(np.arange(count), len(self.moves))
+
+    def unmoved(self, count: int) -> Rows:
+        """Return the copy that is not moved, for each copy.
+
+        Parameters
+        ----------
+        count : int
+            How many copies there are.
+
+        Returns
+        -------
+        ndarray of int64, shape (count,)
+            Rows of copies.
+        """
+        every = len(self.moves)
+        return np.arange(count) // every * every
+
+    def wrapped(self, queries: Floats) -> Floats:
+        """Return queries moved into the window by whole periods.
+
+        Parameters
+        ----------
+        queries : ndarray of float64, shape (k, 2)
+            Where.
+
+        Returns
+        -------
+        ndarray of float64, shape (k, 2)
+            The same array where nothing is to be moved. What is not finite stays as it is.
+        """
+        moved = queries
+        for axis, length in enumerate(self.periods):
+            if length is None:
+                continue
+            low, along = self.low[axis], queries[:, axis]
+            away = np.isfinite(along) & ((along < low) | (along > low + length))
+            if away.any():
+                moved = queries.copy() if moved is queries else moved
+                moved[away, axis] = low + np.mod(along[away] - low, length)
+        return moved
+
+
+def repeated(mesh: PeriodicDelaunay, *, far: bool = False, rings: bool = False) -> Repeated:
+    """Return how the sites of a periodic triangulation are to be repeated.
+
+    Parameters
+    ----------
+    mesh : PeriodicDelaunay
+        Without weights.
+    far : bool, optional
+        Whether natural neighbors are wanted, which are as far away as empty circles are wide.
+    rings : bool, optional
+        Whether gradients are estimated globally, so that many rings of neighbors count.
+
+    Returns
+    -------
+    Repeated
+        The window and the moves.
+
+    Raises
+    ------
+    InputError
+        The triangulation has weights.
+    """
+    if mesh.weights is not None:
+        raise InputError(
+            "a periodic triangulation with weights has hidden sites and no natural neighbors: "
+            "interpolate on delone.PeriodicDelaunay(points, periods) without weights"
+        )
+    low = mesh.points.min(axis=0)
+    width = _widest(mesh) if far else 0.0
+    counts = [
+        0 if length is None else _count(mesh, axis, width, rings)
+        for axis, length in enumerate(mesh.periods)
+    ]
+    steps: Any = np.meshgrid(*(np.arange(-k, k + 1) for k in counts), indexing="ij")
+    steps = np.stack(steps, axis=-1).reshape(-1, 2)
+    # The nearest first, so that the copy that is not moved is the first.
+    steps = steps[np.argsort(np.abs(steps).sum(axis=1), kind="stable")]
+    lengths = np.array([length or 0.0 for length in mesh.periods])
+    with np.errstate(over="ignore"):
+        moves = steps * lengths
+    return Repeated(mesh.periods, low, moves, mesh.duplicate_of)
+
+
+def _count(mesh: PeriodicDelaunay, axis: int, width: float, rings: bool) -> int:
+    """How many copies there are on each side along an axis."""
+    length = mesh.periods[axis]
+    assert length is not None
+    count = max(_LEAST, math.ceil(width / length) + 1)
+    if rings:
+        other = mesh.periods[1 - axis] or float(np.ptp(mesh.points[:, 1 - axis]))
+        across = math.sqrt(mesh.npoints * length / other) if other else mesh.npoints
+        # At the border of a strip rings are wide.
+        count = max(count, _LEAST + 1, math.ceil(_RINGS / max(across, 1.0)))
+    return count
+
+
+def _widest(mesh: PeriodicDelaunay) -> float:
+    """The diameter of the widest circle in which a query may lie.
+
+    Where there is one period, a circle around a point beyond the strip of the sites meets the strip
+    between two sites of its border, which are no further apart than the period.
+    """
+    corners = mesh.corners
+    count = 3 * mesh.nsimplex
+    numbers = np.arange(count, dtype=np.int32).reshape(-1, 3)
+    center = geometry.circumcenters(corners.reshape(-1, 2), numbers)
+    radius = np.hypot(*(center - corners[:, 0]).T)
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    inside = np.ones(len(radius), dtype=bool)
+    for axis, length in enumerate(mesh.periods):
+        if length is None:
+            inside &= (center[:, axis] >= low[axis]) & (center[:, axis] <= high[axis])
+    return 2 * float(radius[inside].max(initial=0.0))
