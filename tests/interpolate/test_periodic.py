@@ -79,7 +79,7 @@ def test_natural_neighbors_many_periods_away() -> None:
     """In a gap that is many periods high a query takes area from sites far to its side."""
     rng = np.random.default_rng(5)
     low = rng.random((6, 2)) * [0.9, 0.1]
-    points = np.concatenate((low, low + [0.05, 9.0]))
+    points = np.concatenate((low, low + np.array([0.05, 9.0])))
     values = rng.random(12)
     made = NaturalNeighbor(Delaunay(points, periodic=(1, None)), values)
     plain = NaturalNeighbor(*spelled_out(points, values, (1, None), 60))
@@ -144,7 +144,7 @@ def test_policies_for_values() -> None:
     with pytest.raises(ConflictingValuesError) as raised:
         Linear(mesh, more)
     assert raised.value.rows.tolist() == [[50, 0], [51, 1], [52, 2]]
-    means = np.append((values[:3] + [5, 6, 7]) / 2, values[3:])
+    means = np.append((values[:3] + more[50:]) / 2, values[3:])
     plain = Linear(Delaunay(points, periodic=(360, None)), means)
     made = Linear(mesh, more, duplicates="mean")
     np.testing.assert_allclose(made(given), plain(given), atol=1e-12)

@@ -26,8 +26,8 @@ class Linear(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is, constrained ones included. A periodic one,
-        ``Delaunay(points, periodic=(360, None))``, makes the interpolant periodic as well.
+        Sites. A triangulation of delone is used as it is, constrained ones included. A periodic
+        one, ``Delaunay(points, periodic=(360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
