@@ -16,7 +16,7 @@ KNOWN = 0.35
 def sea_floor() -> None:
     """The soundings off Baja California as a map of the sea floor, and where they were taken."""
     survey = datasets.baja()
-    made = interpolator("sibson", survey.points, survey.z, duplicates="mean")
+    made = interpolator("sibson", survey, survey.z, duplicates="mean", planar=True)
     sea = grid(made, resolution=0.0125)
     nearest = made.triangulation.nearest(np.stack(np.meshgrid(sea.x, sea.y), axis=-1))
     away = np.hypot(

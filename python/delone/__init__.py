@@ -40,6 +40,7 @@ from delone.errors import (
     NonFiniteError,
     ShapeError,
 )
+from delone.georeference import CRSWarning, GeographicWarning
 from delone.hull import ConvexHull
 from delone.improve import improve
 from delone.improve.report import ImproveReport
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BudgetExceededError",
     "BusyError",
+    "CRSWarning",
     "ConflictingValuesError",
     "ConstrainedDelaunay",
     "ConstrainedReport",
@@ -82,6 +84,7 @@ __all__ = [
     "DtypeError",
     "Editing",
     "FileFormatError",
+    "GeographicWarning",
     "ImproveReport",
     "InputError",
     "InternalError",

@@ -88,6 +88,7 @@ def as_points(
     if _is_right(points, ndim):
         return points
     array = as_plain_array(points, name)
+    _refuse_geometries(array, name)
     _refuse_kind(array, name)
     _refuse_shape(array, ndim, name)
     if array.dtype.kind in "iu":
@@ -672,6 +673,15 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
         if not isinstance(points, list | tuple):
             raise
         raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+
+
+def _refuse_geometries(array: NDArray[Any], name: str) -> None:
+    if array.dtype.kind == "O" and any(hasattr(each, "geom_type") for each in array.ravel()[:8]):
+        raise DtypeError(
+            f"{name} holds geometries, not numbers: of points pass their coordinates, "
+            f"shapely.get_coordinates({name}) or {name}.get_coordinates().to_numpy(); "
+            "delone.from_geometry takes geometries of every kind"
+        )
 
 
 def _refuse_kind(array: NDArray[Any], name: str) -> None:

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 __all__ = ["CONSTRAINED", "DELAUNAY", "DELAUNAY3", "MESH", "Kind", "read", "write"]
 
 _VERSION = 1
+# Bytes, four for each character: no WKT is as long.
+_LONGEST_CRS = 1 << 18
 
 
 class Kind(NamedTuple):
@@ -46,7 +48,11 @@ class Kind(NamedTuple):
 
 
 def write(
-    path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], kind: Kind | None = None
+    path: str | os.PathLike[str],
+    arrays: Mapping[str, NDArray[Any]],
+    kind: Kind | None = None,
+    *,
+    crs: str | None = None,
 ) -> None:
     """Write a triangulation to a file, whole or not at all.
 
@@ -58,6 +64,8 @@ def write(
         The arrays of the layout.
     kind : Kind, optional
         The kind of archive, by default `DELAUNAY`.
+    crs : str, optional
+        The reference system of the coordinates.
 
     Raises
     ------
@@ -66,6 +74,8 @@ def write(
     """
     kind = kind or DELAUNAY
     columns: dict[str, Any] = {name: arrays[name] for name in kind.layout}
+    if crs is not None:
+        columns["crs"] = np.array(crs)
     with replacing(_path(path)) as beside, beside.open("wb") as file:
         np.savez(file, format=np.array(kind.format), version=np.array(_VERSION), **columns)
 
@@ -85,7 +95,8 @@ def read(
     Returns
     -------
     dict of str to ndarray
-        What was given to `write`.
+        What was given to `write`; where a constrained triangulation has a reference
+        system, it as ``crs``.
 
     Raises
     ------
@@ -116,12 +127,14 @@ def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, N
         with zipfile.ZipFile(file) as archive:
             kind = _kind(archive, kinds)
             arrays = {name: _array(archive, name, *kind.layout[name]) for name in kind.layout}
+            known = kind is CONSTRAINED and "crs.npy" in archive.namelist()
+            crs = _scalar(archive, "crs", _LONGEST_CRS) if known else None
         kind.check(**arrays)
     except _DAMAGE as error:
         raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from error
     except _ContradictionError as error:
         raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from None
-    return arrays
+    return arrays if crs is None else arrays | {"crs": np.array(str(crs))}
 
 
 # What damage makes zipfile raise: OSError where it seeks below zero, RuntimeError for a
@@ -160,10 +173,10 @@ def _kind(archive: zipfile.ZipFile, kinds: tuple[Kind, ...]) -> Kind:
     return fitting[0]
 
 
-def _scalar(archive: zipfile.ZipFile, name: str) -> Any:
+def _scalar(archive: zipfile.ZipFile, name: str, most: int = 256) -> Any:
     with _member(archive, name) as file:
         shape, dtype = _header(file, name)
-        _require(shape == () and dtype.kind in "Ui" and dtype.itemsize <= 256, f"{name} is odd")
+        _require(shape == () and dtype.kind in "Ui" and dtype.itemsize <= most, f"{name} is odd")
         data = file.read(dtype.itemsize)
     _require(len(data) == dtype.itemsize, f"{name} is cut short")
     return np.frombuffer(data, dtype=dtype)[0].item()

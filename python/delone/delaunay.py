@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Self, overload
 from delone import _core
 from delone._arrays import as_workers
 from delone.counting import counted
-from delone.errors import DegenerateInputError, InputError, InternalError
+from delone.errors import DegenerateInputError, DtypeError, InputError, InternalError
+from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
 from delone.space.plane import plane_of
 from delone.space.spatial import Spatial
@@ -20,7 +21,7 @@ from delone.validation import SpaceReport, ValidationReport
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,8 @@ __all__ = ["Delaunay"]
 # In space cavities along a curve are the one method; both names mean it.
 _METHODS2 = _core.methods2()
 _METHODS3 = ["auto", "bowyer-watson"]
+# Arguments of scipy.spatial.Delaunay that have no meaning here.
+_SCIPY = ("furthest_site", "incremental", "qhull_options")
 # Fewer points are never shared among threads.
 _FEW = 1000
 
@@ -41,7 +44,7 @@ class Delaunay(Spatial):
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
+    points : array_like, shape (n, 2) or (n, 3), or PointSet
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
         copied and taken as the exact numbers which they denote. Three columns are points in space:
         of a surface with heights, give the first two.
@@ -57,6 +60,9 @@ class Delaunay(Spatial):
         with `periodic`, the choices are ``"auto"`` and ``"bowyer-watson"``.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
+    planar : bool, optional
+        Whether longitudes and latitudes are meant as coordinates of a plane; otherwise points that
+        say they are in degrees (by a reference system or names of columns) are warned of.
 
     Attributes
     ----------
@@ -94,6 +100,11 @@ class Delaunay(Spatial):
         There is not enough memory.
     KeyboardInterrupt
         Ctrl-C was pressed. Nothing is left behind.
+
+    Warns
+    -----
+    GeographicWarning
+        The points say that they are longitudes and latitudes; see `planar`.
 
     Notes
     -----
@@ -155,7 +166,12 @@ class Delaunay(Spatial):
     # another class, for which no method here would be right.
     @overload
     def __new__(
-        cls, points: ArrayLike = ..., *, method: str = ..., workers: int | None = ...
+        cls,
+        points: ArrayLike = ...,
+        *,
+        method: str = ...,
+        workers: int | None = ...,
+        planar: bool = ...,
     ) -> Self: ...
     @overload
     def __new__(  # type: ignore[misc]
@@ -165,6 +181,7 @@ class Delaunay(Spatial):
         periodic: Sequence[float | None],
         method: str = ...,
         workers: int | None = ...,
+        planar: bool = ...,
     ) -> PeriodicDelaunay: ...
     def __new__(  # type: ignore[misc]
         cls,
@@ -173,8 +190,11 @@ class Delaunay(Spatial):
         periodic: Sequence[float | None] | None = None,
         method: str = "auto",
         workers: int | None = None,
+        planar: bool = False,
+        **unknown: Any,
     ) -> Self | PeriodicDelaunay:
         """Make a `Delaunay`; with periods, a `PeriodicDelaunay`."""
+        _refuse_options(unknown)
         if periodic is None:
             return super().__new__(cls)
         from delone.periodic import PeriodicDelaunay
@@ -193,10 +213,12 @@ class Delaunay(Spatial):
         periodic: None = None,
         method: str = "auto",
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Delaunay never changes: make another one")
         own = own_copy(points, ndim=None)
+        warn_of_degrees(points, own, planar=planar)
         # Few points are one task, and to count cores takes as long as some of them.
         threads = 1 if workers is None and len(own) < _FEW else as_workers(workers)
         methods = _METHODS2 if own.shape[1] == 2 else _METHODS3
@@ -339,6 +361,17 @@ class Delaunay(Spatial):
             points += f" ({counted(duplicates, 'duplicate')})"
         simplex = "triangle" if self.ndim == 2 else "tetrahedron"
         return f"<Delaunay of {points}: {counted(self.nsimplex, simplex)}>"
+
+
+def _refuse_options(unknown: Mapping[str, Any]) -> None:
+    """Refuse arguments that there are not, and say who takes those of SciPy."""
+    for name in unknown:
+        if name in _SCIPY:
+            raise DtypeError(
+                f"delone.Delaunay takes no {name}, which is SciPy's: leave it out, or use "
+                "delone.compat.scipy.Delaunay, which takes what SciPy takes"
+            )
+        raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r}")
 
 
 def _triangles(points: NDArray[np.float64], method: str, workers: int) -> Any:

@@ -14,6 +14,7 @@ from delone import _core
 from delone._arrays import as_plain_array, as_vectors
 from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
+from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.space.plane import plane_of, twins
 from delone.space.spatial import Spatial
@@ -39,6 +40,8 @@ class RegularTriangulation(Spatial):
     weights : array_like, shape (n,)
         Finite weights, in the square of the unit of the points: the square of a radius, if points
         are thought of as circles. Adding one number to all of them changes nothing.
+    planar : bool, optional
+        As for `Delaunay`: longitudes and latitudes are meant as coordinates of a plane.
 
     Attributes
     ----------
@@ -103,10 +106,11 @@ class RegularTriangulation(Spatial):
 
     _weights: Floats
 
-    def __init__(self, points: ArrayLike, weights: ArrayLike) -> None:
+    def __init__(self, points: ArrayLike, weights: ArrayLike, *, planar: bool = False) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a RegularTriangulation never changes: make another one")
         own = own_copy(points, ndim=None)
+        warn_of_degrees(points, own, planar=planar)
         own_weights = as_weights(weights, len(own))
         arrays, chain = triangulated(own, own_weights)
         if not len(arrays["simplices"]):

@@ -12,7 +12,7 @@ def soundings(tmp_path):
     depth = 2 * points[:, 0] - points[:, 1]
     file = tmp_path / "soundings.csv"
     table = np.column_stack((points, depth, np.arange(300)))
-    np.savetxt(file, table, delimiter=",", header="lon,lat,depth,id", comments="", fmt="%.17g")
+    np.savetxt(file, table, delimiter=",", header="x,y,depth,id", comments="", fmt="%.17g")
     return file
 
 
@@ -115,3 +115,19 @@ def test_speeds_are_those_of_what_was_worked_on(soundings, figures):
         worked = stage["seconds"] * stage["points_per_second"]
         right = 20_000 if stage["name"] == "interpolate" else 300
         assert worked == pytest.approx(right, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "given", [["sibson,nearest"], ["sibson", "nearest"], ["sibson", "nearest,sibson"]]
+)
+def test_all_methods_that_are_named_are_compared(soundings, figures, given):
+    options = [part for names in given for part in ("--method", names)]
+    found = figures("crossval", soundings, "--folds", "3", *options)
+    assert list(found["methods"]) == ["sibson", "nearest"]
+    plain = figures("crossval", soundings, "--folds", "3", "--method", "nearest")
+    assert found["methods"]["nearest"] == plain["methods"]["nearest"]
+
+
+def test_methods_that_there_are_not(soundings, command):
+    code, _, err = command("crossval", soundings, "--method", "linear", "--method", "kriging")
+    assert code == 2 and "must be one of 'linear'" in err and "kriging" in err

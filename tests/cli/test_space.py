@@ -31,7 +31,7 @@ def xyz(path, points):
 def test_a_cloud_becomes_tetrahedra(suffix, tmp_path, command, figures):
     points = cloud()
     source, target = ply(tmp_path / "cloud.ply", points), tmp_path / f"mesh{suffix}"
-    found = figures("triangulate", source, "-o", target)
+    found = figures("triangulate", source, "--3d", "-o", target)
     mesh = Delaunay(points)
     assert found["tetrahedra"] == {"count": mesh.nsimplex, "expected": mesh.nsimplex}
     assert found["volume"] == pytest.approx(mesh.volumes.sum())
@@ -41,6 +41,17 @@ def test_a_cloud_becomes_tetrahedra(suffix, tmp_path, command, figures):
     code, out, err = command("check", "--canonical", target)
     assert (code, err) == (0, "")
     assert "tetrahedra" in out
+
+
+def test_clouds_are_said_to_be_in_space(tmp_path, command):
+    source = ply(tmp_path / "cloud.ply", cloud())
+    code, out, err = command("triangulate", source)
+    assert code == 0 and "tetrahedra" in out
+    assert err == (
+        f"delone: note: {source}: three columns: 3-D tetrahedra; --2d triangulates the surface\n"
+    )
+    for told in (["--3d"], ["--2d"], ["--quiet"]):
+        assert command("triangulate", source, *told)[::2] == (0, "")
 
 
 def test_heights_stay_heights_unless_space_is_wanted(tmp_path, command, figures):

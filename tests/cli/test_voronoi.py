@@ -30,7 +30,7 @@ def outline(tmp_path):
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".fgb", ".parquet"])
 def test_cells_carry_the_attributes_of_their_sites(suffix, sites, outline, figures, tmp_path):
     path = tmp_path / f"cells{suffix}"
-    found = figures("voronoi", sites, "--clip", outline, "-o", path)
+    found = figures("voronoi", sites, "--planar", "--clip", outline, "-o", path)
     assert found["sites"] == 40 and found["area"] == pytest.approx(56)
     assert found["outputs"] == [str(path)]
     read = geopandas.read_parquet if suffix == ".parquet" else geopandas.read_file
@@ -57,11 +57,11 @@ def test_empty_cells_are_written(suffix, figures, tmp_path):
 
 
 def test_boxes_and_weights(sites, figures, command):
-    found = figures("voronoi", sites, "--clip=-1,-1,11,7")
+    found = figures("voronoi", sites, "--planar", "--clip=-1,-1,11,7")
     assert found["area"] == 96
-    heavy = figures("voronoi", sites, "--clip=-1,-1,11,7", "--weights", "size")
+    heavy = figures("voronoi", sites, "--planar", "--clip=-1,-1,11,7", "--weights", "size")
     assert heavy["area"] == 96 and heavy["vertices"] <= found["vertices"]
-    assert figures("voronoi", sites)["area"] < 60
+    assert figures("voronoi", sites, "--planar")["area"] < 60
     code, out, _ = command("voronoi", sites)
     assert code == 0 and "ridges" in out
 

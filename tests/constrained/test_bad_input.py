@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -172,3 +173,14 @@ class TestQueries:
     def test_queries_are_points(self) -> None:
         with pytest.raises(errors.ShapeError, match="xi"):
             ConstrainedDelaunay(SQUARE, []).find_simplex((1, 2, 3))
+
+
+@pytest.mark.parametrize("given", ["coast.geojson", Path("coast.geojson"), b"coast.geojson"])
+def test_names_of_files_are_no_geometries(given: Any) -> None:
+    for make in (delone.from_geometry, delone.mesh):
+        with pytest.raises(
+            errors.InputError, match=r"name of a file.*read_geometries\('coast.geojson'\)"
+        ):
+            make(given)
+    with pytest.raises(errors.InputError, match=r"shapely\.from_wkt"):
+        delone.from_geometry("POINT (0 0)")

@@ -191,3 +191,23 @@ def test_a_bug_of_the_core_hands_its_points_over(monkeypatch: pytest.MonkeyPatch
         Delaunay(points)
     assert np.array_equal(caught.value.points, points)
     assert np.array_equal(pickle.loads(pickle.dumps(caught.value)).points, points)
+
+
+@pytest.mark.parametrize("name", ["qhull_options", "incremental", "furthest_site"])
+def test_arguments_of_scipy_are_sent_to_the_drop_in(name: str) -> None:
+    with pytest.raises(TypeError, match=rf"no {name}.*delone\.compat\.scipy\.Delaunay"):
+        Delaunay([(0, 0), (1, 0), (0, 1)], **{name: "Qz"})  # type: ignore[call-overload]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'metod'"):
+        Delaunay([(0, 0), (1, 0), (0, 1)], metod="sweep")  # type: ignore[call-overload]
+
+
+def test_geometries_are_told_from_coordinates() -> None:
+    shapely = pytest.importorskip("shapely")
+    geopandas = pytest.importorskip("geopandas")
+    points = shapely.points([(0, 0), (1, 0), (0, 1)])
+    series = geopandas.GeoSeries(points)
+    for given in (points, points.tolist(), series, series.to_frame("geometry")):
+        with pytest.raises(DtypeError, match=r"holds geometries.*get_coordinates.*from_geometry"):
+            Delaunay(given)
+    assert Delaunay(shapely.get_coordinates(points)).nsimplex == 1
+    assert Delaunay(series.get_coordinates().to_numpy()).nsimplex == 1

@@ -14,6 +14,9 @@ from delone.interpolate import interpolator, raster
 xarray = pytest.importorskip("xarray")
 import delone.interpolate.accessor  # noqa: E402, F401  (it registers the accessors)
 
+# Coordinates are called as they are in files; what is said of degrees is tested elsewhere.
+pytestmark = pytest.mark.filterwarnings("ignore::delone.GeographicWarning")
+
 POINTS = datasets.uniform(150, seed=2)
 TIME = np.arange(6.0)
 

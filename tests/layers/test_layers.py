@@ -25,13 +25,14 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays", "counting"}
+FOUNDATION = {"errors", "_arrays", "counting", "georeference"}
 PUBLIC = {
     "delone",
     "errors",
     "constrained",
     "delaunay",
     "datasets",
+    "georeference",
     "hull",
     "lawson",
     "predicates",
@@ -43,6 +44,7 @@ PYTHON: dict[str, set[str]] = {
     "errors": set(),
     "_arrays": {"counting", "errors"},
     "counting": set(),
+    "georeference": {"errors"},
     "_core": set(),
     "immutable": {"_arrays"},
     "plane": {"_core", "immutable", "location", "plot"} | FOUNDATION,
@@ -117,6 +119,7 @@ PYTHON: dict[str, set[str]] = {
         "delaunay",
         "distributed",
         "errors",
+        "georeference",
         "improve",
         "hull",
         "interpolate",

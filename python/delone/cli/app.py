@@ -31,6 +31,7 @@ from delone.cli.exits import (
 )
 from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
+from delone.cli.referenced import Crs, Planar, note, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import (
     memory_text,
@@ -53,7 +54,7 @@ from delone.cli.solid import (
 from delone.counting import agreed
 from delone.errors import MissingExtraError, NonFiniteError
 from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
-from delone.io.registry import mesh_suffixes, writer
+from delone.io.registry import WITH_CRS, mesh_suffixes, writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -172,6 +173,8 @@ def triangulate(
             metavar="DEGREES", help="The goal of --improve for dihedral angles; 20 by default."
         ),
     ] = None,
+    crs: Crs = None,
+    planar: Planar = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -182,6 +185,7 @@ def triangulate(
     """
     if min_angle is not None and not better:
         raise Failure("--min-angle is the goal of --improve: give that, too", Exit.USAGE)
+    require_known(crs)
     with writing():
         spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
@@ -192,6 +196,9 @@ def triangulate(
             survey = read_input(
                 source, columns=_split(columns), classes=_numbers(classes), layer=layer
             )
+        survey = referenced(
+            survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
+        )
         say(f"triangulating {len(survey):,} {_what(survey)}")
         constraints = Constraints(crossing, outline, conforming, max_vertices)
         solid = is_space(source, space, survey)
@@ -201,9 +208,13 @@ def triangulate(
                 writers = {path: writer(path, space=True) for path in writers}
             mesh: Mesh = triangulated_space(survey, method=method, workers=workers)
             z = None
+            if space is None and not better:
+                note(
+                    f"{source}: three columns: 3-D tetrahedra; --2d triangulates the surface",
+                    quiet=quiet,
+                )
         else:
             mesh, z = triangulated(survey, constraints, method=method, workers=workers)
-        crs = survey.crs
         watch.seconds |= mesh.stages
         written: Mesh | TetMesh = mesh
         gained: dict[str, Any] = {}
@@ -214,12 +225,12 @@ def triangulate(
             with watch.stage("improve"):
                 tetrahedra = improved(mesh, writers, 20.0 if min_angle is None else min_angle)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
-        _write(writers, written, {"z": z, "crs": crs, "edges": edges}, watch, say)
+        _write(writers, written, {"z": z, "crs": survey.crs, "edges": edges}, watch, say)
         say("reporting")
         figures: dict[str, Any] = {
             "delone": __version__,
             "input": str(source),
-            "crs": crs,
+            "crs": survey.crs,
             **(space_summary(mesh) if isinstance(mesh, Delaunay) and solid else summary(mesh)),
             **_of_constraints(mesh, survey),
             **gained,

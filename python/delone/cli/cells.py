@@ -11,6 +11,7 @@ import typer
 from delone import Voronoi, __version__
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
@@ -58,6 +59,8 @@ def voronoi(
         str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
     ] = None,
     layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
+    crs: Crs = None,
+    planar: Planar = False,
     workers: Annotated[
         int | None, typer.Option(help="Threads; by default one for each core.")
     ] = None,
@@ -65,6 +68,7 @@ def voronoi(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Cut the Voronoi cells of sites to an outline, and write them with the sites' attributes."""
+    require_known(crs)
     with writing():
         spare_inputs(output or (), source, Path(clip))
         for path in output or ():
@@ -74,6 +78,7 @@ def voronoi(
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
             sites = _sites(source, _split(columns), layer, _split(attributes), weights)
+            sites = referenced(sites, crs, planar=planar, quiet=quiet)
             outline = _outline(clip, sites.crs)
         say(f"computing {len(sites):,} cells")
         with watch.stage("diagram"):

@@ -12,12 +12,14 @@ import typer
 from delone import __version__
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
 from delone.interpolate.methods import METHODS
+from delone.interpolate.values import chosen
 from delone.io import PointSet, raster_suffixes, read_points
-from delone.io.raster import raster_writer
+from delone.io.raster import WITH_CRS, raster_writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,6 +56,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 _NAMES = " ".join(METHODS)
+_COMPARED = "linear,nearest,sibson,laplace"
 _SMOOTH = ("clough-tocher", "sibson1", "farin")
 
 
@@ -91,24 +94,33 @@ def interpolate(
     classes: Classes = None,
     layer: Layer = None,
     workers: Workers = None,
+    crs: Crs = None,
+    units: Annotated[
+        str | None, typer.Option(help="Unit of the values, for GeoTIFF and NetCDF: m.")
+    ] = None,
+    planar: Planar = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Interpolate the values of points to a raster, and write it to files and pictures."""
     where = _raster_options(size, resolution, bounds)
+    require_known(crs)
     with writing():
         spare_inputs(output or (), source)
         writers = {path: (raster_writer(path), check_target(path))[0] for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         survey, values, name = _read(source, value, columns, classes, layer, watch, say)
+        survey = referenced(
+            survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
+        )
         say(f"triangulating {len(survey):,} points")
         options = {"extrapolate": extrapolate, "duplicates": duplicates, "nan": nan}
         with watch.stage("triangulate"):
             made = _made(method, survey, values, gradients, options | {"workers": workers})
         with watch.stage("interpolate"):
             found = grid(made, **where, progress=_told(say, "interpolating"))
-        _write(writers, found, name, survey.crs, watch, say)
+        _write(writers, found, {"name": name, "crs": survey.crs, "units": units}, watch, say)
         figures = _figures(source, survey, made, method, found) | {
             "stages": watch.rows(
                 found.values.size, others=dict.fromkeys(("read", "triangulate"), len(survey))
@@ -128,8 +140,13 @@ def crossval(
     *,
     value: Value = None,
     methods: Annotated[
-        str, typer.Option("--method", help=f"One or more, by commas: {_NAMES}.")
-    ] = "linear,nearest,sibson,laplace",
+        list[str] | None,
+        typer.Option(
+            "--method",
+            help=f"What to compare, by commas or one option each; by default {_COMPARED}. "
+            f"There are {_NAMES}.",
+        ),
+    ] = None,
     folds: Annotated[
         int | None, typer.Option(help="Parts to deal the points into; by default leave one out.")
     ] = None,
@@ -141,14 +158,20 @@ def crossval(
     classes: Classes = None,
     layer: Layer = None,
     workers: Workers = None,
+    planar: Planar = False,
     as_json: Json = False,
 ) -> None:
     """Predict each value from the others, and say how far off each method is."""
-    names = [name.strip() for name in methods.split(",")]
+    # Each once, in the order given.
+    named = ",".join(methods or [_COMPARED]).split(",")
+    names = list(dict.fromkeys(name.strip() for name in named))
+    for name in names:
+        chosen("--method", name, tuple(METHODS))
     watch = Stopwatch()
     found: dict[str, dict[str, Any]] = {}
     with spinner(as_json) as say:
         survey, values, _ = _read(source, value, columns, classes, layer, watch, say)
+        referenced(survey, None, planar=planar, quiet=False)
         for name in names:
             options: dict[str, Any] = {}
             if gradients is not None and name in _SMOOTH:
@@ -257,11 +280,10 @@ def _numbers(text: str, kind: type, option: str) -> list[Any]:
         raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
 
 
-def _write(  # noqa: PLR0917
+def _write(
     writers: dict[Path, Callable[..., None]],
     found: Grid,
-    name: str,
-    crs: str | None,
+    what: dict[str, Any],
     watch: Stopwatch,
     say: Callable[[str], None],
 ) -> None:
@@ -270,7 +292,7 @@ def _write(  # noqa: PLR0917
         for path, write in writers.items():
             say(f"writing {path.name}")
             with watch.stage(f"write {path.name}"):
-                write(stack.enter_context(replacing(path)), found, name=name, crs=crs)
+                write(stack.enter_context(replacing(path)), found, **what)
 
 
 def _figures(

@@ -14,11 +14,12 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from delone import Mesh, __version__, mesh
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import memory_text, print_json, print_rows, print_stages
 from delone.errors import CrossingSegmentsError, NonFiniteError
 from delone.io import output_suffixes, read_geometries
-from delone.io.registry import writer
+from delone.io.registry import WITH_CRS, writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -61,6 +62,8 @@ def make_mesh(
         bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
     ] = False,
     layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
+    crs: Crs = None,
+    planar: Planar = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
@@ -68,12 +71,14 @@ def make_mesh(
 
     Pictures show the mesh and the histogram of its angles.
     """
+    require_known(crs)
     with writing():
         spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with reading(), watch.stage("read"):
         survey = read_geometries(source, layer=layer)
+    survey = referenced(survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS)
     options: dict[str, Any] = {
         "min_angle": min_angle,
         "max_area": max_area,

@@ -10,14 +10,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
 
 from delone import __version__, distributed
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.referenced import Crs, Planar, note_degrees, require_known
 from delone.cli.show import memory_text, print_json, print_rows, spinner
 from delone.distributed.run.executors import Processes
 from delone.errors import DeloneError
+from delone.georeference import is_geographic
 from delone.io import input_suffixes
 from delone.io.extras import require
 
@@ -67,6 +70,8 @@ def tile(
     resume: Annotated[
         bool, typer.Option(help="Go on with an interrupted run of the same input.")
     ] = True,
+    crs: Crs = None,
+    planar: Planar = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what it would need, and do nothing.")
     ] = False,
@@ -80,6 +85,7 @@ def tile(
         "classes": _numbers(classes),
         "attributes": _split(attributes) or (),
     }
+    require_known(crs)
     if workers < 1:
         raise Failure(f"--workers must be at least 1, got {workers}", Exit.USAGE)
     with reading():
@@ -92,7 +98,14 @@ def tile(
     with _executor(scheduler, workers) as executor, _live(quiet or as_json) as tell:
         try:
             tin = distributed.triangulate(
-                sources, output, executor=executor, resume=resume, nan=nan, progress=tell, **options
+                sources,
+                output,
+                executor=executor,
+                resume=resume,
+                nan=nan,
+                progress=tell,
+                crs=crs,
+                **options,
             )
         except OSError as error:
             raise _blamed(error, output) from error
@@ -101,6 +114,13 @@ def tile(
             if type(error) is DeloneError:
                 raise Failure(str(error), Exit.OUTPUT) from error
             raise
+    left, bottom, right, top = tin.bounds
+    note_degrees(
+        str(output),
+        None if tin.crs is None or not is_geographic(tin.crs) else tin.crs,
+        np.array([(left, bottom), (right, top)]),
+        quiet=planar or quiet,
+    )
     _report(tin, output, time.perf_counter() - start, as_json=as_json, quiet=quiet)
 
 
@@ -112,6 +132,7 @@ def dem(
     ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="OUTPUT", help="GeoTIFF.")],
     value: Annotated[str, typer.Option(help="Column of the values.")] = "z",
+    crs: Crs = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -122,6 +143,7 @@ def dem(
         raise Failure(f"--resolution takes numbers, got {resolution!r}", Exit.USAGE) from None
     if len(sides) > 2:
         raise Failure(f"--resolution takes one or two numbers, got {resolution!r}", Exit.USAGE)
+    require_known(crs)
     with writing():
         check_target(output)
     with reading():
@@ -129,7 +151,7 @@ def dem(
     cells = (sides * 2)[0], (sides * 2)[1]
     with spinner(quiet or as_json) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")
-        found.to_raster(cells, output, value=value)
+        found.to_raster(cells, output, value=value, crs=crs)
     if as_json:
         print_json({"delone": __version__, "input": str(tin), "outputs": [str(output)]})
     elif not quiet:

@@ -27,6 +27,7 @@ from delone.constrained.segmented import Options, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import counted
 from delone.errors import InputError, InternalError
+from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy
 from delone.plane import topology
 
@@ -77,7 +78,7 @@ class ConstrainedDelaunay(Segmented):
     max_vertices : int, optional
         How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing
         segments that are looked at, too, at 8 for each vertex and a million more.
-    method, workers : optional
+    method, workers, planar : optional
         As for `Delaunay`. The answer is the same.
 
     Attributes
@@ -164,6 +165,7 @@ class ConstrainedDelaunay(Segmented):
         max_vertices: int | None = None,
         method: str = "auto",
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         if hasattr(self, "_found"):
             raise AttributeError("a ConstrainedDelaunay never changes: edit() makes another one")
@@ -177,6 +179,7 @@ class ConstrainedDelaunay(Segmented):
             labelled=False,
         )
         own = own_copy(points)
+        warn_of_degrees(points, own, planar=planar)
         rows = _own(as_segments(segments, len(own)), segments)
         origin = np.full(len(rows), -1, dtype=np.int32), np.zeros(len(rows), dtype=bool)
         found = _given(rows, origin, holes, regions)
@@ -349,13 +352,23 @@ class ConstrainedDelaunay(Segmented):
         """
         return validate(self._found, self.duplicate_of, conforming=self._options.conforming)
 
+    @property
+    def crs(self) -> str | None:
+        """The reference system of the geometries, as ``"EPSG:28992"`` or in WKT; None of arrays."""
+        return self._options.crs
+
+    def _with_crs(self, crs: str | None) -> Self:
+        """The same, said to be in another reference system."""
+        return self._restored(self._found, self._options._replace(crs=crs), self._stages)
+
     def to_geopandas(self, *, crs: Any = None) -> Any:
         """Return the triangles as a table of polygons (extra ``geo``).
 
         Parameters
         ----------
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes.
+            Reference system of the coordinates, anything that geopandas takes; by default `crs`,
+            that of the geometries.
 
         Returns
         -------
@@ -380,7 +393,7 @@ class ConstrainedDelaunay(Segmented):
         columns = {"region": self.region, "polygon": self.polygon}
         if not self._found["rings"].any():
             del columns["polygon"]
-        return frame(self._points, self._simplices, columns, crs)
+        return frame(self._points, self._simplices, columns, self.crs if crs is None else crs)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the triangulation to an .npz file, whole or not at all.
@@ -422,7 +435,7 @@ class ConstrainedDelaunay(Segmented):
             options.max_vertices,
         )
         arrays = self._found | {"options": np.array(choices, dtype=np.int64)}
-        archive.write(path, arrays, archive.CONSTRAINED)
+        archive.write(path, arrays, archive.CONSTRAINED, crs=self.crs)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> ConstrainedDelaunay:
@@ -461,6 +474,7 @@ class ConstrainedDelaunay(Segmented):
 
         arrays = archive.read(path, archive.CONSTRAINED)
         boundary, crossing, labelled, conforming, most = arrays.pop("options").tolist()
+        crs = arrays.pop("crs", None)
         options = Options(
             boundary=_BOUNDARIES[boundary],
             crossing=_CROSSINGS[crossing],
@@ -469,6 +483,7 @@ class ConstrainedDelaunay(Segmented):
             method="auto",
             workers=None,
             labelled=bool(labelled),
+            crs=None if crs is None else str(crs),
         )
         return cls._restored(arrays, options, {})
 

@@ -9,6 +9,7 @@ coordinates are left out; missing and empty geometries have no parts.
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -112,14 +113,29 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
         yield np.array([given], dtype=object)
     elif hasattr(given, "geometry") and hasattr(given.geometry, "values"):
         yield np.asarray(given.geometry.values, dtype=object)
+    elif isinstance(getattr(given, "geometries", None), np.ndarray):  # a GeometrySet
+        yield from _batches(given.geometries, name)
     elif isinstance(given, dict):
         yield from _features(given)
     elif hasattr(given, "__geo_interface__"):
         yield from _features(given.__geo_interface__)
-    elif isinstance(given, str | bytes) or not hasattr(given, "__iter__"):
+    elif isinstance(given, str | bytes | os.PathLike):
+        raise InputError(_no_file(given, name))
+    elif not hasattr(given, "__iter__"):
         raise InputError(f"{name} hold {given!r:.80}, which is no geometry")
     else:
         yield from _of_iterable(given, name)
+
+
+def _no_file(given: Any, name: str) -> str:
+    """What to do with a text that is the name of a file, or else WKT."""
+    text = os.fsdecode(given)
+    if not isinstance(given, os.PathLike) and "(" in text:
+        return f"{name} hold {text!r:.80}, which is no geometry: read WKT by shapely.from_wkt"
+    return (
+        f"{name} hold {text!r:.80}, the name of a file and no geometry: read it first, by "
+        f"delone.io.read_geometries({text!r:.80})"
+    )
 
 
 def is_shapely(given: Any) -> bool:

@@ -17,6 +17,7 @@ from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.counting import agreed
 from delone.errors import InputError, NonFiniteError
+from delone.georeference import as_crs, common_crs, is_geographic, warn_of_degrees
 from delone.plane.triangulation import first_rows
 
 if TYPE_CHECKING:
@@ -42,15 +43,17 @@ def from_geometry(
     max_vertices: int | None = None,
     method: str = "auto",
     workers: int | None = None,
+    crs: Any = None,
+    planar: bool = False,
 ) -> ConstrainedDelaunay:
     """Triangulate polygons, lines and points at once.
 
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        Geometries of shapely, tables and series of geopandas, objects with ``__geo_interface__``,
-        mappings of that form (GeoJSON), and iterables of these, in any mixture. Rows of tables and
-        features of collections are geometries each.
+        Geometries of shapely, tables and series of geopandas, a `delone.io.GeometrySet`, objects
+        with ``__geo_interface__``, mappings of that form (GeoJSON), and iterables of these, in any
+        mixture. Rows of tables and features of collections are geometries each.
     holes, regions, conforming, max_vertices, method, workers : optional
         As for `ConstrainedDelaunay`.
     boundary : {"hull", "outline", "polygons"}, optional
@@ -59,6 +62,13 @@ def from_geometry(
     crossing : {"split", "error"}, optional
         As for `ConstrainedDelaunay`, but by default crossings are split: the boundaries of real
         data do cross.
+    crs : str, int or pyproj.CRS, optional
+        The reference system of the coordinates, by default that of the geometries where they have
+        one. It is kept in ``mesh.crs`` and written by ``mesh.to_geopandas()``. Nothing is
+        transformed.
+    planar : bool, optional
+        Whether longitudes and latitudes are meant as coordinates of a plane; otherwise geometries
+        in a geographic reference system are warned of.
 
     Returns
     -------
@@ -70,11 +80,16 @@ def from_geometry(
     Raises
     ------
     InputError
-        Something is no geometry.
+        Something is no geometry, or parts are in different reference systems.
     NonFiniteError
         A coordinate is NaN or infinite; the rows of the error are geometries.
     DegenerateInputError, CrossingSegmentsError, BudgetExceededError
         As for `ConstrainedDelaunay`.
+
+    Warns
+    -----
+    GeographicWarning
+        The geometries are in degrees; see `planar`.
 
     Notes
     -----
@@ -100,6 +115,9 @@ def from_geometry(
     """
     parts = geodata.parts_of(geometries)
     _require_finite(parts)
+    system = common_crs(geometries) if crs is None else as_crs(crs)
+    by = system if system is not None and is_geographic(system) else None
+    warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
     points, vertex = _merged(parts.coordinates)
     ends, part = _steps(parts)
     origin = parts.geometries[part].astype(np.int32), parts.kinds[part] >= geodata.EXTERIOR
@@ -115,6 +133,7 @@ def from_geometry(
         max_vertices=max_vertices,
         method=method,
         workers=workers,
+        crs=system,
     )
 
 

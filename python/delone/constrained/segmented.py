@@ -40,6 +40,8 @@ class Options(NamedTuple):
     method: str
     workers: int | None
     labelled: bool
+    # That of the geometries, if they said.
+    crs: str | None = None
 
 
 class Segmented(Triangulation):

@@ -18,7 +18,7 @@ from delone._arrays import frozen
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
+    from numpy.typing import DTypeLike, NDArray
 
 __all__ = ["Sample", "ahn3", "baja"]
 
@@ -41,6 +41,10 @@ class Sample:
         Authority and code of the coordinate reference system, as ``"EPSG:28992"``.
     credit : str
         Who is to be named, and the licence.
+
+    Notes
+    -----
+    It can be given wherever points are wanted; arrays of NumPy are made of `points`.
     """
 
     name: str
@@ -49,6 +53,11 @@ class Sample:
     attributes: Mapping[str, NDArray[Any]]
     crs: str
     credit: str
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """The horizontal coordinates."""
+        found = self.points if dtype is None else self.points.astype(dtype, copy=False)
+        return found.copy() if copy else found
 
 
 def ahn3() -> Sample:

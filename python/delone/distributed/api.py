@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from delone.distributed.run.run import Progress, Run
 from delone.distributed.run.sources import Choice, find
 from delone.distributed.store.files import Store
 from delone.errors import InputError
+from delone.georeference import as_crs
 from delone.io.extras import require
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ def triangulate(
     attributes: Sequence[str] = (),
     nan: str = "raise",
     progress: Callable[[Progress], None] | None = None,
+    crs: Any = None,
 ) -> TiledDelaunay:
     """Triangulate more points than memory holds, in tiles whose union is the one triangulation.
 
@@ -68,6 +71,9 @@ def triangulate(
         as an attribute.
     progress : callable, optional
         Is told how far the run is, as `Progress`.
+    crs : str, int or pyproj.CRS, optional
+        The reference system of the coordinates, by default that of the files. Nothing is
+        transformed.
 
     Returns
     -------
@@ -132,6 +138,9 @@ def triangulate(
     worker = _executor(executor)
     choice = _choice(columns, classes, attributes)
     found = find(source, choice)
+    if crs is not None:
+        system = as_crs(crs)
+        found = replace(found, crs=system, identity=found.identity | {"crs": system})
     run = Run(Store(folder), found, choice, size, nan, worker, tell)
     try:
         run.go(go_on)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import DtypeError, InputError, MissingExtraError
+from delone.georeference import names_degrees, warn_of_degrees
 from delone.interpolate.methods import interpolator
 from delone.interpolate.raster import raster_nodes, require_memory
 
@@ -87,7 +88,7 @@ class ArrayInterpolation:
             As in `interpolator`.
         **options
             As the interpolator takes them: ``extrapolate``, ``respect_constraints``, ``workers``,
-            and so on. NaN among the values propagates unless ``nan="error"`` is given.
+            ``planar`` and so on. NaN among the values propagates unless ``nan="error"`` is given.
 
         Returns
         -------
@@ -257,6 +258,8 @@ def _interpolated(
     places = _coordinates(data, coords)
     _require_memory(data, places[0].dims, target)
     points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
+    planar = options.pop("planar", False)
+    warn_of_degrees(None, points, planar=planar, name="coordinates", by=_degrees(places))
     queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
     table = interpolator(method, points, **({"nan": "propagate"} | options)).weights(queries)
     # Coordinates of the points are not those of the result.
@@ -272,6 +275,15 @@ def _interpolated(
         found = {name: _applied(plain[name], table, dims, target) for name in names}
         return plain.drop_vars(names).assign(found)
     return _applied(plain, table, dims, target)
+
+
+def _degrees(places: tuple[Any, Any]) -> str | None:
+    """By what coordinates are known to be longitudes and latitudes."""
+    units = [str(part.attrs.get("units", "")) for part in places]
+    if units[0].startswith("degrees_e") and units[1].startswith("degrees_n"):
+        return f"units {', '.join(units)}"
+    names = [str(part.name) for part in places]
+    return f"coordinates {', '.join(names)}" if names_degrees(names) else None
 
 
 def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -> None:

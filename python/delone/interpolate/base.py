@@ -20,6 +20,7 @@ from delone._arrays import as_flag, as_vectors, as_workers
 from delone.counting import agreed
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
+from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
 from delone.interpolate.hull import summed
 from delone.interpolate.repeated import repeated
@@ -62,7 +63,7 @@ class Interpolator:
         periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
-    extrapolate, duplicates, nan, respect_constraints, workers
+    extrapolate, duplicates, nan, respect_constraints, workers, planar
         As in `Linear`.
 
     Examples
@@ -84,6 +85,7 @@ class Interpolator:
         nan: str = "error",
         respect_constraints: bool = False,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         self._extrapolate = chosen("extrapolate", extrapolate, self.EXTRAPOLATE)
         self._duplicates = chosen("duplicates", duplicates, DUPLICATES)
@@ -98,6 +100,8 @@ class Interpolator:
         self._repeated: Repeated | None = None
         known = given if self._periodic is None else self._periodic
         self._sites: Floats = _own(points) if known is None else known.points
+        if known is None:
+            warn_of_degrees(points, self._sites, planar=planar)
         if self._ndim == SPACE:
             self._check_space(given)
         self._constrained = getattr(given, "constrained", None) is not None

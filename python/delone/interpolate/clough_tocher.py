@@ -60,6 +60,8 @@ class CloughTocher(Smooth):
         side shows on the other but the values on the constraint.
     workers : int, optional
         Number of threads; by default one for each core. The answer is the same.
+    planar : bool, optional
+        As in `Linear`.
 
     Raises
     ------
@@ -105,6 +107,7 @@ class CloughTocher(Smooth):
         nan: str = "error",
         respect_constraints: bool = False,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         super().__init__(
             points,
@@ -117,6 +120,7 @@ class CloughTocher(Smooth):
             nan=nan,
             respect_constraints=respect_constraints,
             workers=workers,
+            planar=planar,
         )
 
     def _check_space(self, given: Triangulation | None) -> None:

@@ -17,6 +17,7 @@ from delone import _core
 from delone._arrays import as_count, as_optional_flag, as_points, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
+from delone.georeference import warn_of_degrees
 from delone.interpolate.methods import METHODS, interpolator
 from delone.interpolate.values import (
     DUPLICATES,
@@ -120,6 +121,7 @@ def cross_validate(
     nan: str = "error",
     progress: Callable[[float], None] | None = None,
     workers: int | None = None,
+    planar: bool = False,
     **options: Any,
 ) -> CrossValidation:
     """Predict each value from the others.
@@ -147,6 +149,8 @@ def cross_validate(
         Is told from time to time which share of the work is done, from 0 to 1.
     workers : int, optional
         Number of threads.
+    planar : bool, optional
+        As in `Linear`.
     **options
         As the interpolator takes them.
 
@@ -187,6 +191,7 @@ def cross_validate(
     if leave_one_out == (folds is not None):
         raise InputError("give folds, or leave_one_out=True, and not both")
     sites = as_points(points, ndim=2)
+    warn_of_degrees(points, sites, planar=planar)
     field = as_field(values, len(sites))
     kept = np.arange(len(sites))
     if chosen("nan", nan, NAN[:2]) == "drop":

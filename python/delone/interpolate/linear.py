@@ -43,6 +43,9 @@ class Linear(Interpolator):
         Accepted as by the other interpolators: triangles never cross a constraint.
     workers : int, optional
         Number of threads; by default one for each core. The answer is the same.
+    planar : bool, optional
+        Whether longitudes and latitudes are meant as coordinates of a plane; otherwise points that
+        say they are in degrees (by a reference system or names of columns) are warned of.
 
     Raises
     ------

@@ -63,6 +63,8 @@ class NaturalNeighbor(Smooth):
         On a constrained triangulation: neighbours are those that are seen past no constraint.
     workers : int, optional
         Number of threads; by default one for each core. The answer is the same.
+    planar : bool, optional
+        As in `Linear`.
 
     Raises
     ------
@@ -108,6 +110,7 @@ class NaturalNeighbor(Smooth):
         nan: str = "error",
         respect_constraints: bool = False,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         self._kind = chosen("kind", kind, KINDS)
         super().__init__(
@@ -121,6 +124,7 @@ class NaturalNeighbor(Smooth):
             nan=nan,
             respect_constraints=respect_constraints,
             workers=workers,
+            planar=planar,
         )
         barred = self._respect_constraints and self._constrained
         if not (barred or isinstance(self._mesh, Delaunay)):

@@ -44,6 +44,8 @@ class Nearest(Interpolator):
         constraint.
     workers : int, optional
         Number of threads; by default one for each core. The answer is the same.
+    planar : bool, optional
+        As in `Linear`.
 
     Raises
     ------
@@ -76,6 +78,7 @@ class Nearest(Interpolator):
         nan: str = "error",
         respect_constraints: bool = False,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         super().__init__(
             points,
@@ -85,6 +88,7 @@ class Nearest(Interpolator):
             nan=nan,
             respect_constraints=respect_constraints,
             workers=workers,
+            planar=planar,
         )
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:

@@ -119,7 +119,8 @@ def grid(
     progress : callable, optional
         Is told from time to time which share of the nodes is done, from 0 to 1.
     **options
-        As the interpolator takes them: ``extrapolate``, ``duplicates``, ``nan``, ``workers``.
+        As the interpolator takes them: ``extrapolate``, ``duplicates``, ``nan``, ``workers``,
+        ``planar``.
 
     Returns
     -------

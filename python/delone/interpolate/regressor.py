@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from delone.errors import DtypeError, MissingExtraError
+from delone.georeference import names_degrees, warn_of_degrees
 from delone.interpolate.methods import interpolator
 
 try:
@@ -45,6 +46,9 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         Which two features are the coordinates. By default there must be exactly two.
     workers : int, optional
         Number of threads.
+    planar : bool, optional
+        As in `Linear`: whether features called longitude and latitude are meant as coordinates of a
+        plane.
 
     Attributes
     ----------
@@ -77,12 +81,14 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         duplicates: str = "mean",
         columns: tuple[int, int] | None = None,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         self.method = method
         self.extrapolate = extrapolate
         self.duplicates = duplicates
         self.columns = columns
         self.workers = workers
+        self.planar = planar
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Self:  # noqa: N803
         """Triangulate training points.
@@ -111,9 +117,13 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         X, y = validate_data(  # noqa: N806
             self, X, y, multi_output=True, y_numeric=True, ensure_min_samples=3, dtype=np.float64
         )
+        plane = self._plane(X)
+        names = getattr(self, "feature_names_in_", ())
+        by = "features " + ", ".join(names) if names_degrees(names) else None
+        warn_of_degrees(None, plane, planar=self.planar, name="training points", by=by)
         self.interpolator_ = interpolator(
             self.method,
-            self._plane(X),
+            plane,
             np.asarray(y, dtype=np.float64),
             extrapolate=self.extrapolate,
             duplicates=self.duplicates,

@@ -113,13 +113,19 @@ def write_mesh(
     heights = as_values(z, triangulation.npoints)
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     split_attributes(further, triangulation.npoints, triangulation.nsimplex)
-    triangulation.save(path)
+    own: set[str] = set()
+    if isinstance(triangulation, ConstrainedDelaunay):
+        # It writes its own.
+        triangulation._with_crs(crs).save(path)
+        crs, own = None, {"crs"}
+    else:
+        triangulation.save(path)
     if heights is not None:
         further["z"] = heights
     if crs is not None:
         further["crs"] = np.array(crs)
     with zipfile.ZipFile(path, "a") as archive:
-        taken = _names(archive) & set(further)
+        taken = (_names(archive) | own) & set(further)
         if taken:
             raise FileFormatError(f"an npz file has its own {taken.pop()!r}; rename the attribute")
         for name, array in further.items():
@@ -170,7 +176,8 @@ def _from_table(
     further = {name: np.array(column(find_column(names, name, source))) for name in attributes}
     # A mapped file may be replaced while the points are in use: they are copied.
     points = np.array(as_points(xy), subok=False)
-    return PointSet(points=points, z=z, attributes=further, source=source)
+    called = tuple(named[i] for i in chosen) if named else ()
+    return PointSet(points=points, z=z, attributes=further, source=source, columns=called)
 
 
 def _from_archive(
@@ -197,6 +204,7 @@ def _from_archive(
             attributes=further,
             crs=str(crs) if crs is not None and crs.dtype.kind == "U" else None,
             source=source,
+            columns=survey.columns,
         )
     ordered = _ordered_names(archive)
     if len(ordered) == 1:
@@ -210,6 +218,7 @@ def _from_archive(
         z=as_values(arrays[2], len(arrays[0])) if len(arrays) == 3 else None,
         attributes={name: _member(archive, name) for name in attributes},
         source=source,
+        columns=tuple(ordered[i] for i in chosen),
     )
 
 

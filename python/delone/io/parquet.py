@@ -188,6 +188,7 @@ def _from_table(table: Any, kept: list[str], attributes: list[str], source: str)
         z=as_values(z[0], len(x)) if z else None,
         attributes={name: np.array(table.column(name).to_numpy()) for name in attributes},
         source=source,
+        columns=tuple(kept),
     )
 
 

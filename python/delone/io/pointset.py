@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import DTypeLike, NDArray
 
     Column = str | int
 
@@ -50,13 +50,21 @@ class PointSet:
         Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None where the file has none.
     source : str, optional
         The file.
+    columns : tuple of str, optional
+        What the columns of x, y and z are called; empty where they have no names.
+
+    Notes
+    -----
+    It can be given wherever points are wanted; arrays of NumPy are made of `points`. Then it is
+    known whether coordinates are longitudes and latitudes: see `delone.GeographicWarning`.
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import delone, numpy as np
     >>> from delone.io import PointSet
-    >>> len(PointSet(points=np.zeros((5, 2))))
-    5
+    >>> survey = PointSet(points=np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0)]))
+    >>> len(survey), delone.Delaunay(survey)
+    (3, <Delaunay of 3 points: 1 triangle>)
     """
 
     points: NDArray[np.float64]
@@ -64,6 +72,12 @@ class PointSet:
     attributes: Mapping[str, NDArray[Any]] = field(default_factory=lambda: MappingProxyType({}))
     crs: str | None = None
     source: str = ""
+    columns: tuple[str, ...] = ()
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """The horizontal coordinates."""
+        found = self.points if dtype is None else self.points.astype(dtype, copy=False)
+        return found.copy() if copy else found
 
     def __len__(self) -> int:
         return len(self.points)

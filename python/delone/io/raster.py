@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from delone.atomic import replacing
-from delone.errors import FileFormatError
+from delone.errors import FileFormatError, InputError
+from delone.georeference import as_crs
 from delone.io.extras import require
+from delone.io.referencing import cf_attributes, warn_if_left_out
 
 if TYPE_CHECKING:
     import os
@@ -69,7 +71,8 @@ def write_raster(
     raster: Raster,
     *,
     name: str = "z",
-    crs: str | None = None,
+    crs: Any = None,
+    units: str | None = None,
 ) -> None:
     """Write a raster to a file; its suffix tells the format.
 
@@ -82,11 +85,21 @@ def write_raster(
         Real values of shape (rows, columns), as `delone.interpolate.grid` returns them.
     name : str, optional
         What the values are called, in the formats that have names.
-    crs : str, optional
-        Coordinate reference system, for GeoTIFF, NetCDF and the labels of pictures.
+    crs : str, int or pyproj.CRS, optional
+        Coordinate reference system, for GeoTIFF, NetCDF and the labels of pictures. Nothing is
+        transformed.
+    units : str, optional
+        The unit of the values, as ``"m"``, for GeoTIFF and NetCDF.
+
+    Warns
+    -----
+    CRSWarning
+        `crs` is given, and the format has no place for it.
 
     Raises
     ------
+    InputError
+        `raster` is no raster, as an array without nodes is none.
     FileFormatError
         Unknown suffix; complex or several values a node; cells that a GeoTIFF cannot have, because
         nodes are not evenly spaced.
@@ -98,6 +111,10 @@ def write_raster(
     Notes
     -----
     A GeoTIFF has its highest row first, as is customary; NaN marks cells without a value.
+
+    NetCDF follows the CF conventions 1.8: nodes have axes and, where `crs` is given, the standard
+    names and units of its coordinates; the values have a ``grid_mapping``, a variable with the
+    parameters and the WKT of the system, for which pyproj (extra ``geo``) is needed.
 
     Examples
     --------
@@ -115,9 +132,12 @@ def write_raster(
     1.0,3.0,4.0
     <BLANKLINE>
     """
+    _require_raster(raster)
     write = raster_writer(path)
+    system = as_crs(crs)
+    warn_if_left_out(path, system, WITH_CRS)
     with replacing(path) as beside:
-        write(beside, raster, name=name, crs=crs)
+        write(beside, raster, name=name, crs=system, units=units)
 
 
 def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
@@ -149,6 +169,17 @@ def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
     return write
 
 
+def _require_raster(raster: Any) -> None:
+    """Refuse what has no nodes."""
+    if not all(hasattr(raster, each) for each in ("values", "x", "y")):
+        kind = type(raster).__name__
+        raise InputError(
+            f"a {kind} is no raster, as it does not say where its nodes are: give what "
+            "delone.interpolate.grid returns, or delone.interpolate.Grid(values, x, y) with the "
+            "nodes x and y, both ascending"
+        )
+
+
 def _checked(path: Path, raster: Raster) -> Floats:
     values = np.asarray(raster.values)
     if values.dtype.kind == "c":
@@ -171,7 +202,9 @@ def _cell(nodes: Floats, path: Path) -> float:
     return step
 
 
-def _write_geotiff(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+def _write_geotiff(
+    path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
+) -> None:
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     values = _checked(path, raster)
     width, height = _cell(raster.x, path), _cell(raster.y, path)
@@ -193,22 +226,33 @@ def _write_geotiff(path: Path, raster: Raster, *, name: str, crs: str | None) ->
     with rasterio.open(path, "w", **profile) as file:
         file.write(values[::-1], 1)
         file.set_band_description(1, name)
+        if units is not None:
+            file.set_band_unit(1, units)
 
 
-def _write_netcdf(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+def _write_netcdf(
+    path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
+) -> None:
     xarray = require("xarray", extra="xarray", what="writing NetCDF files")
-    attributes = {} if crs is None else {"crs": crs}
-    array = xarray.DataArray(
-        _checked(path, raster),
-        dims=("y", "x"),
-        coords={"y": raster.y, "x": raster.x},
-        name=name,
-        attrs=attributes,
-    )
-    array.to_netcdf(path, encoding={name: {"zlib": True}}, engine="netcdf4")
+    values = _checked(path, raster)
+    mapping, across, up = cf_attributes(crs)
+    own = {"long_name": name} | ({} if units is None else {"units": units})
+    where = name if name != "crs" else "values"
+    data: dict[str, Any] = {where: (("y", "x"), values, own)}
+    if mapping is not None:
+        # A variable of no dimension, of which the attributes count alone.
+        data["crs"] = ((), np.int32(0), mapping)
+        own["grid_mapping"] = "crs"
+    nodes = {"y": ("y", raster.y, up), "x": ("x", raster.x, across)}
+    file = xarray.Dataset(data, coords=nodes, attrs={"Conventions": "CF-1.8"})
+    plain = {"_FillValue": None}
+    packed = {where: {"zlib": True, "_FillValue": np.nan}, "x": plain, "y": plain}
+    file.to_netcdf(path, encoding=packed, engine="netcdf4")
 
 
-def _write_csv(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+def _write_csv(
+    path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
+) -> None:
     values = _checked(path, raster)
     with path.open("w", encoding="utf-8", newline="") as file:
         file.write(f"x,y,{name}\n")
@@ -220,12 +264,15 @@ def _write_csv(path: Path, raster: Raster, *, name: str, crs: str | None) -> Non
             )
 
 
-def _write_picture(path: Path, raster: Raster, *, name: str, crs: str | None) -> None:
+def _write_picture(
+    path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
+) -> None:
     from delone.relief import draw_raster
 
     draw_raster(path, _checked(path, raster), raster.x, raster.y, label=name, crs=crs)
 
 
+WITH_CRS = (".tif", ".tiff", ".nc", ".png", ".svg")
 _WRITERS: dict[str, tuple[str | None, str, Callable[..., None]]] = {
     **dict.fromkeys((".tif", ".tiff"), ("rasterio", "raster", _write_geotiff)),
     ".nc": ("netCDF4", "xarray", _write_netcdf),

@@ -16,7 +16,9 @@ import numpy as np
 from delone._arrays import as_flag, as_plain_array
 from delone.atomic import replacing
 from delone.errors import DtypeError, FileFormatError, InputError
+from delone.georeference import as_crs, crs_of
 from delone.io.compressed import SUFFIXES
+from delone.io.referencing import warn_if_left_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -67,6 +69,9 @@ _WRITERS = {
 # What holds tetrahedra, or draws them.
 _SPACE = (".vtu", ".msh", ".npz", ".png")
 _GEOMETRIES = ("vector", "parquet")
+# What has a place for a reference system, or labels the axes by it.
+_LABELS = (".png", ".svg")
+WITH_CRS = (".gpkg", ".geojson", ".npz", *_LABELS)
 _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
 
 
@@ -286,8 +291,8 @@ def read_geometries(
     Returns
     -------
     GeometrySet
-        One geometry for each feature, in the order of the file; `delone.from_geometry` takes its
-        ``geometries``.
+        One geometry for each feature, in the order of the file; `delone.from_geometry` takes it,
+        and keeps its reference system.
 
     Raises
     ------
@@ -359,7 +364,7 @@ def write_mesh(
     triangulation: Mesh | TetMesh,
     *,
     z: ArrayLike | None = None,
-    crs: str | None = None,
+    crs: Any = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
@@ -375,8 +380,10 @@ def write_mesh(
         without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the colour.
-    crs : str, optional
-        Coordinate reference system, for GeoPackage, GeoJSON and the labels of pictures.
+    crs : str, int or pyproj.CRS, optional
+        Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of pictures; by
+        default that of the triangulation, which `delone.from_geometry` keeps. Nothing is
+        transformed.
     edges : bool, optional
         Write edges in place of triangles, to VTU, MSH, GeoPackage or GeoJSON; pictures show both.
     attributes : mapping of str to array_like, optional
@@ -392,6 +399,11 @@ def write_mesh(
         The library for this format is not installed.
     OSError
         The file cannot be written.
+
+    Warns
+    -----
+    CRSWarning
+        `crs` is given, and the format has no place for it.
 
     Notes
     -----
@@ -427,8 +439,12 @@ def write_mesh(
     write = writer(path, space=ndim == 3)
     if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
         raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
+    system = as_crs(crs)
+    warn_if_left_out(path, system, WITH_CRS if ndim == 2 else _LABELS)
+    if system is None and ndim == 2:
+        system = crs_of(triangulation)
     with replacing(path) as beside:
-        write(beside, triangulation, z=z, crs=crs, edges=lines, attributes=given)
+        write(beside, triangulation, z=z, crs=system, edges=lines, attributes=given)
 
 
 def _plain(

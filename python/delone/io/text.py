@@ -67,7 +67,11 @@ def read_points(
     z = np.ascontiguousarray(table[:, 2]) if len(chosen) == 3 else None
     further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True))
     return PointSet(
-        points=np.ascontiguousarray(table[:, :2]), z=z, attributes=further, source=source
+        points=np.ascontiguousarray(table[:, :2]),
+        z=z,
+        attributes=further,
+        source=source,
+        columns=tuple(layout.names[i] for i in chosen) if layout.named else (),
     )
 
 

@@ -74,6 +74,7 @@ def mesh(
     crossing: str | None = None,
     progress: Callable[[int, float], object] | None = None,
     workers: int | None = None,
+    planar: bool = False,
 ) -> Mesh:
     """Fill a domain with triangles that have no small angle.
 
@@ -121,6 +122,8 @@ def mesh(
         Called now and then with the number of points added and the smallest angle in degrees.
     workers : int, optional
         Number of threads; by default one for each core. The result is the same.
+    planar : bool, optional
+        As for `from_geometry`: longitudes and latitudes are meant as coordinates of a plane.
 
     Returns
     -------
@@ -187,7 +190,7 @@ def mesh(
     )
     as_workers(workers)
     clock = time.perf_counter()
-    base, region = _base(domain, holes, regions, crossing, workers)
+    base, region = _base(domain, holes, regions, crossing, workers=workers, planar=planar)
     stages = {"triangulate": time.perf_counter() - clock}
     found = filled(
         base,
@@ -421,7 +424,9 @@ def _base(
     holes: ArrayLike | None,
     regions: ArrayLike | None,
     crossing: str | None,
+    *,
     workers: int | None,
+    planar: bool,
 ) -> tuple[ConstrainedDelaunay, Indices]:
     """Return a constrained triangulation of the domain, and the region of each triangle."""
     pair = isinstance(domain, tuple) and len(domain) == 2 and not _is_geometry(domain[0])
@@ -439,16 +444,35 @@ def _base(
             boundary="outline",
             crossing=crossing or "error",
             workers=workers,
+            planar=planar,
         )
         region = base.region
     elif domain is None:
         raise DtypeError(f"domain must be {_DOMAINS}, got None")
     else:
+        _refuse_points(domain)
         base = from_geometry(
-            domain, boundary="polygons", crossing=crossing or "split", workers=workers
+            domain,
+            boundary="polygons",
+            crossing=crossing or "split",
+            workers=workers,
+            planar=planar,
         )
         region = base.polygon
     return base, region
+
+
+def _refuse_points(domain: Any) -> None:
+    """Refuse points alone, and say of what they may be the corners."""
+    first = domain[0] if isinstance(domain, list | tuple | np.ndarray) and len(domain) else ()
+    if isinstance(first, list | tuple | np.ndarray) and len(first) in (2, 3):
+        numbers = all(isinstance(each, int | float | np.number) for each in first)
+        if numbers:
+            raise InputError(
+                "the domain is points alone, which enclose nothing: give (points, segments), "
+                'or the ring as {"type": "Polygon", "coordinates": [points]}; of the convex hull '
+                "give delone.ConstrainedDelaunay(points, [])"
+            )
 
 
 def _is_geometry(thing: Any) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
+from delone.georeference import warn_of_degrees
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.voronoi import clipping, dual, outline, shapes, sites
@@ -63,6 +64,8 @@ class Voronoi(Immutable):
         of the period, as ``(-inf, ymin, inf, ymax)``.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
+    planar : bool, optional
+        As for `Delaunay`: longitudes and latitudes are meant as coordinates of a plane.
 
     Attributes
     ----------
@@ -191,12 +194,15 @@ class Voronoi(Immutable):
         weights: ArrayLike | None = None,
         periodic: tuple[float | None, float | None] | None = None,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Voronoi never changes: make another one")
         threads = as_workers(workers)
         repair = as_flag(fix, name="fix")
         own = own_copy(points)
+        if periodic is None:
+            warn_of_degrees(points, own, planar=planar)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
         lengths = None

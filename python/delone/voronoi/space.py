@@ -21,6 +21,7 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag, as_workers
 from delone.counting import counted
 from delone.errors import InputError
+from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
 from delone.voronoi import sites
@@ -147,6 +148,7 @@ class SpaceVoronoi(Voronoi):
         weights: ArrayLike | None = None,
         periodic: None = None,
         workers: int | None = None,
+        planar: bool = False,
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Voronoi never changes: make another one")
@@ -155,6 +157,7 @@ class SpaceVoronoi(Voronoi):
         threads = as_workers(workers)
         as_flag(fix, name="fix")
         own = own_copy(points, ndim=3)
+        warn_of_degrees(points, own, planar=planar)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh, arrays = sites.in_space(own, heavy, threads)
         where = as_polyhedron(clip, own)

@@ -42,6 +42,7 @@ def write_dem(
     resolution: float | tuple[float, float],
     out: str | os.PathLike[str],
     value: str,
+    crs: str | None,
 ) -> Path:
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
@@ -65,7 +66,7 @@ def write_dem(
                 _fill(tin.locator(tile), tile, known["extent"], x, y, values, value)
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
         transform = rasterio.Affine(sides[0], 0.0, corner[0], 0.0, -sides[1], corner[1])
-        _write(rasterio, beside, values, transform, tin.crs, value)
+        _write(rasterio, beside, values, transform, crs, value)
         del values
     return target
 

@@ -12,6 +12,7 @@ from delone.distributed.read.folder import TileFolder
 from delone.distributed.read.proof import prove
 from delone.distributed.read.tables import dask_frame, write_geoparquet
 from delone.distributed.read.tile import Tile
+from delone.georeference import as_crs
 
 if TYPE_CHECKING:
     import os
@@ -315,6 +316,7 @@ class TiledDelaunay(TileFolder):
         out: str | os.PathLike[str] = "dem.tif",
         *,
         value: str = "z",
+        crs: Any = None,
     ) -> Path:
         """Interpolate linearly to a GeoTIFF, tile by tile, without seams.
 
@@ -326,6 +328,9 @@ class TiledDelaunay(TileFolder):
             The file; it appears when it is whole.
         value : str, optional
             The attribute; by default heights.
+        crs : str, int or pyproj.CRS, optional
+            The reference system of the coordinates, by default that of the source. Nothing is
+            transformed.
 
         Returns
         -------
@@ -351,7 +356,7 @@ class TiledDelaunay(TileFolder):
         ...     tin.to_raster(0.5, folder + "/dem.tif").name
         'dem.tif'
         """
-        return write_dem(self, resolution, out, value)
+        return write_dem(self, resolution, out, value, as_crs(crs) or self.crs)
 
 
 def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:

@@ -1,0 +1,108 @@
+"""Reference systems in files: what formats without a place for one lose, and what CF calls them."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from delone.errors import FileFormatError
+from delone.georeference import CRSWarning
+from delone.io.extras import require
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Sequence
+
+__all__ = ["cf_attributes", "left_out", "warn_if_left_out"]
+
+
+def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> str | None:
+    """Say that a file will not have the reference system that was given.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    crs : str or None
+        The reference system, if one was given.
+    known : sequence of str
+        The suffixes of files that have one.
+
+    Returns
+    -------
+    str or None
+        One sentence; None where nothing is lost.
+
+    Examples
+    --------
+    >>> from delone.io.referencing import left_out
+    >>> left_out("mesh.vtu", "EPSG:28992", [".gpkg"])
+    'mesh.vtu: .vtu files hold no reference system; EPSG:28992 is not in it. Use .gpkg'
+    """
+    suffix = Path(path).suffix.lower()
+    if crs is None or suffix in known:
+        return None
+    return (
+        f"{path}: {suffix} files hold no reference system; {crs.partition(chr(10))[0]:.60} is not "
+        f"in it. Use {', '.join(known)}"
+    )
+
+
+def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> None:
+    """Warn that a file will not have the reference system that was given.
+
+    Parameters
+    ----------
+    path, crs, known
+        As in `left_out`.
+
+    Warns
+    -----
+    CRSWarning
+        The format has no place for it.
+    """
+    message = left_out(path, crs, known)
+    if message is not None:
+        warnings.warn(message, CRSWarning, stacklevel=3)
+
+
+def cf_attributes(
+    crs: str | None,
+) -> tuple[dict[str, Any] | None, dict[str, Any], dict[str, Any]]:
+    """Return what the CF conventions say of a reference system.
+
+    Parameters
+    ----------
+    crs : str or None
+        The reference system, if it is known.
+
+    Returns
+    -------
+    mapping : dict or None
+        Attributes of the grid mapping; None without a system.
+    across, up : dict
+        Attributes of x and of y: axis, and with a system standard name and units.
+
+    Raises
+    ------
+    FileFormatError
+        pyproj does not know the system.
+    MissingExtraError
+        pyproj is not installed, and a system is given.
+
+    Examples
+    --------
+    >>> from delone.io.referencing import cf_attributes
+    >>> cf_attributes("EPSG:4326")[1]["units"]
+    'degrees_east'
+    """
+    if crs is None:
+        return None, {"axis": "X"}, {"axis": "Y"}
+    pyproj = require("pyproj", extra="geo", what="writing a reference system to NetCDF")
+    try:
+        system = pyproj.CRS.from_user_input(crs)
+    except (pyproj.exceptions.CRSError, ValueError) as error:
+        raise FileFormatError(f"pyproj does not know the reference system {crs!r:.80}") from error
+    axes = {each["axis"]: each for each in system.cs_to_cf()}
+    return system.to_cf(), axes.get("X", {"axis": "X"}), axes.get("Y", {"axis": "Y"})
