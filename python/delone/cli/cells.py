@@ -15,8 +15,10 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
-from delone.io import input_suffixes, read_points
+from delone.io import input_suffixes, read_geometries, read_points
 from delone.io.extras import require
+from delone.io.gdal import DRIVERS, local_name
+from delone.io.vector import attribute_names
 
 if TYPE_CHECKING:
     from delone.io import PointSet
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["voronoi"]
 
 _DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
-_GEOMETRIES = (".geojson", ".json", ".gpkg", ".shp", ".fgb")
 _SUFFIXES = (*_DRIVERS, ".parquet")
 _AREAS = (3, 6)  # shapely's numbers of Polygon and MultiPolygon
 
@@ -146,13 +147,9 @@ def _sites(
 
 def _all_attributes(source: Path, layer: str | None) -> list[str]:
     """The names of all attributes of a file of geometries; of other files none."""
-    if source.suffix.lower() not in _GEOMETRIES or not source.exists():
+    if source.suffix.lower() not in DRIVERS or not source.exists():
         return []
-    pyogrio = require("pyogrio", extra="geo", what=f"reading {source.suffix}")
-    try:
-        return [str(name) for name in pyogrio.read_info(source, layer=layer)["fields"]]
-    except (ValueError, pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError):
-        return []  # What is wrong with the file is said by whoever reads it.
+    return attribute_names(source, layer=layer)
 
 
 def _outline(clip: str, crs: str | None) -> Any:
@@ -165,22 +162,26 @@ def _outline(clip: str, crs: str | None) -> Any:
             return [float(part) for part in parts]
         except ValueError:
             pass
-    geopandas = require("geopandas", extra="geo", what="reading an outline")
     shapely = require("shapely", extra="geo", what="reading an outline")
     if not Path(clip).exists():
         raise Failure(f"{clip}: no such file, nor box, nor four numbers", Exit.INPUT)
-    try:
-        frame = geopandas.read_file(clip)
-    except Exception as error:
-        raise FileFormatError(f"{clip} cannot be read: {error}") from error
-    geometries = np.asarray(frame.geometry.dropna().values)
+    found = read_geometries(clip)
+    geometries = found.geometries[~shapely.is_missing(found.geometries)]
     if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():
         raise FileFormatError(f"{clip} must hold polygons, and nothing else")
-    if crs is not None and frame.crs is not None and frame.crs != crs:
+    if crs is not None and found.crs is not None and not _same_system(found.crs, crs):
         raise FileFormatError(
-            f"{clip} is in {frame.crs.to_string()}, the sites in {crs}: bring both to one system"
+            f"{clip} is in {found.crs}, the sites in {crs}: bring both to one system"
         )
     return geometries[0] if len(geometries) == 1 else _joined(shapely, geometries)
+
+
+def _same_system(one: str, other: str) -> bool:
+    pyproj = require("pyproj", extra="geo", what="comparing reference systems")
+    try:
+        return bool(pyproj.CRS.from_user_input(one) == pyproj.CRS.from_user_input(other))
+    except pyproj.exceptions.CRSError:
+        return False
 
 
 def _joined(shapely: Any, geometries: Any) -> Any:
@@ -232,5 +233,10 @@ def _write_table(table: Any, path: Path, suffix: str) -> None:
         # The index of FlatGeobuf has no place for cells that are empty.
         options["SPATIAL_INDEX"] = "NO"
     pyogrio.write_dataframe(
-        table, path, layer="cells", driver=_DRIVERS[suffix], promote_to_multi=True, **options
+        table,
+        local_name(path),
+        layer="cells",
+        driver=_DRIVERS[suffix],
+        promote_to_multi=True,
+        **options,
     )

@@ -12,6 +12,7 @@ from delone.errors import FileFormatError
 from delone.io.extras import require
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet
+from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,6 +59,9 @@ class GeometrySet:
     heights: Floats | None = None
     crs: str | None = None
     source: str = ""
+
+    def __post_init__(self) -> None:
+        check_system(self.crs, self.source)
 
     def __len__(self) -> int:
         return len(self.geometries)

@@ -15,6 +15,7 @@ import numpy as np
 from delone.errors import DeloneError, FileFormatError
 from delone.io.extras import require
 from delone.io.pointset import PointSet
+from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -51,7 +52,7 @@ def read_points(
         _check_claim(path, file)
         _check_names(path, file.header, attributes)
         points, z, further = _read(file, classes, attributes)
-        crs = _crs(file.header)
+        crs = _crs(path, file.header)
     if not len(points) and classes is not None:
         wanted = ", ".join(map(str, classes))
         raise FileFormatError(f"{path} holds no points of class {wanted}; delone info shows which")
@@ -82,7 +83,7 @@ def look(path: Path, *, attributes: Sequence[str]) -> tuple[int, str | None]:
     with _torn_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
         _check_names(path, file.header, attributes)
-        return int(file.header.point_count), _crs(file.header)
+        return int(file.header.point_count), _crs(path, file.header)
 
 
 def read_range(path: Path, start: int, stop: int, *, attributes: Sequence[str]) -> PointSet:
@@ -294,8 +295,11 @@ def _read(
     return points, z, {name: np.concatenate(parts) for name, parts in further.items()}
 
 
-def _crs(header: Any) -> str | None:
+def _crs(path: Path, header: Any) -> str | None:
     """Return the reference system as authority and code, or in WKT; None where there is none."""
+    for record in header.vlrs:
+        if type(record).__name__ == "WktCoordinateSystemVlr":
+            check_system(str(record.string).rstrip("\0"), str(path))
     try:
         crs = header.parse_crs()
     except Exception:  # pyproj is not needed for the points, and records are often odd

@@ -22,6 +22,7 @@ from delone.improve.tetmesh import TetMesh
 from delone.io.cells import cell_values
 from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
+from delone.io.markup import refuse_document_type
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
 from delone.refine.meshed import Mesh as QualityMesh
@@ -111,6 +112,8 @@ def _read(path: Path) -> Any:
     meshio = require("meshio", extra="mesh", what=f"reading {suffix}")
     # The module of the format: the general reader prints, and ends the interpreter on an error.
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
+    if suffix == ".vtu":
+        refuse_document_type(path)
     _check_claim(path, suffix)
     announced = _announced(path) if suffix == ".ply" else {}
     if announced.get("vertex") == 0:

@@ -5,6 +5,7 @@ Only the columns of the coordinates are read. A Parquet file with geometries is 
 
 from __future__ import annotations
 
+import json
 import sys
 from contextlib import contextmanager
 from decimal import Decimal, localcontext
@@ -17,6 +18,7 @@ from delone.errors import DeloneError, FileFormatError, InputError
 from delone.io.extras import require
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
+from delone.io.systems import check_system
 from delone.io.vector import from_frame, geometries_of
 
 if TYPE_CHECKING:
@@ -64,8 +66,7 @@ def read_geometries(
     if not holds_geometries(path):
         raise FileFormatError(f"{path} is a table without geometries")
     with _torn_is_an_error(path):
-        geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
-        return geometries_of(geopandas.read_parquet(path), columns=columns, source=str(path))
+        return geometries_of(_frame(path), columns=columns, source=str(path))
 
 
 def look(
@@ -145,9 +146,21 @@ def _parquet(
             kept = [numbers[i] for i in chosen]
             table = file.read(columns=[*kept, *_known(schema, attributes, path)])
             return _from_table(table, kept, _known(schema, attributes, path), str(path))
+    return from_frame(_frame(path), columns=columns, attributes=attributes, source=str(path))
+
+
+def _frame(path: Path) -> Any:
+    """Read GeoParquet whose reference systems name nothing else."""
+    parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
     geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
-    frame = geopandas.read_parquet(path)
-    return from_frame(frame, columns=columns, attributes=attributes, source=str(path))
+    with path.open("rb") as file:
+        with parquet.ParquetFile(file) as table:
+            columns = json.loads(table.schema_arrow.metadata[b"geo"])["columns"]
+        for column in columns.values():
+            check_system(column.get("crs"), str(path))
+        file.seek(0)
+        # An open file, as geopandas looks for addresses in names.
+        return geopandas.read_parquet(file)
 
 
 def _feather(

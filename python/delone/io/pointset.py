@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from delone.errors import FileFormatError
+from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -78,6 +79,9 @@ class PointSet:
         """The horizontal coordinates."""
         found = self.points if dtype is None else self.points.astype(dtype, copy=False)
         return found.copy() if copy else found
+
+    def __post_init__(self) -> None:
+        check_system(self.crs, self.source)
 
     def __len__(self) -> int:
         return len(self.points)

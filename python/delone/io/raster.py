@@ -18,6 +18,7 @@ from delone.errors import FileFormatError, InputError
 from delone.georeference import as_crs
 from delone.io.extras import require
 from delone.io.referencing import cf_attributes, warn_if_left_out
+from delone.io.systems import plain_system
 
 if TYPE_CHECKING:
     import os
@@ -216,7 +217,7 @@ def _write_geotiff(
         "count": 1,
         "dtype": "float64",
         "nodata": np.nan,
-        "crs": crs,
+        "crs": plain_system(crs, path.suffix),
         "transform": rasterio.Affine(width, 0.0, corner[0], 0.0, -height, corner[1]),
         "compress": "deflate",
         "predictor": 3,

@@ -202,6 +202,8 @@ def read_points(
     Coordinates are the doubles that the file denotes: of decimals the nearest ones. Integers beyond
     2**53 and, in tables, decimals with more digits than a double tells from others are refused. No
     memory is set aside for what a header claims before the size of the file has confirmed it.
+    Nothing that a file refers to is opened, apart from the parts of a Shapefile, the journals of a
+    GeoPackage and the NODE file beside ELE and POLY.
 
     Examples
     --------

@@ -16,11 +16,13 @@ import numpy as np
 
 from delone.errors import DeloneError, FileFormatError
 from delone.io.cells import cell_values
-from delone.io.compressed import SUFFIXES, opened, torn_is_an_error
+from delone.io.compressed import SUFFIXES
 from delone.io.extras import require
+from delone.io.gdal import admitted, check_driver, local_name
 from delone.io.geometryset import GeometrySet
 from delone.io.heights import as_values, split_attributes
 from delone.io.pointset import PointSet, find_column
+from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from delone.io.registry import Mesh
 
 __all__ = [
+    "attribute_names",
     "from_frame",
     "geometries_of",
     "read_geometries",
@@ -73,15 +76,13 @@ def _read(
     pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
     require("geopandas", extra="geo", what=f"reading {path.suffix}")
     source = str(path)
-    with _torn_is_an_error(source):
-        content = _content(path)
-        layer = _layer(pyogrio, content, layer, source)
-        facts = pyogrio.read_info(content, layer=layer, force_feature_count=True)
-        names = list(facts["fields"])
-        kept = [
-            names[find_column(names, name, source)] for name in (*_height(columns), *attributes)
-        ]
-        frame = pyogrio.read_dataframe(content, layer=layer, columns=kept)
+    with _torn_is_an_error(source), admitted(path) as name:
+        layer = _layer(pyogrio, name, layer, path)
+        facts = _facts(pyogrio, name, layer, path)
+        fields = list(facts["fields"])
+        wanted = (*_height(columns), *attributes)
+        kept = [fields[find_column(fields, column, source)] for column in wanted]
+        frame = pyogrio.read_dataframe(name, layer=layer, columns=kept)
     if len(frame) < facts["features"]:
         claimed = facts["features"]
         raise FileFormatError(
@@ -90,12 +91,22 @@ def _read(
     return frame
 
 
-def _content(path: Path) -> Path | bytes:
-    """Return what pyogrio is to read: the file, or the bytes that are compressed in it."""
-    if path.suffix.lower() not in SUFFIXES:
-        return path
-    with torn_is_an_error(str(path)), opened(path) as file:
-        return file.read()
+def _facts(pyogrio: Any, name: str, layer: str | None, path: Path) -> dict[str, Any]:
+    """Return what pyogrio says of a layer, before its features are read."""
+    facts: dict[str, Any] = pyogrio.read_info(name, layer=layer, force_feature_count=True)
+    check_driver(path, facts["driver"])
+    check_system(facts["crs"], str(path))
+    return facts
+
+
+def attribute_names(path: Path, *, layer: str | None) -> list[str]:
+    """Return the names of all attributes of a layer, none where the file cannot be read."""
+    pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
+    try:
+        with _torn_is_an_error(str(path)), admitted(path) as name:
+            return [str(field) for field in _facts(pyogrio, name, layer, path)["fields"]]
+    except FileFormatError:
+        return []  # Whoever reads the points says what is wrong with the file.
 
 
 def from_frame(
@@ -180,15 +191,15 @@ def _same(frame: Any, name: str | int, source: str) -> str:
     return names[find_column(names, name, source)]
 
 
-def _layer(pyogrio: Any, content: Path | bytes, layer: str | None, source: str) -> str | None:
-    if layer is not None and isinstance(content, bytes):
-        raise FileFormatError(f"{source}: compressed files of geometries have no layers")
-    names = [str(name) for name, _ in pyogrio.list_layers(content)]
+def _layer(pyogrio: Any, name: str, layer: str | None, path: Path) -> str | None:
+    if layer is not None and path.suffix.lower() in SUFFIXES:
+        raise FileFormatError(f"{path}: compressed files of geometries have no layers")
+    names = [str(found) for found, _ in pyogrio.list_layers(name)]
     if layer is not None and layer not in names:
-        raise FileFormatError(f"{source} has no layer {layer!r}; its layers are {', '.join(names)}")
+        raise FileFormatError(f"{path} has no layer {layer!r}; its layers are {', '.join(names)}")
     if layer is None and len(names) > 1:
         raise FileFormatError(
-            f"{source} has several layers; choose one (--layer): {', '.join(names)}"
+            f"{path} has several layers; choose one (--layer): {', '.join(names)}"
         )
     return layer
 
@@ -248,6 +259,7 @@ def _system(crs: str | None, suffix: str) -> Any:
     """Return a reference system that geopandas takes."""
     if not crs:
         return None
+    check_system(crs, suffix)
     pyproj = require("pyproj", extra="geo", what="writing a reference system")
     try:
         return pyproj.CRS.from_user_input(crs)
@@ -277,6 +289,6 @@ def _write_part(path: Path, frame: Any, layer: str, *, append: bool) -> None:
         # A survey without a reference system is common, and nothing to warn of.
         warnings.filterwarnings("ignore", message=".*crs.*")
         try:
-            pyogrio.write_dataframe(frame, path, layer=layer, **options)
+            pyogrio.write_dataframe(frame, local_name(path), layer=layer, **options)
         except pyogrio.errors.DataSourceError as error:
             raise OSError(str(error).partition("\n")[0]) from error

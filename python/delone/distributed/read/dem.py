@@ -18,6 +18,7 @@ from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
 from delone.io.extras import require
+from delone.io.systems import plain_system
 
 if TYPE_CHECKING:
     import os
@@ -134,7 +135,7 @@ def _write(  # noqa: PLR0917
         "count": 1,
         "dtype": "float64",
         "nodata": np.nan,
-        "crs": crs,
+        "crs": plain_system(crs, path.suffix),
         "transform": transform,
         "compress": "deflate",
         "predictor": 3,

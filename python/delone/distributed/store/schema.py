@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.distributed.store.output import tile_names
 from delone.errors import FileFormatError
+from delone.io.systems import names_a_source
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,6 +62,12 @@ def _box(value: Any, field: str) -> None:
 def _text(value: Any, field: str) -> None:
     if not isinstance(value, str):
         _refuse(value, field, "a text")
+
+
+def _system(value: Any, field: str) -> None:
+    _text(value, field)
+    if names_a_source(value):
+        _refuse(value, field, "a reference system that names no file and no address")
 
 
 def _hash(value: Any, field: str) -> None:
@@ -165,7 +172,7 @@ _MANIFEST = _record(
         "format": _one_of(FORMAT),
         "delone": _text,
         "ties": _one_of(TIES),
-        "crs": _or_null(_text),
+        "crs": _or_null(_system),
         "bounds": _box,
         **dict.fromkeys(("triangles", "rows", "points", "dropped", "duplicates"), _whole()),
         **dict.fromkeys(("rounds", "given", "hull", "memory"), _whole()),

@@ -1,0 +1,53 @@
+"""XML that must stand alone: without a document type there are no entities, own or elsewhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from xml.parsers import expat
+
+from delone.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["refuse_document_type"]
+
+_BLOCK = 1 << 16
+
+
+class _RootError(Exception):
+    """The root element has begun; a document type comes before it or not at all."""
+
+
+def refuse_document_type(path: Path) -> None:
+    """Refuse XML with a document type, which may define entities without end or name other files.
+
+    Parameters
+    ----------
+    path : Path
+        The file; what is no XML is left to whoever reads it.
+
+    Raises
+    ------
+    FileFormatError
+        There is a document type.
+    """
+
+    def document_type(*_: object) -> None:
+        raise FileFormatError(
+            f"{path} has a document type (DOCTYPE): such files may define entities that refer to "
+            "others, and are not read; remove it"
+        )
+
+    def root(*_: object) -> None:
+        raise _RootError
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = document_type
+    parser.StartElementHandler = root
+    try:
+        with path.open("rb") as file:
+            while block := file.read(_BLOCK):
+                parser.Parse(block)
+    except (_RootError, expat.ExpatError):
+        pass

@@ -1,0 +1,149 @@
+"""Reference systems as text: those that would make a library open a file or ask a server.
+
+PROJ takes ``+init=/some/file:1`` and grids by their path, GDAL takes paths and addresses. A file
+must not lead to another one, so such text is refused before any library sees it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from delone.errors import FileFormatError
+
+__all__ = ["check_system", "names_a_source", "plain_system"]
+
+_WKT = re.compile(r"\s*[A-Za-z]\w*\s*[\[(]")
+# What stands in WKT for parameters of PROJ and for files of grids, and its value.
+_FILES = re.compile(
+    r'(?:EXTENSION|PARAMETERFILE)\s*[\[(]\s*(?:"(?:[^"]|"")*"\s*,\s*"((?:[^"]|"")*)")?',
+    re.IGNORECASE,
+)
+_INIT = re.compile(r"init\s*=\s*[\"']?(?!epsg:|esri:)", re.IGNORECASE)
+_SEPARATORS = re.compile(r"[/\\~]")
+# Identifiers that look like addresses; libraries take them apart and ask nobody.
+_IDENTIFIER = re.compile(
+    r"https?://(?:www\.)?opengis\.net/(?:def/crs|gml/srs)/[\w/.#-]*", re.IGNORECASE
+)
+_PATH = re.compile(r"\s*(?:file:|[/\\~.]|[a-z]:[/\\])", re.IGNORECASE)
+_CODE = re.compile(r"\s*(?:[A-Za-z]\w*:[\w.-]+|urn:[\w:.,-]+)\s*")
+_PARAMETERS = {"init", "proj", "grids", "nadgrids", "geoidgrids", "file"}
+
+
+def check_system(system: Any, source: str) -> None:
+    """Refuse a reference system that names a file or an address.
+
+    Parameters
+    ----------
+    system : str, dict or None
+        An authority and a code, WKT, PROJJSON, parameters of PROJ or a name.
+    source : str
+        Where it stands, for the message.
+
+    Raises
+    ------
+    FileFormatError
+        A library would open what it names.
+
+    Examples
+    --------
+    >>> from delone.io.systems import check_system
+    >>> check_system("EPSG:28992", "survey.gpkg")
+    """
+    if system is not None and names_a_source(system):
+        raise FileFormatError(
+            f"{source}: its reference system {str(system)!r:.100} names a file or an address, "
+            "which is not opened: give an authority and a code (EPSG:28992), or WKT without files"
+        )
+
+
+def names_a_source(system: Any) -> bool:
+    """Tell whether a library would open a file or an address for a reference system.
+
+    Parameters
+    ----------
+    system : str or dict
+        A reference system.
+
+    Returns
+    -------
+    bool
+        True also for what is no reference system and might be taken for a path.
+
+    Examples
+    --------
+    >>> from delone.io.systems import names_a_source
+    >>> names_a_source("+init=/some/file:1"), names_a_source("Amersfoort / RD New")
+    (True, False)
+    """
+    if not isinstance(system, str) or system.lstrip().startswith("{"):
+        return _is_suspect_json(system)
+    if _WKT.match(system):
+        return any(found[1] is None or _leads_away(found[1]) for found in _FILES.finditer(system))
+    if "=" in system:
+        return _leads_away(system)
+    if "://" in system:
+        return not _IDENTIFIER.fullmatch(system.strip())
+    return bool(_PATH.match(system))
+
+
+def _leads_away(parameters: str) -> bool:
+    return bool(_SEPARATORS.search(parameters) or _INIT.search(parameters))
+
+
+def _is_suspect_json(system: Any) -> bool:
+    try:
+        return _in_json(json.loads(system) if isinstance(system, str) else system)
+    except (ValueError, RecursionError):
+        return True
+
+
+def _in_json(value: Any) -> bool:
+    """Look through PROJJSON for parameters of PROJ and for values that are paths."""
+    if isinstance(value, dict):
+        return any(
+            key in _PARAMETERS
+            or (key == "value" and isinstance(item, str) and bool(_SEPARATORS.search(item)))
+            or _in_json(item)
+            for key, item in value.items()
+        )
+    return isinstance(value, list) and any(map(_in_json, value))
+
+
+def plain_system(system: Any, source: str) -> Any:
+    """Return a reference system that GDAL cannot take for the name of a file.
+
+    Parameters
+    ----------
+    system : str or None
+        A reference system; objects of other libraries are returned as they are.
+    source : str
+        The file to be written, for the message.
+
+    Returns
+    -------
+    str or None
+        The same.
+
+    Raises
+    ------
+    FileFormatError
+        It is neither an authority and a code nor WKT, PROJJSON or parameters of PROJ.
+
+    Examples
+    --------
+    >>> from delone.io.systems import plain_system
+    >>> plain_system("EPSG:28992", "heights.tif")
+    'EPSG:28992'
+    """
+    if not isinstance(system, str) or not system:
+        return system
+    check_system(system, source)
+    form = system.lstrip()
+    if _CODE.fullmatch(form) or _WKT.match(form) or form.startswith(("{", "+")):
+        return system
+    raise FileFormatError(
+        f"{source} cannot hold the reference system {system!r:.100}: give an authority and a code "
+        "(EPSG:28992), or WKT"
+    )
