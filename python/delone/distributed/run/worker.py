@@ -32,7 +32,8 @@ class Worker:
     """A process that waits for tasks."""
 
     def __init__(self) -> None:
-        self._process = Popen([sys.executable, "-c", _BEGIN], stdin=PIPE, stdout=PIPE)
+        # Not from the working folder (-P): a file there may have the name of a module.
+        self._process = Popen([sys.executable, "-P", "-c", _BEGIN], stdin=PIPE, stdout=PIPE)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._tasks, self._answers = self._process.stdin, self._process.stdout
