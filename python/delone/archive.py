@@ -322,9 +322,11 @@ def _check_constrained(**arrays: NDArray[Any]) -> None:
         _check_range(name, indices, 0, end)
     seeds = np.concatenate((arrays["holes"], arrays["regions"]))
     _require(np.isfinite(seeds).all(), "a seed is not finite")
-    geometries, rings = arrays["geometries"], arrays["rings"]
-    matched = len(geometries) == len(rings) == rows and (geometries[rings] >= 0).all()
+    geometries, rings, parts = (arrays[name] for name in ("geometries", "rings", "parts"))
+    matched = len(geometries) == len(rings) == len(parts) == rows
     _require(matched, "geometries and segments do not match")
+    _require((geometries[rings] >= 0).all(), "the side of a ring has no geometry")
+    _check_range("parts", parts, -1, 2**31 - 1)
     _require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
 
 
@@ -378,7 +380,7 @@ def _check_mesh(**arrays: NDArray[Any]) -> None:
     for wanted, names in (
         (m, ("region",)),
         (n, ("on", "point_source", "point_markers")),
-        (lines, ("frozen", "line_markers")),
+        (lines, ("frozen", "line_markers", "line_geometries")),
         (len(arrays["source"]), ("forward",)),
         (lines + 1, ("start",)),
         (4, ("counts",)),
@@ -445,6 +447,7 @@ CONSTRAINED = Kind(
         "input": ("<i4", 2),
         "geometries": ("<i4", 0),
         "rings": ("|b1", 0),
+        "parts": ("<i4", 0),
         "holes": ("<f8", 2),
         "regions": ("<f8", 2),
         "labels": ("<i4", 0),
@@ -467,6 +470,7 @@ MESH = Kind(
         "forward": ("|b1", 0),
         "frozen": ("|b1", 0),
         "line_markers": ("<i4", 0),
+        "line_geometries": ("<i4", 0),
         "bound": ("<f8", 0),
         "counts": ("<i8", 0),
     },

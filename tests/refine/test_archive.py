@@ -102,6 +102,7 @@ WRONG: list[tuple[str, Any, str]] = [
     ("forward", lambda f: f[1:].copy(), "forward"),
     ("frozen", lambda f: f[1:].copy(), "frozen"),
     ("line_markers", lambda f: f[1:].copy(), "line_markers"),
+    ("line_geometries", lambda f: f[1:].copy(), "line_geometries"),
     ("point_source", put(0, value=-7), "point_source"),
     ("point_markers", lambda f: f[1:].copy(), "point_markers"),
     ("bound", put(0, value=60.0), "bound"),

@@ -9,6 +9,7 @@ import signal
 import threading
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -151,6 +152,85 @@ def test_geometries_are_meshed_inside() -> None:
     assert mesh.areas[mesh.region == 0].sum() == pytest.approx(15)
     assert mesh.areas[mesh.region == 1].sum() == pytest.approx(8)
     assert mesh.report.ok
+
+
+RINGED = {
+    "type": "Polygon",
+    "coordinates": [
+        [(0, 0), (6, 0), (6, 6), (0, 6)],
+        [(1, 1), (2, 1), (2, 2), (1, 2)],
+        [(3, 3), (5, 3), (5, 5), (3, 5)],
+    ],
+}
+BESIDE = {"type": "Polygon", "coordinates": [[(6, 0), (9, 0), (9, 6), (6, 6)]]}
+POINT_AND_LINE = [
+    {"type": "Point", "coordinates": (7, 1)},
+    {"type": "LineString", "coordinates": [(7, 2), (8, 4)]},
+]
+
+
+def test_each_ring_and_line_has_its_own_marker() -> None:
+    mesh = delone.mesh([RINGED, *POINT_AND_LINE, BESIDE], size=0.7)
+    middle = mesh.points[mesh.segments].mean(axis=1)
+    x, y = middle.T
+    small = (np.abs(middle - 1.5) <= 0.5).all(axis=1)
+    large = (np.abs(middle - 4) <= 1).all(axis=1)
+    line = (x > 6) & (x < 9) & (y > 0) & (y < 6)
+    outer = ~(small | large | line) & (x <= 6)
+    assert set(mesh.segment_markers[outer].tolist()) == {1}
+    assert set(mesh.segment_markers[small].tolist()) == {2}
+    assert set(mesh.segment_markers[large].tolist()) == {3}
+    assert set(mesh.segment_markers[line].tolist()) == {4}
+    assert set(mesh.segment_markers[x > 6].tolist()) == {4, 5}
+    assert set(mesh.geometry_of_segment[x <= 6].tolist()) == {0}
+    assert set(mesh.geometry_of_segment[line].tolist()) == {2}
+    assert set(mesh.geometry_of_segment[~line & (x > 6)].tolist()) == {3}
+    # Points of the input and points that were added have a marker of their segment.
+    assert mesh.point_markers[mesh.segments[small]].min() == 2
+    assert mesh.point_markers[mesh.segments[small]].max() == 2
+
+
+def test_rings_stay_apart_where_a_constrained_triangulation_is_meshed() -> None:
+    base = delone.from_geometry(RINGED, boundary="polygons")
+    assert base.part_of_segment.tolist() == [0] * 4 + [1] * 4 + [2] * 4
+    mesh = delone.mesh(base, size=1)
+    assert set(mesh.segment_markers.tolist()) == {1, 2, 3}
+    assert set(mesh.geometry_of_segment.tolist()) == {0}
+    # Segments that an edit adds, and those from arrays, came from no geometry.
+    with base.edit() as edit:
+        edit.remove_segments([4, 5, 6, 7])
+        edit.insert_segments([(0, 8)])
+    assert edit.result.part_of_segment.tolist() == [0] * 4 + [2] * 4 + [-1]
+    edited = delone.mesh(edit.result)
+    assert set(edited.segment_markers.tolist()) == {0, 1, 3}
+    assert (edited.geometry_of_segment == np.where(edited.segment_markers, 0, -1)).all()
+
+
+def test_markers_that_are_given_count_and_arrays_have_none() -> None:
+    given = delone.mesh(RINGED, segment_markers=np.arange(12) + 50)
+    assert set(given.segment_markers.tolist()) == set(range(50, 62))
+    assert set(given.geometry_of_segment.tolist()) == {0}
+    plain = delone.mesh((SQUARE, RING), max_area=0.1)
+    assert not plain.segment_markers.any()
+    assert not plain.point_markers.any()
+    assert set(plain.geometry_of_segment.tolist()) == {-1}
+
+
+@pytest.mark.parametrize("change", ["refine", "coarsen", "smooth", "load", "pickle"])
+def test_geometries_of_segments_are_inherited(change: str, tmp_path: Path) -> None:
+    mesh = delone.mesh([RINGED, BESIDE], size=0.8)
+    if change == "load":
+        mesh.save(tmp_path / "mesh.npz")
+        made = delone.Mesh.load(tmp_path / "mesh.npz")
+    elif change == "pickle":
+        made = pickle.loads(pickle.dumps(mesh))
+    else:
+        made = getattr(mesh, change)()
+    for mine in (mesh, made):
+        east = (mine.points[mine.segments][..., 0] >= 6).all(axis=1)
+        east &= (mine.points[mine.segments][..., 0] > 6).any(axis=1)
+        assert (mine.geometry_of_segment == east).all()
+    assert set(made.segment_markers.tolist()) == {1, 2, 3, 4}
 
 
 def test_the_whole_hull_of_a_constrained_triangulation() -> None:

@@ -151,6 +151,7 @@ def _domain(
         np.ones(len(own), dtype=bool),
         frozen,
         marks,
+        np.full(len(ends), -1, dtype=np.int32),
     )
     of_points = as_rows(tri.get("vertex_markers"), n, "vertex_markers")
     return Domain(

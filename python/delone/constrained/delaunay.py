@@ -23,7 +23,7 @@ from delone._arrays import (
     as_workers,
 )
 from delone.constrained import regions
-from delone.constrained.segmented import Options, Segmented
+from delone.constrained.segmented import Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import counted
 from delone.errors import InputError, InternalError
@@ -181,8 +181,7 @@ class ConstrainedDelaunay(Segmented):
         own = own_copy(points)
         warn_of_degrees(points, own, planar=planar)
         rows = _own(as_segments(segments, len(own)), segments)
-        origin = np.full(len(rows), -1, dtype=np.int32), np.zeros(len(rows), dtype=bool)
-        found = _given(rows, origin, holes, regions)
+        found = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
         options = options._replace(labelled=len(found["regions"]) > 0)
         self._set(found, options, _compute(own, found, options))
 
@@ -191,17 +190,13 @@ class ConstrainedDelaunay(Segmented):
         cls,
         points: Floats,
         segments: Indices,
-        origin: tuple[Indices, Bools],
+        origin: Origin,
         *,
         holes: ArrayLike | None,
         regions: ArrayLike | None = None,
         **choices: Any,
     ) -> Self:
-        """Triangulate arrays of ours.
-
-        `origin` has for each segment the geometry it came from, and whether it is the side of a
-        ring.
-        """
+        """Triangulate arrays of ours, with the origin of each segment."""
         as_choice(choices["boundary"], _BOUNDARIES, name="boundary")
         as_choice(choices["crossing"], _CROSSINGS, name="crossing")
         as_choice(choices["method"], tuple(_core.methods2()), name="method")
@@ -500,7 +495,7 @@ class ConstrainedDelaunay(Segmented):
 
 def _given(
     segments: Indices,
-    origin: tuple[Indices, Bools],
+    origin: Origin,
     holes: ArrayLike | None,
     regions: ArrayLike | None,
 ) -> dict[str, NDArray[Any]]:
@@ -508,8 +503,9 @@ def _given(
     seeds = as_seeds(regions, name="regions", columns=3)
     return {
         "input": segments,
-        "geometries": origin[0],
-        "rings": origin[1],
+        "geometries": origin.geometries,
+        "rings": origin.rings,
+        "parts": origin.parts,
         "holes": as_seeds(holes, name="holes").copy(),
         "regions": seeds[:, :2].copy(),
         "labels": _labels(seeds),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from delone._arrays import as_points, as_segments, require_finite
+from delone.constrained.segmented import Origin
 from delone.counting import agreed, counted
 from delone.errors import DeloneError, DtypeError, InputError, ShapeError
 from delone.plane.topology import among, edge_keys
@@ -340,18 +341,17 @@ class Editing:
         self._result = type(self._mesh)._of_geometries(
             points[keeps_point],
             rows.points[segments[keeps_segment]],
-            (origin[0][keeps_segment], origin[1][keeps_segment]),
+            Origin._make(values[keeps_segment] for values in origin),
             **self._mesh._arguments(),
         )
         self._rows = rows
 
-    def _origins(self, count: int) -> tuple[Indices, NDArray[np.bool_]]:
-        """Return for each segment its geometry and whether it is the side of a ring."""
-        geometries, rings = np.full(count, -1, dtype=np.int32), np.zeros(count, dtype=bool)
-        old = self._mesh._found
-        geometries[: len(old["input"])] = old["geometries"]
-        rings[: len(old["input"])] = old["rings"]
-        return geometries, rings
+    def _origins(self, count: int) -> Origin:
+        """Return the origin of each segment; new ones have none."""
+        origin, old = Origin.of_arrays(count), self._mesh._found
+        for name, values in origin._asdict().items():
+            values[: len(old["input"])] = old[name]
+        return origin
 
     def _require_ends(
         self, segments: Indices, keeps_point: NDArray[Any], keeps_segment: NDArray[Any]

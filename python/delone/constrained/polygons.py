@@ -15,6 +15,7 @@ from delone import _core
 from delone._arrays import as_choice, as_flag, as_points, require_finite
 from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.constrained.segmented import Origin
 from delone.counting import agreed
 from delone.errors import InputError, NonFiniteError
 from delone.georeference import as_crs, common_crs, is_geographic, warn_of_degrees
@@ -75,7 +76,8 @@ def from_geometry(
     ConstrainedDelaunay
         The triangulation. Its points are the distinct coordinates in the order in which they come.
         Its segments are the lines and the sides of all rings, holes included, in this order; its
-        ``geometry_of_segment`` has the geometry of each.
+        ``geometry_of_segment`` has the geometry of each, and its ``part_of_segment`` the ring or
+        line.
 
     Raises
     ------
@@ -120,7 +122,13 @@ def from_geometry(
     warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
     points, vertex = _merged(parts.coordinates)
     ends, part = _steps(parts)
-    origin = parts.geometries[part].astype(np.int32), parts.kinds[part] >= geodata.EXTERIOR
+    # Points have no segments, so they are not counted among the parts.
+    number = np.cumsum(parts.kinds != geodata.POINTS) - 1
+    origin = Origin(
+        parts.geometries[part].astype(np.int32),
+        parts.kinds[part] >= geodata.EXTERIOR,
+        number[part].astype(np.int32),
+    )
     return ConstrainedDelaunay._of_geometries(
         points,
         vertex[ends],

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Options", "Segmented"]
+__all__ = ["Options", "Origin", "Segmented"]
 
 
 class Options(NamedTuple):
@@ -42,6 +42,23 @@ class Options(NamedTuple):
     labelled: bool
     # That of the geometries, if they said.
     crs: str | None = None
+
+
+class Origin(NamedTuple):
+    """Where each input segment came from."""
+
+    # (s,): the number of its geometry, -1 without one.
+    geometries: Indices
+    # (s,): whether it is the side of a ring.
+    rings: Bools
+    # (s,): the number of its ring or line among those of all geometries, -1 without one.
+    parts: Indices
+
+    @classmethod
+    def of_arrays(cls, count: int) -> Origin:
+        """Return the origin of segments that came from no geometry."""
+        none = np.full(count, -1, dtype=np.int32)
+        return cls(none, np.zeros(count, dtype=bool), none.copy())
 
 
 class Segmented(Triangulation):
@@ -159,6 +176,15 @@ class Segmented(Triangulation):
     def geometry_of_segment(self) -> Indices:
         """The geometry that each of `input_segments` came from, (s,); -1 for those from arrays."""
         return self._found["geometries"]
+
+    @property
+    def part_of_segment(self) -> Indices:
+        """The ring or line that each of `input_segments` is part of, (s,); -1 for arrays.
+
+        Rings and lines are numbered from 0 over all geometries, in the order of their coordinates:
+        the outer ring of a polygon first, then its holes.
+        """
+        return self._found["parts"]
 
     @property
     @kept

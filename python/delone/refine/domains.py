@@ -60,6 +60,8 @@ class Lines(NamedTuple):
     # (l,)
     frozen: Bools
     markers: Indices
+    # The geometry of the first row that covers each line; -1 without one.
+    geometries: Indices
 
 
 class Domain(NamedTuple):
@@ -152,7 +154,11 @@ def of_constrained(
     # The first row that has a marker gives it: the last value assigned stays.
     marked = np.flatnonzero(segment_markers[rows])[::-1]
     markers[owner[marked]] = segment_markers[rows[marked]]
-    lines = Lines(ends, np.concatenate((start, last)), rows, found["forward"], fixed, markers)
+    geometries = np.full(len(ends), -1, dtype=np.int32)
+    geometries[: len(start) - 1] = base.geometry_of_segment[rows[start[:-1]]]
+    lines = Lines(
+        ends, np.concatenate((start, last)), rows, found["forward"], fixed, markers, geometries
+    )
     of_points = np.zeros(len(points), dtype=np.int32)
     of_points[:given] = point_markers
     return Domain(

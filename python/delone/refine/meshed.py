@@ -82,6 +82,7 @@ class Mesh(HandedOver, Triangulation):
         "_ends",
         "_forward",
         "_frozen",
+        "_line_geometries",
         "_line_markers",
         "_on",
         "_point_markers",
@@ -97,6 +98,7 @@ class Mesh(HandedOver, Triangulation):
     _ends: Indices
     _forward: Bools
     _frozen: Bools
+    _line_geometries: Indices
     _line_markers: Indices
     _on: Indices
     _point_markers: Indices
@@ -142,6 +144,7 @@ class Mesh(HandedOver, Triangulation):
             "forward": lines.forward,
             "frozen": lines.frozen,
             "line_markers": lines.markers,
+            "line_geometries": lines.geometries,
             "bound": np.array([min_angle]),
             "counts": np.array([*counts], dtype=np.int64),
         }
@@ -154,7 +157,13 @@ class Mesh(HandedOver, Triangulation):
     @property
     def _lines(self) -> Lines:
         return Lines(
-            self._ends, self._start, self._source, self._forward, self._frozen, self._line_markers
+            self._ends,
+            self._start,
+            self._source,
+            self._forward,
+            self._frozen,
+            self._line_markers,
+            self._line_geometries,
         )
 
     def _tiling(self) -> tuple[Indices, Indices]:
@@ -280,8 +289,21 @@ class Mesh(HandedOver, Triangulation):
 
     @property
     def segment_markers(self) -> Indices:
-        """The marker of each of `segments`, (q,): that of its row, 0 without one."""
+        """The marker of each of `segments`, (q,): that of its row, 0 without one.
+
+        Where geometries are meshed and no markers are given, each ring and line has its own: 1 for
+        the first, 2 for the second, and so on.
+        """
         return self._line_markers[self._segment_line]
+
+    @property
+    def geometry_of_segment(self) -> Indices:
+        """The geometry that each of `segments` came from, (q,); -1 for those from arrays.
+
+        Of a segment that several geometries share, the first one. `segment_markers` tells the rings
+        of one geometry apart.
+        """
+        return self._line_geometries[self._segment_line]
 
     @property
     @kept
@@ -600,4 +622,5 @@ def _only_used(lines: Lines, sides: Indices, row: Indices) -> tuple[Lines, Indic
         lines.forward[covered],
         lines.frozen[used],
         lines.markers[used],
+        lines.geometries[used],
     ), line

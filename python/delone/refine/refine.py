@@ -113,7 +113,9 @@ def mesh(
         Segments that may not be split: all, those on the boundary, or those named. Angles next to
         them may stay small.
     segment_markers : array_like of int, shape (s,), optional
-        A number for each segment, which its pieces and the points on them inherit; 0 is none.
+        A number for each segment, which its pieces and the points on them inherit; 0 is none. By
+        default the segments of geometries are numbered by ring or line: 1 for the first ring, 2 for
+        the next, in the order of the coordinates. Those of arrays have 0.
     point_markers : array_like of int, shape (n,), optional
         A number for each point. Where it is 0 the marker of a segment that ends there counts.
     crossing : {"split", "error"}, optional
@@ -250,7 +252,7 @@ def filled(
     start = domains.of_constrained(
         base,
         region=region,
-        segment_markers=as_rows(markers[0], count, "segment_markers"),
+        segment_markers=_segment_markers(base, markers[0]),
         point_markers=as_rows(markers[1], base.npoints - base.nadded, "point_markers"),
         frozen=_frozen(frozen, count),
     )
@@ -397,6 +399,13 @@ def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
     if array.size and (int(array.min()) < limit.min or int(array.max()) > limit.max):
         raise InputError(f"{name} must be integers of 32 bits")
     return array.reshape(count).astype(np.int32)
+
+
+def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indices:
+    """Return the markers given, or one for each ring and line of geometries."""
+    if given is None:
+        return base.part_of_segment + np.int32(1)
+    return as_rows(given, len(base.input_segments), "segment_markers")
 
 
 def _frozen(frozen: bool | str | ArrayLike, count: int) -> Bools:
