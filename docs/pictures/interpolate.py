@@ -25,7 +25,7 @@ def sea_floor() -> None:
     floor = np.where(away < KNOWN, sea.values, np.nan)
     figure, ax = plt.subplots(figsize=(8.4, 8.2), layout="constrained")
     ax.set_facecolor("#e9e3d3")
-    plot_raster(floor, sea.x, sea.y, ax, contours=CONTOURS, label="metres")
+    plot_raster(floor, sea.x, sea.y, ax, contours=CONTOURS, label="metres", shade=True)
     ax.plot(*survey.points.T, ",", color="black", alpha=0.12)
     ax.set(
         xlabel="degrees east",

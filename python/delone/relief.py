@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag
+from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.io.extras import require
 from delone.plot.colours import add_bar, scale, shaded
@@ -33,13 +33,13 @@ def plot_raster(
     ax: Any = None,
     *,
     contours: Any = None,
-    shade: bool = True,
+    shade: bool | None = None,
     cmap: Any = None,
     colorbar: bool = True,
     label: str = "z",
     title: str | None = None,
 ) -> Any:
-    """Draw a raster as a relief map.
+    """Draw a raster in colors of its values, as a relief map where it is terrain.
 
     Parameters
     ----------
@@ -52,7 +52,8 @@ def plot_raster(
     contours : int or sequence of float, optional
         Draw lines of equal value: about so many, or at these values.
     shade : bool, optional
-        Add light and shadow.
+        Add light and shadow, for terrain. The colors then differ from those of the color bar, so
+        that by default this is done only with ``colorbar=False``.
     cmap : str or matplotlib Colormap, optional
         Colours; by default those of land, or of water where nothing lies above zero.
     colorbar : bool, optional
@@ -84,7 +85,7 @@ def plot_raster(
     >>> plot_raster(ramp.values, ramp.x, ramp.y, contours=4).get_aspect()
     1.0
     """
-    lit, bar = as_flag(shade, name="shade"), as_flag(colorbar, name="colorbar")
+    bar, lit = as_flag(colorbar, name="colorbar"), as_optional_flag(shade, name="shade")
     if not np.isfinite(values).any():
         raise InputError("the raster has no finite value to be drawn")
     if ax is None:
@@ -92,7 +93,7 @@ def plot_raster(
     colours = scale(values, cmap)
     rgba = colours.to_rgba(values)
     extent = _extent(x, y)
-    if lit:
+    if lit or (lit is None and not bar):
         light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
         rgba[..., :3] = shaded(rgba[..., :3], light)
     rgba[..., 3] = np.isfinite(values)
@@ -123,11 +124,12 @@ def draw_raster(
     y: Floats,
     *,
     label: str = "z",
+    shade: bool | None = None,
     crs: str | None = None,
     size: float = 10.0,
     dpi: int = 160,
 ) -> None:
-    """Draw a raster as a relief map into a PNG or SVG file.
+    """Draw a raster into a PNG or SVG file.
 
     Parameters
     ----------
@@ -137,6 +139,8 @@ def draw_raster(
         As in `plot_raster`.
     label : str, optional
         What the values are.
+    shade : bool, optional
+        Add light and shadow, as in `plot_raster`.
     crs : str, optional
         Coordinate reference system, which names the axes where pyproj is installed.
     size : float, optional
@@ -152,7 +156,7 @@ def draw_raster(
     figure = figure_module.Figure(
         figsize=(width + 1.9, height + 0.9), dpi=dpi, layout="constrained"
     )
-    ax = plot_raster(values, x, y, figure.add_subplot(), label=label)
+    ax = plot_raster(values, x, y, figure.add_subplot(), label=label, shade=shade)
     xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")

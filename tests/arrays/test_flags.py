@@ -64,12 +64,12 @@ PICTURES: list[tuple[str, Callable[..., Any]]] = [
     ("segments", drawn),
     ("colorbar", drawn),
     ("colorbar", lambda **flag: Voronoi(POINTS).plot(**flag)),
-    ("shade", relief),
     ("colorbar", relief),
 ]
 OPEN: list[tuple[str, Callable[..., Any]]] = [
     ("vertices", drawn),
     ("shade", drawn),
+    ("shade", relief),
     ("points", lambda **flag: Voronoi(POINTS).plot(**flag)),
 ]
 

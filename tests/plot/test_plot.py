@@ -13,6 +13,7 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from PIL import Image
 
+import delone
 from delone import (
     ConvexHull,
     Delaunay,
@@ -22,6 +23,8 @@ from delone import (
     Voronoi,
     datasets,
 )
+from delone.interpolate import grid
+from delone.io import write_raster
 from delone.plot import plot, save_picture
 
 FIVE = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
@@ -135,6 +138,49 @@ def test_the_surface_is_where_it_belongs(tmp_path):
     assert surface[0] < 90
     assert surface[-1] > 160
     assert (np.diff(surface[::10]) > 0).all()
+
+
+def surface_colors(ax):
+    """The colors of the triangles, or of the pixels of an image, (k, 3)."""
+    if ax.images:
+        pixels = np.asarray(ax.images[0].get_array()) / 255
+        return pixels[pixels[..., 3] == 1][::37, :3]
+    return kinds(ax, PolyCollection)[0].get_facecolor()[:, :3]
+
+
+@pytest.mark.parametrize("domain", ["points", "mesh"])
+@pytest.mark.parametrize("count", [1500, 3000, 100_000])
+def test_colors_are_those_of_the_color_bar(domain, count):
+    if domain == "points":
+        mesh = Delaunay(datasets.uniform(count))
+    else:
+        square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1)]]}
+        mesh = delone.mesh(square, max_area=1 / count)
+    x, y = mesh.points.T
+    z = np.sin(9 * x) * np.cos(7 * y)
+    known = matplotlib.colormaps["viridis"](np.linspace(0, 1, 256))[:, :3]
+
+    def furthest(**options):
+        colors = surface_colors(plot(mesh, axes(), z=z, cmap="viridis", **options))
+        assert len(colors) > 1000
+        return np.abs(colors[:, None] - known).max(axis=2).min(axis=1).max()
+
+    assert furthest() <= 0.5 / 255 + 1e-9
+    assert furthest(shade=True) > 0.1
+    many = mesh.nsimplex >= 2000
+    assert (furthest(colorbar=False) > 0.1) == many
+
+
+@pytest.mark.parametrize("name", ["heat", "depth"])
+def test_rasters_in_files_are_shaded_where_they_are_terrain(tmp_path, name):
+    points = datasets.uniform(500)
+    x, y = points.T
+    found = grid(points, np.sin(9 * x) * np.cos(7 * y), shape=(80, 80))
+    bright = []
+    for each in (name, "heat"):
+        write_raster(tmp_path / "a.png", found, name=each)
+        bright.append(pixels(tmp_path / "a.png")[200:-200, 200:-500])
+    assert (bright[0] == bright[1]).all() == (name == "heat")
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg"])

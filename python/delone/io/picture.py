@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.delaunay import Delaunay
 from delone.errors import FileFormatError
 from delone.io.extras import require
 
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
     from delone.io.registry import Mesh
 
 __all__ = ["require_libraries", "write_mesh"]
+
+# With fewer triangles, light and shadow show the triangles rather than the terrain.
+_MANY = 2000
 
 
 def require_libraries() -> None:
@@ -42,7 +47,10 @@ def write_mesh(
 
     if attributes:
         raise FileFormatError("a picture shows one value for each point: give it as z")
-    draw_picture(path, triangulation, z=z, crs=crs)
+    # Heights are terrain, but on a quality mesh they are a field.
+    terrain = isinstance(triangulation, Delaunay | ConstrainedDelaunay)
+    lit = terrain and triangulation.nsimplex >= _MANY
+    draw_picture(path, triangulation, z=z, crs=crs, shade=lit)
 
 
 def _draw_space(

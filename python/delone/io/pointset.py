@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Column = str | int
 
-__all__ = ["PointSet", "choose_columns", "find_column"]
+__all__ = ["PointSet", "choose_columns", "find_column", "names_height"]
 
 _WORDS = {
     "x": {"x", "lon", "long", "lng", "longitude", "easting", "east", "e", "xcoord", "coordx"},
@@ -129,6 +129,28 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
     if text.isdecimal() and int(text) < len(names):
         return int(text)
     raise FileFormatError(f"{source} has no column {text!r}; its columns are {_listed(names)}")
+
+
+def names_height(name: str) -> bool:
+    """Tell whether a name is one of the usual words for heights or depths.
+
+    Parameters
+    ----------
+    name : str
+        Name of a column.
+
+    Returns
+    -------
+    bool
+        Whether values of this name are terrain.
+
+    Examples
+    --------
+    >>> from delone.io.pointset import names_height
+    >>> names_height("Depth [m]"), names_height("temperature")
+    (True, False)
+    """
+    return _word(name) in _WORDS["z"]
 
 
 def choose_columns(

@@ -17,6 +17,7 @@ from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.georeference import as_crs
 from delone.io.extras import require
+from delone.io.pointset import names_height
 from delone.io.referencing import cf_attributes, warn_if_left_out
 from delone.io.systems import plain_system
 
@@ -85,7 +86,9 @@ def write_raster(
     raster : Grid
         Real values of shape (rows, columns), as `delone.interpolate.grid` returns them.
     name : str, optional
-        What the values are called, in the formats that have names.
+        What the values are called, in the formats that have names. In pictures, names of heights
+        (z, elevation, depth and the like) have light and shadow, which change the colors; others
+        have the colors of the color bar.
     crs : str, int or pyproj.CRS, optional
         Coordinate reference system, for GeoTIFF, NetCDF and the labels of pictures. Nothing is
         transformed.
@@ -270,7 +273,8 @@ def _write_picture(
 ) -> None:
     from delone.relief import draw_raster
 
-    draw_raster(path, _checked(path, raster), raster.x, raster.y, label=name, crs=crs)
+    values, terrain = _checked(path, raster), names_height(name)
+    draw_raster(path, values, raster.x, raster.y, label=name, shade=terrain, crs=crs)
 
 
 WITH_CRS = (".tif", ".tiff", ".nc", ".png", ".svg")

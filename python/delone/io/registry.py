@@ -381,7 +381,8 @@ def write_mesh(
         What to write. Tetrahedra go to VTU, MSH and PNG, those of a `Delaunay` to npz as well, all
         without `z` and `crs`.
     z : array_like of float, shape (n,), optional
-        Heights, the third coordinate; in pictures the colour.
+        Heights, the third coordinate; in pictures the color, with light and shadow on it where
+        there are 2000 triangles or more, but never on a `Mesh`.
     crs : str, int or pyproj.CRS, optional
         Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of pictures; by
         default that of the triangulation, which `delone.from_geometry` keeps. Nothing is

@@ -70,7 +70,9 @@ def plot(
     cmap : str or matplotlib Colormap, optional
         Colours of z. By default those of land, or of water where nothing lies above zero.
     shade : bool, optional
-        Add light and shadow to the colours of z. By default where there are 2000 triangles or more.
+        Add light and shadow to the colors of z. They then differ from those of the color bar, so
+        this is for terrain. By default only with ``colorbar=False``, and where there are 2000
+        triangles or more.
     colorbar : bool, optional
         Add the scale of the colours.
     title : str, optional
@@ -213,7 +215,7 @@ def _draw_image(
     raster = rasterize(triangulation, z, pixels)
     colours = scale(raster.values, cmap)
     rgba = colours.to_rgba(raster.values)
-    if shade is not False:
+    if shade or (shade is None and not colorbar):
         rgba[..., :3] = shaded(rgba[..., :3], relief(raster))
     rgba[..., 3] = np.isfinite(raster.values)
     _show(ax, raster, rgba)
@@ -265,13 +267,18 @@ def _draw_triangles(
     means = z[simplices].mean(axis=1)
     colours = scale(means, cmap)
     rgba = colours.to_rgba(means)
-    if shade or (shade is None and len(simplices) >= 2000):
+    if shade or (shade is None and not colorbar and len(simplices) >= 2000):
         rgba[:, :3] = shaded(rgba[:, :3], facet_light(points, z, simplices))
     rgba[~np.isfinite(means)] = 0
     facets = collections.PolyCollection(
-        points[simplices], facecolors=rgba, edgecolors="#00000055", linewidths=0.5 * thin, zorder=1
+        points[simplices], facecolors=rgba, edgecolors="face", linewidths=0.5 * thin, zorder=1
     )
     ax.add_collection(facets, autolim=False)
+    # Fainter where there are many, so that they do not darken the colors.
+    lines = collections.LineCollection(
+        points[triangulation.edges], colors=[(0, 0, 0, thin / 3)], linewidths=0.5 * thin, zorder=1
+    )
+    ax.add_collection(lines, autolim=False)
     if colorbar:
         add_bar(ax, colours, means, "z")
 
