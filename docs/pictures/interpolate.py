@@ -6,7 +6,6 @@ from matplotlib.colors import LightSource
 
 from delone import datasets
 from delone.interpolate import Linear, grid, interpolator
-from delone.relief import plot_raster
 
 # Metres between contour lines, and how near to a ship's track the sea floor is known, in degrees.
 CONTOURS = np.arange(-7000, 0, 500)
@@ -17,15 +16,10 @@ def sea_floor() -> None:
     """The soundings off Baja California as a map of the sea floor, and where they were taken."""
     survey = datasets.baja()
     made = interpolator("sibson", survey, survey.z, duplicates="mean", planar=True)
-    sea = grid(made, resolution=0.0125)
-    nearest = made.triangulation.nearest(np.stack(np.meshgrid(sea.x, sea.y), axis=-1))
-    away = np.hypot(
-        *(np.moveaxis(survey.points[nearest], -1, 0) - np.stack(np.meshgrid(sea.x, sea.y)))
-    )
-    floor = np.where(away < KNOWN, sea.values, np.nan)
+    sea = grid(made, resolution=0.0125, max_distance=KNOWN)
     figure, ax = plt.subplots(figsize=(8.4, 8.2), layout="constrained")
     ax.set_facecolor("#e9e3d3")
-    plot_raster(floor, sea.x, sea.y, ax, contours=CONTOURS, label="metres", shade=True)
+    sea.plot(ax, contours=CONTOURS, label="metres", shade=True)
     ax.plot(*survey.points.T, ",", color="black", alpha=0.12)
     ax.set(
         xlabel="degrees east",

@@ -58,6 +58,24 @@ def test_methods_and_the_report(soundings, command, method):
     assert "10 x 20 = 200 cells" in out and method in out and "0 cells, outside" in out
 
 
+def test_cells_far_from_all_points_have_no_value(tmp_path, soundings, figures, command):
+    output = tmp_path / "near.csv"
+    near = figures(
+        "interpolate", soundings, "--grid", "50x40", "--max-distance", "0.03", "-o", output
+    )
+    whole = figures("interpolate", soundings, "--grid", "50x40")
+    assert near["max_distance"] == 0.03 and whole["max_distance"] is None
+    assert near["without_value"] > whole["without_value"] + 100
+    cells = read_points(output).points
+    sites = read_points(soundings).points
+    steps = cells[:, None] - sites
+    assert np.sqrt((steps**2).sum(axis=2)).min(axis=1).max() <= 0.03
+    code, out, _ = command("interpolate", soundings, "--grid", "9x9", "--max-distance", "0.03")
+    assert code == 0 and "or farther than 0.03 from any point" in out
+    code, _, err = command("interpolate", soundings, "--grid", "9x9", "--max-distance", "-1")
+    assert code == 2 and "max_distance must be at least 0" in err
+
+
 def test_crossval(soundings, figures, command):
     found = figures("crossval", soundings, "--method", "nearest,sibson,farin")
     assert list(found["methods"]) == ["nearest", "sibson", "farin"]

@@ -76,7 +76,18 @@ PYTHON: dict[str, set[str]] = {
         "space",
     }
     | FOUNDATION,
-    "interpolate": {"immutable", "_core", "delaunay", "location", "periodic", "plane", "space"}
+    "interpolate": {
+        "immutable",
+        "_core",
+        "delaunay",
+        "io",
+        "location",
+        "periodic",
+        "plane",
+        "plot",
+        "relief",
+        "space",
+    }
     | FOUNDATION,
     "compat": {
         "_core",

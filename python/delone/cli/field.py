@@ -87,6 +87,10 @@ def interpolate(
     extrapolate: Annotated[
         str, typer.Option(help="Outside of the hull: nan, nearest or linear.")
     ] = "nan",
+    max_distance: Annotated[
+        float | None,
+        typer.Option(help="No value farther than this from the nearest point."),
+    ] = None,
     duplicates: Duplicates = "error",
     nan: Nan = "error",
     gradients: Gradients = None,
@@ -119,9 +123,12 @@ def interpolate(
         with watch.stage("triangulate"):
             made = _made(method, survey, values, gradients, options | {"workers": workers})
         with watch.stage("interpolate"):
-            found = grid(made, **where, progress=_told(say, "interpolating"))
+            found = grid(
+                made, **where, max_distance=max_distance, progress=_told(say, "interpolating")
+            )
         _write(writers, found, {"name": name, "crs": survey.crs, "units": units}, watch, say)
         figures = _figures(source, survey, made, method, found) | {
+            "max_distance": max_distance,
             "stages": watch.rows(
                 found.values.size, others=dict.fromkeys(("read", "triangulate"), len(survey))
             ),
@@ -316,6 +323,13 @@ def _figures(
     }
 
 
+def _why_none(figures: dict[str, Any]) -> str:
+    """Say why cells have no value."""
+    limit = figures["max_distance"]
+    beyond = "" if limit is None else f" or farther than {limit:.6g} from any point"
+    return f"outside of the hull{beyond}"
+
+
 def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]:
     cells = figures["columns"] * figures["rows"]
     rows = [
@@ -324,7 +338,7 @@ def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]
         ("method", figures["method"]),
         ("raster", f"{figures['columns']:,} x {figures['rows']:,} = {cells:,} cells"),
         ("cell", " x ".join(f"{side:.6g}" for side in figures["cell"])),
-        ("without a value", f"{figures['without_value']:,} cells, outside of the hull"),
+        ("without a value", f"{figures['without_value']:,} cells, {_why_none(figures)}"),
     ]
     if figures["least"] is not None:
         rows.append(("values", f"{figures['least']:.6g} to {figures['greatest']:.6g}"))

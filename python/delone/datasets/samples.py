@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import frozen
+from delone.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -58,6 +59,9 @@ class Sample:
         """The horizontal coordinates."""
         found = self.points if dtype is None else self.points.astype(dtype, copy=False)
         return found.copy() if copy else found
+
+    def __repr__(self) -> str:
+        return f"<Sample {self.name!r} of {counted(len(self.points), 'point')}, {self.crs}>"
 
 
 def ahn3() -> Sample:

@@ -8,12 +8,13 @@ field more to which they are applied, chunk by chunk where the data are Dask arr
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone.errors import DtypeError, InputError, MissingExtraError
 from delone.georeference import names_degrees, warn_of_degrees
+from delone.interpolate.base import as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.raster import raster_nodes, require_memory
 
@@ -89,6 +90,7 @@ class ArrayInterpolation:
         **options
             As the interpolator takes them: ``extrapolate``, ``respect_constraints``, ``workers``,
             ``planar`` and so on. NaN among the values propagates unless ``nan="error"`` is given.
+            With ``max_distance`` targets farther than this from the nearest point get NaN.
 
         Returns
         -------
@@ -100,7 +102,7 @@ class ArrayInterpolation:
         ------
         InputError
             The coordinates are not found, or ``nan="drop"`` is asked for, which would need other
-            triangles for each field.
+            triangles for each field; `max_distance` is negative or NaN.
 
         Examples
         --------
@@ -253,6 +255,8 @@ def _interpolated(
     method: str,
     options: dict[str, Any],
 ) -> Any:
+    """Interpolate what has the points, and mask what is too far from them."""
+    limit = as_max_distance(options.pop("max_distance", None))
     if options.get("nan") == "drop":
         raise InputError("nan='drop' needs other triangles for each field; fill or drop NaN before")
     places = _coordinates(data, coords)
@@ -261,9 +265,11 @@ def _interpolated(
     planar = options.pop("planar", False)
     warn_of_degrees(None, points, planar=planar, name="coordinates", by=_degrees(places))
     queries = np.stack([np.asarray(part, dtype=np.float64) for part in target], axis=-1)
-    table = interpolator(method, points, **({"nan": "propagate"} | options)).weights(queries)
+    made = interpolator(method, points, **({"nan": "propagate"} | options))
+    near = None if limit is None else made.distance(queries) <= limit
+    geometry = _Geometry(made.weights(queries), places[0].dims, target, near)
     # Coordinates of the points are not those of the result.
-    dims = places[0].dims
+    dims = geometry.dims
     gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
     plain = data.drop_vars(gone)
     if isinstance(plain, xarray.Dataset):
@@ -272,9 +278,20 @@ def _interpolated(
             if plain[name].dtype.kind not in "iufc":
                 kind = plain[name].dtype
                 raise DtypeError(f"variable {name!r} holds no numbers (dtype {kind}); drop it")
-        found = {name: _applied(plain[name], table, dims, target) for name in names}
+        found = {name: _applied(plain[name], geometry) for name in names}
         return plain.drop_vars(names).assign(found)
-    return _applied(plain, table, dims, target)
+    return _applied(plain, geometry)
+
+
+class _Geometry(NamedTuple):
+    """What all fields on the same points share."""
+
+    table: Weights
+    # The dimensions of the points.
+    dims: tuple[Any, ...]
+    target: tuple[Any, Any]
+    # Of the shape of the targets: whether they are near enough to a site; None where all are.
+    near: NDArray[np.bool_] | None
 
 
 def _degrees(places: tuple[Any, Any]) -> str | None:
@@ -299,8 +316,8 @@ def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -
         require_memory(target[0].size // max(1, rows), rows, fields)
 
 
-def _applied(array: Any, table: Weights, dims: tuple[Any, ...], target: tuple[Any, Any]) -> Any:
-    across, _ = target
+def _applied(array: Any, geometry: _Geometry) -> Any:
+    table, dims, (across, _), near = geometry
     kind = np.complex128 if np.issubdtype(array.dtype, np.complexfloating) else np.float64
     found = xarray.apply_ufunc(
         _last_axes,
@@ -317,6 +334,8 @@ def _applied(array: Any, table: Weights, dims: tuple[Any, ...], target: tuple[An
         },
         keep_attrs=True,
     )
+    if near is not None:
+        found = found.where(xarray.DataArray(near, dims=across.dims))
     return found.assign_coords(across.coords)
 
 

@@ -11,12 +11,13 @@ left some out.
 from __future__ import annotations
 
 import copy
+import functools
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from delone import location
-from delone._arrays import as_flag, as_vectors, as_workers
+from delone._arrays import as_flag, as_number, as_vectors, as_workers
 from delone.counting import agreed
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
 
-__all__ = ["Interpolator", "shaped_derivatives"]
+__all__ = ["Interpolator", "as_max_distance", "shaped_derivatives"]
 
 _NAMED = 5
 
@@ -142,7 +143,13 @@ class Interpolator:
         """How many sites were given, duplicates and dropped ones included."""
         return len(self._sites)
 
-    def __call__(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
+    def __call__(
+        self,
+        xi: ArrayLike,
+        *,
+        values: ArrayLike | None = None,
+        max_distance: float | None = None,
+    ) -> NDArray[Any]:
         """Interpolate.
 
         Parameters
@@ -151,6 +158,9 @@ class Interpolator:
             Where. NaN gives NaN; so does infinity, unless ``extrapolate="error"`` refuses it.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default that of the constructor.
+        max_distance : float, optional
+            Queries farther than this from the nearest site get NaN; by default no distance is too
+            far.
 
         Returns
         -------
@@ -165,7 +175,7 @@ class Interpolator:
             Values are not finite, and ``nan="error"``.
         InputError
             No values are there; duplicates have different ones; a query is outside of the hull,
-            infinity included, and ``extrapolate="error"``.
+            infinity included, and ``extrapolate="error"``; `max_distance` is negative or NaN.
 
         Examples
         --------
@@ -175,10 +185,60 @@ class Interpolator:
         array([ 4., nan])
         >>> height((1, 1), values=[0.0, 0.0, 8.0])
         array(2.)
+        >>> height([(1, 1), (2, 2)], max_distance=2)
+        array([ 4., nan])
         """
+        limit = as_max_distance(max_distance)
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
-        return field.shaped(interpolator._interpolated(queries, columns), shape)
+        found = interpolator._interpolated(queries, columns)
+        if limit is not None:
+            found[~(interpolator._distance(queries) <= limit)] = np.nan
+        return field.shaped(found, shape)
+
+    def distance(self, xi: ArrayLike) -> Floats:
+        """Return how far queries are from the nearest site.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Where.
+
+        Returns
+        -------
+        ndarray of float64, shape (...)
+            Distances in the unit of the sites; NaN where a coordinate is NaN or infinite.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is no array of real points of the dimension of the sites.
+
+        Notes
+        -----
+        Which site is nearest is decided exactly; the distance is rounded. Sites that ``nan="drop"``
+        left out do not count.
+
+        Examples
+        --------
+        >>> from delone.interpolate import Linear
+        >>> Linear([(0, 0), (4, 0), (0, 4)]).distance([(1, 0), (7, 4)])
+        array([1., 5.])
+        """
+        queries, shape = self._queries(xi)
+        return self._distance(queries).reshape(shape)
+
+    def _distance(self, flat: Floats) -> Floats:
+        mesh = self._mesh
+        rows: NDArray[np.int32]
+        if self._ndim == SPACE:
+            rows = mesh._locator.nearest(flat, as_workers(self._workers))
+        else:
+            rows = location.nearest(mesh._sites, flat, self._workers)
+        with np.errstate(over="ignore", invalid="ignore"):
+            step = flat - mesh.points[rows]
+            found = functools.reduce(np.hypot, step.T)
+        return np.where(rows >= 0, found, np.nan)
 
     def gradient(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
         """Return the slope of the interpolant.
@@ -505,6 +565,38 @@ def _with_only(mesh: Any, kept: Rows) -> Triangulation:
         edit.remove_points(dropped)
     result: Triangulation = edit.result
     return result
+
+
+def as_max_distance(max_distance: float | None) -> float | None:
+    """Return how far from sites there are values.
+
+    Parameters
+    ----------
+    max_distance : float or None
+        A distance; None for any.
+
+    Returns
+    -------
+    float or None
+        The distance.
+
+    Raises
+    ------
+    InputError, DtypeError
+        It is negative or NaN, or no number.
+
+    Examples
+    --------
+    >>> from delone.interpolate.base import as_max_distance
+    >>> as_max_distance(3)
+    3.0
+    """
+    if max_distance is None:
+        return None
+    limit = as_number(max_distance, name="max_distance")
+    if not limit >= 0:
+        raise InputError(f"max_distance must be at least 0, got {max_distance!r}")
+    return limit
 
 
 def _same(a: Rows | None, b: Rows | None) -> bool:

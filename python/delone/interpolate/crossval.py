@@ -95,6 +95,47 @@ class CrossValidation:
         """Mean of the magnitudes of the residuals, of the shape of one value."""
         return _mean_of_known(np.abs(self.residuals))
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the predictions over the values (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on the axes of a new pyplot figure.
+
+        Returns
+        -------
+        matplotlib Axes
+            What was drawn on: a dot for each value that was predicted, and the line on which
+            predictions are right.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            There are several values at each point, or they are complex.
+
+        Examples
+        --------
+        >>> import matplotlib
+        >>> matplotlib.use("Agg")
+        >>> from delone.interpolate import cross_validate
+        >>> points = [(0, 0), (4, 0), (4, 4), (0, 4), (1, 2)]
+        >>> found = cross_validate(points, [0.0, 4.0, 8.0, 4.0, 9.0], "linear")
+        >>> found.plot().get_title()
+        'linear: rmse 6, mae 6'
+        """
+        from delone.plot import draw_predictions
+
+        if self.values.ndim != 1 or self.values.dtype.kind == "c":
+            raise InputError(
+                f"a picture shows one real value at each point, not values of shape "
+                f"{self.values.shape} and dtype {self.values.dtype}; cross-validate them one by one"
+            )
+        title = f"{self.method}: rmse {self.rmse:.6g}, mae {self.mae:.6g}"
+        return draw_predictions(self.values, self.predicted, ax=ax, title=title)
+
     def __repr__(self) -> str:
         return (
             f"<CrossValidation of {self.method}: {self.count} of {len(self.values)} predicted, "

@@ -17,7 +17,7 @@ import numpy as np
 
 from delone._arrays import as_count, as_number
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.interpolate.base import Interpolator
+from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
 from delone.interpolate.space import SPACE, refuse
 
@@ -84,6 +84,98 @@ class Grid:
             float(y[-1] + half_y),
         )
 
+    def to_xarray(self, *, name: str | None = None, crs: str | None = None) -> Any:
+        """Return the grid as a DataArray of xarray (extra ``xarray``).
+
+        Parameters
+        ----------
+        name : str, optional
+            What the values are called.
+        crs : str, optional
+            Coordinate reference system, kept as an attribute.
+
+        Returns
+        -------
+        xarray.DataArray
+            With the dimensions ``y`` and ``x``, then ``value0``, ``value1``, ... where there are
+            several values at each node. It shares the memory of the grid.
+
+        Raises
+        ------
+        MissingExtraError
+            xarray is not installed.
+
+        Examples
+        --------
+        >>> from delone.interpolate import grid
+        >>> ramp = grid([(0, 0), (4, 0), (0, 4)], [0.0, 4.0, 4.0], x=[0, 1, 2], y=[0, 2])
+        >>> ramp.to_xarray(name="height").sel(x=1, y=2).item()
+        3.0
+        """
+        from delone.io.extras import require
+
+        xarray = require("xarray", extra="xarray", what="a DataArray")
+        further = [f"value{k}" for k in range(self.values.ndim - 2)]
+        return xarray.DataArray(
+            self.values,
+            dims=("y", "x", *further),
+            coords={"y": self.y, "x": self.x},
+            name=name,
+            attrs={} if crs is None else {"crs": crs},
+        )
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the values in colors (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; by default on the axes of a new pyplot figure.
+        **options
+            As in `delone.relief.plot_raster`: ``contours``, ``shade``, ``cmap``, ``colorbar``,
+            ``label``, ``title``.
+
+        Returns
+        -------
+        matplotlib Axes
+            What was drawn on.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+        InputError
+            The values are complex, several at each node, or none is finite.
+
+        Examples
+        --------
+        >>> import matplotlib
+        >>> matplotlib.use("Agg")
+        >>> from delone.interpolate import grid
+        >>> ramp = grid([(0, 0), (4, 0), (4, 4), (0, 4)], [0.0, 4.0, 4.0, 0.0], shape=(40, 40))
+        >>> ramp.plot(contours=4).get_aspect()
+        1.0
+        """
+        from delone.relief import plot_raster
+
+        if self.values.ndim != 2 or self.values.dtype.kind == "c":
+            raise InputError(
+                f"a picture shows one real value at each node, not values of shape "
+                f"{self.values.shape} and dtype {self.values.dtype}; draw "
+                "Grid(part, grid.x, grid.y), where part has one"
+            )
+        return plot_raster(self.values, self.x, self.y, ax, **options)
+
+    def __repr__(self) -> str:
+        size = " x ".join(map(str, (len(self.x), len(self.y), *self.values.shape[2:])))
+        span = "complex values"
+        if self.values.dtype.kind != "c":
+            # These pass over NaN, and copy nothing.
+            low, high = (each.reduce(self.values, axis=None) for each in (np.fmin, np.fmax))
+            span = "no values" if np.isnan(low) else f"{low:.6g} to {high:.6g}"
+        left, right, bottom, top = (f"{bound:.6g}" for bound in self.extent)
+        return f"<Grid of {size} nodes, x {left} to {right}, y {bottom} to {top}: {span}>"
+
 
 def grid(
     points: ArrayLike | Triangulation | PeriodicDelaunay | Interpolator,
@@ -95,6 +187,7 @@ def grid(
     y: ArrayLike | None = None,
     bounds: Sequence[float] | None = None,
     method: str = "linear",
+    max_distance: float | None = None,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Grid:
@@ -116,6 +209,8 @@ def grid(
         Left, bottom, right and top of the raster; by default the box of the points.
     method : str, optional
         As in `interpolator`; not together with an interpolator.
+    max_distance : float, optional
+        Nodes farther than this from the nearest site get NaN; by default no distance is too far.
     progress : callable, optional
         Is told from time to time which share of the nodes is done, from 0 to 1.
     **options
@@ -130,7 +225,8 @@ def grid(
     Raises
     ------
     InputError
-        Not exactly one of `resolution`, `shape` and nodes is given, or they are no raster.
+        Not exactly one of `resolution`, `shape` and nodes is given, or they are no raster;
+        `max_distance` is negative or NaN.
     MemoryError
         The result would not fit into the memory that is free; raised before anything is computed.
 
@@ -146,6 +242,7 @@ def grid(
     array([[0., 1., 2.],
            [2., 3., 4.]])
     """
+    limit = as_max_distance(max_distance)
     if isinstance(points, Interpolator):
         if options or method != "linear":
             raise InputError(
@@ -165,7 +262,7 @@ def grid(
     for start in range(0, len(nodes_y), rows):
         some = nodes_y[start : start + rows]
         queries = np.stack(np.meshgrid(nodes_x, some), axis=-1)
-        found[start : start + rows] = made(queries, values=values)
+        found[start : start + rows] = made(queries, values=values, max_distance=limit)
         if progress is not None:
             progress(min(1.0, (start + rows) / len(nodes_y)))
     return Grid(found, nodes_x, nodes_y)

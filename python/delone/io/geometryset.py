@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -65,6 +66,13 @@ class GeometrySet:
 
     def __len__(self) -> int:
         return len(self.geometries)
+
+    def __repr__(self) -> str:
+        names = [getattr(each, "geom_type", "no geometry") for each in self.geometries.tolist()]
+        kinds = ", ".join(f"{count} {name}" for name, count in Counter(names).items())
+        return f"<GeometrySet of {counted(len(self), 'feature')}" + (
+            f": {kinds}>" if kinds else ">"
+        )
 
     @property
     def only_points(self) -> bool:

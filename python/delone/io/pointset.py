@@ -11,13 +11,15 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from delone.counting import counted
 from delone.errors import FileFormatError
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import DTypeLike, NDArray
 
     Column = str | int
@@ -32,6 +34,8 @@ _WORDS = {
         "topography", "zcoord", "coordz",
     },
 }  # fmt: skip
+# As much of the definition of a reference system as is shown.
+_SHORT = 40
 _UNITS = {"m", "ft", "km", "mm", "cm", "deg", "degrees", "degree", "metres", "meters", "feet", "dd"}
 
 
@@ -85,6 +89,30 @@ class PointSet:
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def __repr__(self) -> str:
+        columns = {"x": self.points[:, 0], "y": self.points[:, 1]}
+        if self.z is not None:
+            columns["z"] = self.z
+        parts = [f"{name} {_span(column)}" for name, column in columns.items() if len(self)]
+        if self.attributes:
+            parts.append("attributes " + " ".join(self.attributes))
+        if self.crs is not None:
+            parts.append(_first_line(self.crs))
+        text = f"<PointSet of {counted(len(self), 'point')}"
+        return text + (": " + ", ".join(parts) if parts else "") + ">"
+
+
+def _span(column: NDArray[np.float64]) -> str:
+    """The least and the greatest number, passing over NaN."""
+    low, high = (each.reduce(column) for each in (np.fmin, np.fmax))
+    return "unknown" if np.isnan(low) else f"{low:.6g} to {high:.6g}"
+
+
+def _first_line(crs: str) -> str:
+    """The name of a reference system, or how its definition begins."""
+    line = crs.strip().partition("\n")[0]
+    return line if len(line) <= _SHORT else line[:_SHORT] + "..."
 
 
 def find_column(names: Sequence[str], wanted: Column, source: str) -> int:

@@ -15,6 +15,7 @@ import numpy as np
 
 from delone._arrays import as_flag, as_plain_array
 from delone.atomic import replacing
+from delone.counting import counted
 from delone.errors import DtypeError, FileFormatError, InputError
 from delone.georeference import as_crs, crs_of
 from delone.io.compressed import SUFFIXES
@@ -102,6 +103,11 @@ class MeshFile:
     neighbors: NDArray[np.int32] | None = None
     z: NDArray[np.float64] | None = None
     source: str = ""
+
+    def __repr__(self) -> str:
+        kind = "triangle" if self.simplices.shape[1] == 3 else "tetrahedron"
+        points, simplices = len(self.points), len(self.simplices)
+        return f"<MeshFile of {counted(points, 'point')}: {counted(simplices, kind)}>"
 
 
 def input_suffixes() -> tuple[str, ...]:
