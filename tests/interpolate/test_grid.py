@@ -10,7 +10,7 @@ import pytest
 from delone import datasets
 from delone.errors import InputError
 from delone.interpolate import Grid, cross_validate, grid
-from delone.io import PointSet
+from delone.io import GeometrySet, MeshFile, PointSet
 
 POINTS = datasets.uniform(200, seed=3)
 FIELD = np.sin(5 * POINTS[:, 0]) + POINTS[:, 1]
@@ -40,7 +40,17 @@ def test_the_text_of_points_is_short() -> None:
     assert repr(full) == f"<PointSet of 1 point: {expected}>"
     assert repr(PointSet(points=np.empty((0, 2)))) == "<PointSet of 0 points>"
     assert len(repr(PointSet(points=points, crs="PROJCRS[" + 3000 * "x"))) < 150
+    corners = np.zeros((50_000, 3), dtype=np.int32)
+    found = repr(MeshFile(points=points, simplices=corners))
+    assert found == "<MeshFile of 50000 points: 50000 triangles>"
     assert repr(datasets.baja()).startswith("<Sample ") and len(repr(datasets.baja())) < 150
+
+
+def test_the_text_of_geometries_is_short() -> None:
+    shapely = pytest.importorskip("shapely")
+    shapes = np.array([shapely.Point(0, 0), shapely.box(0, 0, 1, 1), None, shapely.Point(1, 1)])
+    expected = "<GeometrySet of 4 features: 2 Point, 1 Polygon, 1 no geometry>"
+    assert repr(GeometrySet(geometries=shapes)) == expected
 
 
 def test_an_array_of_xarray_has_the_nodes() -> None:
