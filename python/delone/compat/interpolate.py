@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import delaunay
-from delone.compat.qhull import DimensionError, QhullError, as_low_points
+from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
@@ -96,7 +96,7 @@ class _Triangulated:
             if own.furthest_site:
                 raise InputError("a furthest-site triangulation is not one to interpolate on")
             self._mesh = own._mesh
-        self.values = np.asarray(values)
+        self.values = _numbers(values)
         self.is_complex = self.values.dtype.kind == "c"
         self.fill_value = (complex if self.is_complex else float)(fill_value)
 
@@ -189,7 +189,7 @@ class LinearNDInterpolator(_Triangulated):
         rescale: bool = False,
     ) -> None:
         self._set(points, values, fill_value, rescale)
-        self._interpolator = Linear(self._mesh, values, duplicates="first", nan="propagate")
+        self._interpolator = Linear(self._mesh, self.values, duplicates="first", nan="propagate")
 
 
 class CloughTocher2DInterpolator(_Triangulated):
@@ -248,7 +248,7 @@ class CloughTocher2DInterpolator(_Triangulated):
     ) -> None:
         self._set(points, values, fill_value, rescale)
         self._interpolator = _GivenGradients(
-            self._mesh, values, tol=tol, maxiter=maxiter, duplicates="first", nan="propagate"
+            self._mesh, self.values, tol=tol, maxiter=maxiter, duplicates="first", nan="propagate"
         )
         found = self._interpolator.site_gradients()
         self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))
@@ -313,7 +313,7 @@ class NearestNDInterpolator:
         tree_options: dict[str, Any] | None = None,
     ) -> None:
         self.points = _coordinates(x)
-        self.values = np.asarray(y)
+        self.values = _numbers(y)
         self._scale = _Scale(self.points, rescale)
         self._field = as_field(self.values, len(self.points))
         self._scaled = np.ascontiguousarray(self._scale(self.points))
@@ -399,19 +399,19 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     fill_value: Any = np.nan,
     rescale: bool = False,
 ) -> NDArray[Any]:
-    """Interpolate scattered values in the plane or in space, with the interface of SciPy.
+    """Interpolate scattered values with the interface of SciPy.
 
     Parameters
     ----------
     points : array_like, shape (n, d), or tuple of d arrays
-        Sites.
+        Sites in the plane or in space; or on a line, of shape (n,) or (n, 1).
     values : array_like, shape (n, ...)
         Real or complex values.
     xi : array_like, shape (..., d), or tuple of d arrays
         Where to interpolate.
     method : {"linear", "nearest", "cubic"}, optional
         `LinearNDInterpolator`, `NearestNDInterpolator` or, in the plane,
-        `CloughTocher2DInterpolator`.
+        `CloughTocher2DInterpolator`. On a line SciPy interpolates: cubic is its spline.
     fill_value : float, optional
         What there is outside of the hull; without effect for ``"nearest"``.
     rescale : bool, optional
@@ -427,7 +427,9 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     ValueError
         The method is unknown; arrays do not fit.
     DimensionError
-        The points are neither in the plane nor in space.
+        The points have more than three coordinates.
+    MissingExtraError
+        The points are on a line, and SciPy is not installed.
 
     Examples
     --------
@@ -435,6 +437,8 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     >>> griddata([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0], ([1, 9], [1, 9]), method="nearest")
     array([1., 5.])
     """
+    if _is_line(points):
+        return _on_line(points, values, xi, method, fill_value, rescale)
     if method == "nearest":
         return NearestNDInterpolator(points, values, rescale=rescale)(xi)
     if method == "linear":
@@ -443,7 +447,38 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     if method == "cubic":
         cubic = CloughTocher2DInterpolator(points, values, fill_value=fill_value, rescale=rescale)
         return cubic(xi)
-    raise InputError(f"unknown interpolation method {method!r} for points in the plane")
+    raise InputError(f"unknown interpolation method {method!r}; choose linear, nearest or cubic")
+
+
+def _is_line(points: Any) -> bool:
+    """Whether points have one coordinate each."""
+    if isinstance(points, tuple) and points and np.ndim(points[0]) == 1:
+        return len(points) == 1
+    shape = np.shape(points)
+    return len(shape) == 1 or (len(shape) == 2 and shape[1] == 1)
+
+
+def _on_line(  # noqa: PLR0917 (as in SciPy)
+    points: Any, values: ArrayLike, xi: Any, method: str, fill_value: Any, rescale: bool
+) -> NDArray[Any]:
+    """Let SciPy interpolate between points on a line, where nothing needs a triangulation."""
+    try:
+        from scipy import interpolate
+    except ImportError as error:
+        raise MissingExtraError(
+            "griddata of points on a line needs SciPy, which is not installed: pip install scipy",
+            extra="learn",
+        ) from error
+    line = points[0] if isinstance(points, tuple) and np.ndim(points[0]) == 1 else points
+    found: NDArray[Any] = interpolate.griddata(
+        _real_points(line),
+        _numbers(values),
+        tuple(map(_real_queries, xi)) if isinstance(xi, tuple) else _real_queries(xi),
+        method=method,
+        fill_value=fill_value,
+        rescale=rescale,
+    )
+    return found
 
 
 def estimate_gradients_2d_global(
@@ -484,13 +519,34 @@ def _coordinates(points: Any) -> Floats:
         lengths = {np.shape(part) for part in points}
         if len(lengths) > 1:
             raise ShapeError(f"coordinate arrays have different shapes: {sorted(lengths)}")
-        points = np.column_stack(points)
+        points = np.column_stack([_real_points(part) for part in points])
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
         raise DimensionError(
-            "delone interpolates in the plane and in space; on a line use scipy.interpolate"
+            "delone interpolates in the plane and in space; on a line use griddata or "
+            "scipy.interpolate"
         )
-    return as_low_points(points, _SPACE)
+    return as_low_points(_real_points(points), _SPACE)
+
+
+def _real_points(points: ArrayLike) -> NDArray[Any]:
+    """Sites as a plain array, none of which may be masked."""
+    if isinstance(points, np.ma.MaskedArray) and np.ma.is_masked(points):
+        mask = np.ma.getmaskarray(points)
+        row = int(np.flatnonzero(mask.reshape(len(mask), -1).any(axis=1))[0])
+        raise InputError(f"points: row {row} is masked; leave out what is not known")
+    return unmasked(np.asanyarray(points))
+
+
+def _real_queries(xi: ArrayLike) -> Floats:
+    """Queries as plain numbers, NaN where they are masked."""
+    return np.asarray(unmasked(np.asanyarray(xi)), dtype=np.float64)
+
+
+def _numbers(values: ArrayLike) -> NDArray[Any]:
+    """Values as SciPy takes them: truth values and objects as floats, NaN where they are masked."""
+    array = unmasked(np.asanyarray(values))
+    return unboxed(array, "values") if array.dtype.kind in "bO" else array
 
 
 def _queries(args: tuple[Any, ...], ndim: int) -> Floats:
@@ -499,8 +555,8 @@ def _queries(args: tuple[Any, ...], ndim: int) -> Floats:
     if isinstance(parts, tuple):
         if len(parts) != ndim:
             raise ShapeError(f"queries need {ndim} coordinates, got {len(parts)}")
-        return np.stack(np.broadcast_arrays(*parts), axis=-1).astype(np.float64)
-    xi = np.asarray(parts, dtype=np.float64)
+        return np.stack(np.broadcast_arrays(*map(_real_queries, parts)), axis=-1)
+    xi = _real_queries(parts)
     if xi.ndim == 1 and xi.size % ndim == 0:
         return xi.reshape(-1, ndim)
     if xi.ndim == 0 or xi.shape[-1] != ndim:

@@ -11,7 +11,7 @@ import numpy as np
 from delone import delaunay
 from delone._arrays import as_points, as_vectors
 from delone.compat.furthest import furthest_site as furthest_triangles
-from delone.compat.qhull_options import QhullOptions, UnknownOptionError
+from delone.compat.qhull_options import DELAUNAY, QhullOptionError, QhullOptions
 from delone.errors import DegenerateInputError, DtypeError, InputError, NonFiniteError, ShapeError
 from delone.plane import topology
 
@@ -43,8 +43,11 @@ __all__ = [
     "QhullError",
     "as_low_points",
     "as_queries",
+    "read_options",
     "told_as_qhull_does",
     "triangulate",
+    "unboxed",
+    "unmasked",
 ]
 
 
@@ -57,20 +60,22 @@ class DimensionError(InputError, NotImplementedError):
 class Incremental:
     """Points, and what follows from them anew when more are added; the base of the drop-ins."""
 
+    # What it is called in messages.
+    _what: str = DELAUNAY
+
+    # Of triangulations and diagrams alone.
+    furthest_site: bool
     _open: bool
     _options: QhullOptions
     _points: Floats
 
-    def _begin(
-        self, points: ArrayLike, options: str | None, incremental: bool, most: int = 3
-    ) -> None:
-        """Read the options, then take points of up to `most` coordinates."""
+    def _begin(self, points: ArrayLike, options: str | None, incremental: bool) -> None:
+        """Read the options, then take the points."""
         self._open = bool(incremental)
-        try:
-            self._options = QhullOptions.parse(options, incremental=self._open)
-        except UnknownOptionError as error:
-            raise QhullError(str(error)) from error
-        self._set(as_low_points(points, most))
+        self._options = read_options(options, incremental=self._open, what=self._what)
+        if self._options.furthest:
+            self.furthest_site = True
+        self._set(as_low_points(points, 2 if getattr(self, "furthest_site", False) else 3))
 
     def _set(self, points: Floats) -> None:
         """Compute what there is of the points; nothing changes where that fails."""
@@ -132,14 +137,40 @@ class Incremental:
         return self._points
 
 
+def read_options(options: str | None, *, incremental: bool, what: str) -> QhullOptions:
+    """Read a string of options, and refuse with SciPy's kinds of errors.
+
+    Parameters
+    ----------
+    options, incremental, what
+        As for `QhullOptions.parse`.
+
+    Returns
+    -------
+    QhullOptions
+        What they ask for.
+
+    Raises
+    ------
+    QhullError, InputError
+        As Qhull refuses them, or as delone does.
+    """
+    try:
+        return QhullOptions.parse(options, incremental=incremental, what=what)
+    except QhullOptionError as error:
+        raise QhullError(str(error)) from error
+
+
 @contextmanager
-def told_as_qhull_does(points: Floats) -> Iterator[None]:
+def told_as_qhull_does(points: Floats, what: str = DELAUNAY) -> Iterator[None]:
     """Turn errors about points into those that SciPy raises.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, d)
         The points that are worked on.
+    what : str, optional
+        What they have none of where they span no area or no volume.
 
     Returns
     -------
@@ -151,7 +182,8 @@ def told_as_qhull_does(points: Floats) -> Iterator[None]:
     try:
         yield
     except DegenerateInputError as error:
-        raise QhullError(str(error)) from error
+        reason = str(error).partition(":")[0]
+        raise QhullError(f"{reason}: there is no {what}") from error
     except NonFiniteError as error:
         # SciPy looks for NaN itself and leaves infinity to Qhull.
         if np.isnan(points).any():
@@ -159,7 +191,7 @@ def told_as_qhull_does(points: Floats) -> Iterator[None]:
         raise QhullError(str(error)) from error
 
 
-def triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
+def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delaunay.Delaunay:
     """Triangulate as SciPy does, and refuse with its kinds of errors.
 
     Parameters
@@ -168,13 +200,15 @@ def triangulate(points: Floats, furthest: bool) -> delaunay.Delaunay:
         Points.
     furthest : bool
         Whether circles are to hold all points, rather than none.
+    what : str, optional
+        What is computed of it.
 
     Returns
     -------
     delone.Delaunay
         The triangulation.
     """
-    with told_as_qhull_does(points):
+    with told_as_qhull_does(points, what):
         mesh = delaunay.Delaunay(points)
     if not furthest:
         return mesh
@@ -221,17 +255,75 @@ def as_low_points(points: ArrayLike, most: int) -> Floats:
             f"{array.shape[1]} coordinates use scipy.spatial"
         )
     if array.dtype.kind in "bO":
-        return _unboxed(array)
+        return unboxed(array)
     return as_points(points, ndim=ndim)
 
 
-def _unboxed(array: NDArray[Any]) -> Floats:
-    """Booleans and Python objects as numbers, if these are the same numbers."""
+def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
+    """Return truth values and Python objects as numbers, if these are the same numbers.
+
+    Parameters
+    ----------
+    array : ndarray of bool or object
+        Numbers.
+    name : str, optional
+        What the argument is called in error messages.
+
+    Returns
+    -------
+    ndarray of float64, of the same shape
+        The numbers; 1 for True, 0 for False.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Something is no real number.
+    DtypeError
+        A number is none that float64 holds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.compat.qhull import unboxed
+    >>> unboxed(np.array([True, False]))
+    array([1., 0.])
+    """
     numbers = array.astype(np.float64)
     if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
         wrong = array[(numbers != array) & ~np.isnan(numbers)]
-        raise DtypeError(f"points hold {wrong.flat[0]!r}, which float64 cannot")
+        raise DtypeError(f"{name} hold {wrong.flat[0]!r}, which float64 cannot")
     return numbers
+
+
+def unmasked(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a plain array, with NaN for what is masked.
+
+    Parameters
+    ----------
+    array : ndarray
+        Numbers, masked or not.
+
+    Returns
+    -------
+    ndarray
+        The same where nothing is masked; otherwise of floats, complex numbers or objects.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.compat.qhull import unmasked
+    >>> unmasked(np.ma.masked_equal([1, 2, 3], 2))
+    array([ 1., nan,  3.])
+    """
+    if not isinstance(array, np.ma.MaskedArray):
+        return array
+    plain = np.asarray(array.data)
+    if not np.ma.is_masked(array):
+        return plain
+    if plain.dtype.kind in "biu":
+        plain = plain.astype(np.float64)
+    found: NDArray[Any] = np.where(np.ma.getmaskarray(array), np.nan, plain)
+    return found
 
 
 def as_queries(xi: ArrayLike, ndim: int) -> Floats:
@@ -256,9 +348,9 @@ def as_queries(xi: ArrayLike, ndim: int) -> Floats:
     ShapeError, DtypeError
         It has another number of coordinates, or is none of numbers.
     """
-    array = np.asanyarray(xi)
+    array = unmasked(np.asanyarray(xi))
     if array.ndim == 0:
         raise IndexError("points to locate need a last axis of coordinates, got a single value")
     if array.shape[-1] != ndim:
         raise ShapeError(f"points must have {ndim} coordinates, got shape {array.shape}")
-    return _unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, ndim, name="xi")
+    return unboxed(array) if array.dtype.kind in "bO" else as_vectors(array, ndim, name="xi")

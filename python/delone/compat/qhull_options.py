@@ -1,8 +1,8 @@
 """The option strings that scipy.spatial hands to Qhull, as far as they mean something here.
 
 Most of Qhull's options are about rounding: joggling, merging, tracing, precision constants. An
-exact triangulation has no use for them, and accepts them without effect. A few say what is
-reported, and those are obeyed. Those that ask for other triangles are refused by name rather than
+exact result has no use for them, and accepts them without effect. A few say what is computed or
+reported, and those are obeyed. Those that ask for another result are refused by name rather than
 ignored.
 """
 
@@ -13,19 +13,34 @@ from dataclasses import dataclass
 
 from delone.errors import DtypeError, InputError
 
-__all__ = ["QhullOptions", "UnknownOptionError"]
+__all__ = ["DELAUNAY", "HALFSPACES", "HULL", "VORONOI", "QhullOptionError", "QhullOptions"]
+
+DELAUNAY = "Delaunay triangulation"
+VORONOI = "Voronoi diagram"
+HULL = "convex hull"
+HALFSPACES = "intersection of half-spaces"
 
 _NUMBER = r"[-+.\de]*"
-# Rounding, tracing and printing.
+# Rounding, tracing and printing. QbB scales the points to a cube: a triangulation, the corners of a
+# hull and what they span do not depend on that. Coplanar facets are merged (C-0, A-1) as it is.
 _WITHOUT_EFFECT = re.compile(
-    rf"Qt|Qx|Qs|Qi|Qm|Qf|Qr|Qa|Qw|Q\d+|QJ{_NUMBER}|QR{_NUMBER}|C-?0|[EUVW]{_NUMBER}"
-    rf"|Pp|Po|T\w+{_NUMBER}|F\w+|G\w+|[dfimnops]"
+    rf"Qbb|QbB|Qc|Qt|Qx|Qs|Qi|Qm|Qf|Qr|Qa|Qw|Q\d+|QJ{_NUMBER}|QR{_NUMBER}"
+    rf"|C-?0(\.0*)?|A-?1(\.0*)?|[EUVW]{_NUMBER}|Pp|Po|T\w+{_NUMBER}|F\w+|G\w+|[dfimnops]"
 )
-_OTHER_TRIANGLES = re.compile(r"Qu|Qg|Q[GV].*|Qb.+|QB.+|[AC].+|R.+|P[dDAFGMg].*|[vH].*")
+# Of triangulations and diagrams: a point at infinity, and the furthest site.
+_OF_SITES = ("Qz", "Qu")
+_REFUSED = (
+    (r"[CA]-?\d.*", "merges facets within a tolerance, where delone merges coplanar ones alone"),
+    (r"Q[bB].+", "scales or drops single coordinates; do that to the points"),
+    (r"R.+", "rotates the points; do that to the points"),
+    (r"Qg|Q[GV].*|P[dDAFGMg].*", "leaves out a part of the result"),
+    (r"[vH].*", "asks for something else; use the class for it"),
+    (r"[AC].*", "needs a number"),
+)
 
 
-class UnknownOptionError(InputError):
-    """An option that Qhull does not know."""
+class QhullOptionError(InputError):
+    """An option that Qhull itself does not know, or not for what is computed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,22 +55,30 @@ class QhullOptions:
         ``Qz``: a point above all others counts in that scaling.
     coplanar : bool
         ``Qc``: rows that are no vertices are listed.
+    furthest : bool
+        ``Qu``: the furthest-site triangulation or diagram.
+    triangulated : bool
+        ``Qt``: facets with more vertices than a simplex are triangulated.
     """
 
     scaled: bool
     infinite_point: bool
     coplanar: bool
+    furthest: bool
+    triangulated: bool
 
     @classmethod
-    def parse(cls, options: str | None, *, incremental: bool) -> QhullOptions:
+    def parse(cls, options: str | None, *, incremental: bool, what: str = DELAUNAY) -> QhullOptions:
         """Read a string of options.
 
         Parameters
         ----------
         options : str or None
-            Separated by spaces. None stands for SciPy's defaults.
+            Separated by spaces. None stands for SciPy's defaults of Delaunay triangulations.
         incremental : bool
             Whether points can be added later.
+        what : str, optional
+            What is computed: `DELAUNAY`, `VORONOI`, `HULL` or `HALFSPACES`.
 
         Returns
         -------
@@ -64,37 +87,50 @@ class QhullOptions:
 
         Raises
         ------
-        UnknownOptionError
-            Qhull has no such option.
+        QhullOptionError
+            Qhull has no such option, or not for this.
         InputError
-            An option asks for other triangles than those of the Delaunay triangulation, or for
-            what does not go with adding points.
+            An option asks for another result than the exact one, or for what does not go with
+            adding points.
 
         Examples
         --------
         >>> from delone.compat.qhull_options import QhullOptions
-        >>> QhullOptions.parse("QJ Pp", incremental=False)
-        QhullOptions(scaled=False, infinite_point=False, coplanar=False)
+        >>> QhullOptions.parse("Qu Pp", incremental=False).furthest
+        True
         """
         if options is None:
             options = "Qc Q12" if incremental else "Qbb Qc Qz Q12"
         if not isinstance(options, str):
             raise DtypeError(f"qhull_options must be a string, got {type(options).__name__}")
         given = options.split()
-        _refuse(given, incremental)
-        return cls(scaled="Qbb" in given, infinite_point="Qz" in given, coplanar="Qc" in given)
+        for option in given:
+            _check(option, incremental, what)
+        if {*_OF_SITES} <= {*given}:
+            raise QhullOptionError("option 'Qu' does not go with option 'Qz'")
+        return cls(
+            scaled="Qbb" in given,
+            infinite_point="Qz" in given,
+            coplanar="Qc" in given,
+            furthest="Qu" in given,
+            triangulated="Qt" in given,
+        )
 
 
-def _refuse(given: list[str], incremental: bool) -> None:
-    for option in given:
-        if option in ("Qbb", "Qz", "QbB") and incremental:
-            raise InputError(f"option {option!r} does not go with incremental=True")
-        if option in ("Qbb", "Qz", "Qc") or _WITHOUT_EFFECT.fullmatch(option):
-            continue
-        if _OTHER_TRIANGLES.fullmatch(option):
-            hint = "; pass furthest_site=True" if option == "Qu" else ""
-            raise InputError(
-                f"option {option!r} asks for other triangles than those of the Delaunay "
-                f"triangulation and is not supported{hint}"
-            )
-        raise UnknownOptionError(f"unknown Qhull option {option!r}")
+def _check(option: str, incremental: bool, what: str) -> None:
+    """Refuse what is unknown, or asks for another result."""
+    if option in ("Qbb", "Qz", "QbB") and incremental:
+        raise InputError(f"option {option!r} does not go with incremental=True")
+    if option in _OF_SITES:
+        if what in (DELAUNAY, VORONOI):
+            return
+        raise QhullOptionError(
+            f"option {option!r} is for Delaunay triangulations and Voronoi diagrams, "
+            f"not for the {what}"
+        )
+    if _WITHOUT_EFFECT.fullmatch(option):
+        return
+    for pattern, reason in _REFUSED:
+        if re.fullmatch(pattern, option):
+            raise InputError(f"option {option!r} is not supported for the {what}: it {reason}")
+    raise QhullOptionError(f"unknown Qhull option {option!r}")

@@ -16,12 +16,14 @@ The signature, attributes, dtypes, errors and the mutability of arrays are SciPy
 * `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
 * Triangles are counter-clockwise and tetrahedra positively oriented, furthest-site ones, too.
 * Furthest-site triangulations are of the plane.
-* Complex numbers, masked queries, and integers which float64 does not hold, are refused rather than
-  rounded or unmasked.
+* Complex numbers, masked points, and integers which float64 does not hold, are refused rather than
+  rounded or unmasked. A masked query is one with NaN, and so in no simplex.
+* Option ``Qu`` sets `furthest_site`; SciPy leaves it False.
 * `add_points` triangulates anew, which takes the time of a triangulation, not of an insertion.
 
 `Voronoi` and `voronoi_plot_2d` are here by name; `delone.compat.scipy_voronoi` has them and what
-differs. So is `ConvexHull`, of `delone.compat.scipy_hull`. The interpolators of
+differs. So are `ConvexHull`, of `delone.compat.scipy_hull`, `HalfspaceIntersection`, of
+`delone.compat.scipy_halfspaces`, `delaunay_plot_2d` and `convex_hull_plot_2d`. The interpolators of
 ``scipy.interpolate`` are here by name; `delone.compat.interpolate` has them and what differs.
 """
 
@@ -40,7 +42,9 @@ from delone.compat.interpolate import (
     griddata,
 )
 from delone.compat.qhull import DimensionError, Incremental, QhullError, as_queries, triangulate
+from delone.compat.scipy_halfspaces import HalfspaceIntersection
 from delone.compat.scipy_hull import ConvexHull
+from delone.compat.scipy_plot import convex_hull_plot_2d, delaunay_plot_2d
 from delone.compat.scipy_voronoi import Voronoi, voronoi_plot_2d
 
 if TYPE_CHECKING:
@@ -54,10 +58,13 @@ __all__ = [
     "ConvexHull",
     "Delaunay",
     "DimensionError",
+    "HalfspaceIntersection",
     "LinearNDInterpolator",
     "NearestNDInterpolator",
     "QhullError",
     "Voronoi",
+    "convex_hull_plot_2d",
+    "delaunay_plot_2d",
     "estimate_gradients_2d_global",
     "griddata",
     "tsearch",
@@ -84,8 +91,9 @@ class Delaunay(Incremental):
         Whether `add_points` may be called.
     qhull_options : str, optional
         As in SciPy. Options about rounding have no effect, for nothing is rounded; ``QJ`` is among
-        them, so that duplicates stay duplicates. Without ``Qc``, `coplanar` is empty. The default
-        is ``"Qbb Qc Qz Q12"``; without the ``Qbb`` and ``Qz`` in incremental mode.
+        them, so that duplicates stay duplicates, and so are ``QbB``, ``C-0`` and ``A-1``. ``Qu``
+        is the same as `furthest_site`. Without ``Qc``, `coplanar` is empty. The default is
+        ``"Qbb Qc Qz Q12"``; without the ``Qbb`` and ``Qz`` in incremental mode.
 
     Attributes
     ----------
@@ -154,7 +162,7 @@ class Delaunay(Incremental):
         qhull_options: str | None = None,
     ) -> None:
         self.furthest_site = bool(furthest_site)
-        self._begin(points, qhull_options, incremental, 2 if self.furthest_site else 3)
+        self._begin(points, qhull_options, incremental)
 
     def _set(self, points: Floats) -> None:
         mesh = triangulate(points, self.furthest_site)

@@ -26,6 +26,7 @@ import numpy as np
 
 from delone import hull, predicates
 from delone.compat.qhull import Incremental, QhullError, told_as_qhull_does
+from delone.compat.qhull_options import HULL
 from delone.errors import InputError
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ class ConvexHull(Incremental):
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
-        As in SciPy. Options about rounding have no effect, for nothing is rounded. With ``Qc`` rows
+        As in SciPy. Options about rounding have no effect, for nothing is rounded; ``QbB``, after
+        which SciPy measures the scaled points, ``C-0`` and ``A-1`` are among them. With ``Qc`` rows
         that repeat a vertex are listed in `coplanar`; with ``QGn`` or ``QG-n`` point n is left out,
         and `good` tells which facets are visible to it, or are not. The default is ``"Qt"``.
 
@@ -97,6 +99,8 @@ class ConvexHull(Incremental):
     ((12, 3), 1.0, 6.0)
     """
 
+    _what = HULL
+
     def __init__(
         self,
         points: ArrayLike,
@@ -108,7 +112,7 @@ class ConvexHull(Incremental):
 
     def _set(self, points: Floats) -> None:
         rows = np.arange(len(points), dtype=np.int32)
-        with told_as_qhull_does(points):
+        with told_as_qhull_does(points, self._what):
             if self._viewer is not None:
                 if self._viewer[0] >= len(points):
                     raise QhullError(f"option QG names point {self._viewer[0]}, beyond the last")

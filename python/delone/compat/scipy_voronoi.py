@@ -21,6 +21,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_workers
 from delone.compat.qhull import Incremental, triangulate
+from delone.compat.qhull_options import VORONOI
 from delone.errors import ShapeError
 from delone.plane.triangulation import first_rows
 from delone.voronoi.lists import gaps_once, ridge_lists
@@ -101,6 +102,8 @@ class Voronoi(Incremental):
     (12, [], 4)
     """
 
+    _what = VORONOI
+
     def __init__(
         self,
         points: ArrayLike,
@@ -111,10 +114,10 @@ class Voronoi(Incremental):
         self.furthest_site = bool(furthest_site)
         if qhull_options is None:
             qhull_options = "Qc" if incremental else "Qbb Qc Qz"
-        self._begin(points, qhull_options, incremental, 2 if self.furthest_site else 3)
+        self._begin(points, qhull_options, incremental)
 
     def _set(self, points: Floats) -> None:
-        mesh = triangulate(points, self.furthest_site)
+        mesh = triangulate(points, self.furthest_site, self._what)
         dual = _core.voronoi2 if mesh.ndim == 2 else _core.voronoi3
         arrays = dual(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
         self._points, self._mesh, self._dual = points, mesh, arrays

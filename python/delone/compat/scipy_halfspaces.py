@@ -1,0 +1,260 @@
+"""The place of ``scipy.spatial.HalfspaceIntersection`` taken by delone.
+
+>>> import numpy as np
+>>> from delone.compat.scipy import HalfspaceIntersection
+>>> triangle = np.array([(-1, 0, 0), (0, -1, 0), (1, 1, -1)])
+>>> found = HalfspaceIntersection(triangle, np.array([0.25, 0.25]))
+>>> sorted(found.intersections.tolist())
+[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
+
+A half-space ``a x + b <= 0`` that holds the interior point p is the dual point ``-a / (a p + b)``,
+and corners of the intersection are facets of the convex hull of the dual points. What differs from
+SciPy:
+
+* Facets and corners come in delone's order, and the vertices of a dual facet in order around it,
+  counter-clockwise as seen from outside.
+* Half-spaces whose boundaries meet in one point make one corner if they do so exactly; where they
+  miss it by rounding there are several corners, which SciPy merges within a tolerance.
+* Where the intersection has no end, the dual facet that stands for that has an intersection of
+  infinities. SciPy returns a point outside of the intersection there.
+* Corners are computed from the half-spaces, not from the dual hull, and are more accurate.
+* Points in more than three dimensions are refused.
+* `add_halfspaces` computes everything anew.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import hull
+from delone.compat import dual_facets as duals
+from delone.compat.qhull import DimensionError, QhullError, read_options, told_as_qhull_does
+from delone.compat.qhull_options import HALFSPACES
+from delone.errors import DtypeError, NonFiniteError, ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["HalfspaceIntersection"]
+
+_SPACE = 3
+# Sums that lose more of their terms than this are summed exactly.
+_CANCELED = 0.1
+
+
+class HalfspaceIntersection:
+    """Intersection of half-spaces with the interface of ``scipy.spatial.HalfspaceIntersection``.
+
+    Parameters
+    ----------
+    halfspaces : array_like, shape (nineq, ndim + 1)
+        Rows ``(a, b)`` for ``a @ x + b <= 0``, in the plane or in space.
+    interior_point : array_like, shape (ndim,)
+        A point that is strictly inside all of them.
+    incremental : bool, optional
+        Whether `add_halfspaces` may be called.
+    qhull_options : str, optional
+        As in SciPy. Options about rounding have no effect. With ``Qt`` dual facets are triangulated
+        in space, and a corner comes once for each triangle.
+
+    Attributes
+    ----------
+    halfspaces : ndarray of float64, shape (nineq, ndim + 1)
+        The half-spaces.
+    interior_point : ndarray of float64, shape (ndim,)
+        The point inside.
+    intersections : ndarray of float64, shape (ninter, ndim)
+        The corners, one for each dual facet; infinite where the intersection has no end.
+    dual_points : ndarray of float64, shape (nineq, ndim)
+        The dual point of each half-space.
+    dual_facets : list of list of int
+        The half-spaces that meet in each corner.
+    dual_vertices : ndarray of int, shape (nvertices,)
+        The half-spaces that are not redundant: counter-clockwise in the plane, ascending in space.
+    dual_equations : ndarray of float64, shape (ninter, ndim + 1)
+        Outer normals and offsets of the dual facets.
+    dual_area, dual_volume : float
+        Surface and volume of the dual hull; in the plane perimeter and area.
+    ndim, nineq : int
+        Sizes.
+
+    Raises
+    ------
+    QhullError
+        The point is not strictly inside; there are too few half-spaces for a corner; a number is
+        infinite; an option is unknown.
+    ValueError
+        A number is NaN, an array has a wrong shape or dtype or is masked, or an option asks for
+        something else.
+    DimensionError
+        There are more than three coordinates.
+
+    Notes
+    -----
+    Whether the point is inside, which boundaries meet in one point, and whether there is an end is
+    decided exactly. The dual points are rounded, so that a half-space which cuts off less than that
+    may count as redundant.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.compat.scipy import HalfspaceIntersection
+    >>> sides = np.array([(1, 0, 1, -1), (-1, 0, 1, -1), (0, 1, 1, -1), (0, -1, 1, -1)])
+    >>> pyramid = np.vstack((sides, [(0, 0, -1, 0)]))
+    >>> found = HalfspaceIntersection(pyramid, np.array([0.1, 0.02, 0.3]))
+    >>> sorted(map(len, found.dual_facets)), found.dual_vertices.tolist()
+    ([3, 3, 3, 3, 4], [0, 1, 2, 3, 4])
+    """
+
+    def __init__(
+        self,
+        halfspaces: ArrayLike,
+        interior_point: ArrayLike,
+        incremental: bool = False,
+        qhull_options: str | None = None,
+    ) -> None:
+        self._open = bool(incremental)
+        text = "" if qhull_options is None else qhull_options
+        self._options = read_options(text, incremental=self._open, what=HALFSPACES)
+        rows = _as_rows(halfspaces)
+        point = np.asarray(interior_point, dtype=np.float64)
+        if point.shape != (rows.shape[1] - 1,):
+            raise ShapeError(
+                f"interior_point must have shape ({rows.shape[1] - 1},), got {point.shape}"
+            )
+        self.interior_point = point
+        self._set(rows)
+
+    def _set(self, rows: Floats) -> None:
+        """Compute what there is of the half-spaces; nothing changes where that fails."""
+        slack = _slack(rows, self.interior_point)
+        with np.errstate(over="ignore", divide="ignore"):
+            points = rows[:, :-1] / -slack[:, None]
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise QhullError(f"interior_point is too near to the boundary of half-space {row}")
+        distinct = duals.first_of_equal(rows)
+        with told_as_qhull_does(points[distinct], "corner of the half-spaces"):
+            found = hull.ConvexHull(points[distinct])
+        simplices = distinct[found.simplices].astype(np.int32)
+        dual = duals.Dual(rows, self.interior_point, slack, simplices, found.neighbors)
+        self.halfspaces, self._hull = rows, found
+        self.dual_points, self.dual_area, self.dual_volume = points, found.area, found.volume
+        self._facets = dual.facets(triangulated=self._options.triangulated)
+        self.ndim, self.nineq = rows.shape[1] - 1, len(rows)
+        self.intersections = dual.corners(self._facets.simplex)
+        self.__dict__.pop("dual_vertices", None)
+
+    @property
+    def dual_facets(self) -> list[list[int]]:
+        """The half-spaces that meet in each corner."""
+        return [list(facet) for facet in self._facets.vertices]
+
+    @property
+    def dual_equations(self) -> Floats:
+        """Outer normals and offsets of the dual facets, (ninter, ndim + 1)."""
+        return self._hull.equations[self._facets.simplex]
+
+    @cached_property
+    def dual_vertices(self) -> NDArray[np.signedinteger[Any]]:
+        """The half-spaces that are not redundant."""
+        rows = np.unique(np.concatenate(self._facets.vertices))
+        if self.ndim == _SPACE:
+            return rows
+        after = {facet[0]: facet[1] for facet in self._facets.vertices}
+        ring = [int(rows[0])]
+        # Ends: each vertex of the dual polygon is the first one of one edge.
+        while (following := after[ring[-1]]) != ring[0]:
+            ring.append(following)
+        return np.array(ring)
+
+    def add_halfspaces(self, halfspaces: ArrayLike, restart: bool = False) -> None:
+        """Add half-spaces, and compute everything anew.
+
+        Parameters
+        ----------
+        halfspaces : array_like, shape (k, ndim + 1)
+            What to append to `halfspaces`.
+        restart : bool, optional
+            Accepted as in SciPy. The result is the same.
+
+        Raises
+        ------
+        RuntimeError
+            `incremental` was not set, or `close` has been called.
+        QhullError, ValueError
+            As in the constructor; then nothing has changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.compat.scipy import HalfspaceIntersection
+        >>> square = np.array([(-1, 0, 0), (1, 0, -1), (0, -1, 0), (0, 1, -1)])
+        >>> found = HalfspaceIntersection(square, np.array([0.5, 0.5]), incremental=True)
+        >>> found.add_halfspaces([(1, 1, -1.5)])
+        >>> len(found.intersections)
+        5
+        """
+        if not self._open:
+            raise RuntimeError("incremental mode is not enabled, or closed already")
+        more = _as_rows(halfspaces)
+        if more.shape[1] != self.ndim + 1:
+            raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
+        self._set(np.concatenate((self.halfspaces, more)))
+
+    def close(self) -> None:
+        """End incremental mode; `add_halfspaces` is refused from then on."""
+        self._open = False
+
+
+def _as_rows(halfspaces: ArrayLike) -> Floats:
+    """Half-spaces as rows of doubles, refused with SciPy's kinds of errors."""
+    if isinstance(halfspaces, np.ma.MaskedArray):
+        raise DtypeError("halfspaces must not be a masked array")
+    given: NDArray[Any] = np.asarray(halfspaces)
+    if given.dtype.kind not in "biufO":
+        raise DtypeError(f"halfspaces must hold real numbers, got dtype {given.dtype}")
+    rows = np.ascontiguousarray(given, dtype=np.float64)
+    if rows.ndim != 2 or rows.shape[1] < _SPACE:
+        raise ShapeError(f"halfspaces must have shape (nineq, 3) or (nineq, 4), got {rows.shape}")
+    if rows.shape[1] > _SPACE + 1:
+        raise DimensionError(
+            "this answer of delone.compat.scipy is for half-spaces in the plane and in space; for "
+            f"{rows.shape[1] - 1} coordinates use scipy.spatial"
+        )
+    bad = np.flatnonzero(np.isnan(rows).any(axis=1))
+    if bad.size:
+        raise NonFiniteError(
+            f"halfspaces: {len(bad)} of {len(rows)} rows hold NaN; first: {bad[0]}",
+            rows=bad[:10],
+            count=len(bad),
+        )
+    return rows
+
+
+def _slack(rows: Floats, point: Floats) -> Floats:
+    """Return ``a @ p + b`` of each half-space, with its exact sign, which must be negative."""
+    if not (np.isfinite(rows).all() and np.isfinite(point).all()):
+        raise QhullError("halfspaces and interior_point must be finite")
+    with np.errstate(over="ignore", invalid="ignore"):
+        terms = np.column_stack((rows[:, :-1] * point, rows[:, -1]))
+        slack: Floats = terms.sum(axis=1)
+        doubtful = ~(np.abs(slack) > _CANCELED * np.abs(terms).sum(axis=1))
+    place = [*map(Fraction, point.tolist()), Fraction(1)]
+    outside = slack >= 0
+    for i in np.flatnonzero(doubtful | ~np.isfinite(slack)).tolist():
+        exact = sum(Fraction(a) * x for a, x in zip(rows[i].tolist(), place, strict=True))
+        outside[i] = exact >= 0
+        slack[i] = duals.rounded(Fraction(exact))
+    if outside.any():
+        row = int(np.flatnonzero(outside)[0])
+        raise QhullError(
+            f"interior_point is not strictly inside half-space {row}: {rows[row].tolist()}"
+        )
+    return slack

@@ -1,0 +1,259 @@
+"""The drop-in for SciPy's HalfspaceIntersection, beside SciPy's own and beside fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+from delone.compat.scipy import DimensionError, HalfspaceIntersection, QhullError
+from delone.predicates import orient2d
+
+spatial = pytest.importorskip("scipy.spatial")
+
+SQUARE = np.array([(-1.0, 0, 0), (1, 0, -1), (0, -1, 0), (0, 1, -1)])
+PYRAMID = np.array([(1.0, 0, 1, -1), (-1, 0, 1, -1), (0, 1, 1, -1), (0, -1, 1, -1), (0, 0, -1, 0)])
+
+
+def tangents(count: int, d: int, seed: int, far: float = 0.0) -> tuple[Any, Any]:
+    """Half-spaces about a ball, some of them redundant, and a point inside."""
+    rng = np.random.default_rng(seed)
+    normals = rng.standard_normal((count, d))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    radii = rng.uniform(0.8, 2.0, count)
+    center = far * (1 + rng.random(d))
+    scale = rng.uniform(0.1, 9, (count, 1))
+    rows = np.column_stack((normals, -radii - normals @ center)) * scale
+    return rows, center + rng.uniform(-0.2, 0.2, d)
+
+
+def exact_corners(rows: Any) -> set[tuple[Fraction, ...]]:
+    """All points of d boundaries that no half-space leaves out, by brute force."""
+    d = rows.shape[1] - 1
+    exact = [[Fraction(x) for x in row] for row in rows.tolist()]
+    found = set()
+    for chosen in combinations(exact, d):
+        point = solved([[*row[:d], -row[d]] for row in chosen])
+        if point is not None and all(
+            sum(a * x for a, x in zip(row, point, strict=False)) + row[d] <= 0 for row in exact
+        ):
+            found.add(tuple(point))
+    return found
+
+
+def solved(matrix: list[list[Fraction]]) -> list[Fraction] | None:
+    """Gauss and Jordan's elimination."""
+    count = len(matrix)
+    for k in range(count):
+        pivot = next((i for i in range(k, count) if matrix[i][k]), None)
+        if pivot is None:
+            return None
+        matrix[k], matrix[pivot] = matrix[pivot], matrix[k]
+        matrix[k] = [x / matrix[k][k] for x in matrix[k]]
+        for i in range(count):
+            if i != k:
+                factor = matrix[i][k]
+                matrix[i] = [x - factor * y for x, y in zip(matrix[i], matrix[k], strict=True)]
+    return [row[count] for row in matrix]
+
+
+def by_facets(found: Any) -> dict[frozenset[int], Any]:
+    return {
+        frozenset(facet): corner
+        for facet, corner in zip(found.dual_facets, found.intersections, strict=True)
+    }
+
+
+@pytest.mark.parametrize("count", [6, 40, 300])
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("far", [0.0, 500.0])
+def test_attributes_beside_scipy(d: int, count: int, far: float) -> None:
+    rows, point = tangents(count, d, seed=count + d, far=far)
+    ours, theirs = HalfspaceIntersection(rows, point), spatial.HalfspaceIntersection(rows, point)
+    bounded = np.isfinite(ours.intersections).all()
+    assert bounded or count == 6
+    for name in ("ndim", "nineq"):
+        assert getattr(ours, name) == getattr(theirs, name)
+    for name in ("dual_volume", "dual_area"):
+        assert getattr(ours, name) == pytest.approx(getattr(theirs, name), rel=1e-9)
+    np.testing.assert_allclose(ours.dual_points, theirs.dual_points, rtol=1e-9)
+    for name in ("halfspaces", "interior_point"):
+        np.testing.assert_array_equal(getattr(ours, name), getattr(theirs, name))
+    mine, other = by_facets(ours), by_facets(theirs)
+    assert mine.keys() == other.keys()
+    for facet, corner in mine.items():
+        if np.isfinite(corner).all():
+            np.testing.assert_allclose(corner, other[facet], rtol=1e-8, atol=1e-8)
+    normal = dict(zip(map(frozenset, ours.dual_facets), ours.dual_equations, strict=True))
+    for facet, equation in zip(theirs.dual_facets, theirs.dual_equations, strict=True):
+        np.testing.assert_allclose(normal[frozenset(facet)], equation, atol=1e-7)
+    assert ours.dual_vertices.dtype == theirs.dual_vertices.dtype
+    assert sorted(ours.dual_vertices.tolist()) == sorted(theirs.dual_vertices.tolist())
+    if d == 2:  # counter-clockwise, as SciPy's documentation has it
+        corners = ours.dual_points[ours.dual_vertices]
+        after, last = np.roll(corners, -1, axis=0), np.roll(corners, 1, axis=0)
+        assert (orient2d(last, corners, after) > 0).all()
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("seed", range(8))
+def test_corners_are_those_of_fractions(d: int, seed: int) -> None:
+    """Small integers: many boundaries through one point, multiples and redundant half-spaces."""
+    rng = np.random.default_rng(seed)
+    box = np.column_stack((np.vstack((np.eye(d), -np.eye(d))), np.full(2 * d, -4.0)))
+    normals = rng.integers(-2, 3, (16 if d == 2 else 11, d)).astype(float)
+    rows = np.vstack((box, np.column_stack((normals, -rng.integers(1, 5, len(normals))))))
+    rows = np.vstack((rows, 3 * rows[:4], 0.1 * rows[2:6]))
+    point = rng.uniform(-0.1, 0.1, d)
+    found = HalfspaceIntersection(rows, point)
+    expected = exact_corners(np.unique(rows, axis=0))
+    rounded = {tuple(float(x) for x in corner) for corner in expected}
+    assert len(found.intersections) == len(rounded)
+    near = np.array(sorted(rounded))
+    for corner in found.intersections:
+        assert np.abs(near - corner).max(axis=1).min() < 1e-14
+    # Exactly the half-spaces through a corner, but for redundant ones.
+    for facet, corner in zip(found.dual_facets, found.intersections, strict=True):
+        assert len(facet) == len(set(facet)) >= d
+        assert np.abs(rows[facet, :-1] @ corner + rows[facet, -1]).max() < 1e-13
+    kept = set(found.dual_vertices.tolist())
+    assert kept == {row for facet in found.dual_facets for row in facet}
+    assert exact_corners(rows[sorted(kept)]) == expected
+    for row in kept:
+        fewer = exact_corners(rows[sorted(kept - {row})])
+        assert fewer != expected
+
+
+@pytest.mark.parametrize("point", [(0, 0, 0.3), (0.1, 0.02, 0.3), (0.123, -0.217, 0.111)])
+def test_four_sides_through_one_corner(point: Any) -> None:
+    ours = HalfspaceIntersection(PYRAMID, np.array(point))
+    theirs = spatial.HalfspaceIntersection(PYRAMID, np.array(point))
+    assert {*map(frozenset, ours.dual_facets)} == {*map(frozenset, theirs.dual_facets)}
+    (top,) = (facet for facet in ours.dual_facets if len(facet) == 4)
+    # In order around it, and so opposite sides are opposite.
+    assert {top[0], top[2]} in ({0, 1}, {2, 3})
+    apex = ours.intersections[ours.dual_facets.index(top)]
+    np.testing.assert_allclose(apex, [0, 0, 1], atol=1e-15)
+    triangles = HalfspaceIntersection(PYRAMID, np.array(point), qhull_options="Qt")
+    assert [len(facet) for facet in triangles.dual_facets] == [3] * 6
+    assert np.count_nonzero(triangles.intersections[:, 2] > 0.5) == 2
+    assert len(spatial.HalfspaceIntersection(PYRAMID, np.array(point), qhull_options="Qt")
+               .dual_facets) == 6  # fmt: skip
+
+
+def test_planes_through_one_edge() -> None:
+    """A redundant half-space that touches an edge, whose dual point is between two others."""
+    rng = np.random.default_rng(3)
+    cube = np.column_stack((np.vstack((np.eye(3), -np.eye(3))), np.full(6, -1.0)))
+    for weights in ((1, 1), (1, 3), (0.25, 0.625)):
+        rows = np.vstack((cube, weights[0] * cube[0] + weights[1] * cube[1]))
+        for _ in range(10):
+            found = HalfspaceIntersection(rows, rng.uniform(-0.5, 0.5, 3))
+            assert len(found.intersections) == 8
+            assert found.dual_vertices.tolist() == list(range(6))
+            np.testing.assert_allclose(np.abs(found.intersections), 1, atol=1e-15)
+
+
+def test_a_plane_that_misses_an_edge_by_rounding_cuts_it_off() -> None:
+    cube = np.column_stack((np.vstack((np.eye(3), -np.eye(3))), np.full(6, -1.0)))
+    missed = (0.1, 0.7, 0, -np.nextafter(0.1 + 0.7, 0))
+    assert sum(map(Fraction, missed)) > 0
+    found = HalfspaceIntersection(np.vstack((cube, missed)), np.array([0.2, -0.3, 0.1]))
+    assert len(found.intersections) == 10
+    assert 6 in found.dual_vertices
+
+
+def test_without_an_end() -> None:
+    wedge = np.array([(-1.0, 0, 0), (0, -1, 0), (1, -1, -3)])
+    found = HalfspaceIntersection(wedge, np.array([1.0, 1]))
+    assert sorted(found.intersections.tolist()) == [[0, 0], [3, 0], [np.inf, np.inf]]
+    (beyond,) = np.flatnonzero(np.isinf(found.intersections[:, 0]))
+    assert set(found.dual_facets[beyond]) == {0, 2}
+    # Parallel sides, which meet nowhere, whatever rounding makes of their dual points.
+    strip = np.array([(0.1, 0.3, -0.7), (-0.1, -0.3, -0.2), (0.3, -0.1, -1)])
+    found = HalfspaceIntersection(strip, np.array([0.01, 0.03]))
+    assert np.isinf(found.intersections).sum() == 2
+    with pytest.raises(QhullError, match="no corner"):
+        HalfspaceIntersection(SQUARE[:2], np.array([0.5, 0.5]))
+    prism = np.column_stack((SQUARE[:, :2], np.zeros(4), SQUARE[:, 2]))
+    with pytest.raises(QhullError, match="no corner"):
+        HalfspaceIntersection(prism, np.array([0.5, 0.5, 0]))
+
+
+def test_half_spaces_are_added() -> None:
+    rows, point = tangents(60, 3, seed=1)
+    found = HalfspaceIntersection(rows[:30], point, incremental=True)
+    before = found.dual_vertices
+    found.add_halfspaces(rows[30:])
+    whole = HalfspaceIntersection(rows, point)
+    np.testing.assert_array_equal(found.intersections, whole.intersections)
+    assert found.dual_facets == whole.dual_facets
+    np.testing.assert_array_equal(found.dual_vertices, whole.dual_vertices)
+    assert len(before) < len(found.dual_vertices)
+    with pytest.raises(QhullError, match="half-space 60"):
+        found.add_halfspaces([(1, 0, 0, 50)])
+    with pytest.raises(ValueError, match="shape"):
+        found.add_halfspaces([(1, 0, 0)])
+    assert found.nineq == 60 and len(found.halfspaces) == 60
+    np.testing.assert_array_equal(found.intersections, whole.intersections)
+    found.close()
+    for closed in (found, whole):
+        with pytest.raises(RuntimeError):
+            closed.add_halfspaces(rows)
+
+
+@pytest.mark.parametrize("name", ["outside", "on a side", "nan point", "infinite"])
+def test_a_point_that_is_not_inside(name: str) -> None:
+    point = {"outside": (5.0, 1), "on a side": (1.0, 0.5), "nan point": (np.nan, 0.5)}
+    rows = SQUARE + np.array([0, 0, np.inf if name == "infinite" else 0])
+    for kind in (spatial.HalfspaceIntersection, HalfspaceIntersection):
+        with pytest.raises(QhullError):
+            kind(rows, np.array(point.get(name, (0.5, 0.5))))
+
+
+def test_whether_the_point_is_inside_is_exact() -> None:
+    # 0.1 x + 0.3 y - 0.4 at (1, 1) is negative by less than an ulp, as doubles go.
+    row = (0.1, 0.3, -0.4)
+    value = sum(map(Fraction, row))
+    assert 0 < abs(value) < Fraction(1, 2**54)
+    turned = row if value < 0 else tuple(-x for x in row)
+    wide = np.array([(-1.0, 0, -9), (1, 0, -9), (0, -1, -9), (0, 1, -9), turned])
+    assert HalfspaceIntersection(wide, np.array([1.0, 1])).nineq == 5
+    with pytest.raises(QhullError, match="half-space 4"):
+        HalfspaceIntersection(np.vstack((wide[:4], -wide[4:])), np.array([1.0, 1]))
+
+
+def test_what_is_refused_as_scipy_refuses_it() -> None:
+    inside = np.array([0.5, 0.5])
+    for kind in (spatial.HalfspaceIntersection, HalfspaceIntersection):
+        for rows, point in (
+            (SQUARE, np.array([0.5, 0.5, 0.5])),
+            (SQUARE * np.nan, inside),
+            (np.ma.masked_array(SQUARE), inside),
+        ):
+            with pytest.raises(ValueError):
+                kind(rows, point)
+        with pytest.raises(QhullError):
+            kind(SQUARE, inside, qhull_options="Qk")
+        with pytest.raises(QhullError):
+            kind(SQUARE[:2], inside)
+    with pytest.raises(DimensionError, match=r"scipy\.spatial"):
+        HalfspaceIntersection(np.ones((6, 5)), np.zeros(4))
+    with pytest.raises(ValueError, match="intersection of half-spaces"):
+        HalfspaceIntersection(SQUARE, inside, qhull_options="A-0.9")
+
+
+def test_lists_and_integers_are_taken() -> None:
+    found = HalfspaceIntersection(SQUARE.astype(int).tolist(), [0.5, 0.25])
+    assert sorted(found.intersections.tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
+
+
+@pytest.mark.parametrize("shift", [0.0, 5.4e6])
+def test_far_from_the_origin(shift: float) -> None:
+    rows = SQUARE.copy()
+    rows[:, 2] -= rows[:, :2] @ [shift, shift]
+    found = HalfspaceIntersection(rows, np.array([shift + 0.3, shift + 0.7]))
+    assert sorted((found.intersections - shift).tolist()) == [[0, 0], [0, 1], [1, 0], [1, 1]]
