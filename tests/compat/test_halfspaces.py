@@ -148,13 +148,30 @@ def test_planes_through_one_edge() -> None:
     """A redundant half-space that touches an edge, whose dual point is between two others."""
     rng = np.random.default_rng(3)
     cube = np.column_stack((np.vstack((np.eye(3), -np.eye(3))), np.full(6, -1.0)))
-    for weights in ((1, 1), (1, 3), (0.25, 0.625)):
-        rows = np.vstack((cube, weights[0] * cube[0] + weights[1] * cube[1]))
-        for _ in range(10):
-            found = HalfspaceIntersection(rows, rng.uniform(-0.5, 0.5, 3))
-            assert len(found.intersections) == 8
-            assert found.dual_vertices.tolist() == list(range(6))
-            np.testing.assert_allclose(np.abs(found.intersections), 1, atol=1e-15)
+    for _ in range(150):
+        turned = cube.copy()
+        skew = np.eye(3) * 4 + rng.integers(-1, 2, (3, 3))
+        turned[:, :3] = cube[:, :3] @ skew
+        first, second = rng.integers(1, 10, (2, 3, 1))
+        rows = np.vstack(
+            (turned, first * turned[0] + second * turned[1], second * turned[1] + first * turned[2])
+        )
+        point = np.linalg.solve(skew, rng.uniform(-0.5, 0.5, 3))
+        found = HalfspaceIntersection(rows, point)
+        assert len(found.intersections) == 8
+        assert found.dual_vertices.tolist() == list(range(6))
+        np.testing.assert_allclose(np.abs(found.intersections @ skew.T), 1, atol=1e-14)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_multiples_of_a_half_space_are_one(d: int) -> None:
+    for seed in range(20):
+        rows, point = tangents(30, d, seed)
+        rows = np.round(rows * 2**20) / 2**20  # so that small multiples are exact
+        plain = HalfspaceIntersection(rows, point)
+        found = HalfspaceIntersection(np.vstack((rows, 3 * rows, 7 * rows, rows)), point)
+        assert by_facets(plain).keys() == by_facets(found).keys()
+        assert found.dual_vertices.tolist() == plain.dual_vertices.tolist()
 
 
 def test_a_plane_that_misses_an_edge_by_rounding_cuts_it_off() -> None:
