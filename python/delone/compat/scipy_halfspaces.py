@@ -76,7 +76,7 @@ class HalfspaceIntersection:
     dual_facets : list of list of int
         The half-spaces that meet in each corner.
     dual_vertices : ndarray of int, shape (nvertices,)
-        The half-spaces that are not redundant: counter-clockwise in the plane, ascending in space.
+        The half-spaces that are not redundant, ascending.
     dual_equations : ndarray of float64, shape (ninter, ndim + 1)
         Outer normals and offsets of the dual facets.
     dual_area, dual_volume : float
@@ -164,22 +164,14 @@ class HalfspaceIntersection:
     @cached_property
     def dual_vertices(self) -> NDArray[np.signedinteger[Any]]:
         """The half-spaces that are not redundant."""
-        rows = np.unique(np.concatenate(self._facets.vertices))
-        if self.ndim == _SPACE:
-            return rows
-        after = {facet[0]: facet[1] for facet in self._facets.vertices}
-        ring = [int(rows[0])]
-        # Ends: each vertex of the dual polygon is the first one of one edge.
-        while (following := after[ring[-1]]) != ring[0]:
-            ring.append(following)
-        return np.array(ring)
+        return np.unique(np.concatenate(self._facets.vertices))
 
     def add_halfspaces(self, halfspaces: ArrayLike, restart: bool = False) -> None:
         """Add half-spaces, and compute everything anew.
 
         Parameters
         ----------
-        halfspaces : array_like, shape (k, ndim + 1)
+        halfspaces : array_like, shape (k, ndim + 1) or (ndim + 1,)
             What to append to `halfspaces`.
         restart : bool, optional
             Accepted as in SciPy. The result is the same.
@@ -203,7 +195,7 @@ class HalfspaceIntersection:
         """
         if not self._open:
             raise RuntimeError("incremental mode is not enabled, or closed already")
-        more = _as_rows(halfspaces)
+        more = _as_rows(np.atleast_2d(np.asanyarray(halfspaces)))
         if more.shape[1] != self.ndim + 1:
             raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
         self._set(np.concatenate((self.halfspaces, more)))
@@ -222,7 +214,9 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
         raise DtypeError(f"halfspaces must hold real numbers, got dtype {given.dtype}")
     rows = np.ascontiguousarray(given, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] < _SPACE:
-        raise ShapeError(f"halfspaces must have shape (nineq, 3) or (nineq, 4), got {rows.shape}")
+        raise ShapeError(
+            f"halfspaces must be a 2D array of shape (nineq, 3) or (nineq, 4), got {rows.shape}"
+        )
     if rows.shape[1] > _SPACE + 1:
         raise DimensionError(
             "this answer of delone.compat.scipy is for half-spaces in the plane and in space; for "
@@ -255,6 +249,7 @@ def _slack(rows: Floats, point: Floats) -> Floats:
     if outside.any():
         row = int(np.flatnonzero(outside)[0])
         raise QhullError(
-            f"interior_point is not strictly inside half-space {row}: {rows[row].tolist()}"
+            f"interior_point is not a feasible point: it is not strictly inside half-space {row}, "
+            f"{rows[row].tolist()}"
         )
     return slack
