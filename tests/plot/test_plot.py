@@ -24,7 +24,7 @@ from delone import (
     datasets,
 )
 from delone.interpolate import grid
-from delone.io import write_raster
+from delone.io import write_mesh, write_raster
 from delone.plot import plot, save_picture
 
 FIVE = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
@@ -262,3 +262,18 @@ def test_what_is_no_triangulation_in_the_plane_is_refused(tmp_path, other, inste
     with pytest.raises(InputError, match=instead):
         save_picture(tmp_path / "a.png", other)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_files_of_heights_are_shaded_and_fields_are_not(tmp_path):
+    square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 1)]]}
+    mesh = delone.mesh(square, max_area=1 / 3000)
+    terrain = Delaunay(mesh.points)
+    for each, lit in ((terrain, True), (mesh, False)):
+        z = np.sin(9 * each.points[:, 0]) * np.cos(7 * each.points[:, 1])
+        write_mesh(tmp_path / "a.png", each, z=z)
+        pictures = [pixels(tmp_path / "a.png")]
+        for shade in (True, False):
+            save_picture(tmp_path / "b.png", each, z=z, shade=shade)
+            pictures.append(pixels(tmp_path / "b.png"))
+        assert (pictures[0] == pictures[1]).all() == lit
+        assert (pictures[0] == pictures[2]).all() != lit
