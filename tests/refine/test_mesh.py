@@ -190,6 +190,13 @@ def test_each_ring_and_line_has_its_own_marker() -> None:
     assert mesh.point_markers[mesh.segments[small]].max() == 2
 
 
+def test_lines_outside_of_the_domain_shift_no_numbers() -> None:
+    outside = {"type": "LineString", "coordinates": [(-5, 0), (-5, 2), (-4, 3)]}
+    mesh = delone.mesh([outside, RINGED], size=2)
+    assert set(mesh.segment_markers.tolist()) == {2, 3, 4}
+    assert set(mesh.geometry_of_segment.tolist()) == {1}
+
+
 def test_rings_stay_apart_where_a_constrained_triangulation_is_meshed() -> None:
     base = delone.from_geometry(RINGED, boundary="polygons")
     assert base.part_of_segment.tolist() == [0] * 4 + [1] * 4 + [2] * 4
