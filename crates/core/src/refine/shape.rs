@@ -65,7 +65,8 @@ pub fn angle([a, b, c]: [Point2; 3]) -> f64 {
 }
 
 impl Shape {
-    /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are circles.
+    /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are circles. Where no
+    /// angle is too small, lenses are empty: rounding must not find a vertex in one.
     pub fn new(degrees: f64, circles: bool) -> Self {
         let angle = degrees.to_radians();
         // Where the squared cosine is a simple fraction, it is that one and not its neighbour.
@@ -78,9 +79,19 @@ impl Shape {
             cos2,
             lens: if circles {
                 0.0
+            } else if degrees == 0.0 {
+                f64::INFINITY
             } else {
                 (2.0 * cos2 - 1.0).powi(2)
             },
+        }
+    }
+
+    /// A bound for the smallest angle by its squared cosine; no lens holds anything.
+    pub fn of_square(cos2: f64) -> Self {
+        Self {
+            cos2,
+            lens: f64::INFINITY,
         }
     }
 
@@ -173,6 +184,9 @@ mod tests {
         let lens = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
         assert!(lens(0.57) && !lens(0.58));
         assert!(!shape.in_lens([-1.0, 0.0], [1.0, 0.0], [3.0, 0.0]));
+        // A vertex beside the subsegment that rounding takes for one on it.
+        let flat = Shape::new(0.0, false);
+        assert!(!flat.in_lens([0.0, 0.0], [2.0, 0.0], [1.0, -1e-9]));
         let shape = Shape::new(30.0, true);
         let circle = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
         assert!(circle(0.99) && !circle(1.01));
