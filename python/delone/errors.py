@@ -54,6 +54,13 @@ class DeloneError(Exception):
     2 distinct points are too few for a triangle: three that are not in line are needed
     """
 
+    def __setstate__(self, state: dict[str, Any] | None) -> None:
+        super().__setstate__(state)
+        # NumPy does not pickle whether an array may be written to.
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+
 
 class InputError(DeloneError, ValueError):
     """An argument has a value that cannot be used; a ValueError as well.
@@ -289,6 +296,11 @@ class BudgetExceededError(DeloneError, RuntimeError):
         How many added vertices were allowed.
     found : int, optional
         How many were found when the work was given up; there may be more.
+    segments : iterable of int, optional
+        The rows of up to five segments that take most of them, the first one the most.
+    place : tuple of float, optional
+        Where: the point where the first two of these segments meet, or else where the last vertex
+        was to be added.
 
     Attributes
     ----------
@@ -296,6 +308,11 @@ class BudgetExceededError(DeloneError, RuntimeError):
         How many added vertices were allowed.
     found : int
         How many were found when the work was given up; there may be more.
+    segments : tuple of int
+        The rows of up to five segments that take most of them; empty where none are known.
+    place : tuple of float, or None
+        Where: the point where the first two of these segments meet, or else where the last vertex
+        was to be added.
 
     Examples
     --------
@@ -310,13 +327,23 @@ class BudgetExceededError(DeloneError, RuntimeError):
 
     limit: int
     found: int
+    segments: tuple[int, ...]
+    place: tuple[float, float] | None
 
     def __init__(
-        self, message: str = "too many vertices to add", *, limit: int = 0, found: int = 0
+        self,
+        message: str = "too many vertices to add",
+        *,
+        limit: int = 0,
+        found: int = 0,
+        segments: Iterable[int] = (),
+        place: tuple[float, float] | None = None,
     ) -> None:
         super().__init__(message)
         self.limit = int(limit)
         self.found = int(found)
+        self.segments = tuple(map(int, segments))
+        self.place = place
 
 
 class BusyError(DeloneError, RuntimeError):

@@ -271,6 +271,21 @@ class TestConforming:
         with pytest.raises(delone.BudgetExceededError) as caught:
             ConstrainedDelaunay(points, [(0, 1)], conforming=True, max_vertices=10)
         assert caught.value.limit == 10
+        assert caught.value.segments == (0,)
+        assert caught.value.place is not None
+        assert caught.value.place[1] == 0
+        assert "most are on segment 0, the last one at (" in str(caught.value)
+
+    def test_the_budget_names_the_corner(self) -> None:
+        """Points between two segments that are almost one, and a third that needs nothing."""
+        points = [(50, 50), (3, 3), (13, 3), (13, 3 + 1e-3), (60, 60)]
+        points += [(x, 3 + 5e-5 * (x - 3)) for x in range(4, 13)]
+        segments = [(0, 4), (1, 2), (3, 1)]
+        with pytest.raises(delone.BudgetExceededError) as caught:
+            ConstrainedDelaunay(points, segments, conforming=True, max_vertices=8)
+        assert set(caught.value.segments) == {1, 2}
+        assert caught.value.place == (3, 3)
+        assert "the first two of which meet at (3, 3)" in str(caught.value)
 
     def test_an_edit_conforms_as_well(self) -> None:
         mesh = ConstrainedDelaunay([(0, 0), (12, 0), (6, 9), (6, -9)], [(0, 1)], conforming=True)

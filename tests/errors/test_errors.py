@@ -23,7 +23,7 @@ CASES = [
     errors.DegenerateInputError("m", reason="collinear", chain=[2, 0, 1]),
     errors.ConflictingValuesError("m", rows=[(2, 0)]),
     errors.CrossingSegmentsError("m", pairs=[(0, 2)], points=[(0.5, 1.5)]),
-    errors.BudgetExceededError("m", limit=10, found=12),
+    errors.BudgetExceededError("m", limit=10, found=12, segments=[3, 1], place=(0.5, 2.0)),
     errors.BusyError("m", pid=7, host="here"),
     errors.LimitError("m"),
     errors.InternalError("m"),

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use delone_core::Point2;
-use delone_core::error::{Error, Result};
+use delone_core::error::{Crowd, Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -89,10 +89,18 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             details.set_item("points", table(py, points.clone())?)?;
             ("CrossingSegmentsError", crossing(pairs, points))
         }
-        Error::Budget { limit, found, .. } => {
+        Error::Budget {
+            limit,
+            found,
+            crowd,
+            ..
+        } => {
             details.set_item("limit", limit)?;
             details.set_item("found", found)?;
-            let message = format!("{error}: allow more, or make the input simpler");
+            details.set_item("segments", &crowd.segments)?;
+            details.set_item("place", crowd.place.map(|[x, y]| (x, y)))?;
+            let place = crowded(crowd);
+            let message = format!("{error}{place}: allow more, or make the input simpler there");
             ("BudgetExceededError", message)
         }
         Error::Shape(message) => ("ShapeError", message.clone()),
@@ -111,4 +119,21 @@ fn crossing(pairs: &[[u32; 2]], points: &[Point2]) -> String {
         _ => format!("{count} pairs of segments cross, first {s} and {t} at ({x}, {y})"),
     };
     format!("{what}; crossing=\"split\" makes crossings vertices")
+}
+
+/// Names the segments that take most of the vertices that are too many.
+fn crowded(crowd: &Crowd) -> String {
+    let names: Vec<String> = crowd.segments.iter().map(u32::to_string).collect();
+    let (names, count) = (names.join(", "), names.len());
+    let segments = if count == 1 { "segment" } else { "segments" };
+    match (count, crowd.place, crowd.corner) {
+        (0, ..) => String::new(),
+        (_, Some([x, y]), true) => {
+            format!("; most are on {segments} {names}, the first two of which meet at ({x}, {y})")
+        }
+        (_, Some([x, y]), false) => {
+            format!("; most are on {segments} {names}, the last one at ({x}, {y})")
+        }
+        (_, None, _) => format!("; most are on {segments} {names}"),
+    }
 }

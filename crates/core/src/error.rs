@@ -71,6 +71,8 @@ pub enum Error {
         limit: usize,
         /// How many when it was passed.
         found: usize,
+        /// Where most of them are.
+        crowd: Crowd,
     },
     /// An array that does not fit its role, in words that name the row.
     #[error("{0}")]
@@ -87,6 +89,17 @@ pub enum Error {
     /// A promise of the core that did not hold: always a bug.
     #[error("{0}")]
     Internal(String),
+}
+
+/// The segments that take most of the vertices that are too many.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Crowd {
+    /// Their rows, those with the most first.
+    pub segments: Vec<u32>,
+    /// The point where the first two of them meet, or where the last vertex was to be.
+    pub place: Option<Point2>,
+    /// Whether the place is where they meet.
+    pub corner: bool,
 }
 
 /// A number with the words that go with it.

@@ -6,6 +6,7 @@
 
 mod components;
 pub(crate) mod conforming;
+mod crowd;
 mod edges;
 pub mod intersection;
 mod laid;
@@ -33,7 +34,7 @@ use self::segment::{Cavity, Step};
 use self::split::Splitter;
 use crate::arrays::Arrays;
 use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
-use crate::error::{Error, Result};
+use crate::error::{Crowd, Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh2::export;
 use crate::watch::Watch;
@@ -240,9 +241,16 @@ impl<'a> Work<'a> {
                 what: "pairs of crossing segments",
                 limit,
                 found: pairs.len(),
+                crowd: self.crowd_of(&pairs, input),
             });
         }
         self.meetings(input, pairs, watch)
+    }
+
+    /// The segments that cross most others.
+    fn crowd_of(&self, pairs: &[[u32; 2]], input: &[Point2]) -> Crowd {
+        let rows = pairs.as_flattened().to_vec();
+        crowd::crowd(rows, self.segments, |row| input[row as usize], None)
     }
 
     /// Where `pairs` cross, but for those that do in a point of the input.
@@ -312,6 +320,7 @@ impl<'a> Work<'a> {
                 what: "added vertices",
                 limit: self.options.max_vertices,
                 found: behind.len(),
+                crowd: self.crowd_of(&found.pairs, input),
             });
         }
         self.met = behind.iter().map(|&row| all[row as usize]).collect();

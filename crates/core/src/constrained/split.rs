@@ -24,6 +24,7 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point2, lexicographic, orient2d};
 
+use super::crowd::crowd;
 use super::intersection::intersection;
 use super::laid::Laid;
 use super::marked::Marked;
@@ -212,10 +213,13 @@ impl<'a> Splitter<'a> {
         let (w, parted) = self.marked.vertex_at(x, e)?;
         let found = self.marked.count - self.own;
         if found > self.limit {
+            let rows = self.all_pieces().into_iter().map(|piece| piece.1).collect();
+            let at = |v| self.marked.at(v);
             return Err(Error::Budget {
                 what: "added vertices",
                 limit: self.limit,
                 found,
+                crowd: crowd(rows, self.given, at, Some(x)),
             });
         }
         if let Some([p, q]) = parted {
