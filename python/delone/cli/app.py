@@ -175,6 +175,14 @@ def triangulate(
     ] = None,
     crs: Crs = None,
     planar: Planar = False,
+    max_passes: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            metavar="N",
+            help="The most passes that --improve makes over the tetrahedra; 30 by default.",
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -186,6 +194,8 @@ def triangulate(
     if min_angle is not None and not better:
         raise Failure("--min-angle is the goal of --improve: give that, too", Exit.USAGE)
     require_known(crs)
+    if max_passes is not None and not better:
+        raise Failure("--max-passes is the limit of --improve: give that, too", Exit.USAGE)
     with writing():
         spare_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
@@ -221,9 +231,8 @@ def triangulate(
         if better:
             if not (solid and isinstance(mesh, Delaunay)):
                 raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
-            say("improving")
             with watch.stage("improve"):
-                tetrahedra = improved(mesh, writers, 20.0 if min_angle is None else min_angle)
+                tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_passes)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         _write(writers, written, {"z": z, "crs": survey.crs, "edges": edges}, watch, say)
         say("reporting")

@@ -19,7 +19,7 @@ from delone.errors import FileFormatError
 from delone.io import PointSet, read_mesh
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -40,6 +40,9 @@ __all__ = [
 ]
 
 _FIRST_DUPLICATES = 5
+# The goal of an improvement, in degrees, and its most passes, where the command line has none.
+_GOAL = 20.0
+_PASSES = 30
 # What holds a Delaunay triangulation of space, but no other tetrahedra.
 _DELAUNAY_ONLY = (".npz",)
 
@@ -105,7 +108,14 @@ def triangulated_space(survey: PointSet, **options: Any) -> Delaunay:
     return Delaunay(np.column_stack((survey.points, survey.z)), **options)
 
 
-def improved(mesh: Delaunay, outputs: Iterable[Path], min_angle: float) -> TetMesh:
+def improved(
+    mesh: Delaunay,
+    outputs: Iterable[Path],
+    say: Callable[[str], object],
+    *,
+    min_angle: float | None,
+    passes: int | None,
+) -> TetMesh:
     """Make tetrahedra better before they are written.
 
     Parameters
@@ -114,8 +124,12 @@ def improved(mesh: Delaunay, outputs: Iterable[Path], min_angle: float) -> TetMe
         In space.
     outputs : iterable of Path
         The files to be written.
-    min_angle : float
+    say : callable
+        Called with what is going on.
+    min_angle : float or None
         The goal for dihedral angles, in degrees.
+    passes : int or None
+        The most passes.
 
     Returns
     -------
@@ -130,7 +144,14 @@ def improved(mesh: Delaunay, outputs: Iterable[Path], min_angle: float) -> TetMe
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
             raise Failure(f"{path}: --improve writes .vtu, .msh and .png files", Exit.USAGE)
-    return improve(mesh, min_angle=min_angle)
+    most = _PASSES if passes is None else passes
+    say("improving")
+
+    def told(number: int, below: int) -> None:
+        say(f"improving: {counted(below, 'tetrahedron')} below the goal after pass {number}")
+
+    goal = _GOAL if min_angle is None else min_angle
+    return improve(mesh, min_angle=goal, max_passes=most, progress=told)
 
 
 def improvement_figures(report: ImproveReport) -> dict[str, Any]:
@@ -156,6 +177,7 @@ def improvement_figures(report: ImproveReport) -> dict[str, Any]:
         "face_removals": report.face_removals,
         "moves": report.moves,
         "passes": report.passes,
+        "exhausted": report.exhausted,
     }
 
 
@@ -181,7 +203,15 @@ def improvement_rows(figures: dict[str, Any]) -> list[Row]:
         ("edges removed", f"{figures['edge_removals']:,}"),
         ("faces removed", f"{figures['face_removals']:,}"),
         ("vertices moved", f"{figures['moves']:,} times in {counted(figures['passes'], 'pass')}"),
+        *_ended(figures),
     ]
+
+
+def _ended(figures: dict[str, Any]) -> list[Row]:
+    """Say that the limit on passes ended an improvement that was still gaining."""
+    if not figures["exhausted"]:
+        return []
+    return [("ended by", f"--max-passes {figures['passes']}: more passes may gain more")]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:

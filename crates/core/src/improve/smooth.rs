@@ -167,11 +167,13 @@ impl Star {
     }
 
     /// The worst quality with the vertex at `x`; of no use below `above`.
-    fn worst(&self, x: Point3, above: f64) -> f64 {
+    fn worst(&mut self, x: Point3, above: f64) -> f64 {
         let mut worst = f64::INFINITY;
-        for cone in &self.cones {
-            worst = worst.min(cone.quality(x));
+        for i in 0..self.cones.len() {
+            worst = worst.min(self.cones[i].quality(x));
             if worst <= above {
+                // What stopped this step is likely to stop the next one.
+                self.cones.swap(0, i);
                 break;
             }
         }
