@@ -92,6 +92,26 @@ def test_coarsening_keeps_what_is_promised(mesh: delone.Mesh) -> None:
     assert mesh.coarsen([]) is mesh
 
 
+def star(spikes: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """A star with inner corners at random distances from its center."""
+    n = 2 * spikes
+    angle = np.arange(n) * (2 * np.pi / n)
+    inner = 0.35 + 0.5 * np.random.default_rng(seed).random(n)
+    radius = np.where(np.arange(n) % 2 == 0, 1.0, inner)
+    points = np.column_stack((radius * np.cos(angle), radius * np.sin(angle)))
+    return points, np.column_stack((np.arange(n), (np.arange(n) + 1) % n))
+
+
+@pytest.mark.parametrize(("spikes", "seed"), [(9, 51), (5, 56), (7, 57), (5, 58), (7, 58), (7, 59)])
+def test_coarsening_keeps_the_bound_at_corners_above_it(spikes: int, seed: int) -> None:
+    """Such corners are sharp enough for the core to leave a smaller angle at them."""
+    fine = delone.mesh(star(spikes, seed), min_angle=28, max_area=0.01)
+    assert fine.report
+    coarse = fine.coarsen()
+    assert coarse.npoints < fine.npoints
+    assert coarse.report
+
+
 @pytest.mark.parametrize("method", ["lloyd", "odt", "laplace"])
 def test_smoothing_keeps_what_is_promised(mesh: delone.Mesh, method: str) -> None:
     better = mesh.smooth(4, method)

@@ -114,9 +114,12 @@ def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
         # Where an angle has become too small, points come back, at other places or fewer.
         most = int(np.count_nonzero(gone))
         again, more = domains.refined(domain, caps, bound, most)
-        lost = worse(mesh, domain, kept)
-        if not more.exhausted and more.total < most:
+        # At corners that are sharper than 60 degrees the core may leave angles below the bound that
+        # there were none before.
+        spoiled = worse(mesh, again, np.append(kept, np.full(more.total, -1)))
+        if not more.exhausted and more.total < most and not len(spoiled):
             return type(mesh)._of(again, counts, bound, mesh.stages, mesh._workers)
+        lost = worse(mesh, domain, kept)
         if not len(lost):
             return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
         gone &= ~_beside(mesh, kept[lost], gone)

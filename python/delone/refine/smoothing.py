@@ -198,7 +198,7 @@ def worse(mesh: Mesh, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.in
     domain : Domain
         What has become of it.
     number : ndarray of int, shape (k,)
-        The point of the mesh that each point of the domain was.
+        The point of the mesh that each point of the domain was; -1 where it is a new one.
 
     Returns
     -------
@@ -210,6 +210,7 @@ def worse(mesh: Mesh, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.in
     new = np.sort(number[inside[rows]], axis=1)
     old = np.sort(mesh.simplices[mesh._below], axis=1).astype(np.int64)
     n = mesh.npoints
-    same = np.isin((new[:, 0] * n + new[:, 1]) * n + new[:, 2],
+    # A triangle with a new point, which comes first now, is none of the old ones.
+    same = (new[:, 0] >= 0) & np.isin((new[:, 0] * n + new[:, 1]) * n + new[:, 2],
                    (old[:, 0] * n + old[:, 1]) * n + old[:, 2])  # fmt: skip
     return np.unique(inside[rows[~same]]).astype(np.intp)
