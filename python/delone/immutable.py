@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Immutable", "kept", "own_copy", "sealed"]
+__all__ = ["Immutable", "ReadOnly", "kept", "own_copy", "sealed"]
 
 
 class Immutable:
@@ -49,6 +49,29 @@ class Immutable:
 
     def __delattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} cannot be changed: {name}")
+
+
+class ReadOnly:
+    """The base of frozen dataclasses whose arrays cannot be written to, nor those of a pickle."""
+
+    def __post_init__(self) -> None:
+        self._protect()
+
+    def _protect(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # NumPy does not pickle whether an array may be written to.
+        vars(self).update(state)
+        self._protect()
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self
 
 
 T = TypeVar("T")

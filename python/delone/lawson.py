@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from delone import _core
 from delone._arrays import as_flag, as_points, as_simplices
 from delone.counting import counted
 from delone.errors import LimitError
+from delone.immutable import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -35,7 +36,7 @@ _MOST_ANGLES = 2**24
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LawsonResult:
+class LawsonResult(ReadOnly):
     """A triangulation made Delaunay, and the flips that it took. The arrays are read-only.
 
     Parameters
@@ -144,19 +145,14 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
     flipped, neighbors, flips, sequence = _core.lawson2(
         points, simplices, as_flag(record, name="record")
     )
-    angles = None if sequence is None else _sealed(_angles(points, simplices, sequence))
+    angles = None if sequence is None else _angles(points, simplices, sequence)
     return LawsonResult(
-        simplices=_sealed(flipped),
-        neighbors=_sealed(neighbors),
+        simplices=flipped,
+        neighbors=neighbors,
         flips=flips,
-        sequence=None if sequence is None else _sealed(sequence),
+        sequence=sequence,
         angles=angles,
     )
-
-
-def _sealed(array: NDArray[Any]) -> NDArray[Any]:
-    array.flags.writeable = False
-    return array
 
 
 def _angles(points: Floats, simplices: Indices, sequence: Indices) -> Floats:

@@ -14,6 +14,7 @@ import numpy as np
 from delone import _core
 from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
 from delone.errors import InternalError
+from delone.immutable import ReadOnly
 from delone.plane import topology
 from delone.space import topology as space
 
@@ -57,7 +58,7 @@ def _no_pairs() -> NDArray[np.int64]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ValidationReport:
+class ValidationReport(ReadOnly):
     """The answer of ``validate()``: truthy when the triangulation is right.
 
     Every field is an array of culprits and empty when there is none.
@@ -120,8 +121,8 @@ class ValidationReport:
             array = np.array(getattr(self, each.name), dtype=np.int64)
             if each.name == "count":
                 array = array.reshape(-1)  # the core gives a table of one row
-            array.flags.writeable = False
             object.__setattr__(self, each.name, array)
+        super().__post_init__()
 
     @classmethod
     def from_culprits(cls, culprits: Mapping[str, NDArray[np.integer]]) -> Self:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import ConvexHull, improve
+from delone import ConvexHull, Delaunay, improve
 from delone.errors import DtypeError, InputError
 from delone.space.quality import dihedral_angles, measured
 
@@ -105,3 +105,16 @@ def test_what_has_no_tetrahedra_is_refused() -> None:
     hull = ConvexHull(np.random.default_rng(0).random((20, 3)))
     with pytest.raises(DtypeError, match="ConvexHull"):
         improve(hull)
+
+
+def test_a_summary_with_ratios_beyond_the_range_has_no_nan() -> None:
+    """One edge is so short that the ratio of a tetrahedron overflows; others are plain."""
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1e-320), (1, 1, 1), (2, 3, 5)]
+    quality = Delaunay(points).quality()
+    assert np.isinf(quality.edge_ratio).any()
+    assert np.isfinite(quality.edge_ratio).any()
+    summary = quality.summary()
+    for measure in summary.values():
+        assert not any(np.isnan(value) for value in measure.values())
+    assert summary["edge_ratio"]["max"] == summary["edge_ratio"]["p99"] == np.inf
+    assert "nan" not in str(quality)

@@ -51,9 +51,9 @@ PYTHON: dict[str, set[str]] = {
     "space": {"immutable", "_core", "location", "plane", "plot", "predicates", "scene"}
     | FOUNDATION,
     "hull": {"immutable", "_core", "delaunay", "plane", "predicates", "space"} | FOUNDATION,
-    "validation": {"_core", "plane", "space"} | FOUNDATION,
+    "validation": {"immutable", "_core", "plane", "space"} | FOUNDATION,
     "predicates": {"_core"} | FOUNDATION,
-    "lawson": {"_core"} | FOUNDATION,
+    "lawson": {"immutable", "_core"} | FOUNDATION,
     "atomic": set(),
     "archive": {"_core", "_arrays", "atomic", "plane", "space", "errors"},
     "location": {"_core"} | FOUNDATION,

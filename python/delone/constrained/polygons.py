@@ -205,6 +205,10 @@ class PolygonTriangles(NamedTuple):
     points: Floats
     simplices: Indices
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # NumPy does not pickle whether an array may be written to.
+        return _read_only, (self.points, self.simplices)
+
     def to_geopandas(self, *, crs: Any = None) -> Any:
         """Return the triangles as a table of polygons (extra ``geo``).
 
@@ -285,6 +289,10 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
     added, simplices = _core.polygon2(points, starts, nonzero)
     if len(added):
         points = np.concatenate((points, added))
+    return _read_only(points, simplices)
+
+
+def _read_only(points: Floats, simplices: Indices) -> PolygonTriangles:
     points.flags.writeable = False
     simplices.flags.writeable = False
     return PolygonTriangles(points, simplices)

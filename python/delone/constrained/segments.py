@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone.immutable import ReadOnly
 from delone.plane.topology import among
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def _no_triples() -> Indices:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SegmentReport:
+class SegmentReport(ReadOnly):
     """What the input of a constrained triangulation held besides plain segments.
 
     Truthy when there is nothing to report: each row of `segments` is one subsegment, no two
@@ -106,8 +107,8 @@ class SegmentReport:
     def __post_init__(self) -> None:
         for each in fields(self):
             array = np.array(getattr(self, each.name), dtype=np.int32)
-            array.flags.writeable = False
             object.__setattr__(self, each.name, array)
+        super().__post_init__()
 
     @property
     def ok(self) -> bool:

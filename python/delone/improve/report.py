@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.counting import counted
+from delone.immutable import ReadOnly
 from delone.space import quality
 from delone.space.quality import EDGES
 
@@ -26,7 +27,7 @@ _BAR = 40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ImproveReport:
+class ImproveReport(ReadOnly):
     """What an improvement did; truthy when no dihedral angle is below the goal.
 
     Parameters
@@ -93,10 +94,6 @@ class ImproveReport:
     exhausted: bool
     below: NDArray[np.int64]
     cause: NDArray[np.str_]
-
-    def __post_init__(self) -> None:
-        for array in (self.bounds, self.before, self.after, self.below, self.cause, self.weights):
-            array.flags.writeable = False
 
     @property
     def ok(self) -> bool:

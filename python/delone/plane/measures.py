@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from delone.counting import counted
+from delone.immutable import ReadOnly
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 __all__ = ["Measures"]
 
@@ -25,14 +29,10 @@ _COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measures:
+class Measures(ReadOnly):
     """Measures of simplices: each field is an array with one entry for each, read-only."""
 
     _noun: ClassVar[str]
-
-    def __post_init__(self) -> None:
-        for each in fields(self):
-            getattr(self, each.name).flags.writeable = False
 
     def summary(self) -> dict[str, dict[str, float]]:
         """Return least, greatest and mean values and percentiles.
@@ -56,10 +56,13 @@ class Measures:
         found = {}
         for each in fields(self):
             values = getattr(self, each.name)
-            at = np.percentile(values, _PERCENTILES).tolist()
+            at = _percentiles(values).tolist()
             named = {f"p{p}": value for p, value in zip(_PERCENTILES, at, strict=True)}
             ends = {"min": float(values.min()), "max": float(values.max())}
-            found[each.name] = ends | {"mean": float(values.mean())} | named
+            # A sum beyond the range of doubles is infinite.
+            with np.errstate(over="ignore"):
+                mean = float(values.mean())
+            found[each.name] = ends | {"mean": mean} | named
         return found
 
     def __str__(self) -> str:
@@ -69,3 +72,11 @@ class Measures:
             lines.append((measure.replace("_", " "), *(f"{values[key]:.3g}" for key in _COLUMNS)))
         rows = (f"{line[0]:<18}" + "".join(f"{cell:>9}" for cell in line[1:]) for line in lines)
         return "\n".join(rows)
+
+
+def _percentiles(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return percentiles, linear between two values, of which the greater may be infinite."""
+    with np.errstate(invalid="ignore"):
+        found = np.percentile(values, _PERCENTILES)
+    # Between infinity and something else NumPy finds NaN.
+    return np.where(np.isnan(found), np.percentile(values, _PERCENTILES, method="higher"), found)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core, predicates
+from delone.immutable import ReadOnly
 from delone.plane import topology
 from delone.space.topology import FACES
 
@@ -32,7 +33,7 @@ _PROJECTIONS = ((2, (0, 1)), (1, (2, 0)), (0, (1, 2)))
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneTriangulation:
+class PlaneTriangulation(ReadOnly):
     """The Delaunay triangulation of points of one plane in space; the regular one, with weights.
 
     Parameters
@@ -65,11 +66,6 @@ class PlaneTriangulation:
     neighbors: Indices
     duplicates: Indices
     weights: Floats | None = None
-
-    def __post_init__(self) -> None:
-        for array in (self.points, self.simplices, self.neighbors, self.duplicates, self.weights):
-            if array is not None:
-                array.flags.writeable = False
 
     @cached_property
     def convex_hull(self) -> Indices:

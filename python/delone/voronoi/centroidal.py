@@ -22,6 +22,7 @@ import numpy as np
 
 from delone._arrays import as_choice, as_count, as_number
 from delone.errors import DtypeError, InputError
+from delone.immutable import ReadOnly
 from delone.voronoi import outline
 from delone.voronoi.diagram import Voronoi
 
@@ -56,7 +57,7 @@ _MEMORY, _TRIES, _FALL, _ROUNDING = 7, 4, 1e-4, 1e-14
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LloydResult:
+class LloydResult(ReadOnly):
     """What `lloyd` came to.
 
     Parameters
