@@ -35,6 +35,7 @@ __all__ = [
     "improve3",
     "incircle",
     "insphere",
+    "judge2",
     "lawson2",
     "measures2",
     "measures3",
@@ -287,6 +288,9 @@ def refine2(
     circles: bool = False,
     progress: Callable[[int, float], object] | None = None,
 ) -> dict[str, Any]: ...
+def judge2(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
 def improve3(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

@@ -3,12 +3,12 @@
 use std::time::{Duration, Instant};
 
 use delone_core::error::{Error, Result};
-use delone_core::refine::{Lines, Refined, Task, refine_telling};
+use delone_core::refine::{Lines, Refined, Task, judge, refine_telling};
 use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, rows, table};
+use crate::arrays::{column, in_range, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::pairs;
 use crate::signals::watched;
@@ -136,4 +136,26 @@ fn dictionary(py: Python<'_>, made: Refined) -> PyResult<Bound<'_, PyDict>> {
     out.set_item("counts", (counts.segment, counts.angle, counts.size))?;
     out.set_item("exhausted", made.exhausted)?;
     Ok(out)
+}
+
+/// The triangles with an angle below a bound, given by its squared cosine; those among which the
+/// smallest and the largest angles are; and those that are beyond the range of doubles.
+#[pyfunction]
+pub fn judge2<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    cos2: f64,
+) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+    let given = || -> Result<_> {
+        let all = rows(&points, "points")?;
+        let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;
+        in_range(simplices, 0, all.len(), "simplices")?;
+        Ok((all, simplices))
+    };
+    let (points, simplices) = given().map_err(|e| raise(py, &e))?;
+    let found = watched(py, |watch| judge(points, simplices, cos2, watch))?;
+    let all = [found.below, found.extremes, found.beyond];
+    let [below, extremes, beyond] = all.map(|triangles| numbers(py, triangles));
+    Ok((below, extremes, beyond))
 }

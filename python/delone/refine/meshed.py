@@ -337,7 +337,7 @@ class Mesh(HandedOver, Triangulation):
     @kept
     def _below(self) -> NDArray[np.int64]:
         """Triangles below the bound."""
-        return sealed(quality.below(self._points, self._simplices, float(self._bound[0])))
+        return self.report.below
 
     def refine(
         self,

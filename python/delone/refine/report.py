@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core
 from delone.counting import counted
+from delone.immutable import ReadOnly
 from delone.plane import quality
 
 if TYPE_CHECKING:
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["CAUSES", "MeshReport", "reported"]
+__all__ = ["CAUSES", "MeshReport", "judged", "reported"]
 
 CAUSES = ("corner", "frozen", "budget", "other")
 _CORNER, _FROZEN, _BUDGET, _OTHER = range(4)
@@ -36,7 +38,7 @@ _SHOWN = 5
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshReport:
+class MeshReport(ReadOnly):
     """What a mesh has become; truthy when it is as good as it was to be.
 
     Parameters
@@ -85,10 +87,6 @@ class MeshReport:
     for_angles: int
     for_sizes: int
     exhausted: bool
-
-    def __post_init__(self) -> None:
-        for array in (self.below, self.corner, self.cause):
-            array.flags.writeable = False
 
     @property
     def ok(self) -> bool:
@@ -169,16 +167,15 @@ def reported(
     MeshReport
         The judgement.
     """
-    measures = quality.measured(points, simplices)
-    rows = quality.below(points, simplices, min_angle)
+    rows, angles = judged(points, simplices, min_angle)
     corner = _responsible(points, simplices[rows], sides[rows], on, lines)
     # What may not be split keeps vertices away also from triangles that do not touch it.
     rest = _BUDGET if counts[3] else _FROZEN if lines.frozen.any() else _OTHER
     cause = np.where(corner >= 0, _CORNER, rest)
     return MeshReport(
         min_angle=min_angle,
-        smallest_angle=float(measures.smallest_angle.min(initial=180.0)),
-        largest_angle=float(measures.largest_angle.max(initial=0.0)),
+        smallest_angle=angles[0],
+        largest_angle=angles[1],
         below=rows,
         corner=corner,
         cause=np.array(CAUSES)[cause],
@@ -187,6 +184,50 @@ def reported(
         for_sizes=int(counts[2]),
         exhausted=bool(counts[3]),
     )
+
+
+def judged(
+    points: Floats, simplices: Indices, min_angle: float
+) -> tuple[NDArray[np.int64], tuple[float, float]]:
+    """Return the triangles below a bound, and the smallest and the largest angle.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices : ndarray of int32, shape (m, 3)
+        Triangles.
+    min_angle : float
+        The bound in degrees.
+
+    Returns
+    -------
+    below : ndarray of int64, shape (k,)
+        Triangles with a smaller angle, judged exactly, ascending.
+    angles : tuple of float
+        The smallest and the largest angle, in degrees; 180 and 0 where there is no triangle.
+
+    Notes
+    -----
+    One pass of the core, in linear time: it measures none but the few triangles that may have the
+    extreme angles, and leaves those whose squares leave the range of doubles to `quality`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.refine.report import judged
+    >>> judged(np.array([(0.0, 0), (1, 0), (0, 1)]), np.array([(0, 1, 2)], dtype=np.int32), 46)
+    (array([0]), (45.0, 90.0))
+    """
+    cosine = quality.squared_cosine(min_angle)
+    below, extremes, beyond = _core.judge2(points, simplices, cosine)
+    rows = below.astype(np.int64)
+    if len(beyond):
+        more = beyond[quality.below(points, simplices[beyond], min_angle)]
+        rows = np.union1d(rows, more.astype(np.int64))
+    measures = quality.measured(points, simplices[np.concatenate((extremes, beyond))])
+    smallest = float(measures.smallest_angle.min(initial=180.0))
+    return rows, (smallest, float(measures.largest_angle.max(initial=0.0)))
 
 
 def _responsible(

@@ -13,6 +13,7 @@
 
 mod corners;
 mod insert;
+mod judge;
 mod place;
 mod queue;
 mod shape;
@@ -22,6 +23,7 @@ mod work;
 
 use delone_predicates::Point2;
 
+pub use self::judge::{Judged, judge};
 pub use self::task::{Counts, Lines, Refined, Task, Tell};
 use self::work::Work;
 use crate::constrained::marked::Marked;
