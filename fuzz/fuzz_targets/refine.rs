@@ -117,6 +117,7 @@ fn meshed(input: &Input, points: &[Point2], base: &Constrained, lines: &[[u32; 2
         frozen: &vec![input.frozen; lines.len()],
         min_angle: input.degrees,
         circles: input.circles,
+        sizes_yield: false,
         max_vertices: MOST_ADDED,
     };
     refine(task, &Watch::idle()).expect("a mesh")

@@ -286,6 +286,7 @@ def refine2(
     max_vertices: int,
     lines: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]] | None = None,
     circles: bool = False,
+    sizes_yield: bool = False,
     progress: Callable[[int, float], object] | None = None,
 ) -> dict[str, Any]: ...
 def judge2(

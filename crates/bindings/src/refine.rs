@@ -44,7 +44,7 @@ const BETWEEN: Duration = Duration::from_millis(100);
 /// smallest angle now.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, areas, segments, frozen, min_angle, max_vertices,
-                    lines=None, circles=false, progress=None))]
+                    lines=None, circles=false, sizes_yield=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "one array each")]
 pub fn refine2<'py>(
     py: Python<'py>,
@@ -58,6 +58,7 @@ pub fn refine2<'py>(
     max_vertices: usize,
     lines: Option<Given<'py>>,
     circles: bool,
+    sizes_yield: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = || -> Result<_> {
@@ -95,6 +96,7 @@ pub fn refine2<'py>(
             frozen: each(&frozen, count, "frozen")?,
             min_angle,
             circles,
+            sizes_yield,
             max_vertices,
         })
     };

@@ -70,6 +70,7 @@ fn main() {
             frozen: &frozen,
             min_angle: degrees,
             circles: false,
+            sizes_yield: false,
             max_vertices: 20_000_000,
         };
         let made = refine(task, &Watch::idle()).expect("a mesh");

@@ -72,6 +72,7 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
         frozen: &frozen,
         min_angle,
         circles: false,
+        sizes_yield: false,
         max_vertices: 200_000,
     };
     let mut made = refine(task, &Watch::idle()).unwrap();

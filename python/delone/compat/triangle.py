@@ -8,13 +8,14 @@ ones follow; the order of triangles and the places of added vertices are delone'
 from __future__ import annotations
 
 import re
+import warnings
 from collections import abc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone._arrays import as_points, as_segments
-from delone.compat.triangle_input import again, interpolated, rows_of
+from delone.compat.triangle_input import again, interpolated, not_reached, rows_of
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
@@ -87,7 +88,8 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
         - ``D``: every triangle is Delaunay, also across segments;
         - ``r``: the triangles that are given are refined, together with ``q`` or ``a``;
         - ``S``: add at most so many vertices;
-        - ``Y``: add none on the boundary; ``YY`` none on any segment;
+        - ``Y``: add none on the boundary; ``YY`` none on any segment. Triangles there may keep
+          small angles and large areas: a warning says how many;
         - ``e``: return ``edges`` and ``edge_markers``; ``n``: return ``neighbors``;
         - ``j``: leave vertices out that no triangle has.
 
@@ -109,10 +111,17 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
     ShapeError, DtypeError, NonFiniteError, DegenerateInputError, BudgetExceededError
         As for `delone.mesh`.
 
+    Warns
+    -----
+    UserWarning
+        ``Y`` has kept segments whole at the price of angles or areas. The message says how many
+        triangles miss what was asked for.
+
     Notes
     -----
-    Segments that cross get a vertex there, as in Triangle. Where Triangle would end the process on
-    bad input, an exception is raised.
+    Without ``q``, ``a`` and ``D`` no vertex is added, except where segments cross: each crossing
+    becomes one, as in Triangle. Where Triangle would end the process on bad input, an exception is
+    raised.
 
     Examples
     --------
@@ -142,6 +151,9 @@ into Triangle; give delone.mesh a size
         made, attributes, base = again(tri, points, switches)
     else:
         made, attributes, base = _meshed(tri, points, switches)
+    missed = not_reached(tri, made, base, switches)
+    if missed:
+        warnings.warn(missed, UserWarning, stacklevel=2)
     return _output(tri, points, switches, (made, attributes, base))
 
 
@@ -195,6 +207,7 @@ def _meshed(
         None,
         None,
         refuse=switches.steiner is None,
+        sizes_yield=True,
     )
     markers = tri.get("segment_markers") if planar else None, tri.get("vertex_markers")
     found = filled(

@@ -9,6 +9,7 @@ import numpy as np
 
 from delone import location
 from delone._arrays import as_segments, as_simplices
+from delone.counting import counted
 from delone.errors import InputError, ShapeError
 from delone.plane import topology
 from delone.refine import domains
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["again", "interpolated", "rows_of"]
+__all__ = ["again", "interpolated", "not_reached", "rows_of"]
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
@@ -107,7 +108,9 @@ def again(
     caps = _caps(tri, domain, index, switches)
     most = MOST_ADDED if switches.steiner is None else switches.steiner
     bound = as_min_angle(switches.angle)
-    made, counts = domains.refined(domain, caps, bound, most, circles="D" in switches.on)
+    made, counts = domains.refined(
+        domain, caps, bound, most, circles="D" in switches.on, sizes_yield=True
+    )
     found = Mesh._of(made, counts, bound, {}, None)
     attributes = None
     if tri.get("triangle_attributes") is not None:
@@ -176,11 +179,67 @@ def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches
     if switches.area is not None:
         caps[inside] = switches.area
     elif "a" in switches.on and tri.get("triangle_max_area") is not None:
-        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area")[:, 0]
+        count = len(tri["triangles"])
+        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area", count)[:, 0]
         centres = domain.points[domain.simplices[inside]].mean(axis=1)
         wanted = given[_homes(centres, index)]
         caps[inside] = np.where(wanted > 0, wanted, math.inf)
     return caps
+
+
+def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> str | None:
+    """Say what segments that were kept whole have cost.
+
+    Parameters
+    ----------
+    tri : mapping
+        What was given.
+    found : Mesh
+        What was made of it.
+    base : ConstrainedDelaunay or tuple
+        The triangles before points were added.
+    switches : Switches
+        What was wanted.
+
+    Returns
+    -------
+    str or None
+        How many triangles are larger than they may be or have too small an angle; None where there
+        are none, or no switch keeps segments whole.
+    """
+    if not switches.frozen:
+        return None
+    # Areas were compared after other roundings.
+    large = int(np.count_nonzero(found.areas > (1 + 1e-12) * _allowed(tri, found, base, switches)))
+    small = int(np.count_nonzero(found.report.cause == "frozen"))
+    missed = []
+    if large:
+        missed.append(f"{counted(large, 'triangle')} larger than asked for")
+    if small:
+        missed.append(
+            f"{counted(small, 'triangle')} with an angle below {switches.angle:g} degrees"
+        )
+    if not missed:
+        return None
+    return f"switch Y keeps segments whole and leaves {' and '.join(missed)}"
+
+
+def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> Floats | float:
+    """Return the largest area that each triangle of a mesh was to have."""
+    if switches.area is not None or "a" not in switches.on:
+        return math.inf if switches.area is None else switches.area
+    if isinstance(base, tuple):
+        if tri.get("triangle_max_area") is None:
+            return math.inf
+        given = rows_of(tri["triangle_max_area"], None, "triangle_max_area")[:, 0]
+        wanted = given[_homes(found.points[found.simplices].mean(axis=1), base[2])]
+    else:
+        areas = rows_of(tri.get("regions"), 4, "regions")[:, 3]
+        if not len(areas):
+            return math.inf
+        # The last row is for what has no seed, and the number -1.
+        wanted = np.append(areas, 0.0)[found.region]
+    return np.where(wanted > 0, wanted, math.inf)
 
 
 def _homes(places: Floats, index: Any) -> Indices:

@@ -191,6 +191,7 @@ def refined(
     max_points: int,
     *,
     circles: bool = False,
+    sizes_yield: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Domain, Counts]:
     """Let the core refine a domain.
@@ -207,6 +208,9 @@ def refined(
         How many points may be added.
     circles : bool, optional
         Whether the circles over subsegments are emptied, so that all triangles are Delaunay.
+    sizes_yield : bool, optional
+        Whether triangles stay too large where only points close to a frozen line would make them
+        smaller.
     progress : callable, optional
         Called now and then with the number of points added and the smallest angle.
 
@@ -230,6 +234,7 @@ def refined(
         max_points,
         (line, lines.ends, domain.on),
         circles,
+        sizes_yield,
         progress,
     )
     added, on = made["added"], made["on"]

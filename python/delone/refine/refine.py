@@ -54,6 +54,8 @@ class Limits(NamedTuple):
     workers: int | None
     # Whether sizes that need more points are an error before the work starts.
     refuse: bool = True
+    # Whether sizes yield to lines that may not be split.
+    sizes_yield: bool = False
 
 
 def mesh(
@@ -310,6 +312,7 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
             limits.min_angle,
             limits.max_points - before,
             circles=limits.circles,
+            sizes_yield=limits.sizes_yield,
             progress=None if tell is None else _after(before, tell),
         )
         counts = counts.plus(more)

@@ -42,6 +42,9 @@ pub struct Task<'a> {
     /// Whether the circles over subsegments are emptied, not only lenses: then all triangles are
     /// Delaunay, also across segments.
     pub circles: bool,
+    /// Whether a triangle may stay too large where only a vertex beside a frozen line would make it
+    /// smaller; otherwise that vertex is inserted, however thin the triangles there become.
+    pub sizes_yield: bool,
     /// Most vertices that may be added.
     pub max_vertices: usize,
 }

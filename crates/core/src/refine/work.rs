@@ -410,7 +410,7 @@ impl<'a> Work<'a> {
         match self.dig(t, p) {
             Dug::Free => self.insert(p, reason),
             Dug::Walled(walls) => {
-                if self.yield_to(t, &walls)? || seen.area2 <= cap {
+                if self.yield_to(t, &walls)? || seen.area2 <= cap || self.task.sizes_yield {
                     return Ok(());
                 }
                 // No wall gives way: a size is kept all the same.
