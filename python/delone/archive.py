@@ -268,13 +268,15 @@ def _check_sound(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> None:
     """Check that neighbors are mutual and simplices positively oriented; their range is known."""
-    check = _core.fault2 if points.shape[1] == 2 else _core.fault3
+    flat = points.shape[1] == 2
+    check = _core.fault2 if flat else _core.fault3
     fault = check(points, simplices, neighbors, as_workers(None))
     if fault is None:
         return
     kind, row = fault
-    wrong = {"neighbors": "has no mutual neighbors", "orientation": "is not positively oriented"}
-    raise _ContradictionError(f"simplex {row} {wrong[kind]}")
+    turn = "is not counter-clockwise" if flat else "is not positively oriented"
+    wrong = "has neighbors that are not mutual" if kind == "neighbors" else turn
+    raise _ContradictionError(f"{'triangle' if flat else 'tetrahedron'} {row} {wrong}")
 
 
 def _check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
