@@ -134,6 +134,7 @@ fn dictionary(py: Python<'_>, made: Refined) -> PyResult<Bound<'_, PyDict>> {
     out.set_item("neighbors", table(py, made.neighbors)?)?;
     out.set_item("sides", table(py, made.sides)?)?;
     out.set_item("labels", column(py, made.labels))?;
+    out.set_item("needles", column(py, made.needles))?;
     let counts = made.counts;
     out.set_item("counts", (counts.segment, counts.angle, counts.size))?;
     out.set_item("exhausted", made.exhausted)?;

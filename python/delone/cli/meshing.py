@@ -148,6 +148,7 @@ def _figures(found: Mesh) -> dict[str, Any]:
         "largest_angle": report.largest_angle,
         "below": len(report.below),
         "corners": {"count": len(corners), "first": found.points[corners[:_FIRST]].tolist()},
+        "needles": {"count": len(report.needles), "first": report.needles[:_FIRST].tolist()},
         "on_segments": report.on_segments,
         "for_angles": report.for_angles,
         "for_sizes": report.for_sizes,

@@ -33,6 +33,7 @@ __all__ = [
     "Counts",
     "Domain",
     "Lines",
+    "needles_in",
     "of_constrained",
     "refined",
     "sides_at",
@@ -222,21 +223,7 @@ def refined(
         The points added.
     """
     lines = domain.lines
-    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
-    made = _core.refine2(
-        domain.points,
-        domain.simplices,
-        domain.labels,
-        np.ascontiguousarray(caps, dtype=np.float64),
-        segments,
-        lines.frozen,
-        min_angle,
-        max_points,
-        (line, lines.ends, domain.on),
-        circles,
-        sizes_yield,
-        progress,
-    )
+    made = _made(domain, caps, min_angle, max_points, circles, sizes_yield, progress)
     added, on = made["added"], made["on"]
     markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
     new = domain._replace(
@@ -251,6 +238,57 @@ def refined(
     )
     segment, angle, size = made["counts"]
     return new, Counts(segment, angle, size, exhausted=made["exhausted"])
+
+
+def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
+    """Find the needles of a domain that would be left as they are.
+
+    Parameters
+    ----------
+    domain : Domain
+        What has been refined.
+    min_angle : float
+        In degrees, below 60.
+
+    Returns
+    -------
+    simplices : ndarray of int32, shape (m, 3)
+        The triangles of the domain, perhaps in another order.
+    needle : ndarray of int32, shape (m,)
+        The number of the needle that each is in, or -1.
+    """
+    caps = np.full(len(domain.simplices), math.inf)
+    # Where no point may be added, nothing is done but to look for them.
+    made = _made(domain, caps, min_angle, 0, False, False, None)
+    return made["simplices"], made["needles"]
+
+
+def _made(
+    domain: Domain,
+    caps: Floats,
+    min_angle: float,
+    max_points: int,
+    circles: bool,
+    sizes_yield: bool,
+    progress: Progress | None,
+) -> dict[str, Any]:
+    lines = domain.lines
+    segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
+    made: dict[str, Any] = _core.refine2(
+        domain.points,
+        domain.simplices,
+        domain.labels,
+        np.ascontiguousarray(caps, dtype=np.float64),
+        segments,
+        lines.frozen,
+        min_angle,
+        max_points,
+        (line, lines.ends, domain.on),
+        circles,
+        sizes_yield,
+        progress,
+    )
+    return made
 
 
 def unit_of(points: Floats) -> float:

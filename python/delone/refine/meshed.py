@@ -323,7 +323,13 @@ class Mesh(HandedOver, Triangulation):
             self._lines,
             min_angle=float(self._bound[0]),
             counts=self._counts,
+            needles=self._needles,
         )
+
+    def _needles(self) -> Indices:
+        """Return the needle that each triangle is in, or -1."""
+        simplices, needle = domains.needles_in(self._domain(), float(self._bound[0]))
+        return needle[topology.rows_among(simplices, self._simplices)]
 
     @property
     @kept

@@ -2,7 +2,8 @@
 
 A triangle keeps a small angle where two lines of the input meet at one: between them, and next to
 the circles about the corner on which both are cut, which is what the rule of Miller, Pav and
-Walkington leaves alone. Lines that may not be split, and a limit on points, leave others.
+Walkington leaves alone. Needles between lines, which would take more points than the budget has for
+them, are left as they are. Lines that may not be split, and a limit on points, leave others.
 
 G. L. Miller, S. E. Pav and N. J. Walkington (2005), "When and why Delaunay refinement algorithms
 work", International Journal of Computational Geometry & Applications 15.
@@ -18,9 +19,11 @@ import numpy as np
 from delone import _core
 from delone.counting import counted
 from delone.immutable import ReadOnly
-from delone.plane import quality
+from delone.plane import geometry, quality
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from delone.refine.domains import Lines
@@ -30,11 +33,13 @@ if TYPE_CHECKING:
 
 __all__ = ["CAUSES", "MeshReport", "judged", "reported"]
 
-CAUSES = ("corner", "frozen", "budget", "other")
-_CORNER, _FROZEN, _BUDGET, _OTHER = range(4)
+CAUSES = ("corner", "needle", "frozen", "budget", "other")
+_CORNER, _NEEDLE, _FROZEN, _BUDGET, _OTHER = range(5)
 # Lengths from a corner are one if they differ by a smaller part, as in the core.
 _SAME_SHELL = 1e-3
 _SHOWN = 5
+# In degrees; needles are far thinner, unless they have been cut from outside.
+_THIN = 0.1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,9 +58,13 @@ class MeshReport(ReadOnly):
         For each of these the corner of the input that is responsible, a row of points; -1 where it
         is none.
     cause : ndarray of str, shape (k,)
-        For each of these ``"corner"``, ``"frozen"`` (a line that may not be split), ``"budget"``
-        (the limit on points) or ``"other"`` (lines that come too near to each other for doubles,
-        or points that were removed or moved later on).
+        For each of these ``"corner"``, ``"needle"`` (in one of `needles`, or beside it),
+        ``"frozen"`` (a line that may not be split), ``"budget"`` (the limit on points) or
+        ``"other"`` (lines that come too near to each other for doubles, or points that were removed
+        or moved later on).
+    needles : ndarray of float64, shape (q, 2)
+        A place in each needle that was left as it is, ascending: between lines so near to each
+        other, over such a length, that its angles would take more than their share of `max_points`.
     on_segments, for_angles, for_sizes : int
         How many points were added on segments, and inside for the sake of angles and sizes.
     exhausted : bool
@@ -83,6 +92,7 @@ class MeshReport(ReadOnly):
     below: NDArray[np.int64]
     corner: NDArray[np.int64]
     cause: NDArray[np.str_]
+    needles: Floats
     on_segments: int
     for_angles: int
     for_sizes: int
@@ -120,6 +130,13 @@ class MeshReport(ReadOnly):
             shown = ", ".join(map(str, corners[:_SHOWN].tolist()))
             more = ", ..." if len(corners) > _SHOWN else ""
             lines.append(f"{counted(len(corners), 'corner')} responsible: {shown}{more}")
+        if len(self.needles):
+            shown = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in self.needles[:_SHOWN].tolist())
+            more = ", ..." if len(self.needles) > _SHOWN else ""
+            noun = counted(len(self.needles), "needle")
+            lines.append(
+                f"{noun} left for the number of points that would be needed: {shown}{more}"
+            )
         if self.exhausted:
             lines.append("the limit on points ended the work")
         return "\n".join(lines)
@@ -127,6 +144,7 @@ class MeshReport(ReadOnly):
 
 _SENTENCES = {
     "corner": "at sharp corners",
+    "needle": "in needles or beside them",
     "frozen": "at frozen segments",
     "budget": "for want of points",
     "other": "for other reasons",
@@ -142,6 +160,7 @@ def reported(
     *,
     min_angle: float,
     counts: NDArray[np.int64],
+    needles: Callable[[], Indices],
 ) -> MeshReport:
     """Judge a mesh.
 
@@ -161,6 +180,9 @@ def reported(
         The bound in degrees.
     counts : ndarray of int64, shape (4,)
         Points added on segments, for angles, for sizes; whether the limit ended it.
+    needles : callable
+        Returns the number of the needle that each triangle is in, (m,), or -1. Called only where
+        there may be one.
 
     Returns
     -------
@@ -172,6 +194,15 @@ def reported(
     # What may not be split keeps vertices away also from triangles that do not touch it.
     rest = _BUDGET if counts[3] else _FROZEN if lines.frozen.any() else _OTHER
     cause = np.where(corner >= 0, _CORNER, rest)
+    places = np.empty((0, 2))
+    if (cause != _CORNER).any() or angles[0] < _THIN:
+        needle = needles()
+        inside = needle[rows] >= 0
+        beside = np.zeros(len(points), dtype=bool)
+        beside[simplices[needle >= 0]] = True
+        cause[beside[simplices[rows]].any(axis=1) & (cause != _CORNER)] = _NEEDLE
+        cause[inside], corner[inside] = _NEEDLE, -1
+        places = _places(points, simplices, needle)
     return MeshReport(
         min_angle=min_angle,
         smallest_angle=angles[0],
@@ -179,6 +210,7 @@ def reported(
         below=rows,
         corner=corner,
         cause=np.array(CAUSES)[cause],
+        needles=places,
         on_segments=int(counts[0]),
         for_angles=int(counts[1]),
         for_sizes=int(counts[2]),
@@ -228,6 +260,19 @@ def judged(
     measures = quality.measured(points, simplices[np.concatenate((extremes, beyond))])
     smallest = float(measures.smallest_angle.min(initial=180.0))
     return rows, (smallest, float(measures.largest_angle.max(initial=0.0)))
+
+
+def _places(points: Floats, simplices: Indices, needle: Indices) -> Floats:
+    """Return the centre of the largest triangle of each needle, by their coordinates."""
+    rows = np.flatnonzero(needle >= 0)
+    corners = points[simplices[rows]]
+    areas = geometry.areas(points, simplices[rows])
+    centres = (corners / 3).sum(axis=1)
+    rank = np.lexsort((centres[:, 1], centres[:, 0], areas, needle[rows]))
+    last = np.flatnonzero(np.diff(needle[rows][rank], append=-1))
+    places = centres[rank[last]]
+    found: Floats = places[np.lexsort((places[:, 1], places[:, 0]))]
+    return found
 
 
 def _responsible(

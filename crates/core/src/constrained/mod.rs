@@ -164,7 +164,9 @@ impl<'a> Work<'a> {
             let found = self.crossings(input, watch)?;
             let meets = self.start_anew(input, &found, watch)?;
             let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
-            splitter.run(&found.pairs, &meets, watch)?;
+            let rows = &self.rows;
+            let is_rounded = |w: u32| rows.get(w as usize).is_none_or(|&r| r as usize >= input.len());
+            splitter.run(&found.pairs, &meets, is_rounded, watch)?;
             splitter
         };
         if conforming {

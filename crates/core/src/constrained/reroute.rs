@@ -5,10 +5,12 @@
 //! pair, as of two that cross one was laid first or neither was. The rows of the pairs are taken
 //! away, their crossings inserted, and they are laid through these, as `split` would do it.
 //!
-//! Where a rounded crossing falls on another segment, or a segment comes to the pixel of a vertex that
-//! is none of its own, or a piece still crosses one, nothing is repaired here: `split` starts from the
+//! Where a rounded crossing falls on another segment, or a segment comes to the pixel of a crossing
+//! of others, or one that crosses some to the pixel of any vertex that is none of its own, or a piece still crosses one, nothing is repaired here: `split` starts from the
 //! beginning. Where that does not happen, the pieces are the same as there, and so are the triangles,
 //! since one set of pieces has one triangulation.
+
+use std::collections::BTreeSet;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -17,7 +19,7 @@ use super::laid::Laid;
 use super::marked::{Marked, turn};
 use super::pairs::overlap;
 use super::segment::{Cavity, Step};
-use super::split::{passes, way};
+use super::split::{far, passes, way};
 use super::{Crossings, Work, pairs};
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
@@ -99,9 +101,15 @@ impl Work<'_> {
             return Ok(None);
         }
         self.take_away(&mut laid, &rows)?;
+        let before = self.marked.count;
         let Some(meets) = self.insert(input.len(), &found)? else {
             return Ok(None);
         };
+        for w in before..self.marked.count {
+            if self.is_passed(w as u32)? {
+                return Ok(None);
+            }
+        }
         for (&[s, t], &w) in found.pairs.iter().zip(&meets) {
             push(&mut laid.crossings, [s, t, w])?;
         }
@@ -118,7 +126,8 @@ impl Work<'_> {
             let ends = self.ends[row as usize];
             let own: Vec<_> = meets.iter().map(|m| m[1]).collect();
             let through = &mut laid.through;
-            let stops = way(&mut self.marked, ends, row, own.clone(), through)?;
+            let rounded = |w: u32| w as usize >= before;
+            let stops = way(&mut self.marked, ends, row, own.clone(), rounded, through)?;
             if !self.is_clear(row, &stops, &own, &mut seen)? {
                 return Ok(None);
             }
@@ -244,6 +253,40 @@ impl Work<'_> {
         Ok(Some(meets))
     }
 
+    /// Whether a segment that lies comes to the pixel of vertex `w`. From there to such a segment one
+    /// comes across edges that are as near.
+    fn is_passed(&mut self, w: u32) -> Result<bool> {
+        let start = self.marked.near[w as usize];
+        let p = self.marked.at(w);
+        let triangles = self.marked.triangles();
+        let Marked { points, mesh, .. } = &mut self.marked;
+        let mesh = &mesh.resume(triangles);
+        let mut stack = vec![start];
+        let mut corner = turn(mesh, start);
+        while corner != start {
+            push(&mut stack, corner)?;
+            corner = turn(mesh, corner);
+        }
+        let mut seen = BTreeSet::new();
+        while let Some(e) = stack.pop() {
+            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            if ends.contains(&mesh.infinite()) || !seen.insert(triangle(e)) {
+                continue;
+            }
+            let [r, s] = ends.map(|v| points[v as usize]);
+            if mesh.is_marked(e) {
+                if passes(r, s, p) {
+                    return Ok(true);
+                }
+            } else if is_near(r, s, p) {
+                let o = mesh.opposite(e);
+                push(&mut stack, next(o))?;
+                push(&mut stack, prev(o))?;
+            }
+        }
+        Ok(false)
+    }
+
     /// Whether a segment comes to the pixel of no vertex but of those on it and its crossings `meets`,
     /// which ascend, however the mesh lies: from the segment to such a vertex one comes within its box, across
     /// edges that come as near.
@@ -335,10 +378,17 @@ impl Work<'_> {
     }
 }
 
+/// Whether the edge `r s` may come to the pixel of `p`.
+fn is_near(r: Point2, s: Point2, p: Point2) -> bool {
+    let beside = (0..2).any(|k| {
+        let unit = 2.0 * (p[k].abs() * f64::EPSILON + f64::MIN_POSITIVE);
+        p[k] < r[k].min(s[k]) - unit || p[k] > r[k].max(s[k]) + unit
+    });
+    !beside && !far(r, s, p)
+}
+
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
     use proptest::prelude::*;
 
     use super::super::Options;
@@ -412,7 +462,12 @@ mod tests {
         let crossings = work.crossings(points, &watch).unwrap();
         let meets = work.start_anew(points, &crossings, &watch).unwrap();
         let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000);
-        splitter.run(&crossings.pairs, &meets, &watch).unwrap();
+        let rows = &work.rows;
+        let is_rounded =
+            |w: u32| rows.get(w as usize).is_none_or(|&r| r as usize >= points.len());
+        splitter
+            .run(&crossings.pairs, &meets, is_rounded, &watch)
+            .unwrap();
         let laid = splitter.finish();
         prop_assert_eq!(
             found,

@@ -131,7 +131,10 @@ impl Marked {
         let mut from = a;
         while from != b {
             from = match self.leave(from, b)? {
-                Leave::Along(_, w) => w,
+                Leave::Along(e, w) => {
+                    self.hidden(e, &near, &mut stops);
+                    w
+                }
                 Leave::Across(first) => {
                     let mut e = first;
                     let mesh = self.mesh.resume(2 * self.count as u32 - 2);
@@ -150,6 +153,22 @@ impl Marked {
         }
         stops.retain(|&w| w != a && w != b);
         Ok(stops)
+    }
+
+    /// Adds to `stops` the vertices beside the edge `e`, on either side, that `near` takes; behind
+    /// each there may be others. It ends: no vertex comes twice.
+    fn hidden(&mut self, e: Code, near: impl Fn(&Self, u32) -> bool, stops: &mut Vec<u32>) {
+        let first = stops.len();
+        let mut stack = vec![e, self.patch().opposite(e)];
+        while let Some(e) = stack.pop() {
+            let mesh = self.patch();
+            let (apex, inf) = (mesh.vertex(e), mesh.infinite());
+            let beyond = [next(e), prev(e)].map(|e| mesh.opposite(e));
+            if apex != inf && !stops[first..].contains(&apex) && near(self, apex) {
+                stops.push(apex);
+                stack.extend(beyond);
+            }
+        }
     }
 
     /// Shows `visit` the edges that the segment from `a` to `b` crosses, but for those that it only

@@ -4,7 +4,10 @@
 //! are vertices before the first segment is laid. The places that are rounded to a vertex are its
 //! *pixel*. As in snap rounding (J. D. Hobby, "Practical segment intersection with finite precision
 //! output", Computational Geometry 13, 1999) a segment that crosses others goes through its crossings
-//! and through every vertex to whose pixel it comes, in the order in which it meets them. On a grid
+//! and through every vertex to whose pixel it comes, in the order in which it meets them. One that
+//! crosses no other is straight, but for crossings of others to whose pixel it comes: past such a
+//! point, less than a unit in the last place away, it would leave a needle that no input asked for.
+//! Points of the input that it does not meet exactly it leaves beside it. On a grid
 //! with pixels of one size nothing would cross any more. Doubles lie ever closer towards zero, so two
 //! pieces may: then, as in iterated snap rounding (D. Halperin and E. Packer, Computational Geometry
 //! 23, 2002), they are led through an end of one of them, if the other comes to its pixel, or split
@@ -99,8 +102,15 @@ impl<'a> Splitter<'a> {
         self.crossings = laid.crossings;
     }
 
-    /// Lays all of them. Those in `pairs` cross, in the vertices `meets`.
-    pub fn run(&mut self, pairs: &[[u32; 2]], meets: &[u32], watch: &Watch) -> Result<()> {
+    /// Lays all of them. Those in `pairs` cross, in the vertices `meets`. `is_rounded` knows the
+    /// vertices that are no points of the input.
+    pub fn run(
+        &mut self,
+        pairs: &[[u32; 2]],
+        meets: &[u32],
+        is_rounded: impl Fn(u32) -> bool,
+        watch: &Watch,
+    ) -> Result<()> {
         let mut own: Vec<[u32; 2]> = Vec::with_capacity(2 * pairs.len());
         for (&[s, t], &w) in pairs.iter().zip(meets) {
             own.extend([[s, w], [t, w]]);
@@ -112,7 +122,7 @@ impl<'a> Splitter<'a> {
             let first = own.partition_point(|o| o[0] < row);
             let meets = own[first..].iter().take_while(|o| o[0] == row);
             let meets = meets.map(|o| o[1]).collect();
-            let stops = way(self.marked, [a, b], row, meets, &mut self.through)?;
+            let stops = way(self.marked, [a, b], row, meets, &is_rounded, &mut self.through)?;
             for pair in stops.windows(2).rev() {
                 self.wait([pair[0], pair[1]], &[2 * i as Cover]);
             }
@@ -270,18 +280,21 @@ impl<'a> Splitter<'a> {
 }
 
 /// The vertices on the way of a segment, in order, its ends with them: where it meets others, the
-/// vertices that lie on it exactly, which go to `through` with its row, and, if it meets any, those
-/// to whose pixel it comes.
+/// vertices that lie on it exactly, which go to `through` with its row, and those to whose pixel it
+/// comes, of the points of the input only if it meets another segment.
 pub(super) fn way(
     marked: &mut Marked,
     [a, b]: [u32; 2],
     row: u32,
     meets: Vec<u32>,
+    is_rounded: impl Fn(u32) -> bool,
     through: &mut Vec<[u32; 2]>,
 ) -> Result<Vec<u32>> {
     let [p, q] = [a, b].map(|v| marked.at(v));
     let snaps = !meets.is_empty();
-    let near = |marked: &Marked, w: u32| snaps && passes(p, q, marked.at(w));
+    let near = |marked: &Marked, w: u32| {
+        (snaps || is_rounded(w)) && passes(p, q, marked.at(w))
+    };
     let mut stops = marked.stops(a, b, near)?;
     for &w in &stops {
         if orient2d(p, q, marked.at(w)).is_zero() {
@@ -346,7 +359,7 @@ pub(super) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
 }
 
 /// Whether p is farther from the line r s than its pixel can be wide; most points are.
-fn far(r: Point2, s: Point2, p: Point2) -> bool {
+pub(super) fn far(r: Point2, s: Point2, p: Point2) -> bool {
     let (left, right) = ((s[0] - r[0]) * (p[1] - r[1]), (s[1] - r[1]) * (p[0] - r[0]));
     let unit = |x: f64| x.abs() * f64::EPSILON + f64::MIN_POSITIVE;
     let pixel = (s[0] - r[0]).abs() * unit(p[1]) + (s[1] - r[1]).abs() * unit(p[0]);

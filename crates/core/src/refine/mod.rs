@@ -14,6 +14,7 @@
 mod corners;
 mod insert;
 mod judge;
+mod needles;
 mod place;
 mod queue;
 mod shape;
@@ -157,6 +158,7 @@ fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result
         neighbors: with_room(all.len())?,
         sides: with_room(all.len())?,
         labels: with_room(all.len())?,
+        needles: with_room(all.len())?,
         counts: work.counts,
         exhausted,
     };
@@ -167,6 +169,7 @@ fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result
         let across = codes.map(|e| number[triangle(mesh.opposite(e)) as usize]);
         out.neighbors.push(across);
         out.labels.push(mesh.label(t) as i32 - 1);
+        out.needles.push(work.needles.left(t));
     }
     for &t in &all {
         let codes = [8 * t, 8 * t + 1, 8 * t + 2];

@@ -172,6 +172,12 @@ impl Shape {
         let cosine = dot(u, v);
         cosine < 0.0 && cosine * cosine >= self.lens * dot(u, u) * dot(v, v)
     }
+
+    /// The same, also where lenses are circles.
+    pub fn is_flat(&self, p: Point2, q: Point2, r: Point2) -> bool {
+        let lens = (2.0 * self.cos2 - 1.0).powi(2);
+        Self { lens, ..*self }.in_lens(p, q, r)
+    }
 }
 
 #[cfg(test)]

@@ -75,6 +75,8 @@ pub struct Refined {
     pub sides: Vec<[i32; 3]>,
     /// The label of each triangle; -1 outside of the domain.
     pub labels: Vec<i32>,
+    /// For each triangle the number of the needle that it was left in, or -1.
+    pub needles: Vec<i32>,
     /// Vertices by cause.
     pub counts: Counts,
     /// Whether the limit on vertices ended it.

@@ -14,6 +14,7 @@ use delone_predicates::{Point2, Sign, orient2d};
 
 use super::corners;
 use super::insert::{Cavity, Walk, walk};
+use super::needles::Needles;
 use super::place::{Bend, Places};
 use super::queue::{Bad, Queue};
 use super::shape::{Reason, Seen, Shape, angle, dot, minus};
@@ -21,7 +22,7 @@ use super::task::{Counts, Task, Tell};
 use crate::constrained::conforming::cut;
 use crate::constrained::marked::{Marked, turn};
 use crate::error::Result;
-use crate::memory::{make_room, push, with_room};
+use crate::memory::{copied, make_room, push, with_room};
 use crate::mesh2::{Code, next, prev, triangle};
 use crate::watch::Watch;
 
@@ -81,19 +82,20 @@ pub struct Work<'a> {
     /// For each vertex the line that it was put on, or -1.
     pub on: Vec<i32>,
     pub counts: Counts,
-    task: Task<'a>,
-    /// The lines as vertices.
-    ends: &'a [[u32; 2]],
+    pub(super) task: Task<'a>,
+    /// The lines as vertices, and behind them the fences.
+    pub(super) ends: Vec<[u32; 2]>,
     /// The line between two vertices of the input.
     between: HashMap<[u32; 2], i32>,
-    sharp: Vec<bool>,
-    shape: Shape,
+    pub(super) sharp: Vec<bool>,
+    pub(super) shape: Shape,
+    pub needles: Needles,
     places: Places,
     queue: Queue,
     encroached: Vec<Waiting>,
     cavity: Cavity,
     /// Vertices of the input.
-    own: usize,
+    pub(super) own: usize,
 }
 
 impl<'a> Work<'a> {
@@ -112,7 +114,8 @@ impl<'a> Work<'a> {
             on,
             counts: Counts::default(),
             task,
-            ends,
+            needles: Needles::of(ends.len()),
+            ends: copied(ends)?,
             between: (pieces.iter().enumerate())
                 .map(|(i, e)| (key(e), line(i)))
                 .collect(),
@@ -127,8 +130,20 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Works until nothing is bad; false where the limit on vertices came first.
+    /// Works until nothing is bad, first outside of needles, then in those that the budget allows;
+    /// false where the limit on vertices came first.
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
+        self.fence()?;
+        let mut done = self.refine(watch, tell)?;
+        if done && self.open_allowed()? {
+            done = self.refine(watch, tell)?;
+        }
+        self.open_all()?;
+        Ok(done)
+    }
+
+    /// Works until nothing is bad outside of needles.
+    fn refine(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         for t in 0..self.marked.triangles() {
             self.judge(t)?;
             for e in 8 * t..8 * t + 3 {
@@ -149,6 +164,7 @@ impl<'a> Work<'a> {
             }
             if let Some(waiting) = self.encroached.pop() {
                 if self.stands(&waiting) && self.is_encroached(waiting.edge) {
+                    self.count_copy(waiting.edge);
                     self.split(waiting.edge)?;
                 }
             } else if let Some(bad) = self.queue.pop() {
@@ -172,17 +188,20 @@ impl<'a> Work<'a> {
         least
     }
 
-    fn at(&self, v: u32) -> Point2 {
+    pub(super) fn at(&self, v: u32) -> Point2 {
         self.marked.points[v as usize]
     }
 
-    fn points_of(&mut self, t: u32) -> [Point2; 3] {
+    pub(super) fn points_of(&mut self, t: u32) -> [Point2; 3] {
         let corners = self.marked.patch().corners(t);
         corners.map(|v| self.marked.points[v as usize])
     }
 
     /// The line that an edge between two vertices is a part of, or -1.
     pub fn segment_of(&self, [u, v]: [u32; 2]) -> i32 {
+        if let Some(fence) = self.needles.fence([u, v]) {
+            return fence;
+        }
         // One that was put on a segment is on no other.
         let on = self.on[u as usize].max(self.on[v as usize]);
         if on >= 0 {
@@ -195,12 +214,14 @@ impl<'a> Work<'a> {
     /// Puts a triangle in the queue if it is bad.
     fn judge(&mut self, t: u32) -> Result<()> {
         let mesh = self.marked.patch();
-        if mesh.label(t) == 0 {
+        let label = mesh.label(t);
+        if label == 0 {
             return Ok(());
         }
         let corners = mesh.corners(t);
         let seen = self.shape.see(corners.map(|v| self.at(v)));
-        if self.shape.fault(&seen, self.caps[t as usize]).is_some() {
+        let (fault, cap) = (self.shape.fault(&seen, self.caps[t as usize]), self.caps[t as usize]);
+        if fault.is_some() && (!self.needles.hold(label) || seen.area2 > cap) {
             let bad = Bad {
                 triangle: t,
                 corners,
@@ -232,8 +253,12 @@ impl<'a> Work<'a> {
     /// Whether the apex of `e`, in a triangle inside, lies in the lens of e.
     fn encroaches(&mut self, e: Code) -> bool {
         let mesh = self.marked.patch();
-        if mesh.label(triangle(e)) == 0 {
+        let label = mesh.label(triangle(e));
+        if label == 0 {
             return false;
+        }
+        if self.needles.hold(label) {
+            return self.is_to_copy(e);
         }
         let [p, q, r] = [next(e), prev(e), e].map(|c| mesh.vertex(c));
         self.shape.in_lens(self.at(p), self.at(q), self.at(r))
@@ -255,7 +280,8 @@ impl<'a> Work<'a> {
         let mesh = self.marked.patch();
         let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
         let segment = self.segment_of([u, v]);
-        if segment >= 0 && self.task.frozen[segment as usize] {
+        let fence = self.needles.is_fence(segment);
+        if segment >= 0 && !fence && self.task.frozen[segment as usize] {
             return Ok(false);
         }
         let x = self.cut_of(u, v);
@@ -276,7 +302,12 @@ impl<'a> Work<'a> {
         self.marked.near[w as usize] = self.marked.stack[0];
         self.on.push(segment);
         self.settle()?;
-        self.counts.segment += 1;
+        if fence {
+            self.needles.part([u, v], w);
+            self.counts.angle += 1;
+        } else {
+            self.counts.segment += 1;
+        }
         self.greet(w)?;
         Ok(true)
     }
@@ -390,7 +421,7 @@ impl<'a> Work<'a> {
         };
         let p = if reason == Reason::Size {
             self.places.cure(points, &seen, cap)
-        } else if self.is_forced(t, &seen) {
+        } else if self.is_in_needle(t) || self.is_forced(t, &seen) {
             // One whose angle cannot be mended may still be too large.
             if seen.area2 <= cap {
                 return Ok(());
@@ -551,10 +582,15 @@ impl<'a> Work<'a> {
         Ok(parted)
     }
 
+    fn is_in_needle(&mut self, t: u32) -> bool {
+        let label = self.marked.patch().label(t);
+        self.needles.hold(label)
+    }
+
     /// Whether the smallest angle of a triangle is forced by the input: it lies between two
     /// subsegments, or its shortest edge joins two that meet in a corner of less than 60 degrees, on
     /// one circle about it.
-    fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
+    pub(super) fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
         let mesh = self.marked.patch();
         let apex = 8 * t + seen.apex as u32;
         if mesh.is_marked(next(apex)) && mesh.is_marked(prev(apex)) {

@@ -1,0 +1,570 @@
+//! Needles: parts of the domain between two lines that come so near to each other, over so long a
+//! way, that good angles there take more vertices than the budget allows. They are found before the
+//! first vertex is inserted, fenced off, and opened again at the end where the budget allows it.
+//!
+//! # The price
+//!
+//! Between two lines at distance `g` edges are about as long as `g`: that takes a number of vertices
+//! in proportion to the length over which the lines face each other, divided by `g`, and to the
+//! angle. A single vertex near a line is cheap, as edges grow again with the distance from it; and so
+//! is a corner whose sides are cut at equal distances. Therefore a triangle is looked at if it is bad,
+//! and would be worked upon: its small angle does not lie between two sides of a corner, or its apex
+//! is in the lens of one of its subsegments. The lines at its apex, and those opposite the apex in
+//! the triangles around it, are clipped to where they face the line under the subsegment at no more
+//! than twice the gap of the apex. Whole lines are measured, not their pieces, so that a mesh that
+//! has been refined already, around a needle, has the same needles.
+//!
+//! # The fence
+//!
+//! Triangles that are dear by this measure join across edges without a segment to a needle. Its
+//! price is the sum over its pairs of lines. Its edges without a segment become lines for a while:
+//! they may be split from outside as those of the input, with circles about their ends where they are
+//! sharp corners. A fence can itself be one side of a gap, so the triangle beyond is looked at in the
+//! same way. A triangle once in a needle stays in it, whatever the order, so the outcome is one, and
+//! for any order of the input.
+//!
+//! Inside of a needle no angle and no encroachment counts, only sizes. A line at its side may be cut
+//! from the other side; the vertices on it are then joined across the needle.
+//!
+//! # Termination and budget
+//!
+//! With the fences up, the domain without the needles has no two lines that are as near to each other
+//! in comparison to the length over which they face each other, except where they meet in a corner
+//! and are cut alike. It is refined first, by the usual rules, for which fences are lines of the
+//! input; so it ends where those end. Then the needles are opened whose prices, summed from the least
+//! on, stay within a share of the budget, and the work goes on in them. The others stay as they are,
+//! which is no more than a finite triangulation of what the outside put on their sides. So all needles
+//! together take about that share, as far as prices are right, and where they are too low the limit on
+//! vertices ends the work after the rest is done.
+
+use std::collections::{BTreeSet, HashMap};
+
+use delone_predicates::{Point2, lexicographic};
+
+use super::corners;
+use super::shape::{cross, dot, minus};
+use super::work::Work;
+use crate::constrained::marked::turn;
+use crate::error::Result;
+use crate::memory::{filled, push};
+use crate::mesh2::{Code, next, prev, triangle};
+
+/// The price from which a needle is put off: less is a matter of a moment.
+const DEAR: f64 = 1000.0;
+
+/// The share of the budget that all needles together may take is one in this number.
+const SHARE: f64 = 64.0;
+
+/// Vertices that a gap takes for each degree of the bound, over a length equal to its width: at 25
+/// degrees measured as 0.5.
+const RATE: f64 = 0.02;
+
+/// Lines face each other as long as they are no farther apart than this times the gap.
+const FACING: f64 = 2.0;
+
+/// Heights below this part of the coordinates are rounding.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// Cuts that a needle may copy from one of its sides to the other: so many, and more for each of its
+/// triangles.
+const COPIES: u32 = 16;
+const MORE_COPIES: u32 = 2;
+
+/// A subsegment has halves as long as another one if its square is this times the other's, less what
+/// cuts on circles differ by.
+const HALVES: f64 = 3.9;
+
+/// The line under a fence that is looked at before it has a number.
+const FENCE: i32 = -1;
+
+/// An edge of a needle without a segment.
+#[derive(Debug, Clone, Copy)]
+struct Fence {
+    line: i32,
+    needle: u32,
+}
+
+/// The needles, by number; triangles in them have labels from `first` on.
+#[derive(Debug, Default)]
+pub struct Needles {
+    /// The number of lines of the input; fences come after them.
+    lines: usize,
+    first: u32,
+    /// The label of the triangles before.
+    labels: Vec<u32>,
+    /// Whether the budget allows to open it.
+    allowed: Vec<bool>,
+    /// How many cuts of lines each may still copy.
+    copies: Vec<u32>,
+    fences: HashMap<[u32; 2], Fence>,
+    /// For each triangle the needle that it is left in, or -1; empty where there is none.
+    left: Vec<i32>,
+}
+
+fn key([u, v]: [u32; 2]) -> [u32; 2] {
+    [u.min(v), u.max(v)]
+}
+
+impl Needles {
+    /// None yet, in a triangulation with so many lines.
+    pub fn of(lines: usize) -> Self {
+        Self {
+            lines,
+            first: u32::MAX,
+            ..Self::default()
+        }
+    }
+
+    /// Whether triangles with this label are in a needle.
+    #[inline]
+    pub fn hold(&self, label: u32) -> bool {
+        label >= self.first
+    }
+
+    /// Whether a line is a fence.
+    #[inline]
+    pub fn is_fence(&self, line: i32) -> bool {
+        line >= 0 && line as usize >= self.lines
+    }
+
+    /// The line of the fence between two vertices.
+    #[inline]
+    pub fn fence(&self, ends: [u32; 2]) -> Option<i32> {
+        if self.fences.is_empty() {
+            return None;
+        }
+        self.fences.get(&key(ends)).map(|fence| fence.line)
+    }
+
+    /// The edge `u v` has been parted in `w`.
+    pub fn part(&mut self, [u, v]: [u32; 2], w: u32) {
+        if let Some(fence) = self.fences.remove(&key([u, v])) {
+            self.fences.insert(key([u, w]), fence);
+            self.fences.insert(key([w, v]), fence);
+        }
+    }
+
+    /// The needle that triangle `t` is left in, or -1.
+    pub fn left(&self, t: u32) -> i32 {
+        self.left.get(t as usize).copied().unwrap_or(-1)
+    }
+}
+
+/// What is found of needles.
+#[derive(Debug, Default)]
+struct Found {
+    triangles: BTreeSet<u32>,
+    /// Triangle, the two lines that it lies between, and their price.
+    pairs: Vec<(u32, [i32; 2], f64)>,
+}
+
+/// A line with an apex beside it.
+struct Base {
+    from: Point2,
+    /// Its direction, of length 1.
+    along: Point2,
+    length: f64,
+    /// The height of the apex.
+    gap: f64,
+    /// 1 where the apex is on the left.
+    side: f64,
+}
+
+impl Base {
+    fn of([a, b]: [Point2; 2], apex: Point2) -> Self {
+        // The same whichever way the line was given.
+        let [a, b] = if lexicographic(a, b).is_gt() {
+            [b, a]
+        } else {
+            [a, b]
+        };
+        let step = minus(b, a);
+        let length = step[0].hypot(step[1]);
+        let along = step.map(|x| x / length);
+        let height = cross(along, minus(apex, a));
+        let largest = [a, b, apex].as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        Self {
+            from: a,
+            along,
+            length,
+            gap: height.abs().max(ROUNDING * largest),
+            side: height.signum(),
+        }
+    }
+
+    fn place(&self, p: Point2) -> [f64; 2] {
+        let w = minus(p, self.from);
+        [dot(self.along, w), self.side * cross(self.along, w)]
+    }
+
+    /// The length over which the line `c d` faces this one at a distance of at most about `gap`.
+    fn facing(&self, [c, d]: [Point2; 2], gap: f64) -> f64 {
+        let [c, d] = if lexicographic(c, d).is_gt() {
+            [d, c]
+        } else {
+            [c, d]
+        };
+        let ([x, y], [z, w]) = (self.place(c), self.place(d));
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (from, to, least, most) in [
+            (x, z, 0.0, self.length),
+            (y, w, -self.gap, FACING * gap),
+        ] {
+            if from == to {
+                if from < least || from > most {
+                    return 0.0;
+                }
+                continue;
+            }
+            let [s, t] = [least, most].map(|bound| (bound - from) / (to - from));
+            first = first.max(s.min(t));
+            last = last.min(s.max(t));
+        }
+        (last - first).max(0.0) * (z - x).abs()
+    }
+}
+
+impl Work<'_> {
+    /// Finds the needles and fences them off.
+    pub fn fence(&mut self) -> Result<()> {
+        let found = self.find()?;
+        if found.triangles.is_empty() {
+            return Ok(());
+        }
+        self.needles.first = 1 + self.labels().max().unwrap_or(0);
+        let mut needle_of = HashMap::new();
+        for &t in &found.triangles {
+            if !needle_of.contains_key(&t) {
+                let needle = self.needles.labels.len() as u32;
+                self.enclose(t, needle, &found.triangles, &mut needle_of)?;
+            }
+        }
+        self.choose(found.pairs, &needle_of);
+        let mut pieces = Vec::new();
+        for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
+            let mesh = self.marked.patch();
+            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            if ends[0] < ends[1] && mesh.is_marked(e) {
+                push(&mut pieces, ends)?;
+            }
+        }
+        self.sharp = corners::sharp(&self.marked.points, &pieces, self.own)?;
+        Ok(())
+    }
+
+    fn labels(&mut self) -> impl Iterator<Item = u32> {
+        let triangles = self.marked.triangles();
+        let mesh = self.marked.mesh.resume(triangles);
+        (0..triangles).map(move |t| mesh.label(t))
+    }
+
+    /// Takes what hangs together with triangle `t` as a needle.
+    fn enclose(
+        &mut self,
+        t: u32,
+        needle: u32,
+        all: &BTreeSet<u32>,
+        needle_of: &mut HashMap<u32, u32>,
+    ) -> Result<()> {
+        let label = self.marked.patch().label(t);
+        push(&mut self.needles.labels, label)?;
+        let mut stack = vec![t];
+        needle_of.insert(t, needle);
+        while let Some(t) = stack.pop() {
+            let mut mesh = self.marked.patch();
+            mesh.set_label(t, self.needles.first + needle);
+            for e in 8 * t..8 * t + 3 {
+                let beyond = triangle(mesh.opposite(e));
+                if mesh.is_marked(e) || needle_of.contains_key(&beyond) {
+                    continue;
+                }
+                if all.contains(&beyond) {
+                    needle_of.insert(beyond, needle);
+                    stack.push(beyond);
+                    continue;
+                }
+                let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+                mesh.mark(e, true);
+                let line = self.ends.len() as i32;
+                push(&mut self.ends, ends)?;
+                self.needles.fences.insert(key(ends), Fence { line, needle });
+            }
+        }
+        Ok(())
+    }
+
+    /// Says which needles the budget allows to open: the cheapest, all of one price or none.
+    fn choose(&mut self, mut pairs: Vec<(u32, [i32; 2], f64)>, needle_of: &HashMap<u32, u32>) {
+        for pair in &mut pairs {
+            pair.0 = needle_of.get(&pair.0).copied().unwrap_or(u32::MAX);
+        }
+        pairs.sort_by(|p, q| (p.0, p.1).cmp(&(q.0, q.1)).then(q.2.total_cmp(&p.2)));
+        pairs.dedup_by_key(|p| (p.0, p.1));
+        pairs.sort_by(|p, q| p.0.cmp(&q.0).then(p.2.total_cmp(&q.2)));
+        let mut prices = vec![0.0; self.needles.labels.len()];
+        for &(needle, _, price) in &pairs {
+            if let Some(sum) = prices.get_mut(needle as usize) {
+                *sum += price;
+            }
+        }
+        let mut order: Vec<usize> = (0..prices.len()).collect();
+        order.sort_by(|&i, &j| prices[i].total_cmp(&prices[j]));
+        let most = self.task.max_vertices as f64 / SHARE;
+        let mut spent = 0.0;
+        self.needles.allowed = vec![false; prices.len()];
+        for equal in order.chunk_by(|&i, &j| prices[i] == prices[j]) {
+            spent += prices[equal[0]] * equal.len() as f64;
+            for &needle in equal {
+                self.needles.allowed[needle] = spent <= most;
+            }
+        }
+    }
+
+    /// Finds the triangles that are dear.
+    fn find(&mut self) -> Result<Found> {
+        let mut found = Found::default();
+        let mut stack = Vec::new();
+        for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
+            let mesh = self.marked.patch();
+            if mesh.label(triangle(e)) == 0 || !mesh.is_marked(e) {
+                continue;
+            }
+            let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+            let line = self.segment_of(ends);
+            if self.may_be_dear(e, line) {
+                push(&mut stack, (e, line))?;
+            }
+        }
+        if stack.is_empty() {
+            return Ok(found);
+        }
+        let at = self.lines_at()?;
+        while let Some((e, line)) = stack.pop() {
+            let points = self.points_of(triangle(e));
+            if !self.may_be_dear(e, line) || !self.shape.see(points).skinny {
+                continue;
+            }
+            let pairs = self.prices(e, line, &at);
+            if pairs.iter().map(|p| p.1).sum::<f64>() < DEAR {
+                continue;
+            }
+            let t = triangle(e);
+            if line != FENCE {
+                let pairs = pairs.into_iter();
+                let ordered = |(r, price)| (t, [line.min(r), line.max(r)], price);
+                found.pairs.extend(pairs.map(ordered));
+            }
+            if found.triangles.insert(t) {
+                let mesh = self.marked.patch();
+                for e in 8 * t..8 * t + 3 {
+                    let o = mesh.opposite(e);
+                    if !mesh.is_marked(e) && !found.triangles.contains(&triangle(o)) {
+                        push(&mut stack, (o, FENCE))?;
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The ends of a line, or of the edge `e` where that is a fence.
+    fn base(&mut self, e: Code, line: i32) -> [Point2; 2] {
+        let mesh = self.marked.patch();
+        let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+        let ends = self.ends.get(line as usize).copied().unwrap_or(ends);
+        ends.map(|v| self.at(v))
+    }
+
+    /// Whether the triangle of the edge `e` is so flat beside its line that it may be dear. Most
+    /// are not.
+    fn may_be_dear(&mut self, e: Code, line: i32) -> bool {
+        let [p, q, r] = self.points_of(triangle(e));
+        let area2 = cross(minus(q, p), minus(r, p));
+        let [a, b] = self.base(e, line);
+        let (step, edge) = (minus(b, a), self.base(e, FENCE));
+        let edge = minus(edge[1], edge[0]);
+        // Lines on both sides of a corner face the base, and a few more may.
+        let least = DEAR / (RATE * self.task.min_angle) / 8.0;
+        let (length, height) = (dot(step, step).sqrt(), area2 / dot(edge, edge).sqrt());
+        height * least < length
+    }
+
+    /// Whether triangle `t` would be worked upon, were it in no needle.
+    fn is_unsettled(&mut self, t: u32) -> bool {
+        let points = self.points_of(t);
+        let seen = self.shape.see(points);
+        if !seen.skinny {
+            return false;
+        }
+        let flat = |k: usize| {
+            let [u, v] = [points[(k + 1) % 3], points[(k + 2) % 3]];
+            self.shape.is_flat(u, v, points[k])
+        };
+        let mesh = self.marked.patch();
+        if (0..3).any(|k| mesh.is_marked(8 * t + k as u32) && flat(k)) {
+            return true;
+        }
+        !self.is_forced(t, &seen)
+    }
+
+    /// Lines by the vertices that they end in.
+    fn lines_at(&self) -> Result<Vec<(u32, i32)>> {
+        let mut at = Vec::new();
+        for (i, ends) in (0..).zip(&self.ends[..self.needles.lines]) {
+            for &v in ends {
+                push(&mut at, (v, i))?;
+            }
+        }
+        at.sort_unstable();
+        Ok(at)
+    }
+
+    /// The lines that face the line under `e` near its apex, and what that costs.
+    fn prices(&mut self, e: Code, line: i32, at: &[(u32, i32)]) -> Vec<(i32, f64)> {
+        let apex = self.marked.patch().vertex(e);
+        let base = Base::of(self.base(e, line), self.at(apex));
+        let first = at.partition_point(|a| a.0 < apex);
+        let here = at[first..].iter().take_while(|a| a.0 == apex);
+        let mut lines: Vec<_> = here.map(|a| (a.1, base.gap)).collect();
+        lines.push((self.on[apex as usize], base.gap));
+        let mut corner = e;
+        loop {
+            let mesh = self.marked.patch();
+            if corner != e && mesh.label(triangle(corner)) != 0 && mesh.is_marked(corner) {
+                let ends = [next(corner), prev(corner)].map(|c| mesh.vertex(c));
+                let line = self.segment_of(ends);
+                let points = ends.map(|v| self.at(v));
+                lines.push((line, base.gap + Base::of(points, self.at(apex)).gap));
+            }
+            corner = turn(&self.marked.patch(), corner);
+            if corner == e {
+                break;
+            }
+        }
+        let rate = RATE * self.task.min_angle;
+        let mut pairs = Vec::new();
+        for (r, gap) in lines {
+            let known = |p: &(i32, f64)| p.0 == r;
+            if r >= 0 && r != line && !pairs.iter().any(known) {
+                let ends = self.ends[r as usize].map(|v| self.at(v));
+                pairs.push((r, rate * base.facing(ends, gap) / gap));
+            }
+        }
+        pairs.sort_by(|p, q| p.1.total_cmp(&q.1));
+        pairs
+    }
+
+    /// Opens the needles that the budget allows, and lets the others copy cuts; whether there are any.
+    pub fn open_allowed(&mut self) -> Result<bool> {
+        let allowed = self.needles.allowed.clone();
+        let mut copies = filled(allowed.len(), COPIES)?;
+        let first = self.needles.first;
+        for label in self.labels().filter(|&label| label >= first) {
+            copies[(label - first) as usize] += MORE_COPIES;
+        }
+        self.needles.copies = copies;
+        if allowed.contains(&true) {
+            self.open(|needle| allowed[needle as usize])?;
+        }
+        Ok(!allowed.is_empty())
+    }
+
+    /// Whether the subsegment `e` is to be cut in its needle as the line across is: its apex, a cut of
+    /// that line, lies in its lens, and the halves are no shorter than the pieces there.
+    pub fn is_to_copy(&mut self, e: Code) -> bool {
+        let mesh = self.marked.patch();
+        let needle = mesh.label(triangle(e)) - self.needles.first;
+        let apex = mesh.vertex(e);
+        let some = self.needles.copies.get(needle as usize);
+        let line = self.on[apex as usize];
+        if some.is_none_or(|n| *n == 0) || line < 0 {
+            return false;
+        }
+        let [u, v] = self.base(e, FENCE);
+        if !self.shape.in_lens(u, v, self.at(apex)) {
+            return false;
+        }
+        let mut least = f64::INFINITY;
+        let mut corner = e;
+        loop {
+            let edge = next(corner);
+            if self.marked.patch().is_marked(edge) {
+                let [u, v] = self.base(edge, FENCE);
+                least = least.min(dot(minus(u, v), minus(u, v)));
+            }
+            corner = turn(&self.marked.patch(), corner);
+            if corner == e {
+                break;
+            }
+        }
+        dot(minus(u, v), minus(u, v)) >= HALVES * least
+    }
+
+    /// The subsegment `e` has been cut.
+    pub fn count_copy(&mut self, e: Code) {
+        let mesh = self.marked.patch();
+        for t in [triangle(e), triangle(mesh.opposite(e))] {
+            let label = mesh.label(t);
+            if label >= self.needles.first {
+                let needle = (label - self.needles.first) as usize;
+                if let Some(copies) = self.needles.copies.get_mut(needle) {
+                    *copies = copies.saturating_sub(1);
+                }
+            }
+        }
+    }
+
+    /// Takes all fences away, and keeps in mind which triangles are left in a needle.
+    pub fn open_all(&mut self) -> Result<()> {
+        if self.needles.first == u32::MAX {
+            return Ok(());
+        }
+        let first = self.needles.first;
+        let mut left = filled(self.marked.triangles() as usize, -1)?;
+        let mut unsettled = filled(self.needles.labels.len(), false)?;
+        for t in 0..self.marked.triangles() {
+            let label = self.marked.patch().label(t);
+            if label >= first {
+                left[t as usize] = (label - first) as i32;
+                unsettled[(label - first) as usize] |= self.is_unsettled(t);
+            }
+        }
+        // In some, corners were cut alike: nothing was to be done.
+        for needle in &mut left {
+            if *needle >= 0 && !unsettled[*needle as usize] {
+                *needle = -1;
+            }
+        }
+        self.needles.left = left;
+        self.open(|_| true)
+    }
+
+    fn open(&mut self, which: impl Fn(u32) -> bool) -> Result<()> {
+        self.marked.stack.clear();
+        for t in 0..self.marked.triangles() {
+            let mut mesh = self.marked.patch();
+            let label = mesh.label(t);
+            if label >= self.needles.first && which(label - self.needles.first) {
+                mesh.set_label(t, self.needles.labels[(label - self.needles.first) as usize]);
+            }
+            for e in 8 * t..8 * t + 3 {
+                let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
+                let fence = self.needles.fences.get(&key(ends));
+                if mesh.is_marked(e) && fence.is_some_and(|fence| which(fence.needle)) {
+                    mesh.mark(e, false);
+                    push(&mut self.marked.stack, e)?;
+                    mesh = self.marked.patch();
+                }
+            }
+        }
+        self.needles.fences.retain(|_, fence| !which(fence.needle));
+        let lines = self.needles.lines as i32;
+        let kept: BTreeSet<i32> = self.needles.fences.values().map(|f| f.line).collect();
+        for on in &mut self.on {
+            if *on >= lines && !kept.contains(on) {
+                *on = -1;
+            }
+        }
+        self.marked.legalise()
+    }
+}
