@@ -329,7 +329,7 @@ class Mesh(HandedOver, Triangulation):
     def _needles(self) -> Indices:
         """Return the needle that each triangle is in, or -1."""
         simplices, needle = domains.needles_in(self._domain(), float(self._bound[0]))
-        return needle[topology.rows_among(simplices, self._simplices)]
+        return needle[topology.rows_among(self._simplices, simplices)[:-1]]
 
     @property
     @kept

@@ -198,10 +198,13 @@ def reported(
     if (cause != _CORNER).any() or angles[0] < _THIN:
         needle = needles()
         inside = needle[rows] >= 0
+        cause[inside], corner[inside] = _NEEDLE, -1
         beside = np.zeros(len(points), dtype=bool)
         beside[simplices[needle >= 0]] = True
-        cause[beside[simplices[rows]].any(axis=1) & (cause != _CORNER)] = _NEEDLE
-        cause[inside], corner[inside] = _NEEDLE, -1
+        # From one spoilt triangle to the next; few are not in needles.
+        while (more := (cause >= _FROZEN) & beside[simplices[rows]].any(axis=1)).any():
+            cause[more] = _NEEDLE
+            beside[simplices[rows[more]]] = True
         places = _places(points, simplices, needle)
     return MeshReport(
         min_angle=min_angle,

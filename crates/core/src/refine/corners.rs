@@ -8,10 +8,15 @@ use crate::memory::filled;
 
 /// Angles below this between two segments make a sharp corner: there, cuts of the one may encroach
 /// upon the other.
-const SHARP: f64 = std::f64::consts::FRAC_PI_2;
+pub const SHARP: f64 = std::f64::consts::FRAC_PI_2;
 
-/// For each vertex, whether two of its segments meet at less than a right angle.
-pub fn sharp(points: &[Point2], segments: &[[u32; 2]], vertices: usize) -> Result<Vec<bool>> {
+/// For each vertex, whether two of its segments meet at an angle below `bound`.
+pub fn sharp(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    vertices: usize,
+    bound: f64,
+) -> Result<Vec<bool>> {
     let mut directions: Vec<(u32, f64)> = Vec::with_capacity(2 * segments.len());
     for &[u, v] in segments {
         let [p, q] = [u, v].map(|v| points[v as usize]);
@@ -24,8 +29,8 @@ pub fn sharp(points: &[Point2], segments: &[[u32; 2]], vertices: usize) -> Resul
     for star in directions.chunk_by(|s, t| s.0 == t.0) {
         let (first, last) = (star[0], star[star.len() - 1]);
         let round = first.1 + std::f64::consts::TAU - last.1;
-        let narrow = star.windows(2).any(|w| w[1].1 - w[0].1 < SHARP);
-        sharp[first.0 as usize] = star.len() > 1 && (narrow || round < SHARP);
+        let narrow = star.windows(2).any(|w| w[1].1 - w[0].1 < bound);
+        sharp[first.0 as usize] = star.len() > 1 && (narrow || round < bound);
     }
     Ok(sharp)
 }
@@ -43,10 +48,10 @@ mod tests {
             [-1.0, 0.1],
             [-1.0, -0.1],
         ];
-        let found = sharp(&points, &[[0, 1], [1, 2], [2, 0], [0, 3]], 5).unwrap();
+        let found = sharp(&points, &[[0, 1], [1, 2], [2, 0], [0, 3]], 5, SHARP).unwrap();
         assert_eq!(found, [true, false, true, false, false]);
         // Across the branch of the arc tangent.
-        let found = sharp(&points, &[[0, 3], [0, 4]], 5).unwrap();
+        let found = sharp(&points, &[[0, 3], [0, 4]], 5, SHARP).unwrap();
         assert_eq!(found, [true, false, false, false, false]);
     }
 }

@@ -29,13 +29,18 @@
 //! # Termination and budget
 //!
 //! With the fences up, the domain without the needles has no two lines that are as near to each other
-//! in comparison to the length over which they face each other, except where they meet in a corner
-//! and are cut alike. It is refined first, by the usual rules, for which fences are lines of the
-//! input; so it ends where those end. Then the needles are opened whose prices, summed from the least
-//! on, stay within a share of the budget, and the work goes on in them. The others stay as they are,
-//! which is no more than a finite triangulation of what the outside put on their sides. So all needles
-//! together take about that share, as far as prices are right, and where they are too low the limit on
-//! vertices ends the work after the rest is done.
+//! in comparison to the length over which they face each other. It is refined first, by the usual
+//! rules, for which fences are lines of the input; so it ends where those end.
+//!
+//! Then the needles are opened whose prices, summed from the least on, stay within a share of the
+//! budget, and the work goes on in them. Most corners of nearly no angle cost nothing, since their
+//! sides are cut alike; but one cut at another place, because of something outside, may cost the full
+//! price. Thus a needle that was in order at first, and is not allowed for its price, gets some steps
+//! of work in proportion to the triangles that it has by then. If they suffice it counts as a corner.
+//!
+//! All others stay as they are, which is no more than a finite triangulation of what the outside put on
+//! their sides. So all needles together take about that share, as far as prices are right, and where
+//! they are too low the limit on vertices ends the work after the rest is done.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -65,14 +70,14 @@ const FACING: f64 = 2.0;
 /// Heights below this part of the coordinates are rounding.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// Cuts that a needle may copy from one of its sides to the other: so many, and more for each of its
-/// triangles.
-const COPIES: u32 = 16;
-const MORE_COPIES: u32 = 2;
+/// Steps of work in a needle whose sides were cut alike at first, and may be again: so many, and more
+/// for each of its triangles.
+const STEPS: u32 = 64;
+const MORE_STEPS: u32 = 4;
 
-/// A subsegment has halves as long as another one if its square is this times the other's, less what
-/// cuts on circles differ by.
-const HALVES: f64 = 3.9;
+/// Angles below this between fences or lines are corners, at which circles are cut: from 60 degrees
+/// on it comes to an end without.
+const SHARP: f64 = std::f64::consts::FRAC_PI_3;
 
 /// The line under a fence that is looked at before it has a number.
 const FENCE: i32 = -1;
@@ -94,8 +99,10 @@ pub struct Needles {
     labels: Vec<u32>,
     /// Whether the budget allows to open it.
     allowed: Vec<bool>,
-    /// How many cuts of lines each may still copy.
-    copies: Vec<u32>,
+    /// Whether nothing was to be done in it at first.
+    settled: Vec<bool>,
+    /// The steps of work that are left for each, without being opened.
+    steps: Vec<u32>,
     fences: HashMap<[u32; 2], Fence>,
     /// For each triangle the needle that it is left in, or -1; empty where there is none.
     left: Vec<i32>,
@@ -115,10 +122,11 @@ impl Needles {
         }
     }
 
-    /// Whether triangles with this label are in a needle.
+    /// Whether triangles with this label are in a needle in which angles do not count.
     #[inline]
-    pub fn hold(&self, label: u32) -> bool {
+    pub fn rest(&self, label: u32) -> bool {
         label >= self.first
+            && self.steps.get((label - self.first) as usize).is_none_or(|steps| *steps == 0)
     }
 
     /// Whether a line is a fence.
@@ -240,6 +248,7 @@ impl Work<'_> {
             }
         }
         self.choose(found.pairs, &needle_of);
+        self.needles.settled = self.settled()?;
         let mut pieces = Vec::new();
         for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
             let mesh = self.marked.patch();
@@ -248,7 +257,11 @@ impl Work<'_> {
                 push(&mut pieces, ends)?;
             }
         }
-        self.sharp = corners::sharp(&self.marked.points, &pieces, self.own)?;
+        // Most fences end at about a right angle, which is to be no corner.
+        let more = corners::sharp(&self.marked.points, &pieces, self.own, SHARP)?;
+        for (sharp, more) in self.sharp.iter_mut().zip(more) {
+            *sharp |= more;
+        }
         Ok(())
     }
 
@@ -454,64 +467,46 @@ impl Work<'_> {
         pairs
     }
 
-    /// Opens the needles that the budget allows, and lets the others copy cuts; whether there are any.
+    /// Opens the needles that the budget allows, and lets those that were settled at first be settled
+    /// again; whether there are any.
     pub fn open_allowed(&mut self) -> Result<bool> {
         let allowed = self.needles.allowed.clone();
-        let mut copies = filled(allowed.len(), COPIES)?;
+        let mut steps = filled(allowed.len(), STEPS)?;
         let first = self.needles.first;
         for label in self.labels().filter(|&label| label >= first) {
-            copies[(label - first) as usize] += MORE_COPIES;
+            steps[(label - first) as usize] += MORE_STEPS;
         }
-        self.needles.copies = copies;
+        for (steps, settled) in steps.iter_mut().zip(&self.needles.settled) {
+            *steps *= u32::from(*settled);
+        }
+        self.needles.steps = steps;
         if allowed.contains(&true) {
             self.open(|needle| allowed[needle as usize])?;
         }
         Ok(!allowed.is_empty())
     }
 
-    /// Whether the subsegment `e` is to be cut in its needle as the line across is: its apex, a cut of
-    /// that line, lies in its lens, and the halves are no shorter than the pieces there.
-    pub fn is_to_copy(&mut self, e: Code) -> bool {
-        let mesh = self.marked.patch();
-        let needle = mesh.label(triangle(e)) - self.needles.first;
-        let apex = mesh.vertex(e);
-        let some = self.needles.copies.get(needle as usize);
-        let line = self.on[apex as usize];
-        if some.is_none_or(|n| *n == 0) || line < 0 {
-            return false;
-        }
-        let [u, v] = self.base(e, FENCE);
-        if !self.shape.in_lens(u, v, self.at(apex)) {
-            return false;
-        }
-        let mut least = f64::INFINITY;
-        let mut corner = e;
-        loop {
-            let edge = next(corner);
-            if self.marked.patch().is_marked(edge) {
-                let [u, v] = self.base(edge, FENCE);
-                least = least.min(dot(minus(u, v), minus(u, v)));
-            }
-            corner = turn(&self.marked.patch(), corner);
-            if corner == e {
-                break;
+    /// Counts a step of the work in the needle of triangle `t`, if it is in one.
+    pub fn count(&mut self, t: u32) {
+        let label = self.marked.patch().label(t);
+        if label >= self.needles.first {
+            let needle = (label - self.needles.first) as usize;
+            if let Some(steps) = self.needles.steps.get_mut(needle) {
+                *steps = steps.saturating_sub(1);
             }
         }
-        dot(minus(u, v), minus(u, v)) >= HALVES * least
     }
 
-    /// The subsegment `e` has been cut.
-    pub fn count_copy(&mut self, e: Code) {
-        let mesh = self.marked.patch();
-        for t in [triangle(e), triangle(mesh.opposite(e))] {
-            let label = mesh.label(t);
+    /// For each needle, whether nothing is to be done in it.
+    fn settled(&mut self) -> Result<Vec<bool>> {
+        let mut settled = filled(self.needles.labels.len(), true)?;
+        for t in 0..self.marked.triangles() {
+            let label = self.marked.patch().label(t);
             if label >= self.needles.first {
-                let needle = (label - self.needles.first) as usize;
-                if let Some(copies) = self.needles.copies.get_mut(needle) {
-                    *copies = copies.saturating_sub(1);
-                }
+                settled[(label - self.needles.first) as usize] &= !self.is_unsettled(t);
             }
         }
+        Ok(settled)
     }
 
     /// Takes all fences away, and keeps in mind which triangles are left in a needle.
@@ -521,18 +516,10 @@ impl Work<'_> {
         }
         let first = self.needles.first;
         let mut left = filled(self.marked.triangles() as usize, -1)?;
-        let mut unsettled = filled(self.needles.labels.len(), false)?;
-        for t in 0..self.marked.triangles() {
-            let label = self.marked.patch().label(t);
-            if label >= first {
-                left[t as usize] = (label - first) as i32;
-                unsettled[(label - first) as usize] |= self.is_unsettled(t);
-            }
-        }
-        // In some, corners were cut alike: nothing was to be done.
-        for needle in &mut left {
-            if *needle >= 0 && !unsettled[*needle as usize] {
-                *needle = -1;
+        let settled = self.settled()?;
+        for (left, label) in left.iter_mut().zip(self.labels()) {
+            if label >= first && !settled[(label - first) as usize] {
+                *left = (label - first) as i32;
             }
         }
         self.needles.left = left;

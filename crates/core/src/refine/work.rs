@@ -12,7 +12,7 @@ use std::iter::once;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-use super::corners;
+use super::corners::{self, SHARP};
 use super::insert::{Cavity, Walk, walk};
 use super::needles::Needles;
 use super::place::{Bend, Places};
@@ -119,7 +119,7 @@ impl<'a> Work<'a> {
             between: (pieces.iter().enumerate())
                 .map(|(i, e)| (key(e), line(i)))
                 .collect(),
-            sharp: corners::sharp(&marked.points, pieces, own)?,
+            sharp: corners::sharp(&marked.points, pieces, own, SHARP)?,
             shape: Shape::new(task.min_angle, task.circles),
             places: Places::new(task.min_angle),
             queue: Queue::default(),
@@ -164,11 +164,14 @@ impl<'a> Work<'a> {
             }
             if let Some(waiting) = self.encroached.pop() {
                 if self.stands(&waiting) && self.is_encroached(waiting.edge) {
-                    self.count_copy(waiting.edge);
+                    self.count(triangle(waiting.edge));
+                    let o = self.marked.patch().opposite(waiting.edge);
+                    self.count(triangle(o));
                     self.split(waiting.edge)?;
                 }
             } else if let Some(bad) = self.queue.pop() {
                 if self.marked.patch().corners(bad.triangle) == bad.corners {
+                    self.count(bad.triangle);
                     self.improve(bad.triangle)?;
                 }
             } else {
@@ -221,7 +224,7 @@ impl<'a> Work<'a> {
         let corners = mesh.corners(t);
         let seen = self.shape.see(corners.map(|v| self.at(v)));
         let (fault, cap) = (self.shape.fault(&seen, self.caps[t as usize]), self.caps[t as usize]);
-        if fault.is_some() && (!self.needles.hold(label) || seen.area2 > cap) {
+        if fault.is_some() && (!self.needles.rest(label) || seen.area2 > cap) {
             let bad = Bad {
                 triangle: t,
                 corners,
@@ -254,11 +257,8 @@ impl<'a> Work<'a> {
     fn encroaches(&mut self, e: Code) -> bool {
         let mesh = self.marked.patch();
         let label = mesh.label(triangle(e));
-        if label == 0 {
+        if label == 0 || self.needles.rest(label) {
             return false;
-        }
-        if self.needles.hold(label) {
-            return self.is_to_copy(e);
         }
         let [p, q, r] = [next(e), prev(e), e].map(|c| mesh.vertex(c));
         self.shape.in_lens(self.at(p), self.at(q), self.at(r))
@@ -421,7 +421,7 @@ impl<'a> Work<'a> {
         };
         let p = if reason == Reason::Size {
             self.places.cure(points, &seen, cap)
-        } else if self.is_in_needle(t) || self.is_forced(t, &seen) {
+        } else if self.is_at_rest(t) || self.is_forced(t, &seen) {
             // One whose angle cannot be mended may still be too large.
             if seen.area2 <= cap {
                 return Ok(());
@@ -582,9 +582,9 @@ impl<'a> Work<'a> {
         Ok(parted)
     }
 
-    fn is_in_needle(&mut self, t: u32) -> bool {
+    fn is_at_rest(&mut self, t: u32) -> bool {
         let label = self.marked.patch().label(t);
-        self.needles.hold(label)
+        self.needles.rest(label)
     }
 
     /// Whether the smallest angle of a triangle is forced by the input: it lies between two
