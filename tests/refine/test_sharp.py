@@ -141,15 +141,17 @@ def test_angles_of_the_input_are_named() -> None:
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_parallel_lines_end_or_report_their_budget(gap: float) -> None:
+def test_parallel_lines_end_or_are_left_as_a_needle(gap: float) -> None:
     """Angles between lines so near to each other need pieces as short as the gap."""
     mesh = delone.mesh(parallel_lines(gap), max_points=20_000)
-    assert_mesh(mesh, *parallel_lines(gap))
+    report = mesh.report
+    assert_mesh(mesh, *parallel_lines(gap), spoilt=report.below)
+    assert not report.exhausted
     if gap <= 1e-6:
-        assert mesh.report.exhausted
-        assert "budget" in mesh.report.cause
+        assert set(report.cause.tolist()) == {"needle"}
+        assert len(report.needles) == 1
     else:
-        assert mesh.report.ok
+        assert report.ok
 
 
 def test_short_parallel_lines() -> None:

@@ -223,7 +223,8 @@ def refined(
         The points added.
     """
     lines = domain.lines
-    made = _made(domain, caps, min_angle, max_points, circles, sizes_yield, progress)
+    kinds = circles, sizes_yield
+    made = _made(domain, caps, (min_angle, max_points), kinds, progress)
     added, on = made["added"], made["on"]
     markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
     new = domain._replace(
@@ -259,19 +260,22 @@ def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
     """
     caps = np.full(len(domain.simplices), math.inf)
     # Where no point may be added, nothing is done but to look for them.
-    made = _made(domain, caps, min_angle, 0, False, False, None)
+    made = _made(domain, caps, (min_angle, 0))
     return made["simplices"], made["needles"]
 
 
 def _made(
     domain: Domain,
     caps: Floats,
-    min_angle: float,
-    max_points: int,
-    circles: bool,
-    sizes_yield: bool,
-    progress: Progress | None,
+    bounds: tuple[float, int],
+    kinds: tuple[bool, bool] = (False, False),
+    progress: Progress | None = None,
 ) -> dict[str, Any]:
+    """Call the core.
+
+    `bounds` are the smallest angle and the most points to be added, `kinds` whether circles over
+    segments are to be empty, and whether sizes yield to segments.
+    """
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
     made: dict[str, Any] = _core.refine2(
@@ -281,11 +285,9 @@ def _made(
         np.ascontiguousarray(caps, dtype=np.float64),
         segments,
         lines.frozen,
-        min_angle,
-        max_points,
+        *bounds,
         (line, lines.ends, domain.on),
-        circles,
-        sizes_yield,
+        *kinds,
         progress,
     )
     return made

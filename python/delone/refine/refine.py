@@ -101,7 +101,8 @@ def mesh(
     max_points : int, optional
         How many points may be added; by default 5,000,000. Sizes that cannot do with so few are
         refused before the work starts. Where angles need more, the work ends there, and the report
-        of the mesh says so.
+        of the mesh says so. Needles between lines that nearly touch may take 1/64 of it together;
+        those that need more are left, and the report says where.
     conforming : bool, optional
         Segments are edges of the mesh or chains of edges: always so, the only choice is True.
     delaunay : bool, optional
@@ -157,11 +158,10 @@ def mesh(
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centres (A. Üngör 2004), cuts at powers of two around sharp corners, and the rule of Miller,
     Pav and Walkington (2005) for triangles there, so that it ends for angles up to 26 degrees, in
-    practice up to 33, unless `max_points` ends it before. That happens in the needles of corners
-    whose sides are so nearly of one direction that all between them is a sliver: a triangle of
-    height h over a side of length 1 takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
-    unless its sides happen to be cut alike, as two of equal length are: then one may do. Time is
-    about a microsecond a triangle, memory linear.
+    practice up to 33, unless `max_points` ends it before. A needle between lines, like a triangle of
+    height h over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
+    unless its sides happen to be cut alike, as two of equal length are: then one may do. Everything
+    else is refined before needles are. Time is about a microsecond a triangle, memory linear.
 
     Next to frozen segments no bound holds, and with sizes angles there may become far smaller than
     those of the input: points come as near to the segment as the size asks for, and it may not be

@@ -165,7 +165,10 @@ impl<'a> Work<'a> {
             let meets = self.start_anew(input, &found, watch)?;
             let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
             let rows = &self.rows;
-            let is_rounded = |w: u32| rows.get(w as usize).is_none_or(|&r| r as usize >= input.len());
+            let is_rounded = |w: u32| {
+                rows.get(w as usize)
+                    .is_none_or(|&r| r as usize >= input.len())
+            };
             splitter.run(&found.pairs, &meets, is_rounded, watch)?;
             splitter
         };

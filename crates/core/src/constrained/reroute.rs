@@ -463,8 +463,10 @@ mod tests {
         let meets = work.start_anew(points, &crossings, &watch).unwrap();
         let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000);
         let rows = &work.rows;
-        let is_rounded =
-            |w: u32| rows.get(w as usize).is_none_or(|&r| r as usize >= points.len());
+        let is_rounded = |w: u32| {
+            rows.get(w as usize)
+                .is_none_or(|&r| r as usize >= points.len())
+        };
         splitter
             .run(&crossings.pairs, &meets, is_rounded, &watch)
             .unwrap();

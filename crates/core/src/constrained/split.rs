@@ -122,7 +122,14 @@ impl<'a> Splitter<'a> {
             let first = own.partition_point(|o| o[0] < row);
             let meets = own[first..].iter().take_while(|o| o[0] == row);
             let meets = meets.map(|o| o[1]).collect();
-            let stops = way(self.marked, [a, b], row, meets, &is_rounded, &mut self.through)?;
+            let stops = way(
+                self.marked,
+                [a, b],
+                row,
+                meets,
+                &is_rounded,
+                &mut self.through,
+            )?;
             for pair in stops.windows(2).rev() {
                 self.wait([pair[0], pair[1]], &[2 * i as Cover]);
             }
@@ -292,9 +299,7 @@ pub(super) fn way(
 ) -> Result<Vec<u32>> {
     let [p, q] = [a, b].map(|v| marked.at(v));
     let snaps = !meets.is_empty();
-    let near = |marked: &Marked, w: u32| {
-        (snaps || is_rounded(w)) && passes(p, q, marked.at(w))
-    };
+    let near = |marked: &Marked, w: u32| (snaps || is_rounded(w)) && passes(p, q, marked.at(w));
     let mut stops = marked.stops(a, b, near)?;
     for &w in &stops {
         if orient2d(p, q, marked.at(w)).is_zero() {

@@ -126,7 +126,10 @@ impl Needles {
     #[inline]
     pub fn rest(&self, label: u32) -> bool {
         label >= self.first
-            && self.steps.get((label - self.first) as usize).is_none_or(|steps| *steps == 0)
+            && self
+                .steps
+                .get((label - self.first) as usize)
+                .is_none_or(|steps| *steps == 0)
     }
 
     /// Whether a line is a fence.
@@ -190,7 +193,10 @@ impl Base {
         let length = step[0].hypot(step[1]);
         let along = step.map(|x| x / length);
         let height = cross(along, minus(apex, a));
-        let largest = [a, b, apex].as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = [a, b, apex]
+            .as_flattened()
+            .iter()
+            .fold(0.0, |m: f64, x| m.max(x.abs()));
         Self {
             from: a,
             along,
@@ -214,10 +220,7 @@ impl Base {
         };
         let ([x, y], [z, w]) = (self.place(c), self.place(d));
         let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        for (from, to, least, most) in [
-            (x, z, 0.0, self.length),
-            (y, w, -self.gap, FACING * gap),
-        ] {
+        for (from, to, least, most) in [(x, z, 0.0, self.length), (y, w, -self.gap, FACING * gap)] {
             if from == to {
                 if from < least || from > most {
                     return 0.0;
@@ -300,7 +303,9 @@ impl Work<'_> {
                 mesh.mark(e, true);
                 let line = self.ends.len() as i32;
                 push(&mut self.ends, ends)?;
-                self.needles.fences.insert(key(ends), Fence { line, needle });
+                self.needles
+                    .fences
+                    .insert(key(ends), Fence { line, needle });
             }
         }
         Ok(())
@@ -532,7 +537,10 @@ impl Work<'_> {
             let mut mesh = self.marked.patch();
             let label = mesh.label(t);
             if label >= self.needles.first && which(label - self.needles.first) {
-                mesh.set_label(t, self.needles.labels[(label - self.needles.first) as usize]);
+                mesh.set_label(
+                    t,
+                    self.needles.labels[(label - self.needles.first) as usize],
+                );
             }
             for e in 8 * t..8 * t + 3 {
                 let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));

@@ -223,7 +223,10 @@ impl<'a> Work<'a> {
         }
         let corners = mesh.corners(t);
         let seen = self.shape.see(corners.map(|v| self.at(v)));
-        let (fault, cap) = (self.shape.fault(&seen, self.caps[t as usize]), self.caps[t as usize]);
+        let (fault, cap) = (
+            self.shape.fault(&seen, self.caps[t as usize]),
+            self.caps[t as usize],
+        );
         if fault.is_some() && (!self.needles.rest(label) || seen.area2 > cap) {
             let bad = Bad {
                 triangle: t,
