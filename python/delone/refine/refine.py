@@ -158,10 +158,10 @@ def mesh(
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centres (A. Üngör 2004), cuts at powers of two around sharp corners, and the rule of Miller,
     Pav and Walkington (2005) for triangles there, so that it ends for angles up to 26 degrees, in
-    practice up to 33, unless `max_points` ends it before. A needle between lines, like a triangle of
-    height h over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
-    unless its sides happen to be cut alike, as two of equal length are: then one may do. Everything
-    else is refined before needles are. Time is about a microsecond a triangle, memory linear.
+    practice up to 33, unless `max_points` ends it before. A needle between lines, like a triangle
+    of height h over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
+    unless its sides happen to be cut alike, as two of equal length are: then one may do. All else
+    is refined before needles are. Time is about a microsecond a triangle, memory linear.
 
     Next to frozen segments no bound holds, and with sizes angles there may become far smaller than
     those of the input: points come as near to the segment as the size asks for, and it may not be
