@@ -12,6 +12,8 @@
 //! The order of work hangs on the mesh alone, so the result is the same every time.
 
 mod corners;
+mod fence;
+mod gap;
 mod insert;
 mod judge;
 mod needles;
