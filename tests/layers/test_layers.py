@@ -173,7 +173,7 @@ CORE: dict[str, set[str]] = {
     "improve": {"delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "locate3": {"locate", "order", "points", "wide", "delone_predicates"} | GROUND,
+    "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,

@@ -149,6 +149,47 @@ def test_the_nearest_vertex(seed: int, scale: float) -> None:
         assert vertex == distances.index(min(distances))
 
 
+def wheel(kind: str, count: int) -> Floats:
+    """A vertex with very many neighbors, or a circle with very many vertices."""
+    angle = np.arange(count) * 2 * np.pi / count
+    rim = np.column_stack((np.cos(angle), np.sin(angle)))
+    if kind == "hub":
+        return np.concatenate(([(0.0, 0.0)], rim * (1 + 1e-9 * np.sin(7 * angle)[:, None])))
+    if kind == "parabola":
+        x = np.arange(-count // 2, count // 2, dtype=np.float64)
+        return np.concatenate(([(0.0, 2.0 * count * count)], np.column_stack((x, x * x))))
+    # Primitive triples: all at distance 1105 * 5 * 29 from the origin, exactly.
+    radius = 1105 * 5 * 29
+    x = np.arange(radius + 1)
+    y = np.sqrt(radius**2 - x**2).round()
+    on = x**2 + y**2 == radius**2
+    quarter = np.column_stack((x, y))[on]
+    return np.unique(
+        np.concatenate([quarter * s for s in ((1, 1), (1, -1), (-1, 1), (-1, -1))]), axis=0
+    )
+
+
+@pytest.mark.parametrize("calls", ["one", "many"])
+@pytest.mark.parametrize("kind", ["hub", "parabola", "circle"])
+def test_the_nearest_vertex_beside_hubs(kind: str, calls: str) -> None:
+    points = wheel(kind, 300)[np.random.default_rng(0).permutation(len(wheel(kind, 300)))]
+    rng = np.random.default_rng(1)
+    low, high = points.min(axis=0), points.max(axis=0)
+    anywhere = low - 0.2 * (high - low) + rng.random((60, 2)) * 1.4 * (high - low)
+    pairs = points[rng.integers(len(points), size=(20, 2))].mean(axis=1)
+    queries = np.concatenate((anywhere, points[::7], pairs, [(0.0, 0.0)], anywhere * 1e-3))
+    index = locator(points, Delaunay(points).simplices)
+    if calls == "one":
+        found = index.nearest(queries, 1)
+    else:
+        found = np.concatenate([index.nearest(query[None].copy(), 1) for query in queries])
+    exact = [[Fraction(x) for x in p] for p in points.tolist()]
+    for query, vertex in zip(queries.tolist(), found.tolist(), strict=True):
+        x, y = (Fraction(c) for c in query)
+        distances = [(p[0] - x) ** 2 + (p[1] - y) ** 2 for p in exact]
+        assert vertex == distances.index(min(distances))
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_weights_and_nearest_points(seed: int) -> None:
     for points, triangles, queries in cases(seed, 5_000_000):

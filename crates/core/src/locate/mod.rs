@@ -14,6 +14,7 @@ mod nearest;
 mod output;
 mod range;
 mod segment;
+mod sites;
 mod star;
 mod start;
 mod straight;
@@ -22,6 +23,7 @@ mod walk;
 mod walker;
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -35,6 +37,7 @@ pub use nearest::nearest;
 pub use output::Output;
 pub use range::{in_unit, longer_side, seen_from, unit_of};
 pub use segment::along;
+pub use sites::Sites;
 pub use star::{Place, Star};
 pub use start::Start;
 pub use tiling::{Side, next, prev};
@@ -50,6 +53,9 @@ pub struct Kept {
     start: Start<2>,
     boundary: OnceLock<Boundary>,
     boxes: OnceLock<Boxes<2>>,
+    sites: OnceLock<Sites<2>>,
+    /// How many neighbors queries for the nearest vertex have asked in vain.
+    strayed: AtomicUsize,
 }
 
 impl Kept {
@@ -60,6 +66,8 @@ impl Kept {
             start: Start::of(given.simplices.len(), first)?,
             boundary: OnceLock::new(),
             boxes: OnceLock::new(),
+            sites: OnceLock::new(),
+            strayed: AtomicUsize::new(0),
         })
     }
 }
@@ -106,6 +114,16 @@ impl<'a> Locator<'a> {
     #[inline]
     pub fn near(&self, q: Point2) -> usize {
         self.kept.start.near(q)
+    }
+
+    /// The vertices by boxes, where queries have asked as many neighbors in vain, `more` of them now, as
+    /// there are points: about what it costs to make the boxes.
+    fn sites(&self, more: usize) -> Result<Option<&'a Sites<2>>> {
+        let asked = self.kept.strayed.fetch_add(more, Ordering::Relaxed) + more;
+        if asked < self.given.points.len() {
+            return Ok(None);
+        }
+        kept(&self.kept.sites, || Sites::of(&self.given)).map(Some)
     }
 
     /// Where `q` is, on the way from triangle `from`.

@@ -5,66 +5,121 @@
 //! nearer neighbour ends at a nearest vertex; distances fall, so it ends. All nearest ones lie on an
 //! empty circle around the point, whose polygon has Delaunay edges alone, so they are found from one
 //! to the next.
+//!
+//! That the last vertex is the nearest is known when all of its neighbors have been asked, which may be
+//! very many. So a walk that has asked more than a few dozen gives up, and boxes over the vertices tell.
 
 use delone_predicates::{Point2, Sign, nearer};
 
+use super::batch::squared;
 use super::tiling::{Side, next, prev};
-use super::{Batch, Located, Output};
+use super::{Batch, Locator, Output};
 use crate::arrays::Triangles;
 use crate::error::Result;
+
+/// Neighbors that a walk asks. Among uniform points it takes about ten, and boxes cost as much as thirty.
+const PATIENCE: usize = 64;
+/// How far, in lengths of an edge beside the last vertex, a walk goes; from further on the tree of
+/// starts is cheaper. Squared.
+const REACH: f64 = 64.0;
 
 /// For each query the nearest vertex, of several the first row; -1 for what is not finite.
 pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     let found = Output::<i32>::filled(batch.queries.len(), -1)?;
-    let given = &batch.locator.given;
-    batch.each(Vec::new, |ties, row, q, at| {
-        let start = match at {
-            Located::Inside(place) => match place.site() {
-                Some(corner) => {
-                    let triangle = place.triangle;
-                    found.set(row, given.vertex(Side { triangle, corner }));
-                    return Ok(());
-                }
-                None => place.triangle,
-            },
-            Located::Outside(side) => side.triangle,
-        };
-        found.set(row, nearest_from(given, start, q, ties));
+    if batch.locator.given.simplices.is_empty() {
+        return Ok(found.into_vec());
+    }
+    let walk = || Walk {
+        locator: &batch.locator,
+        here: None,
+        last: [f64::NAN; 2],
+        reach: 0.0,
+        hint: None,
+        ties: Vec::new(),
+    };
+    batch.along(walk, |walk, row, q| {
+        found.set(row, walk.nearest(q)?);
         Ok(())
     })?;
     Ok(found.into_vec())
 }
 
-/// The nearest vertex to `q`, on the way from the corners of a triangle; `ties` is scratch room.
-fn nearest_from(given: &Triangles, triangle: usize, q: Point2, ties: &mut Vec<Side>) -> i32 {
-    let at = |side: Side| given.point(given.vertex(side));
-    let mut best = Side {
-        triangle,
-        corner: 0,
-    };
-    for corner in 1..3 {
-        let side = Side { triangle, corner };
-        if nearer(q, at(side), at(best)) == Sign::Positive {
-            best = side;
+/// Goes from query to query of a batch.
+struct Walk<'a> {
+    locator: &'a Locator<'a>,
+    /// A corner at the nearest vertex of a query before, and that query.
+    here: Option<Side>,
+    last: Point2,
+    reach: f64,
+    /// The same in boxes.
+    hint: Option<usize>,
+    /// Room for vertices as near as the nearest.
+    ties: Vec<Side>,
+}
+
+impl Walk<'_> {
+    fn nearest(&mut self, q: Point2) -> Result<i32> {
+        let mut left = PATIENCE;
+        let start = self.start(q);
+        if let Some(vertex) = self.walk(start, q, &mut left) {
+            return Ok(vertex);
+        }
+        if let Some(sites) = self.locator.sites(PATIENCE)? {
+            return Ok(sites.nearest(q, &mut self.hint, nearer));
+        }
+        let mut left = usize::MAX;
+        if let Some(vertex) = self.walk(start, q, &mut left) {
+            self.locator.sites(usize::MAX - left)?;
+            return Ok(vertex);
+        }
+        // Very many vertices are equally near.
+        let sites = self.locator.sites(self.locator.given.points.len())?;
+        Ok(sites.map_or(-1, |sites| sites.nearest(q, &mut self.hint, nearer)))
+    }
+
+    /// A corner near `q`.
+    fn start(&self, q: Point2) -> Side {
+        // False for NaN, at first and where squares overflow: then the tree knows where to start.
+        if squared(q, self.last) <= self.reach
+            && let Some(here) = self.here
+        {
+            return here;
+        }
+        Side {
+            triangle: self.locator.near(q),
+            corner: 0,
         }
     }
-    loop {
-        let here = at(best);
-        let mut closer = None;
-        ties.clear();
-        neighbours(given, best, |side| {
-            match nearer(q, at(side), here) {
-                Sign::Positive => closer = Some(side),
-                Sign::Zero => ties.push(side),
-                Sign::Negative => {}
+
+    /// The nearest vertex to `q`, of several the first row, on the way from `best`; nothing after `left` neighbors.
+    fn walk(&mut self, mut best: Side, q: Point2, left: &mut usize) -> Option<i32> {
+        let given = &self.locator.given;
+        let at = |side: Side| given.point(given.vertex(side));
+        loop {
+            let here = at(best);
+            let mut closer = None;
+            self.ties.clear();
+            neighbours(given, best, |side| {
+                match nearer(q, at(side), here) {
+                    Sign::Positive => closer = Some(side),
+                    Sign::Zero => self.ties.push(side),
+                    Sign::Negative => {}
+                }
+                *left -= 1;
+                closer.is_none() && *left > 0
+            });
+            match closer {
+                _ if *left == 0 => return None,
+                Some(side) => best = side,
+                None => break,
             }
-            closer.is_none()
-        });
-        match closer {
-            Some(side) => best = side,
-            None if ties.is_empty() => return given.vertex(best),
-            None => return first_of_ties(given, best, q, ties),
         }
+        let [a, b, _] = given.corners(best.triangle);
+        (self.here, self.last, self.reach) = (Some(best), q, REACH * squared(a, b));
+        if self.ties.is_empty() {
+            return Some(given.vertex(best));
+        }
+        first_of_ties(given, best, q, &mut self.ties, left)
     }
 }
 
@@ -76,9 +131,16 @@ fn neighbours(given: &Triangles, start: Side, mut visit: impl FnMut(Side) -> boo
     });
 }
 
-/// The first row among all vertices as near as the one at `start`, where that is the least.
+/// The first row among all vertices as near as the one at `start`, where that is the least; nothing where they
+/// are many, or `left` neighbors do not tell.
 #[cold]
-fn first_of_ties(given: &Triangles, start: Side, q: Point2, open: &mut Vec<Side>) -> i32 {
+fn first_of_ties(
+    given: &Triangles,
+    start: Side,
+    q: Point2,
+    open: &mut Vec<Side>,
+    left: &mut usize,
+) -> Option<i32> {
     let here = given.point(given.vertex(start));
     let mut met = vec![given.vertex(start)];
     while let Some(side) = open.pop() {
@@ -92,8 +154,12 @@ fn first_of_ties(given: &Triangles, start: Side, q: Point2, open: &mut Vec<Side>
             if nearer(q, p, here) == Sign::Zero {
                 open.push(side);
             }
-            true
+            *left -= 1;
+            *left > 0
         });
+        if *left == 0 || met.len() > PATIENCE {
+            return None;
+        }
     }
-    met.into_iter().min().unwrap_or(-1)
+    met.into_iter().min()
 }

@@ -11,7 +11,6 @@ mod excess;
 mod face;
 mod foot;
 mod nearest;
-mod sites;
 mod star;
 mod tiling;
 mod walk;
@@ -29,10 +28,9 @@ pub use tiling::{FACES, Side, Tetrahedra};
 
 use crate::error::Result;
 pub use crate::locate::find;
-use crate::locate::{self, Boxes, Start, is_finite, kept};
+use crate::locate::{self, Boxes, Sites, Start, is_finite, kept};
 use crate::points::Extent;
 use boundary::Boundary;
-use sites::Sites;
 use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.
@@ -43,7 +41,7 @@ pub struct Kept {
     start: Start<3>,
     boundary: OnceLock<Boundary>,
     boxes: OnceLock<Boxes<3>>,
-    sites: OnceLock<Sites>,
+    sites: OnceLock<Sites<3>>,
 }
 
 impl Kept {
@@ -138,7 +136,7 @@ impl<'a> Locator<'a> {
     }
 
     /// The vertices, for the nearest of them.
-    fn sites(&self) -> Result<&'a Sites> {
+    fn sites(&self) -> Result<&'a Sites<3>> {
         kept(&self.kept.sites, || Sites::of(&self.given))
     }
 

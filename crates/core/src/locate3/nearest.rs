@@ -1,5 +1,7 @@
 //! The nearest vertex for each query of a batch.
 
+use delone_predicates::nearer3;
+
 use super::Batch;
 use crate::error::Result;
 use crate::locate::Output;
@@ -11,7 +13,7 @@ pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     batch.along(
         || None,
         |last, row, q| {
-            found.set(row, sites.nearest(q, last));
+            found.set(row, sites.nearest(q, last, nearer3));
             Ok(())
         },
     )?;

@@ -1,28 +1,29 @@
-//! The nearest vertex of any tetrahedra, by boxes over the vertices along the curve.
+//! The nearest vertex, by boxes over the vertices along the curve, of either dimension.
 //!
-//! A walk over the edges of a Delaunay triangulation finds it, too, but meets 27 tetrahedra around each
-//! vertex on the way; boxes need no triangulation, and ask some twenty points.
+//! A walk over the edges of a Delaunay triangulation finds it, too, but asks all neighbors of a vertex: 27
+//! tetrahedra around each on the way in 3-D, and any number of triangles in the plane. Boxes need no
+//! triangulation, and ask some twenty points.
 
-use delone_predicates::{Point3, Sign, nearer3};
+use delone_predicates::Sign;
 
-use super::tiling::Tetrahedra;
+use super::boxes::{Boxes, length};
+use crate::arrays::Given;
 use crate::error::Result;
-use crate::locate::{Boxes, length};
 use crate::memory::{filled, with_room};
 use crate::order::order_of;
 use crate::points::Extent;
 
-/// The vertices of tetrahedra along the curve, and boxes over them.
+/// The vertices of simplices along the curve, and boxes over them.
 #[derive(Debug)]
-pub struct Sites {
+pub struct Sites<const D: usize> {
     rows: Vec<i32>,
-    points: Vec<Point3>,
-    boxes: Boxes<3>,
+    points: Vec<[f64; D]>,
+    boxes: Boxes<D>,
 }
 
-impl Sites {
-    /// The vertices that tetrahedra have.
-    pub fn of(given: &Tetrahedra) -> Result<Self> {
+impl<const D: usize> Sites<D> {
+    /// The vertices that simplices have.
+    pub fn of<const N: usize>(given: &Given<D, N>) -> Result<Self> {
         let mut used = filled(given.points.len(), false)?;
         for &v in given.simplices.as_flattened() {
             used[v as usize] = true;
@@ -51,18 +52,25 @@ impl Sites {
     }
 
     /// The nearest one to `q`, of several the first row; `last` is the one before, of a query near by.
-    pub fn nearest(&self, q: Point3, last: &mut Option<usize>) -> i32 {
+    /// `nearer` tells, exactly, whether the second point is nearer to the first than the third is.
+    pub fn nearest(
+        &self,
+        q: [f64; D],
+        last: &mut Option<usize>,
+        nearer: impl Fn([f64; D], [f64; D], [f64; D]) -> Sign,
+    ) -> i32 {
         let mut best: Option<usize> = None;
         let mut within = f64::INFINITY;
         self.boxes.toward(q, *last, |i, unit| {
-            let nearer = |&other: &usize| match nearer3(q, self.points[i], self.points[other]) {
+            let before = |&other: &usize| match nearer(q, self.points[i], self.points[other]) {
                 Sign::Positive => true,
                 Sign::Zero => self.rows[i] < self.rows[other],
                 Sign::Negative => false,
             };
-            if best.as_ref().is_none_or(nearer) {
+            if best.as_ref().is_none_or(before) {
                 best = Some(i);
-                let away = [0, 1, 2].map(|k| self.points[i][k] * unit - q[k] * unit);
+                let away: [f64; D] =
+                    std::array::from_fn(|k| self.points[i][k] * unit - q[k] * unit);
                 // A little more, so that no rounding leaves a box out.
                 within = length(away) * (1.0 + 1e-14) + f64::MIN_POSITIVE;
             }
