@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from delone import ConvexHull, Delaunay, Voronoi
 from delone.errors import InputError
 from delone.voronoi.halfspaces import common_part
+from delone.voronoi.polyhedra import as_polyhedron
 from rational import Vector, cross, dot, exact, minus
 
 CORPUS = Path(__file__).parent.parent / "corpus" / "space"
@@ -369,3 +370,39 @@ def test_faces_of_a_hull_are_those_of_fractions(seed: int) -> None:
             wanted = np.array(sorted(set().union(*faces)), dtype=float)
             far = np.abs(wanted[:, None] - cell.vertices).max(axis=2).min(axis=1)
             assert (far < 1e-12).all()
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0**-700])
+def test_no_corner_of_a_hull_is_outside_of_its_planes(scale: float) -> None:
+    """Corners on a sphere, on a cone and on a lattice."""
+    rng = np.random.default_rng(7)
+    ball = rng.normal(size=(700, 3))
+    ball /= np.linalg.norm(ball, axis=1)[:, None]
+    way = np.arange(300) * np.pi / 150
+    cone = np.column_stack((np.cos(way), np.sin(way), np.zeros(300)))
+    lattice = np.array(list(itertools.product(range(5), repeat=3))) * 0.1
+    for points in (ball + 10, np.concatenate((cone, [(0, 0, 3)])), lattice):
+        body = as_polyhedron(points * scale, points * scale)
+        assert body is not None
+        products = np.einsum("ik,jk->ij", body.planes[:, :3], body.points)
+        farthest = products.max(axis=1)
+        rounding = 2.0**-50 * (np.abs(body.planes[:, :3]) @ np.abs(body.points).max(axis=0))
+        assert (np.abs(farthest - body.planes[:, 3]) <= rounding).all()
+
+
+def test_half_spaces_around_a_ball_have_the_corners_of_fractions() -> None:
+    rng = np.random.default_rng(11)
+    normals = rng.normal(size=(400, 3))
+    halfspaces = np.column_stack((normals, -np.linalg.norm(normals, axis=1)))
+    points, faces, rows = common_part(halfspaces)
+    assert len(points) - sum(map(len, faces)) // 2 + len(faces) == 2
+    assert [tuple(p) for p in points.tolist()] == sorted(map(tuple, points.tolist()))
+    planes = [tuple(map(Fraction, row)) for row in halfspaces.tolist()]
+    on: dict[int, list[int]] = {}
+    for face, row in zip(faces, rows, strict=True):
+        for corner in face:
+            on.setdefault(corner, []).append(row)
+    for corner, beside in on.items():
+        (at,) = corners_of([planes[row] for row in beside])
+        assert points[corner].tolist() == [float(x) for x in at]
+        assert all(dot(row[:3], at) + row[3] <= 0 for row in planes)

@@ -174,13 +174,19 @@ class _Cone:
         self._rays: list[_Ray | None] = []
         self._near: Floats = np.zeros((64, 4))
         self._of: dict[int, set[int]] = {}
+        # Numbers of rays that were removed, to be given to others.
+        self._free: list[int] = []
 
     def left(self) -> list[_Ray]:
         return [ray for ray in self._rays if ray is not None]
 
     def add(self, ray: _Ray) -> None:
-        number = len(self._rays)
-        self._rays.append(ray)
+        if self._free:
+            number = self._free.pop()
+            self._rays[number] = ray
+        else:
+            number = len(self._rays)
+            self._rays.append(ray)
         if number == len(self._near):
             self._near = np.concatenate((self._near, np.zeros_like(self._near)))
         self._near[number] = _unit(ray.at)
@@ -190,7 +196,7 @@ class _Cone:
     def cut(self, number: int, row: Row) -> None:
         """Removes what lies beyond a half-space."""
         near = self._near[: len(self._rays)] @ _unit(row)
-        within: set[int] = set(np.flatnonzero(near < -_CERTAIN).tolist())
+        within = near < -_CERTAIN
         beyond: list[int] = np.flatnonzero(near > _CERTAIN).tolist()
         for i in np.flatnonzero(np.abs(near) <= _CERTAIN).tolist():
             ray = self._rays[i]
@@ -198,20 +204,21 @@ class _Cone:
                 continue
             value = _product(row, ray.at)
             if value < 0:
-                within.add(i)
+                within[i] = True
             elif value > 0:
                 beyond.append(i)
             else:
                 ray.on |= {number}
                 self._of.setdefault(number, set()).add(i)
         new = [
-            self._between(number, row, i, j) for j in beyond for i in self._beside(j) if i in within
+            self._between(number, row, i, j) for j in beyond for i in self._beside(j) if within[i]
         ]
         for j in beyond:
             for i in self._ray(j).on:
                 self._of[i].discard(j)
             self._rays[j] = None
             self._near[j] = 0
+        self._free += beyond
         for ray in new:
             self.add(ray)
 
@@ -254,34 +261,38 @@ def _polyhedron(
     rows: dict[int, Row], rays: list[_Ray]
 ) -> tuple[Floats, list[list[int]], list[int]]:
     """Corners and faces of a body with volume, out of its rays."""
-    named = sorted(
-        ((tuple(Fraction(x, ray.at[3]) for x in ray.at[:3]), ray) for ray in rays), key=_at
-    )
-    exact = [at for at, _ in named]
     try:
-        corners = np.array([[x / ray.at[3] for x in ray.at[:3]] for _, ray in named]) + 0.0
+        corners = np.array([[x / ray.at[3] for x in ray.at[:3]] for ray in rays]) + 0.0
     except OverflowError:
         raise InputError("a corner of clip is beyond the range of doubles") from None
+    order = _ascending(corners, rays)
+    corners, rays = corners[order], [rays[i] for i in order]
     of: dict[int, set[int]] = {number: set() for number in rows}
-    for corner, (_, ray) in enumerate(named):
+    for corner, ray in enumerate(rays):
         for number in ray.on:
             of[number].add(corner)
     # Half-spaces that touch no more than an edge make no face.
     made = {number: mine for number, mine in sorted(of.items()) if len(mine) > 2}
     faces = []
     for number, mine in made.items():
-        beside = {i for corner in mine for i in named[corner][1].on} & made.keys() - {number}
+        beside = {i for corner in mine for i in rays[corner].on} & made.keys() - {number}
         turn = _around([mine & made[i] for i in beside])
-        a, b, c = (exact[i] for i in turn[:3])
-        p, q = ([y - x for x, y in zip(a, to, strict=True)] for to in (b, c))
+        a, b, c = (rays[i].at for i in turn[:3])
+        # Ways from a, times positive numbers.
+        p, q = ([y * a[3] - x * to[3] for x, y in zip(a, to, strict=True)] for to in (b, c))
         upright = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
         outward = sum(x * y for x, y in zip(rows[number][:3], upright, strict=True)) > 0
         faces.append(turn if outward else [turn[0], *turn[:0:-1]])
     return corners, faces, list(made)
 
 
-def _at(named: tuple[tuple[Fraction, ...], _Ray]) -> tuple[Fraction, ...]:
-    return named[0]
+def _ascending(corners: Floats, rays: list[_Ray]) -> list[int]:
+    """The order of corners by exact coordinates: that of doubles, but where these are equal."""
+    if len(np.unique(corners[:, 0])) == len(corners):
+        found: list[int] = np.argsort(corners[:, 0]).tolist()
+        return found
+    exact = [tuple(Fraction(x, ray.at[3]) for x in ray.at[:3]) for ray in rays]
+    return sorted(range(len(rays)), key=exact.__getitem__)
 
 
 def _around(edges: list[set[int]]) -> list[int]:

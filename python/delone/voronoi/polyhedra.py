@@ -29,6 +29,8 @@ __all__ = ["Polyhedron", "as_polyhedron"]
 # The corners of a box by the bits of their numbers, and its faces counter-clockwise from outside:
 # x low, x high, y low, and so on.
 _FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+# Points in a box at most, and planes that are held against all boxes together.
+_BOX, _BATCH = 64, 256
 _CHOICES = (
     "clip must be 'box', a box ((xmin, ymin, zmin), (xmax, ymax, zmax)), half-spaces (k, 4), "
     "points (k, 3) or a convex hull"
@@ -145,15 +147,50 @@ def _hull(points: Floats) -> Polyhedron:
     used, corners = np.unique(np.concatenate(hull.facets), return_inverse=True)
     triangles = hull.simplices[np.unique(hull.facet_of, return_index=True)[1]]
     normal = face_normals(points, triangles)
+    starts = np.cumsum([0, *lengths])
+    own = np.maximum.reduceat(
+        (np.repeat(normal, lengths, axis=0) * points[used[corners]]).sum(axis=1), starts[:-1]
+    )
     # No corner may be outside of a plane by its rounding.
-    offset = (normal @ points[used].T).max(axis=1)
+    offset = _farthest(normal, points[used], own)
     return Polyhedron(
         points=points[used],
-        starts=np.cumsum([0, *lengths]).astype(np.int32),
+        starts=starts.astype(np.int32),
         corners=corners.reshape(-1).astype(np.int32),
         planes=np.column_stack((normal, offset)),
         name="a convex polyhedron",
     )
+
+
+def _farthest(normals: Floats, points: Floats, least: Floats) -> Floats:
+    """The greatest product of each normal with any of the points: `least` or a little more.
+
+    Only the points of boxes that reach so far are asked.
+    """
+    boxes = _in_boxes(points)
+    middle, half = (boxes.max(axis=1) + boxes.min(axis=1)) / 2, np.ptp(boxes, axis=1) / 2
+    found = least.copy()
+    for rows in np.array_split(np.arange(len(normals)), max(1, len(normals) // _BATCH)):
+        bound = normals[rows] @ middle.T + np.abs(normals[rows]) @ half.T
+        # Rounding of products and sums, with room.
+        bound += 2.0**-48 * (np.abs(normals[rows]) @ np.abs(boxes).max(axis=1).T)
+        plane, box = np.nonzero(bound >= least[rows, None])
+        reached = np.einsum("ik,ijk->ij", normals[rows[plane]], boxes[box]).max(axis=1)
+        np.maximum.at(found, rows[plane], reached)
+    return found
+
+
+def _in_boxes(points: Floats) -> Floats:
+    """The points in groups of neighbors of one size, (k, j, 3); some points are in two groups."""
+    groups = np.arange(len(points))[None]
+    while groups.shape[1] > _BOX:
+        size = groups.shape[1]
+        at = points[groups]
+        axis = np.ptp(at, axis=1).argmax(axis=1)
+        along = np.take_along_axis(at, axis[:, None, None], axis=2)[:, :, 0]
+        order = np.take_along_axis(groups, np.argsort(along, axis=1), axis=1)
+        groups = np.concatenate((order[:, : (size + 1) // 2], order[:, size // 2 :]))
+    return points[groups]
 
 
 def _common(halfspaces: Floats) -> Polyhedron:
