@@ -45,6 +45,7 @@ __all__ = [
     "orient3d",
     "periodic2",
     "periodic_centers2",
+    "pieces2",
     "polygon2",
     "qualities2",
     "qualities3",
@@ -409,6 +410,16 @@ def touched2(
     ridges: NDArray[np.int32],
     segments: NDArray[np.float64],
 ) -> tuple[NDArray[np.int32], int]: ...
+def pieces2(
+    starts: NDArray[np.int32],
+    corners: NDArray[np.float64],
+    ridges: NDArray[np.int32],
+    rows: NDArray[np.int32],
+    inside: NDArray[np.bool_],
+    rings: NDArray[np.int32],
+    outline: NDArray[np.float64],
+    workers: int,
+) -> dict[str, NDArray[Any]]: ...
 def regular2(
     points: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...

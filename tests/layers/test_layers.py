@@ -177,7 +177,16 @@ CORE: dict[str, set[str]] = {
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
     "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
-    "voronoi": {"measure", "regular", "points", "parallel", "wide", "delone_predicates"} | GROUND,
+    "voronoi": {
+        "measure",
+        "regular",
+        "constrained",
+        "points",
+        "parallel",
+        "wide",
+        "delone_predicates",
+    }
+    | GROUND,
     "regular3": {"regular", "locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
     "voronoi3": {
         "measure",

@@ -84,6 +84,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(regular::regular3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi3::voronoi_clip3, m)?)?;
     m.add_function(wrap_pyfunction!(voronoi::touched2, m)?)?;
+    m.add_function(wrap_pyfunction!(voronoi::pieces2, m)?)?;
     m.add_function(wrap_pyfunction!(regular::regular2, m)?)?;
     m.add_function(wrap_pyfunction!(regular::periodic2, m)?)?;
     m.add_function(wrap_pyfunction!(regular::periodic_centers2, m)?)?;

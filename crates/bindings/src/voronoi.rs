@@ -1,7 +1,7 @@
 //! Voronoi and power diagrams, and polygons cut from them, as arrays.
 
 use delone_core::error::{Error, Result};
-use delone_core::voronoi::{self, Cells, Given};
+use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -169,4 +169,55 @@ pub fn touched2(
     })?;
     let (groups, count) = detached(py, || voronoi::touched(starts, corners, ridges, segments))?;
     Ok((column(py, groups), count))
+}
+
+/// What an outline, rings with their inside to the left, leaves of some of the polygons: for each of `rows`,
+/// of whose first corner `inside` tells whether the outline has it, -1 (doubtful), 0 (nothing), 1 (all)
+/// or 2 (parts), and the parts as arrays.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn pieces2<'py>(
+    py: Python<'py>,
+    starts: PyReadonlyArray1<'py, i32>,
+    corners: PyReadonlyArray2<'py, f64>,
+    ridges: PyReadonlyArray1<'py, i32>,
+    rows: PyReadonlyArray1<'py, i32>,
+    inside: PyReadonlyArray1<'py, bool>,
+    rings: PyReadonlyArray1<'py, i32>,
+    outline: PyReadonlyArray2<'py, f64>,
+    workers: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (cells, rows, inside, outline) = attached(py, || {
+        let cells = Convex {
+            starts: flat(&starts, "starts")?,
+            corners: crate::arrays::rows(&corners, "corners")?,
+            ridges: flat(&ridges, "ridges")?,
+        };
+        are_starts(cells.starts, cells.corners.len())?;
+        let outline = Outline {
+            starts: flat(&rings, "rings")?,
+            points: crate::arrays::rows(&outline, "outline")?,
+        };
+        are_starts(outline.starts, outline.points.len())?;
+        let (rows, inside) = (flat(&rows, "rows")?, flat(&inside, "inside")?);
+        each_in_range(rows, 0, cells.starts.len() - 1, "rows")?;
+        if cells.ridges.len() != cells.corners.len() || rows.len() != inside.len() {
+            return Err(unequal());
+        }
+        Ok((cells, rows, inside, outline))
+    })?;
+    let made = watched(py, |watch| {
+        voronoi::pieces(cells, rows, inside, outline, workers, watch)
+    })?;
+    let out = PyDict::new(py);
+    out.set_item("left", column(py, made.left))?;
+    out.set_item("cells", column(py, made.cells))?;
+    out.set_item("parts", column(py, made.parts))?;
+    out.set_item("rings", column(py, made.rings))?;
+    out.set_item("points", table(py, made.points)?)?;
+    out.set_item("ridges", column(py, made.ridges))?;
+    out.set_item("areas", column(py, made.measures.areas))?;
+    out.set_item("centroids", table(py, made.measures.centroids)?)?;
+    out.set_item("perimeters", column(py, made.measures.perimeters))?;
+    Ok(out)
 }

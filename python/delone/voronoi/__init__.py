@@ -1,9 +1,10 @@
 """Voronoi diagrams of points in the plane and in space, whole or cut to an outline or polyhedron.
 
 `diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
-is, `outline` where they end, `clipping` what that leaves of them, by `overlay`; `shapes` has
-geometries, tables and pictures, `centroidal` Lloyd's method, `torus` periodic sets. Of space,
-`space` has the class, `bodies` what a cell is, and `polyhedra` what cells are cut to.
+is, `outline` where they end, `clipping` what that leaves of them, by `pieces` and `overlay`.
+`shapes` has geometries, tables and pictures, `centroidal`
+Lloyd's method, `torus` periodic sets. Of space, `space` has the class, `bodies` what a cell is, and
+`polyhedra` what cells are cut to.
 """
 
 from delone.voronoi.bodies import SpaceCell, SpaceNeighbors

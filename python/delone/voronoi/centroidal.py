@@ -232,7 +232,7 @@ def _iterated(
             evaluations += tries
         if found is None:
             memory.forget()
-            found = _state(Voronoi(at.centers, clip=diagram.clip, workers=workers), density)
+            found = _state(Voronoi(at.centers, clip=diagram._clip, workers=workers), density)
             evaluations += 1
         if quasi_newton:
             memory.learn(at, found)
@@ -336,7 +336,7 @@ def _descent(
     while slope < 0 and tries < _TRIES:
         share = 0.5**tries
         tries += 1
-        moved = Voronoi(at.sites + share * step, clip=at.diagram.clip, workers=workers)
+        moved = Voronoi(at.sites + share * step, clip=at.diagram._clip, workers=workers)
         found = _state(moved, density)
         enough = at.energy + _FALL * share * slope + _ROUNDING * at.energy
         if found.energy <= enough and int((found.masses > 0).sum()) >= filled:
@@ -353,6 +353,16 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
     # Signed, so that rings around holes and notches take away what others have counted.
     size = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
     site = diagram.points[diagram._dual["site"]]
+    centers = site.copy()
+    if density is None:
+        mass = clipped.areas
+        filled = mass > 0
+        centers[filled] = origin[filled]
+        # The integral of x.x over a triangle with corners 0, a and b.
+        inertia = size / 6 * ((a + b) * (a + b) - a * b).sum(axis=1)
+        way = centers - site
+        energy = float(inertia.sum() + (mass * (way * way).sum(axis=1)).sum())
+        return _State(diagram, diagram.points, centers[region], mass[region], energy)
     mass, moment, energy = np.zeros(len(origin)), np.zeros_like(origin), 0.0
     for place, share in zip(_PLACES, _SHARES, strict=True):
         at = place[1] * a + place[2] * b
@@ -362,17 +372,14 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
             moment[:, k] += np.bincount(cell, amount * at[:, k], len(origin))
         way = at + (origin - site)[cell]
         energy += float((amount * (way * way).sum(axis=1)).sum())
-    centers = site.copy()
     filled = mass > 0
-    if density is not None and not filled.any():
+    if not filled.any():
         raise InputError("density returned nothing but zeros: no cell has a centroid")
     centers[filled] = origin[filled] + moment[filled] / mass[filled, None]
     return _State(diagram, diagram.points, centers[region], mass[region], energy)
 
 
-def _density(density: Density | None, places: Floats) -> Floats | float:
-    if density is None:
-        return 1.0
+def _density(density: Density, places: Floats) -> Floats:
     given = np.asarray(density(places))
     if given.dtype.kind not in "biuf":
         raise DtypeError(f"density must return real numbers, got dtype {given.dtype}")

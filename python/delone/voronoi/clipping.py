@@ -1,9 +1,10 @@
-"""What a clip leaves of cells: boxes by the core, outlines by shapely where the outline passes.
+"""What a clip leaves of cells: boxes and outlines by the core, by shapely what is degenerate.
 
 A cell is convex, and most cells of a clipped diagram lie wholly inside or outside. The core cuts
 all cells to a box a little larger than the outline, finds the cells that the outline comes near,
 and joins the others to groups on one side of it; one point of each group tells on which. Only the
-cells that the outline comes near are intersected with it.
+cells that the outline comes near are cut to it, by the core where exact signs leave no doubt
+(`pieces`), and by shapely where corners and edges of both coincide (`overlay`).
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone.voronoi import torus
-from delone.voronoi.outline import times, unit_of
-from delone.voronoi.overlay import as_polygons, intersections, next_corner, with_shared_corners
+from delone.voronoi import pieces, torus
+from delone.voronoi.outline import next_corner, times
+from delone.voronoi.overlay import as_polygons, intersections, with_shared_corners
 from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
@@ -130,31 +131,66 @@ class _Bounded(Clipped):
 
 
 class _InOutline(Clipped):
-    """Cells cut to an outline; those on it are geometries of their own."""
+    """Cells cut to an outline.
 
-    def __init__(self, whole: Clipped, outline: Any, workers: int) -> None:
+    The core cuts those on the outline wherever exact signs leave no doubt (see `pieces`); the
+    others are geometries of their own.
+    """
+
+    def __init__(self, whole: Clipped, clip: Clip, workers: int) -> None:
         super().__init__(whole.starts, whole.corners, whole.ridges, whole.ridge_count, workers)
-        # What shapely sees is in these units; all else is in those of the points.
-        self._scale = unit_of(shapely_or_say().get_coordinates(outline))
-        self._outline = times(outline, self._scale)
-        self._side = _sides(whole, self._outline, self._scale)
-        self._rows = np.flatnonzero(self._side == _CUT)
-        starts, corners = _taken(self.starts, self.corners * self._scale, self._rows)
-        cut = intersections(as_polygons(starts, corners), self._outline)
-        cut = with_shared_corners(cut, corners, self._outline)
-        self._measure(cut)
-        self._cut = times(cut, 1 / self._scale)
+        # What the outline meets is in these units; all else is in those of the points.
+        self._scale = clip.unit
+        self._outline = clip.scaled
+        self._side = _sides(whole, clip)
+        rows = np.flatnonzero(self._side == _CUT)
+        found = pieces.cut(self, rows, clip, workers)
+        self._side[rows] = found.sides(_OUTSIDE, _INSIDE, _CUT)
+        self._pieces = found
+        self._doubtful = rows[found.doubtful]
+        self._overlaid = self._overlay(self._doubtful, found.corners)
+        self._measure(rows)
 
-    def _measure(self, cut: NDArray[Any]) -> None:
+    def _overlay(self, rows: NDArray[np.int64], known: Floats) -> NDArray[Any]:
+        """Intersect some of the cells with the outline as geometries."""
+        if not len(rows):
+            return np.empty(0, dtype=object)
+        starts, corners = _taken(self.starts, self.corners * self._scale, rows)
+        cut = intersections(as_polygons(starts, corners), self._outline)
+        return with_shared_corners(cut, np.concatenate((corners, known)), self._outline)
+
+    def _measure(self, rows: NDArray[np.int64]) -> None:
         shapely = shapely_or_say()
 
         outside = self._side == _OUTSIDE
         self.areas[outside] = self.perimeters[outside] = 0
         self.centroids[outside] = np.nan
-        self.areas[self._rows] = shapely.area(cut) / self._scale / self._scale
-        self.perimeters[self._rows] = shapely.length(cut) / self._scale
-        centers = shapely.get_coordinates(_points_or_nan(shapely.centroid(cut)))
-        self.centroids[self._rows] = centers / self._scale
+        found, traced = self._pieces, self._pieces.traced
+        self.areas[rows[traced]] = found.areas[traced] / self._scale / self._scale
+        self.perimeters[rows[traced]] = found.perimeters[traced] / self._scale
+        self.centroids[rows[traced]] = found.centroids[traced] / self._scale
+        if len(self._doubtful):
+            cut = self._overlaid
+            self.areas[self._doubtful] = shapely.area(cut) / self._scale / self._scale
+            self.perimeters[self._doubtful] = shapely.length(cut) / self._scale
+            centers = shapely.get_coordinates(_points_or_nan(shapely.centroid(cut)))
+            self.centroids[self._doubtful] = centers / self._scale
+
+    def _geometries(self) -> tuple[NDArray[np.int64], NDArray[Any]]:
+        """The cells on the outline, and what is left of each."""
+        if self._cut is None:
+            rows, traced = self._pieces.polygons()
+            wrong = np.flatnonzero(~shapely_or_say().is_valid(traced))
+            if len(wrong):
+                # Rings that touch themselves, or that rounding has made to.
+                traced[wrong] = self._overlay(rows[wrong], self._pieces.corners)
+            rows = np.concatenate((rows, self._doubtful))
+            order = np.argsort(rows)
+            found = np.concatenate((traced, self._overlaid))[order]
+            self._cut = rows[order], times(found, 1 / self._scale)
+        return self._cut
+
+    _cut: tuple[NDArray[np.int64], NDArray[Any]] | None = None
 
     def ridge_lengths(self) -> Floats:
         shapely = shapely_or_say()
@@ -164,37 +200,53 @@ class _InOutline(Clipped):
         along = self.ridges >= 0
         inside = along & (self._side[owner] == _INSIDE)
         lengths[self.ridges[inside]] = self._edge_lengths()[inside]
-        # A ridge between two cells on the outline is met twice, with one result.
-        cut = np.flatnonzero(along & (self._side[owner] == _CUT))
-        cut = cut[lengths[self.ridges[cut]] == 0]
-        _, once = np.unique(self.ridges[cut], return_index=True)
-        cut = cut[once]
-        ends = np.stack((self.corners[cut], self.corners[self._next()[cut]]), axis=1) * self._scale
-        pieces = intersections(shapely.linestrings(ends), self._outline, areal=False)
-        lengths[self.ridges[cut]] = shapely.length(pieces) / self._scale
+        ridges, traced = self._pieces.ridge_lengths(self.ridge_count)
+        lengths[ridges] = traced / self._scale
+        # A ridge between two doubtful cells is met twice, with one result.
+        doubtful = np.zeros(len(self._side), dtype=bool)
+        doubtful[self._doubtful] = True
+        told = np.zeros(self.ridge_count, dtype=bool)
+        told[self.ridges[along & ~doubtful[owner]]] = True
+        cut = np.flatnonzero(along & doubtful[owner])
+        cut = cut[~told[self.ridges[cut]]]
+        if len(cut):
+            _, once = np.unique(self.ridges[cut], return_index=True)
+            cut = cut[once]
+            ends = np.stack((self.corners[cut], self.corners[self._next()[cut]]), axis=1)
+            lines = shapely.linestrings(ends * self._scale)
+            found = intersections(lines, self._outline, areal=False)
+            lengths[self.ridges[cut]] = shapely.length(found) / self._scale
         return lengths
 
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
-        shapely = shapely_or_say()
-
         owner, begin, end = super().edges()
         inside = self._side[owner] == _INSIDE
-        parts, cell = shapely.get_parts(shapely.orient_polygons(self._cut), return_index=True)
+        groups = [(owner[inside], begin[inside], end[inside])]
+        cell, begin, end = self._pieces.edges()
+        groups.append((cell, begin / self._scale, end / self._scale))
+        if len(self._doubtful):
+            groups.append(self._doubtful_edges())
+        owner, begin, end = (np.concatenate(column) for column in zip(*groups, strict=True))
+        return owner, begin, end
+
+    def _doubtful_edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
+        shapely = shapely_or_say()
+
+        turned = shapely.orient_polygons(times(self._overlaid, 1 / self._scale))
+        parts, cell = shapely.get_parts(turned, return_index=True)
         rings, part = shapely.get_rings(parts, return_index=True)
         corners, ring = shapely.get_coordinates(rings, return_index=True)
         same = ring[1:] == ring[:-1]
-        return (
-            np.concatenate((owner[inside], self._rows[cell[part[ring[:-1][same]]]])),
-            np.concatenate((begin[inside], corners[:-1][same])),
-            np.concatenate((end[inside], corners[1:][same])),
-        )
+        owner = self._doubtful[cell[part[ring[:-1][same]]]]
+        return owner, corners[:-1][same], corners[1:][same]
 
     def parts(self, cell: int) -> tuple[tuple[Floats, ...], ...]:
         shapely = shapely_or_say()
 
         if self._side[cell] != _CUT:
             return super().parts(cell) if self._side[cell] == _INSIDE else ()
-        geometry = self._cut[np.searchsorted(self._rows, cell)]
+        rows, cut = self._geometries()
+        geometry = cut[np.searchsorted(rows, cell)]
         found = []
         for part in shapely.get_parts(shapely.orient_polygons(geometry)):
             rings = shapely.get_rings(part)
@@ -208,7 +260,8 @@ class _InOutline(Clipped):
         kept = np.repeat(self._side != _OUTSIDE, np.diff(self.starts))
         starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
         found = as_polygons(starts, self.corners[kept])
-        found[self._rows] = self._cut
+        rows, cut = self._geometries()
+        found[rows] = cut
         return found
 
 
@@ -249,7 +302,7 @@ def cells(
         return _in_strip(points, weights, dual, clip, periods=periods, workers=workers)
     cut = _core.voronoi_clip2(points, weights, dual, clip.bounds, workers)
     whole = Clipped(*cut, len(dual["sites"]), workers)
-    return whole if clip.outline is None else _InOutline(whole, clip.outline, workers)
+    return whole if clip.outline is None else _InOutline(whole, clip, workers)
 
 
 def _in_strip(
@@ -294,23 +347,18 @@ def _taken(starts: Indices, corners: Floats, rows: NDArray[np.int64]) -> tuple[I
     return chosen, corners[np.repeat(mask, sizes)]
 
 
-def _sides(whole: Clipped, outline: Any, scale: float) -> NDArray[np.int8]:
-    """Whether cells lie outside, inside, or where the outline, which is scaled, passes."""
+def _sides(whole: Clipped, clip: Clip) -> NDArray[np.int8]:
+    """Whether cells lie outside, inside, or where the outline passes."""
     shapely = shapely_or_say()
 
-    rings = shapely.get_rings(shapely.get_parts(outline))
-    coordinates, ring = shapely.get_coordinates(rings, return_index=True)
-    same = ring[1:] == ring[:-1]
-    segments = np.column_stack((coordinates[:-1][same], coordinates[1:][same]))
-    group, _count = _core.touched2(
-        whole.starts, whole.corners * scale, whole.ridges, np.ascontiguousarray(segments)
-    )
+    rings, places = clip.rings
+    segments = np.column_stack((places, places[next_corner(rings, len(places))]))
+    group, _count = _core.touched2(whole.starts, whole.corners * clip.unit, whole.ridges, segments)
     side = np.full(len(group), _CUT, dtype=np.int8)
     side[np.diff(whole.starts) == 0] = _OUTSIDE
     free = np.flatnonzero(group >= 0)
     _, first = np.unique(group[free], return_index=True)
-    shapely.prepare(outline)
-    inside = shapely.contains_xy(outline, whole.centroids[free[first]] * scale)
+    inside = shapely.contains_xy(clip.scaled, whole.centroids[free[first]] * clip.unit)
     side[free] = np.where(inside, _INSIDE, _OUTSIDE)[group[free]]
     return side
 

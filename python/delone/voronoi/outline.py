@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Clip", "areal_parts", "as_clip", "as_scaled", "times", "unit_of"]
+__all__ = ["Clip", "areal_parts", "as_clip", "as_scaled", "next_corner", "times", "unit_of"]
 
 # By this share of its extent the box is larger than the outline that is in it.
 _MARGIN = 2.0**-6
@@ -49,6 +50,35 @@ class Clip:
         """What it is, in a few words."""
         return "a box" if self.outline is None else f"a {self.outline.geom_type}"
 
+    @cached_property
+    def unit(self) -> float:
+        """The power of two by which the outline is multiplied, as `unit_of`."""
+        return unit_of(shapely_or_say().get_coordinates(self.outline))
+
+    @cached_property
+    def scaled(self) -> Any:
+        """The outline in these units, its inside to the left of its rings, prepared."""
+        shapely = shapely_or_say()
+
+        found = shapely.orient_polygons(times(self.outline, self.unit))
+        shapely.prepare(found)
+        return found
+
+    @cached_property
+    def rings(self) -> tuple[NDArray[np.int32], Floats]:
+        """The corners of its rings, in these units, as compressed rows; none is repeated."""
+        shapely = shapely_or_say()
+
+        rings = shapely.get_rings(shapely.get_parts(self.scaled))
+        corners, ring = shapely.get_coordinates(rings, return_index=True)
+        # Equal corners in a row, the first one at the end included, are one.
+        last = np.append((ring[1:] != ring[:-1]), True)
+        same = np.append((corners[1:] == corners[:-1]).all(axis=1), False)
+        kept = ~(last | same)
+        sizes = np.bincount(ring[kept], minlength=len(rings))
+        starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
+        return starts, np.ascontiguousarray(corners[kept])
+
 
 def as_clip(
     clip: Any,
@@ -61,8 +91,8 @@ def as_clip(
 
     Parameters
     ----------
-    clip : None, "box", sequence of 4 floats, or geometry
-        As for `delone.Voronoi`.
+    clip : None, "box", sequence of 4 floats, geometry, or Clip
+        As for `delone.Voronoi`; or what this function has returned.
     points : ndarray of float64, shape (n, 2)
         The sites.
     fix : bool
@@ -87,8 +117,8 @@ def as_clip(
     >>> as_clip("box", np.array([(0.0, 0), (2, 1)]), fix=False).bounds
     (0.0, 0.0, 2.0, 1.0)
     """
-    if clip is None:
-        return None
+    if clip is None or isinstance(clip, Clip):
+        return clip
     if periods is not None:
         return _strip(clip, points, periods)
     if isinstance(clip, str):
@@ -297,3 +327,24 @@ def areal_parts(geometries: NDArray[Any]) -> NDArray[Any]:
         areas = parts[shapely.get_type_id(parts) == _POLYGON]
         geometries[row] = shapely.union_all(areas) if len(areas) else shapely.Polygon()
     return geometries
+
+
+def next_corner(starts: NDArray[Any], count: int) -> NDArray[np.int64]:
+    """Return the corner after each corner of closed rings.
+
+    Parameters
+    ----------
+    starts : ndarray of int
+        Where the corners of each ring begin, and the end.
+    count : int
+        Number of corners.
+
+    Returns
+    -------
+    ndarray of int64, shape (count,)
+        Their numbers.
+    """
+    after = np.arange(1, count + 1)
+    filled = np.diff(starts) > 0
+    after[starts[1:][filled] - 1] = starts[:-1][filled]
+    return after

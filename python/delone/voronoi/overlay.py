@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.voronoi.outline import areal_parts, times, unit_of
+from delone.voronoi.outline import areal_parts, next_corner, times, unit_of
 from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["as_polygons", "intersections", "next_corner", "with_shared_corners"]
+__all__ = ["as_polygons", "intersections", "with_shared_corners"]
 
 # Outlines with fewer corners than this are not halved, nor are fewer polygons than this.
 _FEW_CORNERS, _FEW_POLYGONS = 256, 8
@@ -31,14 +31,6 @@ _POLYGON = 3
 # Corners within this share of the largest coordinate, 64 units in the last place, are one corner,
 # and so many places apart at most along the direction in which they are sorted.
 _SAME, _PLACES = 2.0**-46, 4
-
-
-def next_corner(starts: Indices, count: int) -> NDArray[np.int64]:
-    """The corner after each corner."""
-    after = np.arange(1, count + 1)
-    filled = np.diff(starts) > 0
-    after[starts[1:][filled] - 1] = starts[:-1][filled]
-    return after
 
 
 def as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:

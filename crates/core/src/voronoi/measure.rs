@@ -16,7 +16,7 @@ const TINY: f64 = f64::from_bits((1023 - 600) << 52);
 const HUGE: f64 = f64::from_bits((1023 + 600) << 52);
 
 /// What is measured on polygons; zero, and NaN for centroids, where a polygon has no corners.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Measures {
     /// Areas.
     pub areas: Vec<f64>,
@@ -88,23 +88,37 @@ fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
+/// Twice the signed area of a ring, six times its moment seen from `origin`, and its length.
+pub(super) fn ring(
+    corners: impl Iterator<Item = Point2> + Clone,
+    origin: Point2,
+) -> (f64, Point2, f64) {
+    let (mut twice, mut moment, mut around) = (0.0, [0.0; 2], 0.0);
+    let seen = |p: Point2| [p[0] - origin[0], p[1] - origin[1]];
+    let Some(first) = corners.clone().next() else {
+        return (twice, moment, around);
+    };
+    let mut last = seen(first);
+    for p in corners.skip(1).chain([first]) {
+        let here = seen(p);
+        let cross = last[0] * here[1] - last[1] * here[0];
+        twice += cross;
+        moment[0] += cross * (last[0] + here[0]);
+        moment[1] += cross * (last[1] + here[1]);
+        around += (here[0] - last[0]).hypot(here[1] - last[1]);
+        last = here;
+    }
+    (twice, moment, around)
+}
+
 /// Measures in which the units of length, by axis, are the inverses of powers of two.
 fn measure_in_units(corners: &[Point2], scale: [f64; 2]) -> (f64, Point2, f64) {
     let Some(first) = corners.first() else {
         return (0.0, [f64::NAN; 2], 0.0);
     };
     let [ox, oy] = [first[0] * scale[0], first[1] * scale[1]];
-    let (mut twice, mut x, mut y, mut around) = (0.0, 0.0, 0.0, 0.0);
-    let mut last = [0.0, 0.0];
-    for p in corners[1..].iter().chain(&corners[..1]) {
-        let here = [p[0] * scale[0] - ox, p[1] * scale[1] - oy];
-        let cross = last[0] * here[1] - last[1] * here[0];
-        twice += cross;
-        x += cross * (last[0] + here[0]);
-        y += cross * (last[1] + here[1]);
-        around += (here[0] - last[0]).hypot(here[1] - last[1]);
-        last = here;
-    }
+    let scaled = corners.iter().map(|p| [p[0] * scale[0], p[1] * scale[1]]);
+    let (twice, [x, y], around) = ring(scaled, [ox, oy]);
     if twice > 0.0 {
         return (
             twice / 2.0,

@@ -15,14 +15,14 @@ const MOST: f64 = 1024.0;
 /// Cells are taken for touched within this share of the extent; it stands for all rounding here.
 const CLOSE: f64 = 1e-9;
 
-struct Grid {
+pub(super) struct Grid {
     origin: Point2,
     step: Point2,
     size: usize,
 }
 
 impl Grid {
-    fn over(extent: Extent, items: usize) -> Self {
+    pub fn over(extent: Extent, items: usize) -> Self {
         let size = (items as f64).sqrt().clamp(1.0, MOST).ceil();
         Self {
             origin: extent.min,
@@ -32,12 +32,17 @@ impl Grid {
     }
 
     /// The columns (or rows) from `low` to `high`, and one more on either side.
-    fn range(&self, k: usize, low: f64, high: f64) -> std::ops::RangeInclusive<usize> {
+    pub fn range(&self, k: usize, low: f64, high: f64) -> std::ops::RangeInclusive<usize> {
         let place = |x: f64| (x - self.origin[k]) / self.step[k];
         let last = self.size - 1;
         let from = (place(low) - 1.0).max(0.0) as usize;
         let to = (place(high) + 1.0).max(0.0) as usize;
         from.min(last)..=to.min(last)
+    }
+
+    /// The number of a field.
+    pub fn field(&self, row: usize, column: usize) -> usize {
+        row * self.size + column
     }
 
     /// Calls `mark` with each field that a segment may meet.
@@ -54,7 +59,7 @@ impl Grid {
             };
             let (p, q) = (a[0] + s * (b[0] - a[0]), a[0] + t * (b[0] - a[0]));
             for column in self.range(0, p.min(q), p.max(q)) {
-                mark(row * self.size + column);
+                mark(self.field(row, column));
             }
         }
     }
@@ -72,16 +77,16 @@ pub fn touched(
     let cells = starts.len().saturating_sub(1);
     let ends = segments.iter().flat_map(|s| [[s[0], s[1]], [s[2], s[3]]]);
     let extent = Extent::of(points.iter().copied().chain(ends));
-    let grid = Grid::over(extent, cells.max(segments.len()));
-    let (first, members) = sorted(&grid, segments)?;
+    let grid = &Grid::over(extent, cells.max(segments.len()));
+    let (first, members) = sorted(grid, segments)?;
     let close = CLOSE * extent.side();
     let mut free = filled(cells, false)?;
     for (i, free) in free.iter_mut().enumerate() {
         let corners = &points[starts[i] as usize..starts[i + 1] as usize];
         let cell = Extent::of(corners.iter().copied());
         let mut fields = grid.range(1, cell.min[1], cell.max[1]).flat_map(|row| {
-            grid.range(0, cell.min[0], cell.max[0])
-                .map(move |c| row * grid.size + c)
+            let columns = grid.range(0, cell.min[0], cell.max[0]);
+            columns.map(move |column| grid.field(row, column))
         });
         let near = |field: usize| {
             let range = first[field] as usize..first[field + 1] as usize;
@@ -95,7 +100,7 @@ pub fn touched(
 }
 
 /// Segments by field of the grid: where those of each begin, and their numbers.
-fn sorted(grid: &Grid, segments: &[[f64; 4]]) -> Result<(Vec<u32>, Vec<u32>)> {
+pub(super) fn sorted(grid: &Grid, segments: &[[f64; 4]]) -> Result<(Vec<u32>, Vec<u32>)> {
     let ends = |s: &[f64; 4]| [[s[0], s[1]], [s[2], s[3]]];
     let mut first = filled(grid.size * grid.size + 1, 0_u32)?;
     for segment in segments {
