@@ -1,8 +1,8 @@
 """Voronoi diagrams of points in the plane and in space, whole or cut to an outline or polyhedron.
 
 `diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
-is, `outline` where they end, `clipping` what that leaves of them, by `pieces` and `overlay`.
-`shapes` has geometries, tables and pictures, `centroidal`
+is, `outline` where they end, `clipping` what that leaves of them, by `pieces` and `overlay`, and
+`thin` which of them rounding has taken. `shapes` has geometries, tables and pictures, `centroidal`
 Lloyd's method, `torus` periodic sets. Of space, `space` has the class, `bodies` what a cell is, and
 `polyhedra` what cells are cut to.
 """
@@ -12,6 +12,7 @@ from delone.voronoi.cells import Cell, Neighbors, Rays
 from delone.voronoi.centroidal import LloydResult, lloyd
 from delone.voronoi.diagram import Voronoi
 from delone.voronoi.space import SpaceVoronoi
+from delone.voronoi.thin import ThinCellWarning
 
 __all__ = [
     "Cell",
@@ -21,6 +22,7 @@ __all__ = [
     "SpaceCell",
     "SpaceNeighbors",
     "SpaceVoronoi",
+    "ThinCellWarning",
     "Voronoi",
     "lloyd",
 ]

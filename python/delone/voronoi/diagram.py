@@ -17,7 +17,7 @@ from delone.counting import counted
 from delone.georeference import warn_of_degrees
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.regular import as_weights
-from delone.voronoi import clipping, dual, outline, shapes, sites
+from delone.voronoi import clipping, dual, outline, shapes, sites, thin
 from delone.voronoi.cells import Cell, Neighbors, Rays, as_site
 from delone.voronoi.lists import compressed, gaps_once
 
@@ -105,6 +105,12 @@ class Voronoi(Immutable):
         next copy of a site does.
     MissingExtraError
         `clip` is a geometry, and shapely is not installed.
+
+    Warns
+    -----
+    ThinCellWarning
+        When areas or polygons are asked for: cells are only a few units in the last place wide, so
+        that rounding leaves nothing of their areas; ``warning.rows`` has their rows.
 
     Notes
     -----
@@ -418,7 +424,7 @@ class Voronoi(Immutable):
     @kept
     def _clipped(self) -> Clipped:
         """What is left of the cells: all bounded ones where there is no clip."""
-        return clipping.cells(
+        found = clipping.cells(
             self._points,
             self._weights,
             self._dual,
@@ -426,6 +432,36 @@ class Voronoi(Immutable):
             periods=self._periods,
             workers=self._workers,
         )
+        thin.tell(self._rows_of(self._thin(found)), "areas")
+        return found
+
+    def _thin(self, clipped: Clipped) -> NDArray[np.bool_]:
+        """Which cells are too thin for their areas to be known."""
+        # A cell without weights has its site, and something of what is around it.
+        lost = np.flatnonzero((clipped.areas == 0) & (clipped.perimeters == 0))
+        if self._weights is not None:
+            lost = lost[:0]
+        elif self._clip is not None and len(lost):
+            lost = lost[self._clip.holds(self._points[self._dual["site"][lost]])]
+        found = thin.among(clipped.areas, clipped.perimeters, clipped.starts, clipped.corners)
+        found[lost] = True
+        return found
+
+    def _rows_of(self, cells: NDArray[np.bool_]) -> Indices:
+        """The rows whose cells are marked."""
+        return np.flatnonzero(np.append(cells, False)[self.point_region]).astype(np.int32)
+
+    @property
+    @kept
+    def thin_cells(self) -> Indices:
+        """The rows whose cells within the clip are only a few units in the last place wide, (k,).
+
+        Rounded corners tell nothing of the area of such a cell, which may be 0. A
+        `ThinCellWarning` names the rows when areas, perimeters, centroids or polygons are asked
+        for. Of cells that have weights, and nothing left within the clip, it is not known whether
+        rounding has taken it.
+        """
+        return sealed(self._rows_of(self._thin(self._clipped)))
 
     @property
     @kept

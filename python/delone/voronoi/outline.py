@@ -50,6 +50,17 @@ class Clip:
         """What it is, in a few words."""
         return "a box" if self.outline is None else f"a {self.outline.geom_type}"
 
+    def holds(self, points: Floats) -> NDArray[np.bool_]:
+        """Tell which points are inside, the boundary included."""
+        left, bottom, right, top = self.bounds
+        x, y = points.T
+        found: NDArray[np.bool_] = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
+        if self.outline is not None:
+            near = np.flatnonzero(found)
+            shapely = shapely_or_say()
+            found[near] = shapely.intersects_xy(self.scaled, points[near] * self.unit)
+        return found
+
     @cached_property
     def unit(self) -> float:
         """The power of two by which the outline is multiplied, as `unit_of`."""

@@ -64,6 +64,12 @@ class Polyhedron:
         """The least and the greatest coordinates, (2, 3)."""
         return np.stack((self.points.min(axis=0), self.points.max(axis=0)))
 
+    def holds(self, points: Floats) -> NDArray[np.bool_]:
+        """Tell which points are inside, the boundary included."""
+        beyond: NDArray[np.bool_] = points @ self.planes[:, :3].T > self.planes[:, 3]
+        found: NDArray[np.bool_] = ~np.any(beyond, axis=1)
+        return found
+
 
 def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
     """Return what a caller wants to clip to.

@@ -24,7 +24,7 @@ from delone.errors import InputError
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
-from delone.voronoi import sites
+from delone.voronoi import sites, thin
 from delone.voronoi.bodies import Bodies, SpaceCell, SpaceNeighbors
 from delone.voronoi.cells import Rays, as_site
 from delone.voronoi.diagram import Voronoi
@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int32]
 
 __all__ = ["SpaceVoronoi"]
+
+# Where a surface has less area, the volume may be below the range of doubles.
+_SMALL = 2.0**-600
 
 
 class SpaceVoronoi(Voronoi):
@@ -242,7 +245,38 @@ class SpaceVoronoi(Voronoi):
     def _bodies(self) -> Bodies:
         """What is left of the cells."""
         where: Any = self._clip
-        return Bodies(self._points, self._weights, self._dual, where, self._workers)
+        found = Bodies(self._points, self._weights, self._dual, where, self._workers)
+        thin.tell(self._rows_of(self._thin_bodies(found)), "volumes")
+        return found
+
+    def _thin_bodies(self, bodies: Bodies) -> NDArray[np.bool_]:
+        """Which cells are too thin for their volumes to be known."""
+        where: Any = self._clip
+        # A cell without weights has its site, and something of what is around it.
+        lost = np.flatnonzero((bodies.volumes == 0) & ~self._is_below(bodies.areas))
+        if self._weights is not None:
+            lost = lost[:0]
+        elif where is not None and len(lost):
+            lost = lost[where.holds(self._points[self._dual["site"][lost]])]
+        found = np.zeros(len(bodies.volumes), dtype=bool)
+        found[lost] = True
+        return found
+
+    @staticmethod
+    def _is_below(areas: Floats) -> NDArray[np.bool_]:
+        """Whether volumes may be 0 as they are below the range of doubles."""
+        return (areas > 0) & (areas < _SMALL)
+
+    @property
+    @kept
+    def thin_cells(self) -> Indices:
+        """The rows whose cells have lost their volumes to rounding, (k,).
+
+        Such cells are only a few units in the last place wide. A `ThinCellWarning` names the rows
+        when volumes or faces are asked for. Of cells that have weights, and nothing left within
+        the clip, it is not known whether rounding has taken it.
+        """
+        return sealed(self._rows_of(self._thin_bodies(self._bodies)))
 
     @property
     @kept

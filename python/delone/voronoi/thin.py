@@ -1,0 +1,122 @@
+"""Cells so thin that rounded corners tell nothing of their measures.
+
+A corner is rounded by up to 4 units in the last place of each coordinate. That changes the area of
+a cell by up to that times its extent along the other axis, on either side. Where the area is no
+more, not one digit of it is known, and it may be 0.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["ThinCellWarning", "among", "tell"]
+
+# Four units in the last place, on either side, of numbers up to 1.
+_ROUNDING = 2.0**-49
+# The least of normal numbers.
+_SMALLEST = float(np.finfo(np.float64).tiny)
+_MOST_ROWS = 8
+
+
+class ThinCellWarning(UserWarning):
+    """Cells are so thin that rounded corners tell nothing of their areas, or volumes.
+
+    ``rows`` has the sites, as has `Voronoi.thin_cells`.
+
+    Parameters
+    ----------
+    message : str
+        What is said.
+    rows : ndarray of int32
+        The rows of the sites.
+    """
+
+    def __init__(self, message: str, rows: NDArray[np.int32]) -> None:
+        super().__init__(message)
+        self.rows = rows
+
+
+def among(
+    areas: Floats, perimeters: Floats, starts: NDArray[np.int32], corners: Floats
+) -> NDArray[np.bool_]:
+    """Return which cells of the plane are thin, of those that have a perimeter.
+
+    Parameters
+    ----------
+    areas, perimeters : ndarray of float64, shape (c,)
+        As computed.
+    starts : ndarray of int32, shape (c + 1,)
+        Where the corners of each cell begin, and the end.
+    corners : ndarray of float64, shape (k, 2)
+        Corners of the cells, before an outline cuts them.
+
+    Returns
+    -------
+    ndarray of bool, shape (c,)
+        Whether rounding may be as large as the area.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.voronoi.thin import among
+    >>> thin, wide = [(1, 0), (1 + 1e-15, 0), (1, 1)], [(0, 0), (1e-15, 0), (0, 1)]
+    >>> starts, corners = np.array([0, 3, 6]), np.array(thin + wide)
+    >>> among(np.full(2, 5e-16), np.full(2, 2.0), starts, corners).tolist()
+    [True, False]
+    """
+    found = np.zeros(len(areas), dtype=bool)
+    rows = np.flatnonzero((np.diff(starts) > 0) & (perimeters > 0) & np.isfinite(perimeters))
+    # No bound is larger than this one.
+    largest = float(np.abs(corners).max(initial=0.0))
+    with np.errstate(over="ignore"):
+        rows = rows[~(areas[rows] > _ROUNDING * largest * perimeters[rows])]
+    if not len(rows):
+        return found
+    # Cells without corners have no place in `corners`, so the others follow each other.
+    filled = np.flatnonzero(np.diff(starts) > 0)
+    low = np.minimum.reduceat(corners, starts[:-1][filled], axis=0)[np.searchsorted(filled, rows)]
+    high = np.maximum.reduceat(corners, starts[:-1][filled], axis=0)[np.searchsorted(filled, rows)]
+    error = _ROUNDING * np.maximum(np.abs(low), np.abs(high))
+    with np.errstate(all="ignore"):
+        # How far a cell reaches across the axis along which its corners are moved.
+        reach = np.minimum(high - low, perimeters[rows, None] / 2)
+        bound = (error * reach[:, ::-1]).sum(axis=1)
+        # What is below the range of doubles is 0 without being thin.
+        found[rows] = (areas[rows] <= bound) & (bound > _SMALLEST) & np.isfinite(bound)
+    return found
+
+
+def tell(rows: NDArray[np.int32], what: str) -> None:
+    """Warn of cells that are thin, if there are any.
+
+    Parameters
+    ----------
+    rows : ndarray of int32
+        Their rows.
+    what : str
+        "areas" or "volumes".
+    """
+    if not len(rows):
+        return
+    some: list[Any] = rows[:_MOST_ROWS].tolist()
+    listed = ", ".join(map(str, some)) + (", ..." if len(rows) > len(some) else "")
+    count = "1 cell is" if len(rows) == 1 else f"{len(rows)} cells are"
+    row = "row" if len(rows) == 1 else "rows"
+    warnings.warn(
+        ThinCellWarning(
+            f"{count} only a few units in the last place of the coordinates wide "
+            f"({row} {listed}): rounded corners tell nothing of such {what}, which may be 0. "
+            "thin_cells has the rows. Subtract an offset that all points share before they are "
+            "rounded, or merge such sites",
+            rows,
+        ),
+        stacklevel=6,
+    )
