@@ -38,6 +38,7 @@ from delone.errors import (
     LimitError,
     MissingExtraError,
     NonFiniteError,
+    OutputError,
     ShapeError,
 )
 from delone.georeference import CRSWarning, GeographicWarning
@@ -95,6 +96,7 @@ __all__ = [
     "MeshReport",
     "MissingExtraError",
     "NonFiniteError",
+    "OutputError",
     "PeriodicDelaunay",
     "PolygonTriangles",
     "Quality",

@@ -31,6 +31,7 @@ __all__ = [
     "LimitError",
     "MissingExtraError",
     "NonFiniteError",
+    "OutputError",
     "ShapeError",
 ]
 
@@ -443,6 +444,31 @@ class FileFormatError(DeloneError, ValueError):
     ...     except FileFormatError as error:
     ...         print("torn.npy" in str(error))
     True
+    """
+
+
+class OutputError(DeloneError, OSError):
+    """A file cannot be written: the disk is full, a quota or a limit is reached, or it fails.
+
+    An OSError as well, with its attributes. Nothing is left of the new file, and what was there
+    before is unchanged.
+
+    Attributes
+    ----------
+    errno : int or None
+        The number of the error; None where a library does not tell it.
+    strerror : str or None
+        What the system says.
+    filename : str or None
+        The file that was to be written.
+
+    Examples
+    --------
+    >>> import errno
+    >>> from delone import OutputError
+    >>> error = OutputError(errno.ENOSPC, "No space left on device", "mesh.vtu")
+    >>> isinstance(error, OSError), error.filename
+    (True, 'mesh.vtu')
     """
 
 

@@ -27,6 +27,7 @@ CASES = [
     errors.BusyError("m", pid=7, host="here"),
     errors.LimitError("m"),
     errors.InternalError("m"),
+    errors.OutputError("m"),
     errors.FileFormatError("m"),
     errors.MissingExtraError("m", extra="las"),
 ]
@@ -66,6 +67,7 @@ def test_constructs_from_a_message_alone(error: errors.DeloneError) -> None:
         (errors.BusyError, RuntimeError),
         (errors.LimitError, ValueError),
         (errors.InternalError, RuntimeError),
+        (errors.OutputError, OSError),
         (errors.FileFormatError, ValueError),
         (errors.MissingExtraError, ImportError),
     ],

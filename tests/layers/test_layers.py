@@ -54,7 +54,7 @@ PYTHON: dict[str, set[str]] = {
     "validation": {"immutable", "_core", "plane", "space"} | FOUNDATION,
     "predicates": {"_core"} | FOUNDATION,
     "lawson": {"immutable", "_core"} | FOUNDATION,
-    "atomic": set(),
+    "atomic": {"errors"},
     "archive": {"_core", "_arrays", "atomic", "plane", "space", "errors"},
     "location": {"_core"} | FOUNDATION,
     "delaunay": {"immutable", "_core", "archive", "periodic", "space", "validation"} | FOUNDATION,

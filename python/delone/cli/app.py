@@ -25,6 +25,7 @@ from delone.cli.exits import (
     Failure,
     as_options,
     code_of,
+    os_message,
     reading,
     spare_inputs,
     writing,
@@ -52,7 +53,7 @@ from delone.cli.solid import (
     triangulated_space,
 )
 from delone.counting import agreed
-from delone.errors import MissingExtraError, NonFiniteError
+from delone.errors import MissingExtraError, NonFiniteError, OutputError
 from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
 from delone.io.registry import WITH_CRS, mesh_suffixes, writer
 
@@ -419,7 +420,11 @@ def _dropped_stdout() -> None:
 
 def _said(error: BaseException) -> int:
     """Say what went wrong, and return the exit code."""
-    if isinstance(error, OSError) and not isinstance(error, BrokenPipeError | MissingExtraError):
+    if _is_closed_pipe(error):
+        # Silently, as a program that SIGPIPE ends.
+        _dropped_stdout()
+        return Exit.PIPE
+    if isinstance(error, OSError) and not isinstance(error, OutputError | MissingExtraError):
         # Files have been blamed for their own errors: this one is of standard output.
         _dropped_stdout()
         why = f"the report cannot be printed: {error.strerror}; files of -o, if any, are whole"
@@ -437,7 +442,7 @@ def _said(error: BaseException) -> int:
         message, code = str(error) or "there is not enough memory", Exit.MEMORY
     else:
         code = code_of(error)
-        message = as_options(str(error))
+        message = os_message(error) if isinstance(error, OutputError) else as_options(str(error))
         if isinstance(error, NonFiniteError) and not re.search(
             r"first: \d|infinite: row \d", message
         ):
@@ -447,8 +452,21 @@ def _said(error: BaseException) -> int:
         if code == Exit.INTERNAL:
             message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
     if message:
-        print(f"delone: {' '.join(message.split())}", file=sys.stderr)
+        # Standard error may be closed, too.
+        with contextlib.suppress(OSError):
+            print(f"delone: {' '.join(message.split())}", file=sys.stderr)
     return code
+
+
+def _is_closed_pipe(error: BaseException) -> bool:
+    """Tell whether nobody reads standard output any more.
+
+    Where typer prints help, it turns that into an exit with 1.
+    """
+    if isinstance(error, Failure):
+        return error.code == Exit.PIPE
+    cause = error.__context__ if isinstance(error, SystemExit) else error
+    return isinstance(cause, BrokenPipeError)
 
 
 def _terminated(number: int, frame: object) -> NoReturn:

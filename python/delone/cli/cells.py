@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,8 +18,8 @@ from delone.cli.show import memory_text, print_json, print_rows, print_stages, s
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
 from delone.io import input_suffixes, read_geometries, read_points
 from delone.io.extras import require
-from delone.io.gdal import DRIVERS, local_name
-from delone.io.vector import attribute_names
+from delone.io.gdal import DRIVERS
+from delone.io.vector import attribute_names, write_layer
 
 if TYPE_CHECKING:
     from delone.io import PointSet
@@ -212,31 +213,30 @@ def _diagram(
 def _write(diagram: Voronoi, sites: PointSet, output: list[Path], watch: Stopwatch) -> None:
     if not output:
         return
-    with writing():
+    with writing(), ExitStack() as stack:
         carried = dict(sites.attributes) or {"site": np.arange(diagram.npoints)}
         table = diagram.to_geopandas(carried, crs=sites.crs)
         for path in output:
-            with watch.stage(f"write {path.name}"), replacing(path) as beside:
-                _write_table(table, beside, path.suffix.lower())
+            with watch.stage(f"write {path.name}"):
+                write_cells(table, stack.enter_context(replacing(path)))
 
 
-def _write_table(table: Any, path: Path, suffix: str) -> None:
+def write_cells(table: Any, path: Path) -> None:
+    """Write a table of cells to a file; its suffix tells the format.
+
+    Parameters
+    ----------
+    table : GeoDataFrame
+        As `Voronoi.to_geopandas` returns it.
+    path : Path
+        The file, written in place.
+    """
+    suffix = path.suffix.lower()
     if suffix == ".parquet":
         table.to_parquet(path, index=False)
         return
-    pyogrio = require("pyogrio", extra="geo", what="writing cells")
-    options: dict[str, Any] = {}
-    if suffix == ".geojson":
-        # Seventeen digits bring back every double.
-        options["SIGNIFICANT_FIGURES"] = 17
-    elif suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
+    options: dict[str, Any] = {"driver": _DRIVERS[suffix], "promote_to_multi": True}
+    if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
         # The index of FlatGeobuf has no place for cells that are empty.
         options["SPATIAL_INDEX"] = "NO"
-    pyogrio.write_dataframe(
-        table,
-        local_name(path),
-        layer="cells",
-        driver=_DRIVERS[suffix],
-        promote_to_multi=True,
-        **options,
-    )
+    write_layer(path, table, "cells", **options)

@@ -20,6 +20,7 @@ from delone.errors import (
     InternalError,
     MissingExtraError,
     NonFiniteError,
+    OutputError,
 )
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ __all__ = [
     "Failure",
     "as_options",
     "code_of",
+    "os_message",
     "reading",
     "spare_inputs",
     "writing",
@@ -51,6 +53,7 @@ class Exit(IntEnum):
     MEMORY = 7
     INTERNAL = 70
     INTERRUPTED = 130
+    PIPE = 141
     TERMINATED = 143
 
 
@@ -66,6 +69,7 @@ MEANINGS = {
     Exit.MEMORY: "there is not enough memory",
     Exit.INTERNAL: "a bug in delone; please report it",
     Exit.INTERRUPTED: "interrupted by Ctrl-C; nothing was written",
+    Exit.PIPE: "standard output was closed by its reader, as head does; files of -o are whole",
     Exit.TERMINATED: "terminated; nothing was written",
 }
 
@@ -134,6 +138,7 @@ def code_of(error: BaseException) -> Exit:
         (CrossingSegmentsError, Exit.DEGENERATE),
         (BudgetExceededError, Exit.DEGENERATE),
         (BusyError, Exit.OUTPUT),
+        (OutputError, Exit.OUTPUT),
         (InternalError, Exit.INTERNAL),
         (FileFormatError, Exit.INPUT),
         (InputError, Exit.USAGE),
@@ -170,6 +175,32 @@ def as_options(message: str) -> str:
     return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", message)
 
 
+def os_message(error: OSError) -> str:
+    """Return what the system says about a file, after the name of the file.
+
+    Parameters
+    ----------
+    error : OSError
+        The error.
+
+    Returns
+    -------
+    str
+        One line.
+
+    Examples
+    --------
+    >>> import errno
+    >>> from delone.cli.exits import os_message
+    >>> os_message(OSError(errno.EIO, "Input/output error", "survey.las"))
+    'survey.las: Input/output error'
+    """
+    if error.errno is None:
+        # delone's own words, which have the name.
+        return str(error)
+    return ": ".join(str(part) for part in (error.filename, error.strerror) if part is not None)
+
+
 @contextmanager
 def reading() -> Iterator[None]:
     """Take errors of files for errors of the input."""
@@ -191,9 +222,9 @@ def _blaming(code: Exit) -> Iterator[None]:
         yield
     except FileFormatError as error:
         raise Failure(str(error), code) from error
+    except OutputError as error:
+        raise Failure(os_message(error), Exit.OUTPUT) from error
     except (MissingExtraError, BlockingIOError):
         raise
     except OSError as error:
-        # OSErrors that delone words itself have no number.
-        message = str(error) if error.errno is None else f"{error.filename}: {error.strerror}"
-        raise Failure(message, code) from error
+        raise Failure(os_message(error), code) from error

@@ -15,11 +15,11 @@ import typer
 
 from delone import __version__, distributed
 from delone.atomic import check_target
-from delone.cli.exits import Exit, Failure, reading, writing
+from delone.cli.exits import Exit, Failure, os_message, reading, writing
 from delone.cli.referenced import Crs, Planar, note_degrees, require_known
 from delone.cli.show import memory_text, print_json, print_rows, spinner
 from delone.distributed.run.executors import Processes
-from delone.errors import DeloneError
+from delone.errors import DeloneError, OutputError
 from delone.georeference import is_geographic
 from delone.io import input_suffixes
 from delone.io.extras import require
@@ -240,12 +240,13 @@ def _words(progress: Progress) -> tuple[str, str]:
 
 def _blamed(error: OSError, output: Path) -> BaseException:
     """Tell errors of the input from those of the output by the file."""
+    if isinstance(error, OutputError):
+        return Failure(os_message(error), Exit.OUTPUT)
     if isinstance(error, DeloneError):
         return error
     name = str(error.filename or "")
     inside = name.startswith((str(output), str(output.absolute())))
-    message = str(error) if error.errno is None else f"{name}: {error.strerror}"
-    return Failure(message, Exit.OUTPUT if inside else Exit.INPUT)
+    return Failure(os_message(error), Exit.OUTPUT if inside else Exit.INPUT)
 
 
 def _print_plan(plan: Plan, as_json: bool) -> None:

@@ -17,6 +17,7 @@ from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
 from delone.georeference import as_crs
 from delone.io.extras import require
+from delone.io.geotiff import write_geotiff
 from delone.io.pointset import names_height
 from delone.io.referencing import cf_attributes, warn_if_left_out
 from delone.io.systems import plain_system
@@ -109,8 +110,8 @@ def write_raster(
         nodes are not evenly spaced.
     MissingExtraError
         The library for this format is not installed.
-    OSError
-        The file cannot be written.
+    OutputError
+        The file cannot be written; an OSError as well.
 
     Notes
     -----
@@ -209,29 +210,11 @@ def _cell(nodes: Floats, path: Path) -> float:
 def _write_geotiff(
     path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
 ) -> None:
-    rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     values = _checked(path, raster)
     width, height = _cell(raster.x, path), _cell(raster.y, path)
     corner = float(raster.x[0] - width / 2), float(raster.y[-1] + height / 2)
-    profile = {
-        "driver": "GTiff",
-        "height": values.shape[0],
-        "width": values.shape[1],
-        "count": 1,
-        "dtype": "float64",
-        "nodata": np.nan,
-        "crs": plain_system(crs, path.suffix),
-        "transform": rasterio.Affine(width, 0.0, corner[0], 0.0, -height, corner[1]),
-        "compress": "deflate",
-        "predictor": 3,
-        "tiled": True,
-        "BIGTIFF": "IF_SAFER",
-    }
-    with rasterio.open(path, "w", **profile) as file:
-        file.write(values[::-1], 1)
-        file.set_band_description(1, name)
-        if units is not None:
-            file.set_band_unit(1, units)
+    cell = width, height
+    write_geotiff(path, values, corner=corner, cell=cell, name=name, crs=crs, units=units)
 
 
 def _write_netcdf(
@@ -251,7 +234,11 @@ def _write_netcdf(
     file = xarray.Dataset(data, coords=nodes, attrs={"Conventions": "CF-1.8"})
     plain = {"_FillValue": None}
     packed = {where: {"zlib": True, "_FillValue": np.nan}, "x": plain, "y": plain}
-    file.to_netcdf(path, encoding=packed, engine="netcdf4")
+    try:
+        file.to_netcdf(path, encoding=packed, engine="netcdf4")
+    except RuntimeError as error:
+        # What HDF5 cannot write is no more than that to netCDF4.
+        raise OSError(str(error)) from error
 
 
 def _write_csv(

@@ -406,8 +406,8 @@ def write_mesh(
         `z` or an attribute has the wrong length, or `triangulation` is none.
     MissingExtraError
         The library for this format is not installed.
-    OSError
-        The file cannot be written.
+    OutputError
+        The file cannot be written; an OSError as well.
 
     Warns
     -----

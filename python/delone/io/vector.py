@@ -7,6 +7,7 @@ asks for geometries.
 
 from __future__ import annotations
 
+import io
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
@@ -39,11 +40,18 @@ __all__ = [
     "read_geometries",
     "read_points",
     "require_libraries",
+    "write_layer",
     "write_mesh",
 ]
 
 # Layers are written in parts, so that the geometries of one part are in memory at a time.
 _PART = 1 << 18
+# When it closes files of these formats, GDAL does not tell whether the last part was written. So
+# their bytes are written here. Seventeen digits bring back every double.
+_IN_MEMORY: dict[str, dict[str, Any]] = {
+    "GeoJSON": {"SIGNIFICANT_FIGURES": 17},
+    "FlatGeobuf": {},
+}
 
 
 def read_points(
@@ -246,13 +254,16 @@ def write_mesh(
     points = triangulation.points
     system = _system(crs, path.suffix.lower())
     # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.
-    part = len(cells) if path.suffix.lower() == ".geojson" else _PART
+    driver = "GeoJSON" if path.suffix.lower() == ".geojson" else "GPKG"
+    part = len(cells) if driver == "GeoJSON" else _PART
+    layer = "edges" if edges else "triangles"
     for start in range(0, len(cells), part):
         rows = cells[start : start + part]
         columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
         columns |= {name: values[start : start + part] for name, values in of_cells.items()}
         frame = geopandas.GeoDataFrame(columns, geometry=_shapes(points, heights, rows), crs=system)
-        _write_part(path, frame, "edges" if edges else "triangles", append=start > 0)
+        options = {"append": True} if start else {}
+        write_layer(path, frame, layer, driver=driver, **options)
 
 
 def _system(crs: str | None, suffix: str) -> Any:
@@ -279,16 +290,57 @@ def _shapes(
     return shapely.polygons(corners) if rows.shape[1] == 3 else shapely.linestrings(corners)
 
 
-def _write_part(path: Path, frame: Any, layer: str, *, append: bool) -> None:
+def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: Any) -> None:
+    """Write a layer of geometries, and make sure that all of it is in the file.
+
+    Parameters
+    ----------
+    path : Path
+        The file, written in place.
+    frame : GeoDataFrame
+        The geometries and their attributes.
+    layer : str
+        The name of the layer.
+    driver : str
+        The name that GDAL has for the format.
+    **options
+        As `pyogrio.write_dataframe` takes them.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
     pyogrio = require("pyogrio", extra="geo", what="writing geometries")
-    options: dict[str, Any] = {"driver": "GPKG", "append": append}
-    if path.suffix.lower() == ".geojson":
-        # Seventeen digits bring back every double.
-        options = {"driver": "GeoJSON", "SIGNIFICANT_FIGURES": 17}
     with warnings.catch_warnings():
         # A survey without a reference system is common, and nothing to warn of.
         warnings.filterwarnings("ignore", message=".*crs.*")
-        try:
-            pyogrio.write_dataframe(frame, local_name(path), layer=layer, **options)
-        except pyogrio.errors.DataSourceError as error:
-            raise OSError(str(error).partition("\n")[0]) from error
+        if driver not in _IN_MEMORY:
+            name = _plain_name(path)
+            pyogrio.write_dataframe(frame, name, layer=layer, driver=driver, **options)
+            if driver == "GPKG":
+                _require_index(pyogrio, name, layer)
+            return
+        content = io.BytesIO()
+        pyogrio.write_dataframe(
+            frame, content, layer=layer, driver=driver, **_IN_MEMORY[driver], **options
+        )
+    path.write_bytes(content.getbuffer())
+
+
+def _plain_name(path: Path) -> str:
+    """Return the name by which pyogrio writes a file and no other."""
+    try:
+        return local_name(path)
+    except FileFormatError as error:
+        raise OSError(str(error)) from error
+
+
+def _require_index(pyogrio: Any, name: str, layer: str) -> None:
+    """Make sure that a GeoPackage has its spatial index, which is written last.
+
+    GDAL does not tell where it fails.
+    """
+    facts = pyogrio.read_info(name, layer=layer)
+    if not facts["capabilities"]["fast_spatial_filter"]:
+        raise OSError("the spatial index is missing")

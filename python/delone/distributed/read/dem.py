@@ -18,7 +18,7 @@ from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
 from delone.io.extras import require
-from delone.io.systems import plain_system
+from delone.io.geotiff import write_geotiff
 
 if TYPE_CHECKING:
     import os
@@ -46,7 +46,7 @@ def write_dem(
     crs: str | None,
 ) -> Path:
     """Write a GeoTIFF; see `TiledDelaunay.to_raster`."""
-    rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
+    require("rasterio", extra="raster", what="writing GeoTIFF files")
     tin.require(value)
     target = as_path(out, name="out")
     if target.suffix.lower() not in (".tif", ".tiff"):
@@ -66,8 +66,8 @@ def write_dem(
                 tile = tin.tile(number)
                 _fill(tin.locator(tile), tile, known["extent"], x, y, values, value)
         corner = (float(x[0]) - sides[0] / 2, float(y[-1]) + sides[1] / 2)
-        transform = rasterio.Affine(sides[0], 0.0, corner[0], 0.0, -sides[1], corner[1])
-        _write(rasterio, beside, values, transform, crs, value)
+        cell = sides[0], sides[1]
+        write_geotiff(beside, values, corner=corner, cell=cell, name=value, crs=crs)
         del values
     return target
 
@@ -121,31 +121,3 @@ def _fill(  # noqa: PLR0917
             queries = np.stack([x[columns][c], y[rows][r]], axis=1)
             block[r, c] = locator.linear(field, queries, 0, 1).reshape(-1)
             values[rows, columns] = block
-
-
-def _write(  # noqa: PLR0917
-    rasterio: Any, path: Path, values: Any, transform: Any, crs: str | None, name: str
-) -> None:
-    """Write the rows of the file from the top down."""
-    height, width = values.shape
-    profile = {
-        "driver": "GTiff",
-        "height": height,
-        "width": width,
-        "count": 1,
-        "dtype": "float64",
-        "nodata": np.nan,
-        "crs": plain_system(crs, path.suffix),
-        "transform": transform,
-        "compress": "deflate",
-        "predictor": 3,
-        "tiled": True,
-        "BIGTIFF": "IF_SAFER",
-    }
-    # Blocks of a tiled GeoTIFF are 256 rows high.
-    with rasterio.open(path, "w", **profile) as file:
-        for row in range(0, height, 256):
-            stop = min(row + 256, height)
-            some = values[height - stop : height - row][::-1]
-            file.write(some, 1, window=((row, stop), (0, width)))
-        file.set_band_description(1, name)

@@ -6,7 +6,6 @@ whatever cause, and another one goes on from there. Data come first, the note of
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
@@ -20,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import FileFormatError
+from delone.atomic import FULL
+from delone.errors import FileFormatError, OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["Store", "digest", "step"]
-
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 def step(what: str) -> None:
@@ -42,9 +40,9 @@ def _explained(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in _FULL:
+        if error.errno not in FULL:
             raise
-        raise OSError(
+        raise OutputError(
             error.errno,
             "the disk is full; make room and run the same again: it goes on where it stopped",
             str(path),

@@ -1,0 +1,94 @@
+"""Rasters as GeoTIFF by rasterio (extra ``raster``), row by row from the top, and read back.
+
+When it closes a file, GDAL does not tell whether the last blocks were written: on a full disk, a
+file that is cut short looks like a success. So each file is read again before it replaces another.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.io.extras import require
+from delone.io.systems import plain_system
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["write_geotiff"]
+
+# Blocks of a tiled GeoTIFF are 256 rows high.
+_ROWS = 256
+
+
+def write_geotiff(
+    path: Path,
+    values: NDArray[np.float64],
+    *,
+    corner: tuple[float, float],
+    cell: tuple[float, float],
+    name: str,
+    crs: str | None,
+    units: str | None = None,
+) -> None:
+    """Write a raster of doubles; NaN marks cells without a value.
+
+    Parameters
+    ----------
+    path : Path
+        The file, written in place.
+    values : ndarray of float64, shape (rows, columns)
+        The values, the lowest row first; a mapped file is read part by part.
+    corner : tuple of float
+        The left and the upper edge.
+    cell : tuple of float
+        Width and height of a cell.
+    name : str
+        What the values are called.
+    crs : str or None
+        Coordinate reference system.
+    units : str, optional
+        The units of the values.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written, or does not hold what was written to it.
+    """
+    rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
+    profile = {
+        "driver": "GTiff",
+        "height": values.shape[0],
+        "width": values.shape[1],
+        "count": 1,
+        "dtype": "float64",
+        "nodata": np.nan,
+        "crs": plain_system(crs, path.suffix),
+        "transform": rasterio.Affine(cell[0], 0.0, corner[0], 0.0, -cell[1], corner[1]),
+        "compress": "deflate",
+        "predictor": 3,
+        "tiled": True,
+        "BIGTIFF": "IF_SAFER",
+    }
+    with rasterio.open(path, "w", **profile) as file:
+        for window, part in _parts(values):
+            file.write(part, 1, window=window)
+        file.set_band_description(1, name)
+        if units is not None:
+            file.set_band_unit(1, units)
+    with rasterio.open(path) as file:
+        for window, part in _parts(values):
+            if not np.array_equal(file.read(1, window=window), part, equal_nan=True):
+                raise OSError("some of the values are missing in the file")
+
+
+def _parts(values: NDArray[np.float64]) -> Iterator[tuple[Any, NDArray[np.float64]]]:
+    """Give rows from the top, as many as a block has, and where they are."""
+    height, width = values.shape
+    for row in range(0, height, _ROWS):
+        stop = min(row + _ROWS, height)
+        yield ((row, stop), (0, width)), values[height - stop : height - row][::-1]
