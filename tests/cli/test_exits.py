@@ -72,11 +72,21 @@ def test_one_line_and_a_code(survey, command, tmp_path, monkeypatch, case):
     assert sorted(path.name for path in tmp_path.iterdir()) == before
 
 
-def test_missing_extra(survey, command, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "meshio", None)
-    code, _, err = command("triangulate", survey, "-o", tmp_path / "a.vtu")
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("triangulate", "a.vtu", "meshio", "mesh"),
+        ("triangulate", "a.xdmf", "h5py", "mesh"),
+        ("voronoi", "a.parquet", "pyarrow.parquet", "geo"),
+        ("voronoi", "a.gpkg", "geopandas", "geo"),
+    ],
+)
+def test_missing_extra(survey, command, tmp_path, monkeypatch, case):
+    name, file, library, extra = case
+    monkeypatch.setitem(sys.modules, library, None)
+    code, _, err = command(name, survey, "-o", tmp_path / file)
     assert code == 6
-    assert 'pip install "delone[mesh]"' in err
+    assert f'pip install "delone[{extra}]"' in err
 
 
 @pytest.mark.parametrize("library", ["typer", "rich"])

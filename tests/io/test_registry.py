@@ -83,6 +83,7 @@ def test_missing_library_to_read(tmp_path, monkeypatch, suffix, library, extra):
     ("suffix", "library", "extra"),
     [
         (".vtu", "meshio", "mesh"),
+        (".xdmf", "h5py", "mesh"),
         (".gpkg", "shapely", "geo"),
         (".png", "matplotlib.figure", "plot"),
         (".svg", "matplotlib.figure", "plot"),

@@ -130,6 +130,8 @@ def _ready(path: Path) -> None:
     if path.suffix.lower() not in _SUFFIXES:
         raise Failure(f"{path}: cells are written to {' '.join(_SUFFIXES)}", Exit.USAGE)
     require("geopandas", extra="geo", what="writing cells")
+    if path.suffix.lower() == ".parquet":
+        require("pyarrow.parquet", extra="geo", what="writing Parquet files")
     check_target(path)
 
 

@@ -94,7 +94,7 @@ def _kept(path: Path) -> MeshFile:
     )
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Need nothing: NumPy writes these files."""
 
 

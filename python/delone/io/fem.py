@@ -29,9 +29,12 @@ __all__ = ["require_libraries", "write_mesh"]
 _MODULES = {".xdmf": "xdmf", ".inp": "abaqus"}
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Import what writing needs."""
     require("meshio", extra="mesh", what="writing meshes")
+    if suffix == ".xdmf":
+        # meshio imports it for XDMF files that have all data in their text, too.
+        require("h5py", extra="mesh", what="writing XDMF files")
 
 
 def write_mesh(

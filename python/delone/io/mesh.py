@@ -20,6 +20,7 @@ from delone._arrays import as_points, as_simplices
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.improve.tetmesh import TetMesh
 from delone.io.cells import cell_values
+from delone.io.counts import announced
 from delone.io.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.io.markup import refuse_document_type
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
+_DIMENSIONS = {"triangle": 2, "tetra": 3}
 _HEAD, _TAIL = 1 << 16, 1 << 12
 _RELATIVE = re.compile(rb"^[ \t]*f[ \t][^\r\n]*-\d", re.MULTILINE)
 
@@ -63,18 +65,27 @@ def read_mesh(path: Path) -> MeshFile:
     if any(block.type == "tetra" for block in mesh.cells):
         return _tetrahedra(mesh, path)
     points, z = _coordinates(mesh, path)
-    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "triangle"]
     others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
     if others:
         raise FileFormatError(f"{path} holds {', '.join(sorted(others))} cells, not only triangles")
-    if not blocks:
+    if not any(block.type == "triangle" for block in mesh.cells):
         raise FileFormatError(f"{path} holds no triangles")
+    simplices = _simplices(mesh, "triangle", len(points), path)
+    return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
+
+
+def _simplices(mesh: Any, kind: str, npoints: int, path: Path) -> NDArray[np.int32]:
+    """The corners of all cells of a kind."""
+    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == kind]
     try:
         # uint64 does not mix with int32, and indices are small anyway.
-        simplices = as_simplices(np.concatenate(blocks).astype(np.int64), len(points), 2)
+        corners = np.concatenate(blocks).astype(np.int64)
+        return as_simplices(corners, npoints, _DIMENSIONS[kind])
+    except OverflowError as error:
+        # Of numbers that no integer of NumPy holds, meshio makes objects.
+        raise FileFormatError(f"{path} names points that there are not: {error}") from error
     except InputError as error:
         raise FileFormatError(f"{path}: {error}") from error
-    return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
 
 
 def _tetrahedra(mesh: Any, path: Path) -> MeshFile:
@@ -84,11 +95,7 @@ def _tetrahedra(mesh: Any, path: Path) -> MeshFile:
     if others or z is None:
         found = ", ".join(sorted(others)) or "flat points"
         raise FileFormatError(f"{path} holds {found} beside its tetrahedra")
-    blocks = [np.asarray(block.data) for block in mesh.cells if block.type == "tetra"]
-    try:
-        simplices = as_simplices(np.concatenate(blocks).astype(np.int64), len(plane), 3)
-    except InputError as error:
-        raise FileFormatError(f"{path}: {error}") from error
+    simplices = _simplices(mesh, "tetra", len(plane), path)
     points = np.ascontiguousarray(np.column_stack((plane, z)))
     return MeshFile(points=points, simplices=simplices, source=str(path))
 
@@ -154,7 +161,7 @@ def _announced(path: Path) -> dict[str, int]:
     if not (head.startswith(b"ply") and end):
         raise FileFormatError(f"{path} is torn or no .ply file: it has no whole header")
     items = re.findall(rb"^element +(\w+) +(\d+) *\r?$", head, re.MULTILINE)
-    return {name.decode("ascii"): int(count) for name, count in items}
+    return {name.decode("ascii"): announced(count, str(path)) for name, count in items}
 
 
 def _absolute(path: Path) -> Path | IO[str]:
@@ -205,11 +212,15 @@ def _check_claim(path: Path, suffix: str) -> None:
 
 
 def _claims(file: IO[bytes], suffix: str, size: int) -> list[int]:
-    head = file.read(_HEAD)
+    head, source = file.read(_HEAD), file.name
     if suffix == ".ply":
-        return [int(n) for n in re.findall(rb"^element +\w+ +(\d+)", head, re.MULTILINE)]
+        return [
+            announced(n, source) for n in re.findall(rb"^element +\w+ +(\d+)", head, re.MULTILINE)
+        ]
     if suffix == ".vtu":
-        return [int(n) for n in re.findall(rb'NumberOf(?:Points|Cells)="\s*(\d+)', head)]
+        return [
+            announced(n, source) for n in re.findall(rb'NumberOf(?:Points|Cells)="\s*(\d+)', head)
+        ]
     if suffix == ".stl" and not head.lstrip().startswith(b"solid") and len(head) >= 84:
         count = int.from_bytes(head[80:84], "little")
         return [0 if 84 + 50 * count <= size else max(count, size + 1)]
@@ -274,7 +285,7 @@ def _largest_node(content: bytes, at: int) -> int:
     return largest
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Import what writing needs."""
     require("meshio", extra="mesh", what="writing meshes")
 

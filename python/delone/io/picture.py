@@ -25,7 +25,7 @@ __all__ = ["require_libraries", "write_mesh"]
 _MANY = 2000
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Import what drawing needs."""
     require("matplotlib.figure", extra="plot", what="drawing pictures")
 

@@ -36,6 +36,8 @@ _WORDS = {
 }  # fmt: skip
 # As much of the definition of a reference system as is shown.
 _SHORT = 40
+# The number of a column has fewer digits.
+_DIGITS = 9
 _UNITS = {"m", "ft", "km", "mm", "cm", "deg", "degrees", "degree", "metres", "meters", "feet", "dd"}
 
 
@@ -154,9 +156,9 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
             return list(names).index(text)
         if folded.count(text.casefold()) == 1:
             return folded.index(text.casefold())
-    if text.isdecimal() and int(text) < len(names):
+    if text.isdecimal() and len(text) <= _DIGITS and int(text) < len(names):
         return int(text)
-    raise FileFormatError(f"{source} has no column {text!r}; its columns are {_listed(names)}")
+    raise FileFormatError(f"{source} has no column {text!r:.80}; its columns are {_listed(names)}")
 
 
 def names_height(name: str) -> bool:

@@ -511,7 +511,7 @@ def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[...
             f"{file}: {file.suffix} files hold no tetrahedra; use {', '.join(_SPACE)}"
         )
     module = _module(_WRITERS, file.suffix.lower(), file, "write")
-    module.require_libraries()
+    module.require_libraries(file.suffix.lower())
     write: Callable[..., None] = module.write_mesh
     return write
 

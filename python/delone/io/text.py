@@ -19,6 +19,7 @@ import numpy as np
 
 from delone.errors import FileFormatError
 from delone.io.compressed import opened, torn_is_an_error
+from delone.io.counts import announced
 from delone.io.pointset import PointSet, choose_columns, find_column
 
 if TYPE_CHECKING:
@@ -121,7 +122,8 @@ def _layout(path: Path, source: str) -> _Layout:
         raise FileFormatError(f"{source} holds no rows of numbers")
     claimed = None
     if len(rows) > 1 and rows[0].strip().isdecimal() and len(re.split(r"[\s,;]+", rows[1])) > 1:
-        claimed, start, rows = int(rows[0]), lines.index(rows[0], start) + 1, rows[1:]
+        claimed = announced(rows[0], source)
+        start, rows = lines.index(rows[0], start) + 1, rows[1:]
     layout = _split(rows[:_SAMPLE_ROWS], source)
     if layout.named:
         start = lines.index(rows[0], start) + 1

@@ -30,11 +30,15 @@ if TYPE_CHECKING:
 __all__ = ["read_mesh", "read_points", "read_triangle", "require_libraries", "write_mesh"]
 
 
+# Numbers of points, and markers, have 32 bits.
+_LARGEST = 1 << 31
+
+
 class _Numbers:
     """The numbers of a file, without its comments, in order."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self.path = path
         try:
             text = path.read_text(encoding="utf-8")
             words = " ".join(line.partition("#")[0] for line in text.splitlines()).split()
@@ -46,15 +50,15 @@ class _Numbers:
     def take(self, rows: int, columns: int) -> Floats:
         end = self._at + rows * columns
         if rows < 0 or columns < 0 or end > len(self._values):
-            raise FileFormatError(f"{self._path} is torn: it announces more than it holds")
+            raise FileFormatError(f"{self.path} is torn: it announces more than it holds")
         found = self._values[self._at : end].reshape(rows, columns)
         self._at = end
         return found
 
     def head(self, count: int) -> list[int]:
         found = self.take(1, count)[0]
-        if (found != np.floor(found)).any() or (found < 0).any():
-            raise FileFormatError(f"{self._path} has no counts where they are due")
+        if not np.isfinite(found).all() or (found != np.floor(found)).any() or (found < 0).any():
+            raise FileFormatError(f"{self.path} has no counts where they are due")
         return [int(n) for n in found]
 
     @property
@@ -119,14 +123,41 @@ def _beside(file: Path) -> tuple[dict[str, NDArray[Any]], int]:
 def _vertices(numbers: _Numbers) -> tuple[dict[str, NDArray[Any]], int]:
     count, dimension, attributes, markers = numbers.head(4)
     if count and dimension != 2:
-        raise FileFormatError(f"points have {dimension} coordinates, not two")
+        raise FileFormatError(f"{numbers.path}: points have {dimension} coordinates, not two")
     table = numbers.take(count, 3 + attributes + markers)
     found: dict[str, NDArray[Any]] = {"vertices": table[:, 1:3].copy()}
     if attributes:
         found["vertex_attributes"] = table[:, 3 : 3 + attributes].copy()
     if markers:
-        found["vertex_markers"] = table[:, -1:].astype(np.int32)
-    return found, int(table[0, 0]) if count else 0
+        found["vertex_markers"] = _markers(table[:, -1:], numbers.path)
+    return found, _first(table[:, 0], numbers.path)
+
+
+def _first(numbers: Floats, path: Path) -> int:
+    """Return the number of the first point; the others follow it, one by one."""
+    if not len(numbers):
+        return 0
+    first = float(numbers[0])
+    if not 0 <= first < _LARGEST or first != int(first):
+        raise FileFormatError(f"{path}: the first point has the number {first:.17g}")
+    wrong = np.flatnonzero(numbers != first + np.arange(len(numbers)))
+    if len(wrong):
+        row = int(wrong[0])
+        raise FileFormatError(
+            f"{path}: points are not numbered one by one: row {row} has the number "
+            f"{numbers[row]:.17g}, not {int(first) + row}"
+        )
+    return int(first)
+
+
+def _markers(numbers: Floats, path: Path) -> NDArray[np.int32]:
+    good = (np.abs(numbers) < _LARGEST) & (numbers == np.floor(numbers))
+    if not good.all():
+        row = int(np.flatnonzero(~good.all(axis=1))[0])
+        raise FileFormatError(
+            f"{path}: the marker in row {row} is {numbers[row, 0]:.17g}, not an integer of 32 bits"
+        )
+    return numbers.astype(np.int32)
 
 
 def _triangles(numbers: _Numbers, first: int, file: Path, n: int) -> dict[str, NDArray[Any]]:
@@ -145,7 +176,7 @@ def _segments(numbers: _Numbers, first: int, file: Path, n: int) -> dict[str, ND
     table = numbers.take(count, 3 + markers)
     found: dict[str, NDArray[Any]] = {"segments": _indices(table[:, 1:3], first, file, n)}
     if markers:
-        found["segment_markers"] = table[:, 3:4].astype(np.int32)
+        found["segment_markers"] = _markers(table[:, 3:4], numbers.path)
     (count,) = numbers.head(1)
     if count:
         found["holes"] = numbers.take(count, 3)[:, 1:].copy()
@@ -190,7 +221,7 @@ def read_mesh(path: Path) -> MeshFile:
     )
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Nothing is needed."""
 
 

@@ -228,7 +228,7 @@ def _torn_is_an_error(source: str) -> Iterator[None]:
         raise FileFormatError(f"{source} cannot be read: {reason}") from error
 
 
-def require_libraries() -> None:
+def require_libraries(suffix: str) -> None:
     """Import what writing needs."""
     for module in ("shapely", "pyogrio", "geopandas"):
         require(module, extra="geo", what="writing geometries")
@@ -244,7 +244,7 @@ def write_mesh(
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
     """Write triangles as polygons, or edges as lines, with vertices as columns v0, v1 (, v2)."""
-    require_libraries()
+    require_libraries(path.suffix.lower())
     geopandas = require("geopandas", extra="geo", what="writing geometries")
     heights = as_values(z, triangulation.npoints)
     cells = triangulation.edges if edges else triangulation.simplices
