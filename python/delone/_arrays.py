@@ -429,7 +429,7 @@ def as_count(n: int, *, name: str = "n") -> int:
     3
     """
     wanted = f"{name} must be an integer of at least 0"
-    if isinstance(n, bool | np.bool_):
+    if isinstance(n, bool | np.bool_ | np.ma.MaskedArray):
         raise DtypeError(f"{wanted}, got {n}")
     try:
         number = operator.index(n)
@@ -473,6 +473,7 @@ def as_number(value: float, *, name: str) -> float:
     plain = not isinstance(value, bool | np.bool_ | str | bytes | np.ndarray) or (
         isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf"
     )
+    plain = plain and not isinstance(value, np.ma.MaskedArray)
     try:
         if plain:
             return float(value)
@@ -659,14 +660,7 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
     ...
     delone.errors.ShapeError: values has rows of unequal length: ...
     """
-    rows = points if isinstance(points, list | tuple) else ()
-    if isinstance(points, np.ma.MaskedArray) or any(
-        isinstance(row, np.ma.MaskedArray) for row in rows
-    ):
-        raise DtypeError(
-            f"{name} is a masked array; pass only the rows that count, "
-            "for example np.ma.compress_rows(points), or points.data if none is masked"
-        )
+    refuse_masks(points, name)
     try:
         return np.asarray(points)
     except ValueError as error:
@@ -681,6 +675,31 @@ def _refuse_geometries(array: NDArray[Any], name: str) -> None:
             f"{name} holds geometries, not numbers: of points pass their coordinates, "
             f"shapely.get_coordinates({name}) or {name}.get_coordinates().to_numpy(); "
             "delone.from_geometry takes geometries of every kind"
+        )
+
+
+def refuse_masks(given: Any, name: str) -> None:
+    """Refuse a masked array, or a list of such, before the mask is dropped silently.
+
+    Parameters
+    ----------
+    given : object
+        What the caller passed.
+    name : str
+        What the argument is called in the error message.
+
+    Raises
+    ------
+    DtypeError
+        There is a mask.
+    """
+    rows = given if isinstance(given, list | tuple) else ()
+    if isinstance(given, np.ma.MaskedArray) or any(
+        isinstance(row, np.ma.MaskedArray) for row in rows
+    ):
+        raise DtypeError(
+            f"{name} is a masked array; pass only the rows that count, "
+            "for example np.ma.compress_rows(points), or points.data if none is masked"
         )
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-__all__ = ["agreed", "counted"]
+from decimal import Decimal
 
+__all__ = ["agreed", "counted", "gigabytes", "grouped"]
+
+# From here on, numbers are shown by their magnitude.
+_HUGE = 10**15
 # Nouns that do not take an s.
 _MANY = {"tetrahedron": "tetrahedra", "vertex": "vertices", "pass": "passes"}
 
@@ -54,3 +58,48 @@ def agreed(count: int, one: str, many: str) -> str:
     ('point comes', 'are')
     """
     return one if count == 1 else many
+
+
+def grouped(count: int) -> str:
+    """Return a number with commas, or in scientific notation if it has more than 15 digits.
+
+    Parameters
+    ----------
+    count : int
+        Of any size.
+
+    Returns
+    -------
+    str
+        The number.
+
+    Examples
+    --------
+    >>> from delone.counting import grouped
+    >>> grouped(1_250_000), grouped(4 * 10**300)
+    ('1,250,000', '4.000E+300')
+    """
+    return f"{count:,}" if count < _HUGE else f"{Decimal(count):.3E}"
+
+
+def gigabytes(size: int) -> str:
+    """Return a number of bytes in GB.
+
+    Parameters
+    ----------
+    size : int
+        Of any size.
+
+    Returns
+    -------
+    str
+        The number and its unit.
+
+    Examples
+    --------
+    >>> from delone.counting import gigabytes
+    >>> gigabytes(1_250_000_000), gigabytes(8 * 10**600)
+    ('1.2 GB', '8.000E+591 GB')
+    """
+    shown = f"{size / 10**9:,.1f}" if size < _HUGE * 10**9 else grouped(size // 10**9)
+    return f"{shown} GB"

@@ -7,6 +7,7 @@ neighbours are found among them by their common edges.
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PeriodicDelaunay", "as_periods", "vertex_of"]
 
+_LARGEST = sys.float_info.max
 # Copies nearer than this many mean distances to the box of the points are tried first.
 _HALO = 8.0
 # Sets with fewer points than this take all copies at once.
@@ -287,8 +289,9 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
         low, high = int(points[:, k].argmin()), int(points[:, k].argmax())
         spread = Fraction(float(points[high, k])) - Fraction(float(points[low, k]))
         if spread >= Fraction(length):
+            shown = repr(float(spread)) if spread <= _LARGEST else f"more than {_LARGEST!r}"
             raise InputError(
-                f"rows {low} and {high} lie {float(spread)!r} apart in {'xy'[k]}, which is not "
+                f"rows {low} and {high} lie {shown} apart in {'xy'[k]}, which is not "
                 f"less than the period {length!r}: move the points into one period first"
             )
 

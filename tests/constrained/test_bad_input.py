@@ -184,3 +184,47 @@ def test_names_of_files_are_no_geometries(given: Any) -> None:
             make(given)
     with pytest.raises(errors.InputError, match=r"shapely\.from_wkt"):
         delone.from_geometry("POINT (0 0)")
+
+
+class TestMasks:
+    """A mask says that numbers do not count: geometry made of them would be wrong in silence."""
+
+    RING = np.ma.masked_array(
+        [(0.0, 0), (4, 0), (4, 4), (0, 4)], mask=[(False, False)] * 3 + [(True, True)]
+    )
+    PLAIN: Any = RING.data.tolist()
+    SQUARES = (
+        RING,
+        [RING],
+        {"type": "Polygon", "coordinates": [RING]},
+        [{"type": "Polygon", "coordinates": [RING]}],
+        {"type": "Polygon", "coordinates": RING[None]},
+        {"type": "MultiPolygon", "coordinates": [[RING]]},
+        {"type": "Polygon", "coordinates": [list(RING)]},
+        {"type": "Polygon", "coordinates": [[*PLAIN[:3], (0.0, np.ma.masked)]]},
+        {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [RING]}},
+        {
+            "type": "GeometryCollection",
+            "geometries": [{"type": "Point", "coordinates": RING[3]}],
+        },
+    )
+
+    @pytest.mark.parametrize("given", SQUARES, ids=range(len(SQUARES)))
+    @pytest.mark.parametrize("take", [delone.from_geometry, delone.mesh])
+    def test_in_geometries(self, given: Any, take: Any) -> None:
+        with pytest.raises(errors.DtypeError, match="masked array"):
+            take(given)
+
+    def test_of_geometries(self) -> None:
+        shapely = pytest.importorskip("shapely")
+        boxes = np.ma.masked_array([shapely.box(0, 0, 1, 1), shapely.box(2, 0, 3, 1)], mask=[0, 1])
+        for take in (delone.from_geometry, delone.mesh):
+            with pytest.raises(errors.DtypeError, match="masked array"):
+                take(boxes)
+
+    @pytest.mark.parametrize("name", ["max_area", "min_angle", "max_points", "smooth"])
+    def test_in_numbers(self, name: str) -> None:
+        square = {"type": "Polygon", "coordinates": [self.PLAIN]}
+        for value in (np.ma.masked, np.ma.masked_array(30, mask=True)):
+            with pytest.raises(errors.DtypeError, match=name):
+                delone.mesh(square, **{name: value})

@@ -149,3 +149,47 @@ def test_a_box_wider_than_any_double() -> None:
 def test_sites_in_space_have_no_raster() -> None:
     with pytest.raises(InputError, match="in the plane"):
         grid(datasets.uniform(20, ndim=3), np.arange(20.0), resolution=0.5)
+
+
+RAGGED: Any = [[1, 2], [3]]
+MASKED: Any = np.ma.masked_array([1.0, 2.0], mask=[False, True])
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"shape": RAGGED},
+        {"resolution": RAGGED},
+        {"resolution": 1, "bounds": RAGGED},
+        {"resolution": 1, "bounds": [1, 2, [3, 4], 5]},
+        {"x": RAGGED, "y": [0, 1]},
+        {"x": [0, 1], "y": RAGGED},
+        {"shape": MASKED},
+        {"resolution": MASKED},
+        {"x": MASKED, "y": [0, 1]},
+        {"shape": {2, 3}},
+        {"shape": {2: 3, 4: 5}},
+    ],
+)
+def test_what_is_no_list_of_numbers(options: dict[str, Any]) -> None:
+    with pytest.raises(InputError):
+        grid(SQUARE, VALUES, **options)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"resolution": 1e-300},
+        {"resolution": 1, "bounds": (0, 0, 1e308, 1e308)},
+        {"shape": (10**400, 3)},
+        {"shape": (2**40, 2**40)},
+    ],
+)
+@pytest.mark.parametrize("free", [None, 1 << 30])
+def test_more_cells_than_any_memory_has(
+    options: dict[str, Any], free: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_free_memory", lambda: free)
+    with pytest.raises(MemoryError, match="choose larger cells") as caught:
+        grid(SQUARE, VALUES, **options)
+    assert len(str(caught.value)) < 200

@@ -216,3 +216,14 @@ def test_bad_points_are_refused() -> None:
         PeriodicDelaunay(np.empty((0, 2)), (1, 1))
     with pytest.raises(DegenerateInputError):
         PeriodicDelaunay([(0, 0), (0.5, 0)], (1, None))
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_points_further_apart_than_any_double(axis: int) -> None:
+    points = np.zeros((2, 2))
+    points[:, axis], points[:, 1 - axis] = (1.79e308, -1.79e308), (0, 1)
+    periods = (10.0, 10.0)
+    with pytest.raises(InputError, match=r"rows 1 and 0 lie more than 1\.79\S+e\+308 apart"):
+        PeriodicDelaunay(points, periods)
+    with pytest.raises(InputError, match="apart"):
+        Delaunay(points, periodic=periods)

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.errors import InputError, MissingExtraError, ShapeError
+from delone._arrays import refuse_masks
+from delone.errors import DtypeError, InputError, MissingExtraError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -124,6 +125,7 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif not hasattr(given, "__iter__"):
         raise InputError(f"{name} hold {given!r:.80}, which is no geometry")
     else:
+        refuse_masks(given, name)
         yield from _of_iterable(given, name)
 
 
@@ -272,8 +274,14 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
 
 
 def _run(coordinates: Any, kind: int, what: str) -> Parts:
+    refuse_masks(coordinates, f"a {what}")
     try:
-        rows = np.array([tuple(row)[:2] for row in coordinates if len(row)], dtype=np.float64)
+        pairs = [tuple(row)[:2] for row in coordinates if len(row)]
+        for pair in pairs:
+            refuse_masks(pair, f"a {what}")
+        rows = np.array(pairs, dtype=np.float64)
+    except DtypeError:
+        raise
     except (TypeError, ValueError) as error:
         raise ShapeError(f"the coordinates of a {what} are no pairs of numbers: {error}") from error
     except OverflowError as error:

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import math
 import os
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_number
+from delone._arrays import as_count, as_number, as_plain_array
+from delone.counting import gigabytes, grouped
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
 from delone.interpolate.methods import interpolator
@@ -321,10 +324,10 @@ def raster_nodes(
         counts = [as_count(count, name="shape") for count in _listed(shape, "shape", 2)]
         if min(counts) < 1:
             raise InputError(f"shape must be two numbers of at least 1, got {shape!r}")
-        cells = [_length(low[k], high[k], units[k]) / counts[k] for k in range(2)]
+        cells = []
     else:
         side: Any = resolution
-        given = [side] * 2 if np.ndim(side) == 0 else side
+        given = [side] * 2 if _is_one(side) else side
         cells = [as_number(cell, name="resolution") for cell in _listed(given, "resolution", 2)]
         if not all(0 < cell < math.inf for cell in cells):
             raise InputError(f"resolution must be above 0, got {resolution!r}")
@@ -336,6 +339,8 @@ def raster_nodes(
     else:
         room(columns, rows)
         require_memory(columns + rows, 1, 1)
+    if not cells:
+        cells = [_length(low[k], high[k], units[k]) / counts[k] for k in range(2)]
     x, y = (_centres(low[k], cells[k], counts[k], units[k]) for k in range(2))
     return x, y
 
@@ -360,10 +365,17 @@ def _centres(low: float, cell: float, count: int, unit: float) -> Floats:
 
 def _listed(given: Any, name: str, count: int) -> list[Any]:
     """So many things, of whatever holds them."""
-    found = None if isinstance(given, str | bytes) or np.ndim(given) == 0 else list(given)
-    if found is None or len(found) != count:
+    found = [] if _is_one(given) else list(given)
+    if len(found) != count:
         raise ShapeError(f"{name} must be {count} numbers, got {given!r:.60}")
     return found
+
+
+def _is_one(given: Any) -> bool:
+    """Tell one thing from several in order; rows of unequal length are several."""
+    if isinstance(given, str | bytes) or not hasattr(given, "__getitem__"):
+        return True
+    return getattr(given, "ndim", 1) == 0 or isinstance(given, Mapping)
 
 
 def _cells(length: float, cell: float) -> int:
@@ -382,7 +394,7 @@ def _bounded(bounds: Sequence[float]) -> tuple[list[float], list[float]]:
 
 
 def _ascending(nodes: ArrayLike, name: str) -> Floats:
-    given = np.asarray(nodes)
+    given = as_plain_array(nodes, name)
     if given.dtype.kind not in "iuf":
         raise DtypeError(f"{name} must hold real numbers, got dtype {given.dtype}")
     array = given.astype(np.float64)
@@ -410,10 +422,11 @@ def require_memory(columns: int, rows: int, values: int) -> None:
     """
     needed = 8 * columns * rows * max(1, values)
     free = _free_memory()
-    if free is not None and needed + _SPARE > free:
+    if needed > sys.maxsize or (free is not None and needed + _SPARE > free):
+        known = "" if free is None else f", and {gigabytes(free)} are free"
         raise MemoryError(
-            f"a raster of {columns:,} x {rows:,} cells needs {needed / 1e9:,.1f} GB, and "
-            f"{free / 1e9:,.1f} GB are free; choose larger cells, or parts by bounds"
+            f"a raster of {grouped(columns)} x {grouped(rows)} cells needs {gigabytes(needed)}"
+            f"{known}; choose larger cells, or parts by bounds"
         )
 
 

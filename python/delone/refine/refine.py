@@ -193,6 +193,7 @@ def mesh(
         workers,
     )
     as_workers(workers)
+    rounds = as_count(smooth, name="smooth")
     clock = time.perf_counter()
     base, region = _base(domain, holes, regions, crossing, workers=workers, planar=planar)
     stages = {"triangulate": time.perf_counter() - clock}
@@ -205,7 +206,7 @@ def mesh(
         markers=(segment_markers, point_markers),
         stages=stages,
     )
-    return found.smooth(smooth) if smooth else found
+    return found.smooth(rounds) if rounds else found
 
 
 def filled(

@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone.atomic import replacing
+from delone.counting import gigabytes, grouped
 from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
 from delone.interpolate.raster import raster_nodes
@@ -78,8 +79,8 @@ def _require_room(target: Path, columns: int, rows: int) -> None:
     if needed > free:
         raise OSError(
             errno.ENOSPC,
-            f"a raster of {columns:,} x {rows:,} cells needs {needed / 1e9:,.1f} GB on disk while "
-            f"it is made, and {free / 1e9:,.1f} GB are free; choose larger cells",
+            f"a raster of {grouped(columns)} x {grouped(rows)} cells needs {gigabytes(needed)} "
+            f"on disk while it is made, and {gigabytes(free)} are free; choose larger cells",
             str(target),
         )
 
