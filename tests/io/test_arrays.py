@@ -1,6 +1,8 @@
 """NumPy files: layouts, headers that lie, objects, torn archives."""
 
 import io
+import subprocess
+import sys
 import zipfile
 
 import numpy as np
@@ -159,3 +161,58 @@ def test_bytes_behind_the_array(tmp_path):
         np.save(file, TABLE)  # a second array, which would be left out
     with pytest.raises(FileFormatError, match="more follow"):
         read_points(tmp_path / "a.npy")
+
+
+@pytest.mark.parametrize(
+    "dtype",
+    [
+        [("x", "<f8", (2,)), ("y", "<f8")],
+        [("x", "<f8"), ("y", "<f8", (1,))],
+        [("x", "<f8", (2,)), ("y", "<f8", (2,))],
+        [("x", "<f8"), ("y", "<f8"), ("z", "<f8", (3,))],
+        [("x", [("a", "<f8")]), ("y", "<f8")],
+    ],
+    ids=str,
+)
+def test_fields_of_several_numbers_are_no_coordinates(tmp_path, dtype):
+    table = np.zeros(4, dtype=dtype)
+    np.save(tmp_path / "a.npy", table)
+    np.savez(tmp_path / "a.npz", points=table)
+    for name in ("a.npy", "a.npz"):
+        with pytest.raises(FileFormatError, match=name):
+            read_points(tmp_path / name)
+
+
+def test_records_have_one_axis(tmp_path):
+    np.save(tmp_path / "a.npy", np.zeros((4, 2), dtype=[("x", "<f8"), ("y", "<f8")]))
+    with pytest.raises(FileFormatError, match="records of shape"):
+        read_points(tmp_path / "a.npy")
+
+
+def test_arrays_of_coordinates_have_one_shape(tmp_path):
+    np.savez(tmp_path / "a.npz", x=np.zeros((2, 3)), y=np.zeros((3, 2)))
+    with pytest.raises(FileFormatError, match="different shapes"):
+        read_points(tmp_path / "a.npz")
+    np.savez(tmp_path / "a.npz", x=np.zeros((2, 3)), y=np.zeros((2, 3)))
+    assert read_points(tmp_path / "a.npz").points.shape == (6, 2)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a limit on memory")
+@pytest.mark.parametrize("name", ["a.npz", "b.npz"])
+def test_what_memory_has_no_room_for_is_not_torn(tmp_path, name):
+    # One megabyte of file, 256 of memory.
+    np.savez_compressed(tmp_path / "a.npz", points=np.zeros((1 << 24, 2)))
+    np.savez_compressed(tmp_path / "b.npz", x=np.zeros(1 << 25), y=np.zeros(1 << 25))
+    code = (
+        "import resource, sys; from pathlib import Path; from delone.cli import run\n"
+        "import delone.io.arrays, delone.cli.info\n"
+        "now = int(Path('/proc/self/statm').read_text().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (now + (1 << 27),) * 2)\n"
+        "sys.exit(run(['info', sys.argv[1]]))\n"
+    )
+    file = tmp_path / name
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(file)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (7, "")
+    assert done.stderr.startswith(f"delone: {file} needs more memory than there is")

@@ -16,13 +16,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from delone.distributed.files import Store
 
 from delone import Delaunay, Mesh, OutputError, Voronoi, mesh
 from delone.atomic import replacing
 from delone.cli import run
 from delone.cli.cells import write_cells
 from delone.distributed import triangulate
-from delone.distributed.files import Store
 from delone.interpolate import grid
 from delone.io import output_suffixes, raster_suffixes, write_mesh, write_raster
 

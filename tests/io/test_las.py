@@ -125,3 +125,64 @@ def test_unknown_attribute_and_columns(cloud):
         read_points(file, attributes=["colour"])
     with pytest.raises(FileFormatError, match="not to be chosen"):
         read_points(file, columns=["x", "y"])
+
+
+@pytest.mark.parametrize("count", [0, 1, N - 1])
+def test_header_that_claims_fewer_records(cloud, count):
+    file, _ = cloud
+    if file.suffix == ".laz" and count:
+        pytest.skip("chunks do not say how many points the last one has")
+    whole = bytearray(file.read_bytes())
+    struct.pack_into("<I", whole, COUNT_12, count)
+    struct.pack_into("<Q", whole, COUNT_14, count) if whole[25] == 4 else None
+    file.write_bytes(whole)
+    with pytest.raises(FileFormatError, match=rf"announces {count} points and holds 1"):
+        read_points(file)
+
+
+@pytest.mark.parametrize("minor", [3, 4])
+def test_a_header_stamped_with_a_later_version(tmp_path, cloud, minor):
+    file, _ = cloud
+    whole = bytearray(file.read_bytes())
+    if whole[25] >= minor:
+        pytest.skip("it is of that version")
+    whole[25] = minor
+    file.write_bytes(whole)
+    with pytest.raises(FileFormatError, match=rf"says LAS 1\.{minor} and has 227 bytes"):
+        read_points(file)
+    # With more room for a header, the counts do not agree.
+    struct.pack_into("<H", whole, 94, 375)
+    file.write_bytes(whole)
+    with pytest.raises(FileFormatError):
+        read_points(file)
+
+
+def test_a_header_stamped_with_an_earlier_version(cloud):
+    file, _ = cloud
+    whole = bytearray(file.read_bytes())
+    if whole[25] != 4:
+        pytest.skip("it is of version 1.2")
+    whole[25] = 2
+    file.write_bytes(whole)
+    with contextlib.suppress(FileFormatError):
+        assert len(read_points(file)) == N
+
+
+def test_two_counts_that_differ(cloud):
+    file, _ = cloud
+    whole = bytearray(file.read_bytes())
+    if whole[25] != 4:
+        pytest.skip("it has one count")
+    struct.pack_into("<I", whole, COUNT_12, N - 1)
+    file.write_bytes(whole)
+    with pytest.raises(FileFormatError, match=f"announces {N - 1} points in one place"):
+        read_points(file)
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_records_behind_the_points_are_no_points(tmp_path, count):
+    las = laspy.LasData(laspy.LasHeader(point_format=6, version="1.4"))
+    las.x = las.y = las.z = np.arange(float(count))
+    las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("me", 1, "long", b"x" * 1000)])
+    las.write(tmp_path / "a.las")
+    assert len(read_points(tmp_path / "a.las")) == count

@@ -200,3 +200,50 @@ def test_a_pipe_is_refused(tmp_path):
             read_points(tmp_path / "a.csv")
     finally:
         os.close(pipe)
+
+
+PACKED = [(".gz", gzip.compress), (".xz", lzma.compress), (".bz2", bz2.compress)]
+
+
+@pytest.mark.parametrize(("suffix", "compress"), PACKED)
+def test_what_expands_beyond_measure(tmp_path, monkeypatch, suffix, compress):
+    monkeypatch.setattr("delone.io.compressed._ALWAYS", 1 << 20)
+    rows = b"0 0\n" * (1 << 18)
+    small = tmp_path / f"a.xyz{suffix}"
+    small.write_bytes(compress(rows + b"1 0\n"))
+    with pytest.raises(FileFormatError, match=r"a\.xyz\.\w+ is more than 200.*decompress it first"):
+        read_points(small)
+    # Decompressed, it is read; so is what expands as much and is small.
+    (tmp_path / "a.xyz").write_bytes(rows[: 1 << 18])
+    small.write_bytes(compress(rows[: 1 << 18]))
+    assert len(read_points(small)) == len(read_points(tmp_path / "a.xyz")) == 1 << 16
+
+
+@pytest.mark.parametrize(("suffix", "compress"), PACKED)
+def test_what_expands_beyond_measure_as_geojson(tmp_path, monkeypatch, suffix, compress):
+    monkeypatch.setattr("delone.io.compressed._ALWAYS", 1 << 20)
+    text = b'{"type": "Point", "coordinates": [1, 2' + b" " * (1 << 20) + b"]}"
+    small = tmp_path / f"a.geojson{suffix}"
+    small.write_bytes(compress(text))
+    with pytest.raises(FileFormatError, match="decompress it first"):
+        read_points(small)
+
+
+@pytest.mark.parametrize("suffix", ["", ".gz"])
+@pytest.mark.parametrize("before", ["", "x,y\n1,2\n"])
+@pytest.mark.parametrize("end", ["", "\n", "\r"])
+def test_one_line_that_does_not_end(tmp_path, monkeypatch, suffix, before, end):
+    monkeypatch.setattr("delone.io.text._LONGEST_LINE", 1 << 16)
+    text = before + "1," * (1 << 20) + end
+    file = tmp_path / f"a.csv{suffix}"
+    file.write_bytes(gzip.compress(text.encode()) if suffix else text.encode())
+    with pytest.raises(FileFormatError, match="has a line of more than 65,536 bytes"):
+        read_points(file)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_many_short_lines_are_no_long_one(tmp_path, monkeypatch, end):
+    monkeypatch.setattr("delone.io.text._LONGEST_LINE", 1 << 16)
+    file = tmp_path / "a.csv"
+    file.write_bytes(f"1,2{end}".encode() * (1 << 16))
+    assert len(read_points(file)) == 1 << 16

@@ -141,11 +141,15 @@ def _torn_is_an_error(source: str) -> Iterator[None]:
         raise
     except InputError as error:
         raise FileFormatError(f"{source}: {error}") from error
+    except MemoryError as error:
+        # Sizes in headers have been compared with what is there.
+        reason = str(error) or "it is refused"
+        raise MemoryError(f"{source} needs more memory than there is: {reason}") from error
     # NumPy's headers are parsed by Python's own parser, which has errors of its own; sizes beyond
     # what a mapping can have overflow; an encrypted member is a RuntimeError.
     except (
         ValueError, OverflowError, EOFError, OSError, SyntaxError, TypeError, RuntimeError,
-        KeyError, MemoryError, tokenize.TokenError, zipfile.BadZipFile, zlib.error,
+        KeyError, tokenize.TokenError, zipfile.BadZipFile, zlib.error,
     ) as error:  # fmt: skip
         reason = str(error).partition("\n")[0]
         if "allow_pickle" in reason or "Python objects" in reason:
@@ -163,11 +167,18 @@ def _from_table(
     named = table.dtype.names
     if named is None and (table.ndim != 2 or table.shape[1] < 2):
         raise FileFormatError(f"{source} holds an array of shape {table.shape}, not (n, 2) or more")
+    if named is not None and table.ndim != 1:
+        raise FileFormatError(f"{source} holds records of shape {table.shape}, not (n,)")
     names = list(named or map(str, range(table.shape[1])))
     chosen = choose_columns(names, columns, source, named=named is not None)
 
     def column(i: int) -> NDArray[Any]:
         return table[names[i]] if named else table[:, i]
+
+    for i in chosen:
+        if column(i).ndim != 1:
+            shape = column(i).shape[1:]
+            raise FileFormatError(f"{source}: {names[i]!r} holds {shape} numbers a row, not one")
 
     # Without names and choice, one slice keeps a wide table's rows from being touched twice.
     plain = named is None and chosen[:2] == [0, 1]
@@ -175,7 +186,7 @@ def _from_table(
     z = as_values(column(chosen[2]), len(table)) if len(chosen) == 3 else None
     further = {name: np.array(column(find_column(names, name, source))) for name in attributes}
     # A mapped file may be replaced while the points are in use: they are copied.
-    points = np.array(as_points(xy), subok=False)
+    points = np.array(as_points(xy, ndim=2), subok=False)
     called = tuple(named[i] for i in chosen) if named else ()
     return PointSet(points=points, z=z, attributes=further, source=source, columns=called)
 
@@ -210,9 +221,10 @@ def _from_archive(
     if len(ordered) == 1:
         return _from_table(_member(archive, ordered[0]), columns, attributes, source)
     chosen = choose_columns(ordered, columns, source, named=True)
-    arrays = [_member(archive, ordered[i]).reshape(-1) for i in chosen]
-    if len({len(array) for array in arrays}) != 1:
-        raise FileFormatError(f"{source}: the arrays of coordinates have different lengths")
+    members = [_member(archive, ordered[i]) for i in chosen]
+    if len({array.shape for array in members}) != 1:
+        raise FileFormatError(f"{source}: the arrays of coordinates have different shapes")
+    arrays = [array.reshape(-1) for array in members]
     return PointSet(
         points=as_points(np.column_stack(arrays[:2])),
         z=as_values(arrays[2], len(arrays[0])) if len(arrays) == 3 else None,

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from delone.errors import FileFormatError
-from delone.io.compressed import SUFFIXES, opened, torn_is_an_error
+from delone.io.compressed import SUFFIXES, Bounded, opened, torn_is_an_error
 from delone.io.extras import require
 from delone.io.systems import check_system
 
@@ -77,7 +77,11 @@ def admitted(path: Path) -> Iterator[str]:
     if path.suffix.lower() in SUFFIXES:
         with tempfile.TemporaryDirectory(prefix="delone-") as folder:
             plain = Path(folder) / "decompressed.geojson"
-            with torn_is_an_error(str(path)), opened(path) as file, plain.open("wb") as copy:
+            with (
+                torn_is_an_error(str(path)),
+                Bounded(opened(path), path) as file,
+                plain.open("wb") as copy,
+            ):
                 while block := file.read(1 << 20):
                     copy.write(block)
             yield _json_name(plain, str(path))

@@ -34,6 +34,8 @@ _LAYERED = 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 # Sizes in bytes by the LAS specification 1.4, R15.
 _LONGEST_HEADER, _RECORD_HEADER, _LONG_RECORD_HEADER = 375, 54, 60
+# The least size of a header by the minor version; before 1.3 it is 227.
+_HEADER, _HEADERS = 227, {3: 235, 4: 375}
 
 
 def read_points(
@@ -179,6 +181,7 @@ def _check_records(path: Path) -> None:
         head = file.read(_LONGEST_HEADER).ljust(_LONGEST_HEADER, b"\0")
         if head[:4] != b"LASF":
             raise FileFormatError(f"{path} is no LAS file: it does not begin with LASF")
+        _check_version(path, head)
         before, count = struct.unpack_from("<II", head, 96)
         wrong = before > size or count * _RECORD_HEADER > before
         if head[25] >= 4:
@@ -186,6 +189,45 @@ def _check_records(path: Path) -> None:
             wrong = wrong or _end_of_records(file, start, count, size) > size
     if wrong:
         raise FileFormatError(f"{path} is torn: it has no room for the records it announces")
+
+
+def _check_version(path: Path, head: bytes) -> None:
+    """Refuse a header that is not of the version that it says, as its counts are elsewhere."""
+    minor, (size,) = head[25], struct.unpack_from("<H", head, 94)
+    least = _HEADERS.get(minor, _HEADER)
+    if size < least:
+        raise FileFormatError(
+            f"{path}: its header says LAS 1.{minor} and has {size} bytes, not {least} or more: "
+            "the version or the size is wrong"
+        )
+    if struct.unpack_from("<I", head, 96)[0] < size:
+        raise FileFormatError(f"{path} is torn: its points begin within its header")
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(_LONGEST_HEADER).ljust(_LONGEST_HEADER, b"\0")
+
+
+def _check_both_counts(path: Path) -> None:
+    """Compare the counts of 32 and of 64 bits that headers have from version 1.4 on."""
+    head = _head(path)
+    (old,), (count,) = struct.unpack_from("<I", head, 107), struct.unpack_from("<Q", head, 247)
+    if head[25] >= 4 and old not in (0, count):
+        raise FileFormatError(
+            f"{path} announces {old} points in one place of its header and {count} in another"
+        )
+
+
+def _end_of_points(path: Path) -> int:
+    """Return where the records of points end at the latest: where something else begins."""
+    size, head = path.stat().st_size, _head(path)
+    begin, ends = int.from_bytes(head[96:100], "little"), [size]
+    if head[25] >= 3:
+        ends.append(struct.unpack_from("<Q", head, 227)[0])  # waveforms
+    if head[25] >= 4:
+        ends.append(struct.unpack_from("<Q", head, 235)[0])  # long records
+    return min((end for end in ends if begin <= end <= size), default=begin)
 
 
 def _end_of_records(file: IO[bytes], start: int, count: int, size: int) -> int:
@@ -201,7 +243,7 @@ def _end_of_records(file: IO[bytes], start: int, count: int, size: int) -> int:
 def _check_claim(path: Path, file: Any) -> None:
     """Compare the number of records in the header with what the file can hold."""
     header = file.header
-    count, size = int(header.point_count), path.stat().st_size
+    count = int(header.point_count)
     if header.are_points_compressed:
         least, held = _compressed_records(path, header)
         if count < least:
@@ -210,11 +252,16 @@ def _check_claim(path: Path, file: Any) -> None:
             )
     else:
         record = int(header.point_format.size)
-        held = max(0, size - int(header.offset_to_point_data)) // record
+        held = (_end_of_points(path) - int(header.offset_to_point_data)) // record
+        if count < held:
+            raise FileFormatError(
+                f"{path} announces {count} points and holds {held}: its header is wrong"
+            )
     if count > held:
         raise FileFormatError(
             f"{path} announces {count} points and has room for {held}: it is cut short"
         )
+    _check_both_counts(path)
 
 
 def _compressed_records(path: Path, header: Any) -> tuple[int, int]:

@@ -136,7 +136,7 @@ def _read(path: Path) -> Any:
         ):
             warnings.simplefilter("ignore")
             mesh = module.read(_absolute(path) if suffix == ".obj" else path)
-    except (DeloneError, FileNotFoundError, PermissionError):
+    except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
         raise
     except (Exception, SystemExit) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__

@@ -128,7 +128,7 @@ def _torn_is_an_error(path: Path) -> Iterator[None]:
         raise
     except MemoryError as error:
         # Compressed columns begin with their size, which nothing in the file confirms.
-        raise FileFormatError(f"{source} announces more than memory holds: is it torn?") from error
+        raise MemoryError(f"{source} announces more than memory holds; it may be torn") from error
     except Exception as error:
         reason = str(error).partition("\n")[0]
         raise FileFormatError(f"{source} is torn or no {path.suffix} file: {reason}") from error

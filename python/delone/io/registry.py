@@ -202,6 +202,8 @@ def read_points(
         layer is missing.
     MissingExtraError
         The library for this format is not installed.
+    MemoryError
+        There is not enough memory for what the file holds.
 
     Notes
     -----
@@ -210,6 +212,8 @@ def read_points(
     memory is set aside for what a header claims before the size of the file has confirmed it.
     Nothing that a file refers to is opened, apart from the parts of a Shapefile, the journals of a
     GeoPackage and the NODE file beside ELE and POLY.
+    Compressed files that hold more than 64 MiB and more than 200 times their size are refused:
+    decompress them first. So are lines of text of more than 16 MiB.
 
     Examples
     --------

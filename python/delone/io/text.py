@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.compressed import opened, torn_is_an_error
+from delone.io.compressed import Bounded, opened, torn_is_an_error
 from delone.io.counts import announced
 from delone.io.pointset import PointSet, choose_columns, find_column
 
@@ -36,6 +36,8 @@ _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
 _SAMPLE_ROWS = 50
 _BLOCK = 1 << 17
+# Bytes of a line: a row of numbers, and perhaps an outline beside it.
+_LONGEST_LINE = 1 << 24
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +92,8 @@ def _opened(path: Path) -> IO[str]:
     try:
         sample = binary.read(_SAMPLE_BYTES)
         binary.seek(0)
-        return io.TextIOWrapper(binary, encoding=_encoding(sample, path), newline=None)
+        text = io.BufferedReader(Bounded(binary, path, longest_line=_LONGEST_LINE), _SAMPLE_BYTES)
+        return io.TextIOWrapper(text, encoding=_encoding(sample, path), newline=None)
     except BaseException:
         binary.close()
         raise
