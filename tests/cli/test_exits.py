@@ -267,3 +267,34 @@ def test_output_that_cannot_be_printed_is_no_bug(tmp_path: Path) -> None:
     done = _shell("delone triangulate ü.csv -o c.npz", tmp_path, PYTHONIOENCODING="ascii")
     assert (done.returncode, done.stderr) == (0, "")
     assert "?.csv" in done.stdout
+
+
+TABLE = "x,y,z\n# a survey\n0,0,1\n\n1,{},2\n0,1,3\n0,1,4\n"
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("nan", ["triangulate"], "row 1; drop or repair it; line 5 of a.csv"),
+        ("inf", ["triangulate", "--3d"], "line 5 of a.csv"),
+        ("nan", ["voronoi"], "line 5 of a.csv"),
+        ("nan", ["tile", "-o", "a.tin", "--workers", "1"], "(row 1); line 5 of a.csv"),
+        ("nan", ["crossval"], "line 5 of a.csv"),
+        ("5", ["crossval"], "rows 3 and 2;"),
+        ("5", ["crossval"], "lines 7, 6 of a.csv"),
+        ("5", ["interpolate", "--grid", "3x3"], "lines 7, 6 of a.csv"),
+    ],
+)
+def test_rows_of_text_have_lines(tmp_path, monkeypatch, command, case):
+    number, arguments, words = case
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text(TABLE.format(number))
+    code, _, err = command(arguments[0], "a.csv", *arguments[1:])
+    assert code == 4
+    assert words in err and err.count("\n") == 1
+
+
+def test_rows_of_other_files_have_none(tmp_path, command):
+    np.save(tmp_path / "a.npy", [(0, 0), (np.nan, 1), (1, 1)])
+    code, _, err = command("triangulate", tmp_path / "a.npy")
+    assert code == 4 and "row 1" in err and "line" not in err

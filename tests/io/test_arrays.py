@@ -200,14 +200,16 @@ def test_arrays_of_coordinates_have_one_shape(tmp_path):
 @pytest.mark.skipif(sys.platform != "linux", reason="a limit on memory")
 @pytest.mark.parametrize("name", ["a.npz", "b.npz"])
 def test_what_memory_has_no_room_for_is_not_torn(tmp_path, name):
-    # One megabyte of file, 256 of memory.
-    np.savez_compressed(tmp_path / "a.npz", points=np.zeros((1 << 24, 2)))
-    np.savez_compressed(tmp_path / "b.npz", x=np.zeros(1 << 25), y=np.zeros(1 << 25))
+    # Less than one megabyte of file, 128 of memory.
+    if name == "a.npz":
+        np.savez_compressed(tmp_path / name, points=np.zeros((1 << 23, 2)))
+    else:
+        np.savez_compressed(tmp_path / name, x=np.zeros(1 << 23), y=np.zeros(1 << 23))
     code = (
         "import resource, sys; from pathlib import Path; from delone.cli import run\n"
         "import delone.io.arrays, delone.cli.info\n"
         "now = int(Path('/proc/self/statm').read_text().split()[0]) * resource.getpagesize()\n"
-        "resource.setrlimit(resource.RLIMIT_AS, (now + (1 << 27),) * 2)\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (now + (1 << 26),) * 2)\n"
         "sys.exit(run(['info', sys.argv[1]]))\n"
     )
     file = tmp_path / name

@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from delone import FileFormatError, NonFiniteError
+from delone import FileFormatError, InputError, NonFiniteError
 from delone._arrays import require_finite
-from delone.io import read_points
+from delone.io import line_numbers, read_points
 
 XY = [[4.25, 52.0], [4.5, 52.5], [-1e-3, 1e5]]
 Z = [-3.0, 7.0, 0.1]
@@ -119,16 +119,16 @@ def test_many_blocks(tmp_path, monkeypatch):
     table = np.arange(300.0).reshape(100, 3)
     text = lines(",", "x,y,z", table.tolist()).replace("\n", "\n#\n")
     assert read_points(written(tmp_path, "a.csv", text)).points.tolist() == table[:, :2].tolist()
-    with pytest.raises(FileFormatError, match=r"row 100, column y is 'b', not a number"):
+    with pytest.raises(FileFormatError, match=r"line 203 \(row 100\), column y is 'b'"):
         read_points(written(tmp_path, "b.csv", text + "1,b,3\n"))
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("x,y\n1,2\n3,four\n", r"row 1, column y is 'four', not a number"),
-        ("x,y\n1,2\n3,\n", r"row 1, column y is empty"),
-        ("x,y,z\n1,2,3\n3,4,5\n6,7", r"row 2 has only 2 columns: is the file cut short"),
+        ("x,y\n1,2\n3,four\n", r"line 3 \(row 1\), column y is 'four', not a number"),
+        ("x,y\n1,2\n3,\n", r"line 3 \(row 1\), column y is empty"),
+        ("x,y,z\n1,2,3\n3,4,5\n6,7", r"line 4 \(row 2\) has only 2 columns: is the file cut short"),
         ("3\n1 2 3\n4 5 6\n", r"announces 3 points and holds 2"),
         ("hello\nworld\n", "not columns of numbers"),
         ("# nothing\n\n", "no rows"),
@@ -166,7 +166,7 @@ def test_nan_rows_pass_and_can_be_named(tmp_path):
     "text", ["x,y\n0,5,1,5\n2,5,3,0\n7,1,2,2\n", "x y\n0 1\n2 3 4\n5 6\n", "1,2\n3,4\n5,6,7\n"]
 )
 def test_rows_longer_than_the_first_are_not_cut(tmp_path, text):
-    with pytest.raises(FileFormatError, match=r"row \d has \d columns, the first line 2"):
+    with pytest.raises(FileFormatError, match=r"line \d \(row \d\) has \d columns.* 2"):
         read_points(written(tmp_path, "a.csv", text))
 
 
@@ -247,3 +247,33 @@ def test_many_short_lines_are_no_long_one(tmp_path, monkeypatch, end):
     file = tmp_path / "a.csv"
     file.write_bytes(f"1,2{end}".encode() * (1 << 16))
     assert len(read_points(file)) == 1 << 16
+
+
+SCATTERED = "# a survey\n\nx,y,z\n0,0,1\n\n% pause\n4,nan,2\n  \n4,4,3\n// end\n0,4,4\n"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+def test_lines_of_rows(tmp_path, end, encoding):
+    file = tmp_path / "a.csv"
+    file.write_bytes(SCATTERED.replace("\n", end).encode(encoding))
+    assert len(read_points(file)) == 4
+    assert line_numbers(file, [0, 3, 1, 2, 2]) == [4, 11, 7, 9, 9]
+    assert line_numbers(file, []) == []
+    with pytest.raises(FileFormatError, match="has 4 rows, and no row 4"):
+        line_numbers(file, [4])
+
+
+@pytest.mark.parametrize("head", ["", "3\n", "# x y z\n", "x y z\n"])
+def test_lines_of_rows_below_each_kind_of_head(tmp_path, head):
+    file = tmp_path / "a.xyz.gz"
+    file.write_bytes(gzip.compress((head + "1 2 3\n4 5 6\n7 8 9\n").encode()))
+    assert line_numbers(file, range(3)) == [n + head.count("\n") for n in (1, 2, 3)]
+    with pytest.raises(InputError, match="rows"):
+        line_numbers(file, [-1])
+
+
+def test_only_text_has_lines(tmp_path):
+    np.save(tmp_path / "a.npy", np.zeros((3, 2)))
+    with pytest.raises(FileFormatError, match="no text file"):
+        line_numbers(tmp_path / "a.npy", [0])

@@ -25,6 +25,7 @@ from delone.cli.exits import (
     Failure,
     as_options,
     code_of,
+    naming_lines,
     os_message,
     reading,
     spare_inputs,
@@ -317,9 +318,9 @@ def info(
 # Called, not used as decorators: the functions above stay what they are.
 app.callback()(_options)
 for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
-    app.command(epilog="The table of exit codes is in: delone --help")(_command)
+    app.command(epilog="The table of exit codes is in: delone --help")(naming_lines(_command))
 
-app.command(epilog="The table of exit codes is in: delone --help")(tiles.tile)
+app.command(epilog="The table of exit codes is in: delone --help")(naming_lines(tiles.tile))
 app.command(epilog="The table of exit codes is in: delone --help")(tiles.dem)
 
 app.command(name="mesh", epilog="The table of exit codes is in: delone --help")(make_mesh)
@@ -449,6 +450,7 @@ def _said(error: BaseException) -> int:
             more = ", ..." if error.count > len(error.rows) else ""
             noun = agreed(error.count, "row", "rows")
             message += f" ({noun} {', '.join(map(str, error.rows.tolist()))}{more})"
+        message += "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
         if code == Exit.INTERNAL:
             message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
     if message:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import warnings
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, ParamSpec
 
+import numpy as np
+
+from delone.counting import agreed
 from delone.errors import (
     BudgetExceededError,
     BusyError,
@@ -22,10 +27,14 @@ from delone.errors import (
     NonFiniteError,
     OutputError,
 )
+from delone.io.registry import is_text, line_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
+    from collections.abc import Callable, Iterable, Iterator
+
+Given = ParamSpec("Given")
+# How many pairs of rows have their lines named; of single rows errors have ten.
+_FIRST = 10
 
 __all__ = [
     "MEANINGS",
@@ -33,6 +42,7 @@ __all__ = [
     "Failure",
     "as_options",
     "code_of",
+    "naming_lines",
     "os_message",
     "reading",
     "spare_inputs",
@@ -199,6 +209,39 @@ def os_message(error: OSError) -> str:
         # delone's own words, which have the name.
         return str(error)
     return ": ".join(str(part) for part in (error.filename, error.strerror) if part is not None)
+
+
+def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
+    """Make a command say which lines of a text file the rows of an error are.
+
+    Parameters
+    ----------
+    command : callable
+        A command whose argument ``source``, or ``sources``, is what it reads.
+
+    Returns
+    -------
+    callable
+        The same; it adds a note to errors that have rows.
+    """
+
+    @functools.wraps(command)
+    def called(*args: Given.args, **kwargs: Given.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except (NonFiniteError, ConflictingValuesError) as error:
+            given = kwargs.get("source", kwargs.get("sources"))
+            files = given if isinstance(given, list | tuple) else [given]
+            rows = np.ravel(error.rows[:_FIRST]).tolist()
+            if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
+                # What is said without lines is right, too.
+                with suppress(FileFormatError, OSError):
+                    lines = ", ".join(map(str, line_numbers(files[0], rows)))
+                    noun = agreed(len(rows), "line", "lines")
+                    error.add_note(f"{noun} {lines} of {files[0]}")
+            raise
+
+    return called
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from delone.io.raster import raster_suffixes, write_raster
 from delone.io.registry import (
     MeshFile,
     input_suffixes,
+    line_numbers,
     output_suffixes,
     read_geometries,
     read_mesh,
@@ -22,6 +23,7 @@ __all__ = [
     "MeshFile",
     "PointSet",
     "input_suffixes",
+    "line_numbers",
     "output_suffixes",
     "raster_suffixes",
     "read_geometries",

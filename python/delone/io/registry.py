@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from delone._arrays import as_flag, as_plain_array
+from delone._arrays import as_count, as_flag, as_plain_array
 from delone.atomic import replacing
 from delone.counting import counted
 from delone.errors import DtypeError, FileFormatError, InputError
@@ -39,6 +39,8 @@ __all__ = [
     "MeshFile",
     "holds_geometries",
     "input_suffixes",
+    "is_text",
+    "line_numbers",
     "mesh_suffixes",
     "output_suffixes",
     "read_geometries",
@@ -244,6 +246,77 @@ def read_points(
         raise FileFormatError(f"{file}: {suffix} files have no layers")
     read: Callable[..., PointSet] = module.read_points
     return read(file, **options)
+
+
+def line_numbers(path: str | os.PathLike[str], rows: Sequence[int]) -> list[int]:
+    r"""Return the lines of a text file that hold some rows of its points.
+
+    Parameters
+    ----------
+    path : str or path-like
+        CSV, TSV, TXT, XYZ, PTS or DAT, also compressed.
+    rows : sequence of int
+        Rows of what `read_points` returns, from 0.
+
+    Returns
+    -------
+    list of int
+        Numbers of lines from 1, as editors show them. Headers, comments and blank lines count here.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    FileFormatError
+        The file is no text file of points, or has no such row.
+
+    Notes
+    -----
+    The file is read again, up to the last of these rows.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from delone.io import line_numbers
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "survey.csv"
+    ...     _ = file.write_text("x,y\n0,0\n# pause\n4,nan\n")
+    ...     line_numbers(file, [1])
+    [4]
+    """
+    file = _existing(path)
+    if not is_text(file):
+        raise FileFormatError(f"{file} is no text file: its points are in no lines")
+    wanted = [as_count(row, name="rows") for row in rows]
+    module = importlib.import_module("delone.io.text")
+    found: list[int] = module.line_numbers(file, wanted)
+    return found
+
+
+def is_text(path: str | os.PathLike[str]) -> bool:
+    """Tell by its suffix whether the points of a file are in lines of text.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+
+    Returns
+    -------
+    bool
+        Whether `line_numbers` reads it.
+
+    Examples
+    --------
+    >>> from delone.io.registry import is_text
+    >>> is_text("survey.csv.gz"), is_text("survey.las")
+    (True, False)
+    """
+    suffixes = [suffix.lower() for suffix in Path(path).suffixes]
+    if suffixes and suffixes[-1] in SUFFIXES:
+        suffixes.pop()
+    return bool(suffixes) and _READERS.get(suffixes[-1]) == "text"
 
 
 def holds_geometries(path: str | os.PathLike[str]) -> bool:

@@ -2,7 +2,7 @@
 
 The first lines tell the delimiter, the decimal mark and whether there is a header; NumPy's reader
 does the rest, in blocks, so that the memory needed is that of the columns kept. Numbers become the
-nearest doubles. Rows are numbered from 0, without header, comments and blank lines.
+nearest doubles. Rows are numbered from 0, without header, comments and blank lines; lines from 1.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["read_points"]
+__all__ = ["line_numbers", "read_points"]
 
 _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
@@ -62,7 +62,7 @@ def read_points(
         chosen = choose_columns(layout.names, columns, source, named=layout.named)
         extra = [find_column(layout.names, name, source) for name in attributes]
         with _opened(path) as lines:
-            table = _table(lines, layout, chosen + extra, source)
+            table = _table(lines, layout, chosen + extra, path)
     if layout.claimed is not None and len(table) < layout.claimed:
         raise FileFormatError(
             f"{source} announces {layout.claimed} points and holds {len(table)}: it is cut short"
@@ -76,6 +76,31 @@ def read_points(
         source=source,
         columns=tuple(layout.names[i] for i in chosen) if layout.named else (),
     )
+
+
+def line_numbers(path: Path, rows: Sequence[int]) -> list[int]:
+    """Return the lines of rows; see `delone.io.line_numbers`."""
+    source = str(path)
+    with _no_text_is_an_error(source):
+        return _line_numbers(path, _layout(path, source).skip, rows)
+
+
+def _line_numbers(path: Path, skip: int, rows: Sequence[int]) -> list[int]:
+    """Read a file again, as nobody counts its lines as long as all is well."""
+    found, last = {}, max(rows, default=-1)
+    with _opened(path) as file:
+        held = (n for n, line in enumerate(file, 1) if n > skip and _is_row(line))
+        for row, number in enumerate(held):
+            if row > last:
+                break
+            found[row] = number
+    if last >= len(found):
+        raise FileFormatError(f"{path} has {len(found)} rows, and no row {last}")
+    return [found[row] for row in rows]
+
+
+def _is_row(line: str) -> bool:
+    return bool(line.strip()) and not _is_comment(line)
 
 
 @contextmanager
@@ -120,7 +145,7 @@ def _layout(path: Path, source: str) -> _Layout:
     while start < len(lines) and (not lines[start].strip() or _is_comment(lines[start])):
         comment = lines[start].strip().lstrip("".join(_COMMENTS)).strip() or comment
         start += 1
-    rows = [line for line in lines[start:] if line.strip() and not _is_comment(line)]
+    rows = [line for line in lines[start:] if _is_row(line)]
     if not rows:
         raise FileFormatError(f"{source} holds no rows of numbers")
     claimed = None
@@ -179,17 +204,17 @@ def _is_number(field: str, decimal: str) -> bool:
     return True
 
 
-def _table(file: IO[str], layout: _Layout, columns: list[int], source: str) -> Floats:
+def _table(file: IO[str], layout: _Layout, columns: list[int], path: Path) -> Floats:
     """Read the chosen columns, block by block."""
     for _ in range(layout.skip):
         file.readline()
-    lines: Iterator[str] = (line for line in file if line.strip() and not _is_comment(line))
+    lines: Iterator[str] = filter(_is_row, file)
     if layout.decimal != ".":
         lines = (line.replace(layout.decimal, ".") for line in lines)
     blocks: list[Floats] = []
     rows = 0
     while True:
-        block = _block(lines, layout, columns, rows, source)
+        block = _block(lines, layout, columns, rows, path)
         blocks.append(block)
         rows += len(block)
         if len(block) < _BLOCK:
@@ -197,12 +222,12 @@ def _table(file: IO[str], layout: _Layout, columns: list[int], source: str) -> F
 
 
 def _block(
-    lines: Iterator[str], layout: _Layout, columns: list[int], before: int, source: str
+    lines: Iterator[str], layout: _Layout, columns: list[int], before: int, path: Path
 ) -> Floats:
     content = list(itertools.islice(lines, _BLOCK))
     if not content:
         return np.empty((0, len(columns)))
-    _refuse_long_rows(content, layout, before, source)
+    _refuse_long_rows(content, layout, before, path)
     try:
         table: Floats = np.loadtxt(
             content,
@@ -213,11 +238,11 @@ def _block(
             ndmin=2,
         )
     except ValueError as error:
-        raise FileFormatError(f"{source}: {_located(str(error), layout, before)}") from None
+        raise FileFormatError(f"{path}: {_located(str(error), layout, before, path)}") from None
     return table
 
 
-def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, source: str) -> None:
+def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, path: Path) -> None:
     """Refuse what NumPy would cut without a word: fields beyond those of the first line."""
     width, delimiter = len(layout.names), layout.delimiter
     for row, line in enumerate(lines, before):
@@ -226,24 +251,28 @@ def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, source: st
         fields = line.split(delimiter)
         # A delimiter at the end makes an empty field; one in quotes makes none.
         if any(field.strip() for field in fields[width:]) and '"' not in line:
+            place = _place(row, layout, path)
             raise FileFormatError(
-                f"{source}: row {row} has {len(fields)} columns, the first line {width}: "
-                "are there decimal commas, or another delimiter?"
+                f"{path}: {place} has {len(fields)} columns, the first line {width}: are there "
+                "decimal commas, or another delimiter?"
             )
 
 
-def _located(message: str, layout: _Layout, before: int) -> str:
+def _place(row: int, layout: _Layout, path: Path) -> str:
+    return f"line {_line_numbers(path, layout.skip, [row])[0]} (row {row})"
+
+
+def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
     """Turn NumPy's complaint about a block into one about the file."""
     bad = re.search(r"string '(.*)' to float64 at row (\d+), column (\d+)", message)
     if bad:
         text, row, column = bad[1], int(bad[2]) + before, int(bad[3]) - 1
         name = layout.names[column] if layout.named and column < len(layout.names) else str(column)
         what = "is empty" if not text else f"is {text!r}, not a number"
-        return f"row {row}, column {name} {what}"
+        return f"{_place(row, layout, path)}, column {name} {what}"
     short = re.search(r"at row (\d+) with (\d+) columns", message)
     if short:
         # NumPy counts this row from 1.
-        return (
-            f"row {int(short[1]) + before - 1} has only {short[2]} columns: is the file cut short?"
-        )
+        place = _place(int(short[1]) + before - 1, layout, path)
+        return f"{place} has only {short[2]} columns: is the file cut short?"
     return message.partition("\n")[0]
