@@ -23,6 +23,7 @@ from delone.atomic import replacing
 from delone.cli import run
 from delone.cli.cells import write_cells
 from delone.distributed import triangulate
+from delone.distributed.store.files import Store
 from delone.interpolate import grid
 from delone.io import output_suffixes, raster_suffixes, write_mesh, write_raster
 
