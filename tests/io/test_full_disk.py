@@ -25,7 +25,7 @@ from delone.cli.cells import write_cells
 from delone.distributed import triangulate
 from delone.distributed.store.files import Store
 from delone.interpolate import grid
-from delone.io import output_suffixes, raster_suffixes, write_mesh, write_raster
+from delone.io import geotiff, output_suffixes, raster_suffixes, write_mesh, write_raster
 
 resource = pytest.importorskip("resource", reason="limits of POSIX systems")
 for _library in ("meshio", "h5py", "pyogrio", "geopandas", "rasterio", "netCDF4", "matplotlib"):
@@ -228,3 +228,19 @@ def test_a_folder_that_looks_like_an_address(
         files = [path for path in tmp_path.rglob("*") if path.is_file()]
         assert files == [folder / "a.geojson"]
         files[0].unlink()
+
+
+def test_a_raster_with_a_block_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A block that was not written reads as no values, without an error of GDAL."""
+    parts, calls = geotiff._parts, []
+
+    def some(values: np.ndarray) -> list[object]:
+        calls.append(values)
+        found = list(parts(values))
+        return found[:-1] if len(calls) == 1 else found
+
+    monkeypatch.setattr(geotiff, "_parts", some)
+    raster = grid(POINTS, HEIGHTS, shape=(5, 300), extrapolate="nearest")
+    with pytest.raises(OutputError, match="values are missing"):
+        write_raster(tmp_path / "a.tif", raster)
+    assert os.listdir(tmp_path) == []
