@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from delone.distributed.files import Store
 
 from delone import Delaunay, Mesh, OutputError, Voronoi, mesh
 from delone.atomic import replacing

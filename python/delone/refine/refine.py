@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_flag, as_number, as_plain_array, as_workers
+from delone._arrays import (
+    as_choice,
+    as_count,
+    as_flag,
+    as_number,
+    as_plain_array,
+    as_workers,
+    refuse_masks,
+)
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError
@@ -477,6 +485,7 @@ def _base(
 
 def _refuse_points(domain: Any) -> None:
     """Refuse points alone, and say of what they may be the corners."""
+    refuse_masks(domain, "domain")
     first = domain[0] if isinstance(domain, list | tuple | np.ndarray) and len(domain) else ()
     if isinstance(first, list | tuple | np.ndarray) and len(first) in (2, 3):
         numbers = all(isinstance(each, int | float | np.number) for each in first)
