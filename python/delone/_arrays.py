@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 import numpy as np
 
+from delone._masks import refuse_masks
 from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, LimitError, NonFiniteError, ShapeError
 
@@ -675,31 +676,6 @@ def _refuse_geometries(array: NDArray[Any], name: str) -> None:
             f"{name} holds geometries, not numbers: of points pass their coordinates, "
             f"shapely.get_coordinates({name}) or {name}.get_coordinates().to_numpy(); "
             "delone.from_geometry takes geometries of every kind"
-        )
-
-
-def refuse_masks(given: Any, name: str) -> None:
-    """Refuse a masked array, or a list of such, before the mask is dropped silently.
-
-    Parameters
-    ----------
-    given : object
-        What the caller passed.
-    name : str
-        What the argument is called in the error message.
-
-    Raises
-    ------
-    DtypeError
-        There is a mask.
-    """
-    rows = given if isinstance(given, list | tuple) else ()
-    if isinstance(given, np.ma.MaskedArray) or any(
-        isinstance(row, np.ma.MaskedArray) for row in rows
-    ):
-        raise DtypeError(
-            f"{name} is a masked array; pass only the rows that count, "
-            "for example np.ma.compress_rows(points), or points.data if none is masked"
         )
 
 

@@ -25,7 +25,7 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays", "counting", "georeference"}
+FOUNDATION = {"errors", "_arrays", "_masks", "counting", "georeference"}
 PUBLIC = {
     "delone",
     "errors",
@@ -42,7 +42,8 @@ PUBLIC = {
 }
 PYTHON: dict[str, set[str]] = {
     "errors": set(),
-    "_arrays": {"counting", "errors"},
+    "_arrays": {"_masks", "counting", "errors"},
+    "_masks": {"errors"},
     "counting": set(),
     "georeference": {"errors"},
     "_core": set(),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import refuse_masks
+from delone._masks import refuse_masks
 from delone.errors import DtypeError, InputError, MissingExtraError, ShapeError
 
 if TYPE_CHECKING:

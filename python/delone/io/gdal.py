@@ -156,7 +156,8 @@ def local_name(path: Path) -> str:
     taken = require("pyogrio.util", extra="geo", what=f"reading {path.suffix}").vsi_path(name)
     if taken != name:
         raise FileFormatError(
-            f"{path}: GDAL takes this name for {taken}; rename the file, without ! and ;"
+            f"{path}: GDAL takes this name for {taken}; rename the file or its folder, "
+            "without !, ? and ;"
         )
     return name
 

@@ -20,7 +20,6 @@ from delone.io.extras import require
 from delone.io.geotiff import write_geotiff
 from delone.io.pointset import names_height
 from delone.io.referencing import cf_attributes, warn_if_left_out
-from delone.io.systems import plain_system
 
 if TYPE_CHECKING:
     import os

@@ -19,8 +19,8 @@ from delone._arrays import (
     as_number,
     as_plain_array,
     as_workers,
-    refuse_masks,
 )
+from delone._masks import refuse_masks
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError

@@ -1,0 +1,45 @@
+"""Masked arrays, which every other function takes for plain ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from delone.errors import DtypeError
+
+__all__ = ["refuse_masks"]
+
+
+def refuse_masks(given: Any, name: str) -> None:
+    """Refuse a masked array, or a list of such, before the mask is dropped silently.
+
+    Parameters
+    ----------
+    given : object
+        What the caller passed.
+    name : str
+        What the argument is called in the error message.
+
+    Raises
+    ------
+    DtypeError
+        There is a mask.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone._masks import refuse_masks
+    >>> refuse_masks(np.ma.masked_array([1, 2], mask=[0, 1]), "z")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    delone.errors.DtypeError: z is a masked array; ...
+    """
+    rows = given if isinstance(given, list | tuple) else ()
+    if isinstance(given, np.ma.MaskedArray) or any(
+        isinstance(row, np.ma.MaskedArray) for row in rows
+    ):
+        raise DtypeError(
+            f"{name} is a masked array; pass only the rows that count, "
+            "for example np.ma.compress_rows(points), or points.data if none is masked"
+        )
