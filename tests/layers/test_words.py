@@ -1,0 +1,159 @@
+"""The text of the project is plain American English: phrases and spellings that it does not use.
+
+The phrases are those of the table "Say this, not that" in CONTRIBUTING.md that cannot be right in
+another sense. Only the files in `CONVERTED` are checked; add a glob when a folder is converted.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+CONVERTED = (
+    "*.md",
+    "benchmarks/README.md",
+    "examples/README.md",
+    "docs/*.rst",
+    "docs/api/*.rst",
+    "docs/decisions/*.rst",
+    "docs/guide/*.rst",
+    "docs/mathematics/*.rst",
+)
+
+# Each is written out in the left column of the table in CONTRIBUTING.md.
+PHRASES = (
+    "the doubles denote",
+    "hangs on",
+    "hang on",
+    "hung on",
+    "whoever knows",
+    "at home in Python",
+    "truth value",
+    "for ever",
+    "none of its choices",
+    "is there in space",
+    "is there in the plane",
+    "triangulates anew",
+    "laid anew",
+    "a straight way",
+    "out to the field",
+    "what the input held",
+    "the circle over a segment",
+    "the far vertex",
+    "bends upwards",
+    "numbers of two doubles",
+    "integers of any width",
+    "has told all",
+    "whom the others",
+    "comes again",
+    "come again",
+    "what became of the input",
+    "torn file",
+    "appear whole",
+    "in silence",
+    "the core left them",
+    "names the culprits",
+    "is the door",
+    "are the doors",
+    "nanoseconds a point",
+    "hand-overs",
+    "kind to the cache",
+)
+BRITISH = (
+    r"neighbour\w*",
+    r"(?:circum|off-)?centre[sd]?",
+    r"colour\w*",
+    r"(?:kilo|centi|milli)?metres?",
+    r"grey\w*",
+    r"licences?",
+    r"(?:behaviour|favour|artefact)\w*",
+    r"(?:label|model|travel|cancel)l(?:ed|ing)",
+    r"analys(?:e|ed|ing)",
+    r"(?:character|discret|equal|factor|general|initial|linear|local|maxim|minim|normal|optim|organ"
+    r"|parallel|quant|random|real|recogn|serial|special|standard|summar|symbol|synchron|util"
+    r"|vector|visual)is(?:e|ed|es|ing|ation|ations)",
+)
+
+IN_CODE = re.compile(r"``[^`]+``|`[^`]+`")
+SESSION = re.compile(r"^ *>>> .*?(?=\n *\n|\Z)", re.MULTILINE | re.DOTALL)
+TABLE = re.compile(r"### Say this, not that.*?(?=\n[^|\n])", re.DOTALL)
+
+
+def prose(text: str) -> str:
+    """The text without code and without line breaks.
+
+    Parameters
+    ----------
+    text : str
+        The contents of a file.
+
+    Returns
+    -------
+    str
+        One line for each paragraph.
+    """
+    text = SESSION.sub("", TABLE.sub("", text).replace("```", "\n\n"))
+    paragraphs = (" ".join(part.split()) for part in re.split(r"\n\s*\n", text))
+    return "\n".join(IN_CODE.sub("code", part) for part in paragraphs)
+
+
+def faults(text: str) -> list[str]:
+    """The phrases and British spellings in the prose of a text, in their order."""
+    pattern = "|".join([*map(re.escape, PHRASES), *BRITISH])
+    return re.findall(rf"\b(?:{pattern})\b", prose(text), flags=re.IGNORECASE)
+
+
+def converted() -> list[Path]:
+    """The files to check; this one, which quotes what it forbids, is not among them."""
+    found = {path for pattern in CONVERTED for path in ROOT.glob(pattern)}
+    return sorted(found - {Path(__file__)})
+
+
+@pytest.mark.parametrize("path", converted(), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_the_text_is_plain_american_english(path: Path) -> None:
+    assert faults(path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("pattern", CONVERTED)
+def test_each_glob_finds_files(pattern: str) -> None:
+    assert list(ROOT.glob(pattern))
+
+
+def test_each_phrase_is_in_the_table() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = TABLE.search(text)
+    assert rows
+    left = [row.split("|")[1].lower() for row in rows.group().splitlines() if row.startswith("|")]
+    assert [phrase for phrase in PHRASES if not any(phrase.lower() in cell for cell in left)] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("The order hangs on coordinates.", ["hangs on"]),
+        ("The ridge goes on for\never.", ["for ever"]),
+        ("- Torn\n  files are refused; a torn file is named.", ["torn file"]),
+        ("A neighbour at the off-centre, 3 metres away.", ["neighbour", "off-centre", "metres"]),
+        ("Lidar that is\nquantised, `colour`.", ["quantised"]),
+        ("Normalised, optimised and vectorised.", ["Normalised", "optimised", "vectorised"]),
+    ],
+)
+def test_a_fault_is_found(text: str, found: list[str]) -> None:
+    assert faults(text) == found
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "forever, exercises, otherwise, promised, raised, advertised, noise, comprises, arises",
+        "See `circle.centre` and ``colours``.",
+        ">>> circle.centre\nthe door is a truth value\n\nNeighbors.",
+        "```python\nx = 1\n```\n\nNeighbors meet the door of a room.",
+    ],
+)
+def test_what_is_right_passes(text: str) -> None:
+    assert faults(text) == []
