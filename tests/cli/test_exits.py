@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -139,7 +138,9 @@ def test_signals_leave_nothing_behind(survey, tmp_path, number, code):
     out = tmp_path / "out"
     out.mkdir()
     script = (
-        "import delone.io.mesh as m, time, sys\n"
+        "import delone.io.mesh as m, signal, sys, time\n"
+        # A shell may have started the tests in the background, where Ctrl-C is ignored.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "def write(path, *a, **k):\n"
         "    path.write_bytes(b'half'); print('writing', flush=True); time.sleep(60)\n"
         "m.write_mesh = write\n"
@@ -151,7 +152,6 @@ def test_signals_leave_nothing_behind(survey, tmp_path, number, code):
         [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as child:
         assert child.stdout.readline() == "writing\n"
-        time.sleep(0.05)
         child.send_signal(number)
         _, err = child.communicate(timeout=30)
     assert child.returncode == code

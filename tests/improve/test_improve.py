@@ -471,6 +471,23 @@ def test_files_hold_the_mesh(suffix: str, tmp_path: Path) -> None:
     assert np.array_equal(np.ravel(read.point_data["weight"]), np.arange(50.0))
 
 
+def test_meshio_takes_it() -> None:
+    pytest.importorskip("meshio")
+    points, simplices = uniform(30)
+    points, halves = np.concatenate((points, points + 2)), (simplices, simplices + 30)
+    region = np.repeat([7, 4], len(simplices))
+    mesh = delone.improve((points, np.concatenate(halves)), region=region, smooth=False)
+    found = mesh.to_meshio()
+    assert np.array_equal(found.points, points)
+    assert [block.type for block in found.cells] == ["tetra"]
+    assert np.array_equal(found.cells_dict["tetra"], mesh.simplices)
+    assert list(found.cell_data) == ["region", "smallest_dihedral"]
+    side = found.points[found.cells_dict["tetra"][:, 0], 0] > 1.5
+    assert np.array_equal(found.cell_data["region"][0], np.where(side, 4, 7))
+    angles = found.cell_data["smallest_dihedral"][0]
+    assert np.array_equal(angles, mesh.quality().smallest_dihedral)
+
+
 def test_files_of_the_plane_refuse_it(tmp_path: Path) -> None:
     mesh = delone.improve(uniform(50))
     for name in ("mesh.geojson", "mesh.stl", "mesh.npz"):

@@ -43,13 +43,17 @@ def test_the_corner_of_a_cube() -> None:
 def test_slivers_have_angles_that_are_right(height: float) -> None:
     sliver = np.array([(0, 0, 0), (1, 0, height), (1, 1, 0), (0, 1, height)])
     quality = measured(sliver, ONE)
-    # Both diagonals have the height between them: each side meets the next at sqrt(2) of it.
-    small = np.degrees(np.arctan2(height * np.sqrt(2), 1 / np.sqrt(2)))
-    assert quality.smallest_dihedral[0] == pytest.approx(np.degrees(height), rel=0.5 * 3)
-    assert quality.smallest_dihedral[0] <= 2 * small
-    assert quality.radius_ratio[0] < 10 * height
-    exact = Fraction(height) * 2 / 6
-    assert quality.volume[0] == pytest.approx(float(exact), rel=1e-2)
+    # The faces have the normals (-h, h, 1), (-h, -h, 1), (h, -h, 1) and (h, h, 1). The cosine
+    # between two is 1 / (1 + 2 h^2) across a side, and (1 - 2 h^2) times that across a diagonal.
+    small = 2 * np.degrees(np.arctan(height / np.sqrt(1 + height**2)))
+    large = 180 - 2 * np.degrees(np.arctan(np.sqrt(2) * height))
+    assert quality.smallest_dihedral[0] == pytest.approx(small, rel=1e-12)
+    assert quality.largest_dihedral[0] == pytest.approx(large, rel=1e-14)
+    # Equal faces: the center of both spheres is that of the corners.
+    inner, outer = height / 2 / np.sqrt(1 + 2 * height**2), np.sqrt(2 + height**2) / 2
+    assert quality.radius_ratio[0] == pytest.approx(3 * inner / outer, rel=1e-12)
+    assert quality.edge_ratio[0] == pytest.approx(np.sqrt(2 / (1 + height**2)), rel=1e-14)
+    assert quality.volume[0] == pytest.approx(float(Fraction(height) / 3), rel=1e-14)
 
 
 def test_six_angles_of_random_tetrahedra() -> None:

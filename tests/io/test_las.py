@@ -10,6 +10,7 @@ import pytest
 
 from delone import FileFormatError
 from delone.io import read_points
+from delone.io.las import describe
 
 N = 1000
 COUNT_12, COUNT_14 = 107, 247  # where the header has the number of records
@@ -40,6 +41,20 @@ def test_coordinates_are_those_of_laspy(cloud, monkeypatch):
     assert np.array_equal(survey.z, las.z)
     assert np.array_equal(survey.attributes["classification"], las.classification)
     assert survey.crs is None
+
+
+def test_what_the_header_says(cloud):
+    file, las = cloud
+    found = describe(file)
+    names = found.pop("dimensions")
+    assert found == {
+        "las_version": "1.2" if las.header.point_format.id == 1 else "1.4",
+        "point_format": las.header.point_format.id,
+        "scales": [0.001, 0.01, 0.1],
+    }
+    assert names == list(las.point_format.dimension_names)
+    assert names[:4] == ["X", "Y", "Z", "intensity"]
+    assert ("overlap" in names) == (found["point_format"] == 6)
 
 
 def test_classes(cloud):

@@ -156,6 +156,41 @@ def test_libraries(mesh: delone.Mesh) -> None:
     assert mesh.plot().get_aspect() == 1.0
 
 
+def test_meshio() -> None:
+    pytest.importorskip("meshio")
+    halves = [(0.0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)]
+    sides = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)]
+    mesh = delone.mesh(
+        (halves, sides),
+        max_area=0.05,
+        segment_markers=[1, 2, 3, 4, 5, 6, 9],
+        regions=[(0.5, 0.5, 3), (1.5, 0.5, 0)],
+    )
+    found = mesh.to_meshio()
+    assert np.array_equal(found.points, np.column_stack((mesh.points, np.zeros(mesh.npoints))))
+    assert [block.type for block in found.cells] == ["triangle", "line"]
+    triangles, lines = (block.data for block in found.cells)
+    assert np.array_equal(triangles, mesh.simplices)
+    # What belongs to a cell is where that cell lies.
+    at = found.points[triangles].mean(axis=1)
+    region, none = found.cell_data["region"]
+    assert np.array_equal(region, np.where(at[:, 0] < 1, 3, 0))
+    assert (none == -1).all()
+    at = found.points[lines].mean(axis=1)
+    left, right, middle = at[:, 0] == 0, at[:, 0] == 2, at[:, 0] == 1
+    low, up = at[:, 1] == 0, at[:, 0] < 1
+    expected = np.select([left, right, middle, low & up, low, up], [6, 3, 9, 1, 2, 5], default=4)
+    nothing, marker = found.cell_data["marker"]
+    assert np.array_equal(marker, expected)
+    assert (nothing == 0).all()
+    assert np.array_equal(found.point_data["marker"], mesh.point_markers)
+    # No tag of gmsh is 0, which stands for none there.
+    for name in ("gmsh:physical", "gmsh:geometrical"):
+        tags, of_lines = found.cell_data[name]
+        assert np.array_equal(tags, np.where(region == 3, 4, 1))
+        assert np.array_equal(of_lines, expected)
+
+
 def test_scikit_fem(mesh: delone.Mesh) -> None:
     pytest.importorskip("skfem")
     found = mesh.to_skfem()

@@ -227,3 +227,26 @@ def test_points_further_apart_than_any_double(axis: int) -> None:
         PeriodicDelaunay(points, periods)
     with pytest.raises(InputError, match="apart"):
         Delaunay(points, periodic=periods)
+
+
+@pytest.mark.parametrize("periods", [(8, 6), (8, None), (None, 6)])
+def test_partners_are_the_same_edge_seen_from_the_other_side(periods: Any) -> None:
+    points = np.unique(np.random.default_rng(17).integers(0, 6, (25, 2)), axis=0).astype(float)
+    mesh = PeriodicDelaunay(points, periods)
+    partners = mesh.partners
+    assert partners.shape == mesh.simplices.shape
+    assert (partners < 0).any() == (None in periods)
+    corners = np.dstack((mesh.simplices, mesh.offsets))
+    for t, k in np.argwhere(partners >= 0).tolist():
+        other, j = divmod(int(partners[t, k]), 3)
+        assert mesh.neighbors[t, k] == other
+        assert partners[other, j] == 3 * t + k
+        # The edge of the one is that of the other turned round, and moved by whole periods.
+        here, there = (
+            corners[t, [(k + 1) % 3, (k + 2) % 3]],
+            corners[other, [(j + 2) % 3, (j + 1) % 3]],
+        )
+        assert here[:, 0].tolist() == there[:, 0].tolist()
+        moved = here[:, 1:] - there[:, 1:]
+        assert (moved[0] == moved[1]).all()
+    assert ((partners < 0) == (mesh.neighbors < 0)).all()

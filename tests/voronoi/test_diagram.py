@@ -105,6 +105,28 @@ def test_the_first_site_of_a_ridge_lies_to_the_left_of_its_way() -> None:
     assert (way[:, 0] * across[:, 1] - way[:, 1] * across[:, 0] > 0).all()
 
 
+def test_the_dictionary_has_each_ridge_between_its_sites() -> None:
+    diagram = Voronoi([(0, 0), (4, 0), (4, 4), (0, 4), (2, 2), (2, 2)])
+    ridges = diagram.ridge_dict
+    assert list(ridges) == [tuple(pair) for pair in diagram.ridge_points.tolist()]
+    found = {
+        frozenset(pair): {tuple(diagram.vertices[v].tolist()) for v in ends if v >= 0}
+        for pair, ends in ridges.items()
+    }
+    # The middle has a square, and the corners share a ray each from one of its corners.
+    south, east, north, west = (2.0, 0.0), (4.0, 2.0), (2.0, 4.0), (0.0, 2.0)
+    assert found == {
+        frozenset((0, 4)): {south, west},
+        frozenset((1, 4)): {south, east},
+        frozenset((2, 4)): {north, east},
+        frozenset((3, 4)): {north, west},
+        frozenset((0, 1)): {south},
+        frozenset((1, 2)): {east},
+        frozenset((2, 3)): {north},
+        frozenset((0, 3)): {west},
+    }
+
+
 @settings(max_examples=150, deadline=None)
 @given(lattice_points(6))
 def test_regions_are_the_cycles_of_their_ridges(sites: list[tuple[int, int]]) -> None:
@@ -224,8 +246,8 @@ def test_sites_on_a_line_have_strips_between_half_planes() -> None:
     clipped = Voronoi(points, clip=(-10, -10, 10, 10))
     areas = clipped.cell_areas
     assert areas[[0, 1, 2, 4]].sum() == pytest.approx(400)
-    # Between parallels across the box: the width times the length, in units of the first strip.
-    assert areas[4] == pytest.approx(2 * areas[2] - 20 * 0, rel=0.5)
+    # The lines x + 2 y = 2.5, 7.5 and 15 have 225, 275 and 350 - 2.5 * 5 / 2 of the box below them.
+    assert areas.tolist() == pytest.approx([56.25, 225, 50, 225, 68.75], rel=1e-14)
 
 
 def test_a_vertex_beyond_the_range_is_a_ray() -> None:
@@ -242,8 +264,9 @@ def test_a_vertex_beyond_the_range_is_a_ray() -> None:
     middle = clipped.cell(1)
     assert not middle.bounded
     assert middle.parts[0][0][:, 1].max() == 3
-    nearest = ((np.array([0.9, 2.9]) - points) ** 2).sum(axis=1).argmin()
-    assert nearest == 1
+    # What is left of it in the box lies between the lines halfway to both neighbors.
+    assert middle.parts[0][0][:, 0].min() == 0.5
+    assert middle.parts[0][0][:, 0].max() == 1.5
 
 
 @pytest.mark.parametrize("scale", [2.0**-1060, 2.0**-500, 2.0**1000])

@@ -611,3 +611,32 @@ def test_a_picture_without_a_window() -> None:
     own.close()
     with pytest.raises(InputError, match="off_screen must be True, False or None"):
         diagram.plot(off_screen="yes")
+
+
+def test_ridges_have_the_areas_of_their_polygons() -> None:
+    points = uniform(40, 12)
+    diagram = SpaceVoronoi(points)
+    closed = [-1 not in ridge for ridge in diagram.ridge_vertices]
+    assert 0 < sum(closed) < len(closed)
+    for ridge, whole, area in zip(
+        diagram.ridge_vertices, closed, diagram.ridge_areas.tolist(), strict=True
+    ):
+        if not whole:
+            assert area == np.inf
+            continue
+        around = diagram.vertices[ridge]
+        sides = around[1:] - around[0]
+        turned = np.cross(sides[:-1], sides[1:]).sum(axis=0) / 2
+        assert area == pytest.approx(np.linalg.norm(turned), rel=1e-8, abs=1e-12)
+
+
+def test_in_a_clip_ridges_have_the_areas_of_what_is_left() -> None:
+    # Sites of a grid: each cell is a cube, but for the outer ones, which the clip makes boxes.
+    diagram = SpaceVoronoi(GRID, clip=((-1.0, -1, -1), (3.5, 3.5, 3.5)))
+    size = np.array([1.5, 1.0, 1.0, 1.0])
+    expected = []
+    for a, b in GRID[diagram.ridge_points].astype(int):
+        other = np.flatnonzero(a == b)
+        expected.append(np.prod(size[a[other]]) if len(other) == 2 else 0.0)
+    assert sorted(set(expected)) == [1.0, 1.5, 2.25]
+    assert diagram.ridge_areas.tolist() == pytest.approx(expected, rel=1e-14)
