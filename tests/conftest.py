@@ -1,8 +1,13 @@
-"""What all tests share: hypothesis settings and the corpus of hard inputs."""
+"""What all tests share: hypothesis settings, the corpus of hard inputs, expected skips.
+
+The tests run in random order (pytest-randomly); the last lines of a run say how to repeat it.
+"""
 
 from __future__ import annotations
 
 import json
+import os
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -58,3 +63,72 @@ def degenerate_case(request: pytest.FixtureRequest) -> DegenerateCase:
     """One input without any triangle after the other, and the reason to be raised."""
     points, case = _read(request.param)
     return DegenerateCase(request.param.stem, points, case["sentence"], case["reason"])
+
+
+# Skips of a full environment, as `make test` has it: test, reason, and where that happens. All
+# others fail the run.
+EXPECTED_SKIPS = {
+    ("tests/conformance/test_triangle.py*", "could not import 'triangle'*"): (
+        "the package, whose license is not free, is needed by benchmarks alone"
+    ),
+    ("tests/distributed/test_resume.py*", "root may write anywhere"): "containers run as root",
+    (
+        "tests/conformance/*",
+        "SciPy is installed without its tests",
+    ): "as packages of systems have it",
+    ("*", "*POSIX*"): "Windows",
+    ("*", "RLIMIT_AS is kept on Linux alone"): "macOS and Windows",
+    ("*", "links need a privilege on Windows"): "Windows",
+    ("*", "pipes of 64 KiB that open both ways"): "macOS and Windows",
+    ("*", "longdouble is float64 on this platform"): "Windows, and macOS on ARM",
+    ("*", "processes are killed *"): "Windows",
+    ("*", "the process is killed by a signal"): "Windows",
+}
+# Set where extras are missing on purpose: then every skip is expected.
+ANY_SKIP = "DELONE_ANY_SKIP"
+
+_unexpected: list[pytest.CollectReport | pytest.TestReport] = []
+
+
+def _note(report: pytest.CollectReport | pytest.TestReport) -> None:
+    if report.skipped and not hasattr(report, "wasxfail") and not os.environ.get(ANY_SKIP):
+        reason = _reason(report)
+        known = (fnmatch(report.nodeid, t) and fnmatch(reason, r) for t, r in EXPECTED_SKIPS)
+        if not any(known):
+            _unexpected.append(report)
+
+
+def _reason(report: pytest.CollectReport | pytest.TestReport) -> str:
+    where = report.longrepr
+    return (where[2] if isinstance(where, tuple) else str(where)).removeprefix("Skipped: ")
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    _note(report)
+
+
+def pytest_collectreport(report: pytest.CollectReport) -> None:
+    _note(report)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if _unexpected and session.exitstatus in (
+        pytest.ExitCode.OK,
+        pytest.ExitCode.NO_TESTS_COLLECTED,
+    ):
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    if _unexpected:
+        terminalreporter.section("skips that nobody expects", red=True)
+        for report in _unexpected:
+            terminalreporter.write_line(f"{report.nodeid}: {_reason(report)}")
+        terminalreporter.write_line(
+            f"Install what is missing, list the skip in {Path(__file__).name}, or set {ANY_SKIP}=1."
+        )
+        # The closing line counts them.
+        terminalreporter.stats.setdefault("error", []).extend(_unexpected)
+    seed = getattr(config.option, "randomly_seed", None)
+    if isinstance(seed, int) and config.pluginmanager.hasplugin("randomly"):
+        terminalreporter.write_line(f"order of the tests: --randomly-seed={seed}")
