@@ -9,6 +9,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 p
 RUST_MINOR := 89
 FUZZ_SECONDS ?= 20
 BENCH ?=
+MUTANTS ?=
 DEMO_DATA := examples/data/ahn3_crop_100m.laz
 
 VENV := .venv
@@ -27,7 +28,7 @@ NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := -E $(EXTRAS) -G bench
 
-.PHONY: help need build demo test lint docs bench fuzz clean
+.PHONY: help need build demo test lint docs bench fuzz mutants clean
 .DEFAULT_GOAL := help
 
 help:
@@ -37,6 +38,7 @@ help:
 	@echo 'make docs    the documentation, into docs/_build/html'
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
+	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
 
@@ -117,6 +119,9 @@ bench: $(STAMPS)/bench
 	$(BIN)/python benchmarks/tiles.py
 	$(BIN)/python benchmarks/voronoi3.py $(BENCH)
 	@if [ -n "$$DELONE_LIDAR" ]; then $(BIN)/python benchmarks/lidar.py; fi
+
+mutants: $(STAMPS)/test
+	$(BIN)/python tests/mutants/run.py $(foreach name,$(MUTANTS),'$(name)')
 
 fuzz: need
 	fuzz/run.sh $(FUZZ_SECONDS)
