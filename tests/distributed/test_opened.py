@@ -96,6 +96,22 @@ def test_raster_without_seams(tin: distributed.TiledDelaunay, tmp_path: Path) ->
         tin.to_raster(0.0, tmp_path / "dem.tif")
 
 
+def test_cells_of_a_raster_need_not_be_square(
+    tin: distributed.TiledDelaunay, tmp_path: Path
+) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    low, high = SURVEY.points.min(axis=0), SURVEY.points.max(axis=0)
+    across, up = (high - low) / [40.5, 12.5]
+    tin.to_raster((across, up), tmp_path / "dem.tif")
+    right = grid(Delaunay(SURVEY.points), SURVEY.z, resolution=(across, up), duplicates="first")
+    with rasterio.open(tmp_path / "dem.tif") as file:
+        np.testing.assert_allclose(file.read(1)[::-1], right.values, rtol=1e-12)
+        # The first cell begins at the least coordinates; rows of the file go down.
+        assert file.transform.almost_equals(
+            rasterio.Affine(across, 0, low[0], 0, -up, low[1] + up * len(right.y)), 1e-6
+        )
+
+
 def test_a_disk_without_room_for_a_raster(
     tin: distributed.TiledDelaunay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

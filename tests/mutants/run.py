@@ -9,6 +9,7 @@ some of them.
 from __future__ import annotations
 
 import argparse
+import fcntl
 import os
 import shutil
 import subprocess
@@ -173,6 +174,13 @@ def main() -> int:
     ]  # fmt: skip
     if not chosen:
         raise ListError(f"no mutant is named {' or '.join(given.names)}")
+    COPY.mkdir(parents=True, exist_ok=True)
+    # Held until the end: a second run would take bugs out, or leave some in, that are not its own.
+    lock = (COPY.parent / "lock").open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ListError("another run is at work in this tree") from None
     copy_tree()
     for pytest, cargo in dict.fromkeys((m.pytest, m.cargo) for m in chosen):
         if not passes(pytest, cargo):
