@@ -11,6 +11,7 @@ __all__ = [
     "Locator3",
     "__version__",
     "areas2",
+    "around",
     "below2",
     "circumcenters2",
     "circumcenters3",
@@ -95,6 +96,9 @@ def fault3(
     neighbors: NDArray[np.int32],
     workers: int,
 ) -> tuple[str, int] | None: ...
+def around(
+    edges: NDArray[np.int32], npoints: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
 def edges2(
     simplices: NDArray[np.int32], neighbors: NDArray[np.int32], npoints: int, workers: int
 ) -> NDArray[np.int32]: ...

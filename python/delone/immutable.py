@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self, TypeVar
 import numpy as np
 
 from delone._arrays import as_points
+from delone.blocks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,9 +108,9 @@ def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> NDArray[np.float64]:
     """Return points that no one else can change, neither now nor while the core runs."""
     array = as_points(points, ndim=ndim)
     if array is points:
-        return array.copy()
+        return copied(array)
     if isinstance(points, list | tuple):
         return array
     if isinstance(points, np.ndarray) and not np.may_share_memory(points, array):
         return array
-    return array.copy()
+    return copied(array)

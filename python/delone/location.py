@@ -14,6 +14,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_vectors, as_workers, require_finite
+from delone.blocks import blocks
 from delone.errors import ShapeError
 
 if TYPE_CHECKING:
@@ -138,7 +139,9 @@ def locate(index: _core.Locator2, points: Floats, xi: ArrayLike, workers: int | 
     queries = as_vectors(xi, 2, name="xi")
     flat, leading = queries.reshape(-1, 2), queries.shape[:-1]
     simplex, barycentric, beside, edge, share = index.locate(flat, as_workers(workers))
-    nearest = np.where((simplex >= 0)[:, None], flat, np.nan)
+    nearest = np.empty_like(flat)
+    for block in blocks(len(flat)):
+        nearest[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
     rows = np.flatnonzero(beside >= 0)
     nearest[rows] = on_edges(points, edge[rows], share[rows])
     return Location(

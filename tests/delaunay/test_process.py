@@ -94,6 +94,33 @@ def test_ctrl_c_ends_one_call(name: str, call: str) -> None:
 
 
 @posix
+@pytest.mark.parametrize("count", [8, 600], ids=["few", "many"])
+def test_ctrl_c_ends_queries_among_very_many_neighbors(count: int) -> None:
+    # Each takes a good part of a second, or more: all sites are its neighbors.
+    process = start(
+        f"""
+        import numpy as np
+        from delone.interpolate import NaturalNeighbor
+        angle = np.sort(np.random.default_rng(0).random(20_000)) * 2 * np.pi
+        sites = np.column_stack((np.cos(angle), np.sin(angle)))
+        height = NaturalNeighbor(sites, angle)
+        queries = np.random.default_rng(1).uniform(-0.5, 0.5, ({count}, 2))
+        print("ready", flush=True)
+        try:
+            while True:
+                height(queries)
+        except KeyboardInterrupt:
+            print("stopped")
+        """
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    assert finish(process).strip() == "stopped"
+
+
+@posix
 def test_another_handler_is_heard() -> None:
     # What a handler raises comes out of the call; a handler that returns lets it go on.
     process = start(

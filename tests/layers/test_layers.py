@@ -25,7 +25,7 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays", "_masks", "counting", "georeference"}
+FOUNDATION = {"errors", "_arrays", "_masks", "blocks", "counting", "georeference"}
 PUBLIC = {
     "delone",
     "errors",
@@ -44,10 +44,11 @@ PYTHON: dict[str, set[str]] = {
     "errors": set(),
     "_arrays": {"_masks", "counting", "errors"},
     "_masks": {"errors"},
+    "blocks": set(),
     "counting": set(),
     "georeference": {"errors"},
     "_core": set(),
-    "immutable": {"_arrays"},
+    "immutable": {"_arrays", "blocks"},
     "plane": {"_core", "immutable", "location", "plot"} | FOUNDATION,
     "space": {"immutable", "_core", "location", "plane", "plot", "predicates", "scene"}
     | FOUNDATION,

@@ -82,7 +82,7 @@ pub fn components2(
         Ok((sides, walls))
     };
     let (sides, walls) = given().map_err(|e| raise(py, &e))?;
-    let labels = watched(py, |_| components(sides, walls))?;
+    let labels = watched(py, |watch| components(sides, walls, watch))?;
     Ok(column(py, labels))
 }
 

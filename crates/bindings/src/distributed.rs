@@ -7,8 +7,11 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{column, in_range, rows, table};
-use crate::errors::{detached, raise};
+use crate::errors::raise;
 use crate::signals::watched;
+
+/// Triangles between two looks at the watch.
+const LOT: usize = 1 << 18;
 
 /// Centre and radius of disks that hold the closed circumdisks; an infinite radius is the plane.
 #[pyfunction]
@@ -20,13 +23,13 @@ pub fn disks2(
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
     in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
-    let disks = detached(py, || {
+    let disks = watched(py, |watch| {
         let mut disks = with_room(simplices.len())?;
-        disks.extend(
-            simplices
-                .iter()
-                .map(|s| disk(s.map(|v| points[v as usize]))),
-        );
+        for lot in simplices.chunks(LOT) {
+            watch.check()?;
+            let corners = |s: &[i32; 3]| s.map(|v| points[v as usize]);
+            disks.extend(lot.iter().map(|s| disk(corners(s))));
+        }
         Ok(disks)
     })?;
     table(py, disks)

@@ -8,8 +8,7 @@ use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUnty
 use pyo3::prelude::*;
 
 use crate::arrays::{flat, in_range, rows};
-use crate::errors::attached;
-use crate::signals::watched;
+use crate::signals::{watched, watched_attached};
 
 /// Queries below which a call keeps the GIL: it is over before another thread could run.
 const FEW: usize = 16;
@@ -101,7 +100,7 @@ pub fn answered<T: Send>(
     work: impl FnOnce(&Watch) -> Result<T> + Send,
 ) -> PyResult<T> {
     if count <= FEW {
-        return attached(py, || work(&Watch::idle()));
+        return watched_attached(py, work);
     }
     watched(py, work)
 }

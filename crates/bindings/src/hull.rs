@@ -5,7 +5,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{number_rows, numbers, rows};
-use crate::errors::{detached, raise};
+use crate::errors::raise;
 use crate::signals::watched;
 
 /// `(vertices, duplicates)`.
@@ -15,7 +15,7 @@ type Chain = (Py<PyAny>, Py<PyAny>);
 #[pyfunction]
 pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chain> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let (vertices, duplicates) = detached(py, || Ok(hull::hull2(points)))?;
+    let (vertices, duplicates) = watched(py, |watch| hull::hull2(points, watch))?;
     Ok((numbers(py, vertices), number_rows(py, duplicates)?))
 }
 

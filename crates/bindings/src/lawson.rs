@@ -6,7 +6,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{rows, table};
-use crate::errors::{detached, raise};
+use crate::errors::raise;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
@@ -45,6 +45,6 @@ pub fn neighbors2(
     npoints: usize,
 ) -> PyResult<Py<PyAny>> {
     let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
-    let neighbors = detached(py, || adjacency(simplices, npoints))?;
+    let neighbors = watched(py, |watch| adjacency(simplices, npoints, watch))?;
     table(py, neighbors)
 }

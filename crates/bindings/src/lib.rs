@@ -58,6 +58,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(consistency::fault2, m)?)?;
     m.add_function(wrap_pyfunction!(consistency::fault3, m)?)?;
     m.add_function(wrap_pyfunction!(measure::edges2, m)?)?;
+    m.add_function(wrap_pyfunction!(measure::around, m)?)?;
     m.add_function(wrap_pyfunction!(measure::edges3, m)?)?;
     m.add_function(wrap_pyfunction!(measure::faces3, m)?)?;
     m.add_function(wrap_pyfunction!(measure::areas2, m)?)?;

@@ -185,9 +185,9 @@ pub fn find_simplex2(
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| {
-        let kept = Kept::of(&given)?;
+        let kept = Kept::of(&given, watch)?;
         find(&Batch {
-            locator: Locator::new(given, &kept),
+            locator: Locator::new(given, &kept, watch),
             queries,
             workers,
             watch,

@@ -9,8 +9,9 @@ use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{column, rows};
-use crate::errors::{detached, raise};
+use crate::errors::raise;
 use crate::given::{Held, answered, checked};
+use crate::signals::watched;
 
 /// Arrays, which never change, and what the core keeps for them, such as a tree of starts.
 pub struct Tiling<K, const D: usize, const N: usize> {
@@ -29,11 +30,11 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
         neighbors: &PyReadonlyArray2<'_, i32>,
-        keep: impl FnOnce(&Given<D, N>) -> Result<K> + Send,
+        keep: impl FnOnce(&Given<D, N>, &Watch) -> Result<K> + Send,
     ) -> PyResult<Self> {
         let py = points.py();
         let given = checked(points, simplices, neighbors).map_err(|e| raise(py, &e))?;
-        let kept = detached(py, || keep(&given))?;
+        let kept = watched(py, |watch| keep(&given, watch))?;
         Ok(Self {
             held: Held::new(points, simplices, neighbors),
             kept,
@@ -49,8 +50,9 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
     ) -> PyResult<T> {
         let lent = self.held.lend(py)?;
         let given = lent.given().map_err(|e| raise(py, &e))?;
-        let locator = Locator::new(given, &self.kept);
-        answered(py, count, |watch| work(&locator, watch))
+        answered(py, count, |watch| {
+            work(&Locator::new(given, &self.kept, watch), watch)
+        })
     }
 
     /// Calls `work` with a batch of queries; gives their number, too.

@@ -68,6 +68,18 @@ pub fn faces3(
     table(py, found)
 }
 
+/// The neighbors of each vertex along edges, as `edges2` and `edges3` give them: `(indptr, indices)`.
+#[pyfunction]
+pub fn around(
+    py: Python<'_>,
+    edges: PyReadonlyArray2<'_, i32>,
+    npoints: usize,
+) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let edges: &[[i32; 2]] = attached(py, || rows(&edges, "edges"))?;
+    let (starts, found) = watched(py, |watch| measure::around(edges, npoints, watch))?;
+    Ok((column(py, starts), column(py, found)))
+}
+
 /// What the core measures on the simplices of points.
 fn measured<T: Send, const D: usize, const N: usize>(
     py: Python<'_>,

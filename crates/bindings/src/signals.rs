@@ -2,13 +2,14 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::current;
 use std::time::{Duration, Instant};
 
 use delone_core::error::Result;
 use delone_core::watch::Watch;
 use pyo3::prelude::*;
 
-use crate::errors::detached;
+use crate::errors::{attached, detached};
 
 /// Least time between two looks at Python's signals: a look takes the GIL.
 const BETWEEN: Duration = Duration::from_millis(50);
@@ -20,6 +21,18 @@ pub fn watched<T: Send>(
 ) -> PyResult<T> {
     let signals = Signals::new();
     let outcome = detached(py, || work(&Watch::new(&|| signals.stop())));
+    match signals.exception() {
+        Some(signal) => Err(signal),
+        None => outcome,
+    }
+}
+
+/// The same with the GIL, for what is short as a rule. Threads that `work` starts do not look themselves, as
+/// they could not have the GIL.
+pub fn watched_attached<T>(py: Python<'_>, work: impl FnOnce(&Watch) -> Result<T>) -> PyResult<T> {
+    let (signals, own) = (Signals::new(), current().id());
+    let stop = || (current().id() == own && signals.stop()) || signals.stopped();
+    let outcome = attached(py, || work(&Watch::new(&stop)));
     match signals.exception() {
         Some(signal) => Err(signal),
         None => outcome,
@@ -57,6 +70,11 @@ impl Signals {
             }
             *looked = Instant::now();
         }
+        self.stopped()
+    }
+
+    /// Whether a signal has come that ends the call.
+    fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 

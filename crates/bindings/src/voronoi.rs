@@ -141,7 +141,9 @@ pub fn measures2(
         are_starts(starts, corners.len())?;
         Ok((starts, corners))
     })?;
-    let made = detached(py, || voronoi::measures(starts, corners, workers))?;
+    let made = watched(py, |watch| {
+        voronoi::measures(starts, corners, workers, watch)
+    })?;
     Ok((
         column(py, made.areas),
         table(py, made.centroids)?,

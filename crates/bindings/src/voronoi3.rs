@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{are_starts, column, each_in_range, flat, in_range, rows, table};
-use crate::errors::{attached, detached, raise};
+use crate::errors::{attached, raise};
 use crate::given::{unequal, weights_of};
 use crate::signals::watched;
 use crate::voronoi::{given, item};
@@ -122,7 +122,7 @@ pub fn measures3<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let borrowed = Borrowed::new(points, weights, diagram)?;
     let cells = borrowed.cells().map_err(|e| raise(py, &e))?;
-    let made = detached(py, || dual::measures(cells, workers))?;
+    let made = watched(py, |watch| dual::measures(cells, workers, watch))?;
     measured(py, made)
 }
 

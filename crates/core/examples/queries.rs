@@ -9,7 +9,7 @@ use delone_core::arrays::Given;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Locator, find, nearest};
 use delone_core::memory::with_room;
-use delone_core::watch::Watch;
+use delone_core::watch::{IDLE, Watch};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
@@ -22,7 +22,7 @@ fn main() {
     let workers = workers.and_then(|w| w.parse().ok()).unwrap_or(1);
     let mut points = random(n, 1);
     if std::env::var("SORTED").is_ok() {
-        let rows = delone_core::order::order_of(&points, 1)
+        let rows = delone_core::order::order_of(&points, 1, &Watch::idle())
             .expect("an order")
             .concat();
         points = rows.into_iter().map(|row| points[row as usize]).collect();
@@ -34,9 +34,9 @@ fn main() {
         neighbors: &made.arrays.neighbors,
     };
     let start = Instant::now();
-    let kept = Kept::of(&given).expect("a locator");
+    let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
     println!("locator {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
-    let locator = Locator::new(given, &kept);
+    let locator = Locator::new(given, &kept, &IDLE);
     let sets = [("random", random(count, 2)), ("raster", raster(count))];
     for (set, queries) in &sets {
         let tell = |name: &str, work: &dyn Fn()| {
@@ -55,7 +55,7 @@ fn main() {
             watch: &Watch::idle(),
         };
         tell("order", &|| {
-            delone_core::order::order_of(queries, workers).expect("an order");
+            delone_core::order::order_of(queries, workers, &Watch::idle()).expect("an order");
         });
         tell("find", &|| {
             find(&batch).expect("triangles");

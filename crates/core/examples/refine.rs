@@ -45,7 +45,8 @@ fn main() {
     };
     let start = Instant::now();
     let base = constrain(&points, &segments, options, &Watch::idle()).expect("a ring");
-    let labels = components(&base.arrays.neighbors, &base.constrained).expect("labels");
+    let labels =
+        components(&base.arrays.neighbors, &base.constrained, &Watch::idle()).expect("labels");
     let outer: std::collections::HashSet<i32> = (base.arrays.neighbors.iter().enumerate())
         .flat_map(|(t, n)| (0..3).map(move |k| (t, k, n[k])))
         .filter(|&(t, k, n)| n < 0 && !base.constrained[t][k])

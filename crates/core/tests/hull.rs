@@ -170,7 +170,7 @@ fn chains_in_the_plane_are_convex() {
     let points: Vec<Point2> = (0..500)
         .map(|i| [hash(i) % 9, hash(7 * i) % 9].map(|x| x as f64))
         .collect();
-    let (vertices, _) = hull2(&points);
+    let (vertices, _) = hull2(&points, &Watch::idle()).unwrap();
     let n = vertices.len();
     for k in 0..n {
         let [a, b, c] = [k, k + 1, k + 2].map(|j| points[vertices[j % n] as usize]);

@@ -8,7 +8,7 @@ use delone_core::interpolate::{
     natural_values,
 };
 use delone_core::locate::{Batch, Kept, Located, Locator};
-use delone_core::watch::Watch;
+use delone_core::watch::{IDLE, Watch};
 use proptest::prelude::*;
 
 /// A triangulation and what is kept for it.
@@ -28,7 +28,7 @@ impl Made {
             simplices: &simplices,
             neighbors: &neighbors,
         };
-        let kept = Kept::of(&given).expect("a locator");
+        let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
         Some(Self {
             points,
             simplices,
@@ -46,7 +46,7 @@ impl Made {
     }
 
     fn is_inside(&self, q: Point2) -> bool {
-        let located = Locator::new(self.given(), &self.kept).locate(q);
+        let located = Locator::new(self.given(), &self.kept, &IDLE).locate(q);
         matches!(located, Ok(Some(Located::Inside(_))))
     }
 
@@ -54,7 +54,7 @@ impl Made {
     fn values(&self, values: &[f64], gradients: &[f64], queries: &[Point2]) -> Vec<Vec<f64>> {
         let given = self.given();
         let batch = Batch {
-            locator: Locator::new(given, &self.kept),
+            locator: Locator::new(given, &self.kept, &IDLE),
             queries,
             workers: 2,
             watch: &Watch::idle(),
@@ -176,7 +176,7 @@ proptest! {
                     continue;
                 }
                 let batch = Batch {
-                    locator: Locator::new(rest.given(), &rest.kept),
+                    locator: Locator::new(rest.given(), &rest.kept, &IDLE),
                     queries: &[q],
                     workers: 1,
                     watch: &Watch::idle(),
@@ -211,7 +211,7 @@ fn a_barrier_keeps_the_values_beyond_out() {
         .collect();
     let queries = [[1.3, 0.9], [2.5, 0.999], [2.5, 1.0], [2.2, 1.1]];
     let batch = Batch {
-        locator: Locator::new(made.given(), &made.kept),
+        locator: Locator::new(made.given(), &made.kept, &IDLE),
         queries: &queries,
         workers: 1,
         watch: &Watch::idle(),

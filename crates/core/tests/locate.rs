@@ -4,7 +4,7 @@ use delone_core::Point2;
 use delone_core::arrays::Given;
 use delone_core::delaunay2::{Method, triangulate};
 use delone_core::locate::{Batch, Kept, Located, Locator, along, coordinates, find, nearest};
-use delone_core::watch::Watch;
+use delone_core::watch::{IDLE, Watch};
 use delone_predicates::{Sign, orient2d};
 use proptest::prelude::*;
 
@@ -74,8 +74,8 @@ fn check(points: &[Point2], simplices: &[[i32; 3]], queries: &[Point2]) {
         simplices,
         neighbors: &neighbors,
     };
-    let kept = Kept::of(&given).expect("a locator");
-    let locator = Locator::new(given, &kept);
+    let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
+    let locator = Locator::new(given, &kept, &IDLE);
     let expected: Vec<i32> = queries
         .iter()
         .map(|&q| first_holder(points, simplices, q))
@@ -146,8 +146,8 @@ proptest! {
     fn the_nearest_vertex_is_the_first_of_the_nearest((points, queries) in lattice()) {
         let Some((simplices, neighbors)) = delaunay(&points) else { return Ok(()) };
         let given = Given { points: &points, simplices: &simplices, neighbors: &neighbors };
-        let kept = Kept::of(&given).expect("a locator");
-        let locator = Locator::new(given, &kept);
+        let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
+        let locator = Locator::new(given, &kept, &IDLE);
         let batch = Batch { locator, queries: &queries, workers: 2, watch: &Watch::idle() };
         let found = nearest(&batch).expect("vertices");
         // Small integers in units of the scale, so that distances are exact.
@@ -174,8 +174,8 @@ proptest! {
         flip(&points, &mut simplices, &flips);
         let neighbors = neighbours(&simplices);
         let given = Given { points: &points, simplices: &simplices, neighbors: &neighbors };
-        let kept = Kept::of(&given).expect("a locator");
-        let locator = Locator::new(given, &kept);
+        let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
+        let locator = Locator::new(given, &kept, &IDLE);
         for pair in ends.windows(2) {
             let [a, b] = [pair[0], pair[1]];
             let met = along(&locator, a, b).expect("triangles");
@@ -234,7 +234,7 @@ fn nearest_points_of_the_hull_are_projections() {
         simplices: &simplices,
         neighbors: &neighbors,
     };
-    let kept = Kept::of(&given).expect("a locator");
+    let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
     let queries = [
         [1.0, -3.0],
         [3.0, -1e300],
@@ -244,7 +244,7 @@ fn nearest_points_of_the_hull_are_projections() {
         [f64::NAN, 1.0],
     ];
     let batch = Batch {
-        locator: Locator::new(given, &kept),
+        locator: Locator::new(given, &kept, &IDLE),
         queries: &queries,
         workers: 1,
         watch: &Watch::idle(),

@@ -3,7 +3,7 @@
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
 use delone_core::locate3::{Batch, Kept, Located, Locator, Tetrahedra, coordinates, find, nearest};
-use delone_core::watch::Watch;
+use delone_core::watch::{IDLE, Watch};
 use delone_predicates::{Sign, nearer3, orient3d};
 use proptest::prelude::*;
 
@@ -38,8 +38,8 @@ fn check(points: &[Point3], simplices: &[[i32; 4]], queries: &[Point3]) {
         simplices,
         neighbors: &neighbors,
     };
-    let kept = Kept::of(&given).expect("a locator");
-    let locator = Locator::new(given, &kept);
+    let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
+    let locator = Locator::new(given, &kept, &IDLE);
     let first = |q: Point3| simplices.iter().position(|t| holds(points, t, q));
     let expected: Vec<i32> = queries
         .iter()
@@ -148,8 +148,8 @@ fn what_is_not_finite_is_nowhere() {
         simplices: &[[0, 1, 2, 3]],
         neighbors: &[[-1; 4]],
     };
-    let kept = Kept::of(&given).expect("a locator");
-    let locator = Locator::new(given, &kept);
+    let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
+    let locator = Locator::new(given, &kept, &IDLE);
     let queries = [[f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0]];
     assert_eq!(locator.locate(queries[0]).expect("no place"), None);
     let batch = Batch {

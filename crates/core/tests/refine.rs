@@ -26,7 +26,7 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
         workers: 1,
     };
     let base = constrain(&points, &segments, options, &Watch::idle()).unwrap();
-    let labels = components(&base.arrays.neighbors, &base.constrained).unwrap();
+    let labels = components(&base.arrays.neighbors, &base.constrained, &Watch::idle()).unwrap();
     // The parity of walls from outside.
     let mut depth = BTreeMap::new();
     for (t, n) in base.arrays.neighbors.iter().enumerate() {

@@ -13,6 +13,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.blocks import ROWS, blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,8 +33,8 @@ __all__ = [
 ]
 
 # Tail and head of the half-edge opposite vertex k, counter-clockwise.
-_TAIL = [1, 2, 0]
-_HEAD = [2, 0, 1]
+_TAIL = np.array([1, 2, 0])
+_HEAD = np.array([2, 0, 1])
 
 
 def edges(
@@ -72,13 +73,6 @@ def edges(
     return _core.edges2(simplices, neighbors, npoints, as_workers(workers))
 
 
-def _unpack(keys: NDArray[np.int64], npoints: int) -> Indices:
-    pairs = np.empty((len(keys), 2), dtype=np.int32)
-    np.floor_divide(keys, npoints, out=pairs[:, 0], casting="unsafe")
-    pairs[:, 1] = keys - pairs[:, 0].astype(np.int64) * npoints
-    return pairs
-
-
 def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
     """Return the edges that have a triangle on one side only.
 
@@ -101,8 +95,12 @@ def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
     >>> boundary_edges(np.array([[0, 1, 2]]), np.array([[-1, -1, -1]])).tolist()
     [[1, 2], [2, 0], [0, 1]]
     """
-    outside = neighbors < 0
-    return np.column_stack((simplices[:, _TAIL][outside], simplices[:, _HEAD][outside]))
+    parts = [np.nonzero(neighbors[block] < 0) for block in blocks(len(neighbors))]
+    first = np.zeros(0, dtype=np.int64)
+    starts = range(0, len(neighbors), ROWS)
+    rows = np.concatenate([first, *(t + k for k, (t, _) in zip(starts, parts, strict=True))])
+    corner = np.concatenate([first, *(corner for _, corner in parts)])
+    return np.column_stack((simplices[rows, _TAIL[corner]], simplices[rows, _HEAD[corner]]))
 
 
 def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
@@ -204,7 +202,7 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
     Parameters
     ----------
     edges : ndarray of int32, shape (k, 2)
-        Every edge once, in either direction.
+        Every edge once, the smaller vertex first, rows ascending.
     npoints : int
         Number of points.
 
@@ -217,7 +215,12 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
 
     Notes
     -----
-    O(k log k).
+    O(k).
+
+    Raises
+    ------
+    ShapeError
+        The edges are in another order.
 
     Examples
     --------
@@ -227,13 +230,7 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
     >>> indices[indptr[1]:indptr[2]].tolist()
     [0, 2]
     """
-    both = np.concatenate((edges, edges[:, ::-1])).astype(np.int64)
-    keys = both[:, 0] * npoints + both[:, 1]
-    keys.sort()
-    pairs = _unpack(keys, npoints)
-    indptr = np.zeros(npoints + 1, dtype=np.int32)
-    np.cumsum(np.bincount(pairs[:, 0], minlength=npoints), out=indptr[1:])
-    return indptr, np.ascontiguousarray(pairs[:, 1])
+    return _core.around(np.ascontiguousarray(edges, dtype=np.int32), npoints)
 
 
 def neighbors(simplices: Indices, npoints: int) -> Indices:

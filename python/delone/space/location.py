@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone._arrays import as_vectors, as_workers
+from delone.blocks import blocks
 from delone.location import Places
 
 if TYPE_CHECKING:
@@ -95,7 +96,9 @@ def locate(
     queries = as_vectors(xi, 3, name="xi")
     flat, leading = queries.reshape(-1, 3), queries.shape[:-1]
     simplex, barycentric, beside, face, shares = index.locate(flat, as_workers(workers))
-    close = np.where((simplex >= 0)[:, None], flat, np.nan)
+    close = np.empty_like(flat)
+    for block in blocks(len(flat)):
+        close[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
     rows = np.flatnonzero(beside >= 0)
     close[rows] = on_faces(points, face[rows], shares[rows])
     return SpaceLocation(

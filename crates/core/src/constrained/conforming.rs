@@ -17,16 +17,15 @@ use super::split::Splitter;
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::mesh2::{next, prev};
-use crate::watch::Watch;
 
 impl Splitter<'_> {
     /// Splits subsegments until all circles are empty, but for those between neighbouring doubles.
-    pub fn conform(&mut self, watch: &Watch) -> Result<()> {
+    pub fn conform(&mut self) -> Result<()> {
         let corners = self.marked.count as u32;
         let mut parted = true;
         while std::mem::take(&mut parted) {
             for [u, v] in self.encroached()? {
-                watch.check()?;
+                self.pace.spend(1)?;
                 // One of those before may have taken it away, or its reason.
                 if !self.is_piece([u, v]) {
                     continue;
@@ -36,7 +35,7 @@ impl Splitter<'_> {
                     let x = self.cut(u, v, corners);
                     let w = self.part([u, v], x, e)?;
                     parted |= w != u && w != v;
-                    self.work_off(watch)?;
+                    self.work_off()?;
                 }
             }
         }
@@ -48,6 +47,9 @@ impl Splitter<'_> {
     fn encroached(&mut self) -> Result<Vec<[u32; 2]>> {
         let mut found = with_room(64)?;
         for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
+            if e.is_multiple_of(8 << 14) {
+                self.pace.watch().check()?;
+            }
             let mesh = self.marked.patch();
             let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
             if u < v && mesh.is_marked(e) && self.encroaches(e) {

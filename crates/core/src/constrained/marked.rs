@@ -8,6 +8,10 @@ use crate::delaunay2::walk::walk_within;
 use crate::error::{Error, Result};
 use crate::memory::{filled, make_room};
 use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
+use crate::watch::{IDLE, Watch};
+
+/// Triangles, or segments, between two looks at the watch.
+pub const LOT: u32 = 1 << 16;
 
 /// Triangles that a walk to a new vertex meets before all triangles are searched, and for each of
 /// them along the side of a square of all vertices some more: new vertices are near what they come
@@ -38,12 +42,15 @@ pub fn turn(mesh: &Patch, corner: Code) -> Code {
 
 impl Marked {
     /// From a mesh of all of its vertices and their points, which end with NaN.
-    pub fn new(mut mesh: Mesh2, points: Vec<Point2>) -> Result<Self> {
+    pub fn new(mut mesh: Mesh2, points: Vec<Point2>, watch: &Watch) -> Result<Self> {
         let count = mesh.vertices();
         let mut near = filled(count, 0)?;
         let used = 2 * count as u32 - 2;
         let patch = mesh.resume(used);
         for e in (0..used).flat_map(|t| 8 * t..8 * t + 3) {
+            if e.is_multiple_of(8 * LOT) {
+                watch.check()?;
+            }
             if let Some(near) = near.get_mut(patch.vertex(e) as usize) {
                 *near = e;
             }
@@ -77,10 +84,10 @@ impl Marked {
     }
 
     /// The room of the mesh shrinks to its vertices, for the way out. Returns one of the ghosts.
-    pub fn close(&mut self) -> Result<Code> {
+    pub fn close(&mut self, watch: &Watch) -> Result<Code> {
         let used = self.triangles();
         if self.mesh.vertices() != self.count {
-            self.mesh.resize(self.count, used)?;
+            self.mesh.resize(self.count, used, watch)?;
         }
         let patch = self.mesh.resume(used);
         let mut corners = (0..used).flat_map(|t| 8 * t..8 * t + 3);
@@ -146,7 +153,7 @@ impl Marked {
         }
         let used = self.triangles();
         let more = room + room / 2 + 1024;
-        self.mesh.resize(more, used)?;
+        self.mesh.resize(more, used, &IDLE)?;
         let rest = more + 1 - self.points.len();
         make_room(&mut self.points, rest)?;
         self.points.resize(more + 1, [f64::NAN; 2]);

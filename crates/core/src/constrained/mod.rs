@@ -37,10 +37,13 @@ use crate::delaunay2::{Built, Clock, Method, Stage, mesh};
 use crate::error::{Crowd, Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh2::export;
-use crate::watch::Watch;
+use crate::order;
+use crate::watch::{Pace, Watch};
 
 /// Segments between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 10;
+/// Triangles that a segment crosses and that take as long as the rest of it.
+const TRIANGLES: usize = 8;
 
 /// Pairs of segments that may cross for each vertex that may be added, and more of them in any case.
 const PAIRS: usize = 8;
@@ -95,7 +98,7 @@ pub fn constrain(
     let mut work = Work::start(input, segments, options, watch, &mut clock)?;
     let laid = work.lay(input, watch)?;
     clock.lap("segments");
-    work.finish(input.len(), laid, options.workers, clock)
+    work.finish(input.len(), laid, clock, watch)
 }
 
 /// A triangulation that gets its segments.
@@ -124,7 +127,7 @@ impl<'a> Work<'a> {
         let place = places(&built, input.len())?;
         let mut ends = with_room(segments.len())?;
         ends.extend(segments.iter().map(|s| s.map(|row| place[row as usize])));
-        let marked = Marked::new(built.mesh, built.points)?;
+        let marked = Marked::new(built.mesh, built.points, watch)?;
         clock.lap("marks");
         Ok(Self {
             segments,
@@ -157,32 +160,31 @@ impl<'a> Work<'a> {
             if !conforming {
                 return Ok(laid);
             }
-            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
-            splitter.adopt(laid);
+            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit, watch)?;
+            splitter.adopt(laid)?;
             splitter
         } else {
             let found = self.crossings(input, watch)?;
             let meets = self.start_anew(input, &found, watch)?;
-            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit);
+            let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit, watch)?;
             let rows = &self.rows;
             let is_rounded = |w: u32| {
                 rows.get(w as usize)
                     .is_none_or(|&r| r as usize >= input.len())
             };
-            splitter.run(&found.pairs, &meets, is_rounded, watch)?;
+            splitter.run(&found.pairs, &meets, is_rounded)?;
             splitter
         };
         if conforming {
-            splitter.conform(watch)?;
+            splitter.conform()?;
         }
-        Ok(splitter.finish())
+        splitter.finish()
     }
 
     /// Marks the segments that are edges, and lays the others row by row. Returns the rows that are
     /// crossed by what was laid before, which wait; nothing where there are more than `few`.
     fn lay_all(&mut self, few: usize, watch: &Watch) -> Result<Option<(Laid, Vec<u32>)>> {
-        let present = mark_present(&mut self.marked, &self.ends)?;
-        watch.check()?;
+        let present = mark_present(&mut self.marked, &self.ends, watch)?;
         let mut laid = Laid {
             pieces: with_room(self.ends.len())?,
             repeated: present.repeated,
@@ -191,19 +193,18 @@ impl<'a> Work<'a> {
         };
         let mut waiting = Vec::new();
         let mut cavity = Cavity::default();
-        let mut steps = 0;
+        let mut pace = Pace::new(watch, WATCH_EVERY * TRIANGLES);
         for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
+            pace.spend(1)?;
             if present.holds([a, b]) {
                 push(&mut laid.pieces, ([a, b], row))?;
                 continue;
             }
-            steps += 1;
-            if steps % WATCH_EVERY == 0 {
-                watch.check()?;
-            }
             let mut back = Vec::new();
             while a != b {
-                let Step::Joined { from, to, again } = self.marked.join(a, b, &mut cavity)? else {
+                let step = self.marked.join(a, b, &mut cavity)?;
+                pace.spend(TRIANGLES + cavity.size())?;
+                let Step::Joined { from, to, again } = step else {
                     waiting.push(row);
                     break;
                 };
@@ -274,9 +275,13 @@ impl<'a> Work<'a> {
                 push(&mut exact, (x, i))?;
             }
         }
-        exact.sort_unstable_by(|(p, i), (q, j)| lexicographic(*p, *q).then(i.cmp(j)));
+        order::sort_by(&mut exact, watch, |(p, i), (q, j)| {
+            lexicographic(*p, *q).then(i.cmp(j))
+        })?;
         let mut given = filled(if exact.is_empty() { 0 } else { pairs.len() }, false)?;
+        let mut pace = Pace::new(watch, WATCH_EVERY * TRIANGLES);
         for p in input.iter().filter(|_| !exact.is_empty()) {
+            pace.spend(1)?;
             let first = exact.partition_point(|(q, _)| lexicographic(*q, *p).is_lt());
             for (_, i) in exact[first..].iter().take_while(|(q, _)| q == p) {
                 given[*i] = true;
@@ -287,6 +292,7 @@ impl<'a> Work<'a> {
             points: with_room(pairs.len())?,
         };
         for (i, (pair, x)) in pairs.into_iter().zip(points).enumerate() {
+            pace.spend(1)?;
             if !given.get(i).is_some_and(|given| *given) {
                 found.pairs.push(pair);
                 found.points.push(x);
@@ -319,7 +325,7 @@ impl<'a> Work<'a> {
             .copied()
             .filter(|r| *r as usize >= n)
             .collect();
-        behind.sort_unstable();
+        order::sort(&mut behind, watch)?;
         if behind.len() > self.options.max_vertices {
             return Err(Error::Budget {
                 what: "added vertices",
@@ -334,14 +340,14 @@ impl<'a> Work<'a> {
             let rank = behind.partition_point(|r| r < row);
             *row = (n + rank) as u32;
         }
-        self.marked = Marked::new(built.mesh, built.points)?;
+        self.marked = Marked::new(built.mesh, built.points, watch)?;
         Ok(place[n..].to_vec())
     }
 
     /// Puts pieces in the order of their rows and along them.
-    fn sort(&self, pieces: &mut [([u32; 2], u32)]) {
+    fn sort(&self, pieces: &mut [([u32; 2], u32)], watch: &Watch) -> Result<()> {
         let at = |v: u32| self.marked.at(v);
-        pieces.sort_unstable_by(|(s, i), (t, j)| {
+        order::sort_by(pieces, watch, |(s, i), (t, j)| {
             i.cmp(j).then_with(|| {
                 // Along its row a coordinate never turns back; where it stays, the other tells.
                 let [a, b] = self.ends[*i as usize].map(at);
@@ -352,7 +358,7 @@ impl<'a> Work<'a> {
                 let order = |end: usize| by(s[end], t[end], 0).then(by(s[end], t[end], 1));
                 order(0).then_with(|| order(1))
             })
-        });
+        })
     }
 
     /// The vertices behind the `n` points of the input; those that are new get their rows.
@@ -369,31 +375,33 @@ impl<'a> Work<'a> {
         mut self,
         n: usize,
         laid: Laid,
-        workers: usize,
         mut clock: Clock,
+        watch: &Watch,
     ) -> Result<Constrained> {
+        let workers = self.options.workers;
         let mut pieces = laid.pieces;
         if !laid.sorted {
-            self.sort(&mut pieces);
+            self.sort(&mut pieces, watch)?;
         }
         let added = self.added(n);
         let rows = self.rows;
         let row_of = |v: u32| rows[v as usize];
-        let ghost = self.marked.close()?;
-        let (arrays, constrained) = export::marked_arrays(self.marked.mesh, ghost, &rows, workers)?;
+        let ghost = self.marked.close(watch)?;
+        let (arrays, constrained) =
+            export::marked_arrays(self.marked.mesh, ghost, &rows, workers, watch)?;
         let mut through = laid.through;
         through.iter_mut().for_each(|t| t[1] = row_of(t[1]));
         through.retain(|t| (t[1] as usize) < n);
-        through.sort_unstable();
+        order::sort(&mut through, watch)?;
         through.dedup();
         let mut crossings = laid.crossings;
         crossings.iter_mut().for_each(|c| c[2] = row_of(c[2]));
-        crossings.sort_unstable();
+        order::sort(&mut crossings, watch)?;
         crossings.dedup();
         pieces.iter_mut().for_each(|p| p.0 = p.0.map(row_of));
         let zero = (0u32..).zip(&self.ends).filter(|(_, e)| e[0] == e[1]);
         let zero = zero.map(|(row, _)| row).collect();
-        let subsegments = Subsegments::of(&pieces, laid.repeated)?;
+        let subsegments = Subsegments::of(&pieces, laid.repeated, watch)?;
         clock.lap("export");
         Ok(Constrained {
             added,

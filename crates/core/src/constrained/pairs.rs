@@ -20,8 +20,9 @@ use super::intersection::crosses;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 use crate::order::curve::{Scratch, along_curve};
+use crate::order::sort;
 use crate::points::Extent;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
 /// Children of a node.
 const FAN: usize = 8;
@@ -33,6 +34,8 @@ const CLASSES: usize = 8;
 const LEVELS: usize = 12;
 /// Joins of two nodes between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 12;
+/// Segments that are put in place between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// All pairs of segments that cross in a single point inside both, `[smaller row, larger row]`,
 /// ascending.
@@ -64,7 +67,7 @@ pub fn crossing_pairs_above(
     };
     join.all()?;
     let mut found = join.found;
-    found.sort_unstable();
+    sort(&mut found, watch)?;
     Ok(found)
 }
 
@@ -156,27 +159,34 @@ impl Forest {
             boxes: with_room(rows.len() + rows.len() / (FAN - 1) + CLASSES * LEVELS)?,
             trees: Vec::new(),
         };
-        forest.items.extend(rows.iter().map(|&row| Item {
-            ends: ends(row),
-            rows: segments[row as usize],
-            row,
-        }));
-        let boxes = forest.items.iter().map(Item::extent);
-        forest.boxes.extend(boxes);
+        for lot in rows.chunks(LOT) {
+            watch.check()?;
+            forest.items.extend(lot.iter().map(|&row| Item {
+                ends: ends(row),
+                rows: segments[row as usize],
+                row,
+            }));
+        }
+        for lot in forest.items.chunks(LOT) {
+            watch.check()?;
+            forest.boxes.extend(lot.iter().map(Item::extent));
+        }
         for w in starts.windows(2).filter(|w| w[0] < w[1]) {
-            forest.plant(w[0], w[1]);
+            forest.plant(w[0], w[1], watch)?;
         }
         Ok(forest)
     }
 
     /// The tree over the segments from `start` to `end`.
-    fn plant(&mut self, start: usize, end: usize) {
+    fn plant(&mut self, start: usize, end: usize, watch: &Watch) -> Result<()> {
+        let mut pace = Pace::new(watch, LOT);
         let (mut levels, mut counts) = (vec![start], vec![end - start]);
         let (mut start, mut end) = (start, end);
         // Also one segment gets a node: roots are not segments.
         while levels.len() == 1 || end - start > 1 {
             let next = self.boxes.len();
             for first in (start..end).step_by(FAN) {
+                pace.spend(FAN)?;
                 let node = union(&self.boxes[first..end.min(first + FAN)]);
                 self.boxes.push(node);
             }
@@ -185,6 +195,7 @@ impl Forest {
             counts.push(end - start);
         }
         self.trees.push(Tree { levels, counts });
+        Ok(())
     }
 
     fn root(&self, tree: usize) -> Node {
@@ -248,7 +259,10 @@ fn arrange(
         [0, 1].map(|k| 0.5 * a[k] + 0.5 * b[k])
     };
     let mut middles = with_room(rows.len())?;
-    middles.extend(rows.iter().map(middle));
+    for lot in rows.chunks(LOT) {
+        watch.check()?;
+        middles.extend(lot.iter().map(middle));
+    }
     let (distinct, others) = along_curve(&mut middles, rows, scratch, watch)?;
     // Those with the middle of another come along the curve, too.
     for (row, other) in rows[distinct..].iter_mut().zip(others) {

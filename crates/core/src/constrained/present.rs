@@ -4,9 +4,10 @@
 //! Each vertex has two slots for the other ends of its segments, as on a line or ring. Segments
 //! that find them taken are left to be laid one by one.
 
-use super::marked::Marked;
+use super::marked::{LOT, Marked};
 use crate::error::Result;
 use crate::memory::filled;
+use crate::watch::{Pace, Watch};
 
 /// An empty slot.
 const NONE: u32 = u32::MAX;
@@ -36,12 +37,15 @@ fn bits(slots: [u32; 2], v: u32) -> u8 {
 }
 
 /// Marks the edges of triangles that are among the segments `ends`.
-pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]]) -> Result<Present> {
-    let mut present = with_slots(ends, marked.count)?;
+pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]], watch: &Watch) -> Result<Present> {
+    let mut present = with_slots(ends, marked.count, watch)?;
     let (slots, hits) = (&present.slots, &mut present.hits);
     let triangles = marked.triangles();
     let mut mesh = marked.patch();
     for t in 0..triangles {
+        if t.is_multiple_of(LOT) {
+            watch.check()?;
+        }
         let corners = mesh.corners(t);
         let mut marks = 0;
         for k in 0..3 {
@@ -55,11 +59,13 @@ pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]]) -> Result<Present> {
     Ok(present)
 }
 
-fn with_slots(ends: &[[u32; 2]], vertices: usize) -> Result<Present> {
+fn with_slots(ends: &[[u32; 2]], vertices: usize, watch: &Watch) -> Result<Present> {
     // One more for infinity.
     let mut slots = filled(vertices + 1, [NONE; 2])?;
     let mut repeated = false;
+    let mut pace = Pace::new(watch, LOT as usize);
     for &[u, v] in ends.iter().filter(|e| e[0] != e[1]) {
+        pace.spend(1)?;
         if bits(slots[u as usize], v) != 0 {
             repeated = true;
             continue;

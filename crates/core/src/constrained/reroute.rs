@@ -122,6 +122,7 @@ impl Work<'_> {
         let mut ways = with_room(rows.len())?;
         let mut seen = filled(self.marked.triangles() as usize, NEVER)?;
         for meets in own.chunk_by(|a, b| a[0] == b[0]) {
+            watch.check()?;
             let row = meets[0][0];
             let ends = self.ends[row as usize];
             let own: Vec<_> = meets.iter().map(|m| m[1]).collect();
@@ -461,16 +462,14 @@ mod tests {
         let mut work = start().unwrap();
         let crossings = work.crossings(points, &watch).unwrap();
         let meets = work.start_anew(points, &crossings, &watch).unwrap();
-        let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000);
+        let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000, &watch).unwrap();
         let rows = &work.rows;
         let is_rounded = |w: u32| {
             rows.get(w as usize)
                 .is_none_or(|&r| r as usize >= points.len())
         };
-        splitter
-            .run(&crossings.pairs, &meets, is_rounded, &watch)
-            .unwrap();
-        let laid = splitter.finish();
+        splitter.run(&crossings.pairs, &meets, is_rounded).unwrap();
+        let laid = splitter.finish().unwrap();
         prop_assert_eq!(
             found,
             outcome(&mut work, &laid, points.len()),

@@ -67,6 +67,13 @@ pub struct Cavity {
     scan: Vec<(u32, Side)>,
 }
 
+impl Cavity {
+    /// How many triangles the last segment has crossed.
+    pub fn size(&self) -> usize {
+        self.triangles.len()
+    }
+}
+
 /// An edge of the part of a polygon that is not yet triangulated.
 #[derive(Debug, Clone, Copy)]
 enum Side {

@@ -34,10 +34,13 @@ use super::marked::Marked;
 use super::segment::{Cavity, Step};
 use crate::error::{Error, Result};
 use crate::mesh2::{next, prev};
-use crate::watch::Watch;
+use crate::order;
+use crate::watch::{Pace, Watch};
 
-/// Pieces between two looks at the watch.
+/// Pieces, or changes of what covers them, between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 10;
+/// Triangles of a cavity that take as long as a piece.
+const TRIANGLES: usize = 8;
 
 /// A segment's place in the order, doubled, and one more where the piece runs against it.
 type Cover = u32;
@@ -64,6 +67,7 @@ pub struct Splitter<'a> {
     pieces: HashMap<[u32; 2], Vec<Cover>>,
     through: Vec<[u32; 2]>,
     crossings: Vec<[u32; 3]>,
+    pub(super) pace: Pace<'a>,
 }
 
 fn reversed(covers: &[Cover]) -> Vec<Cover> {
@@ -72,10 +76,15 @@ fn reversed(covers: &[Cover]) -> Vec<Cover> {
 
 impl<'a> Splitter<'a> {
     /// For the segments `given`, of which `marked` has none yet; `limit` vertices may be added.
-    pub fn new(marked: &'a mut Marked, given: &'a [[u32; 2]], limit: usize) -> Self {
-        Self {
+    pub fn new(
+        marked: &'a mut Marked,
+        given: &'a [[u32; 2]],
+        limit: usize,
+        watch: &'a Watch<'a>,
+    ) -> Result<Self> {
+        Ok(Self {
             own: marked.count,
-            segments: in_order(marked, given),
+            segments: in_order(marked, given, watch)?,
             marked,
             given,
             limit,
@@ -84,11 +93,12 @@ impl<'a> Splitter<'a> {
             pieces: HashMap::with_capacity(given.len()),
             through: Vec::new(),
             crossings: Vec::new(),
-        }
+            pace: Pace::new(watch, WATCH_EVERY),
+        })
     }
 
     /// Takes over segments that have been laid without a split.
-    pub fn adopt(&mut self, laid: Laid) {
+    pub fn adopt(&mut self, laid: Laid) -> Result<()> {
         let mut place = vec![0; self.given.len()];
         for (i, (_, row)) in (0..).zip(&self.segments) {
             place[*row as usize] = i;
@@ -96,10 +106,11 @@ impl<'a> Splitter<'a> {
         for (ends, row) in laid.pieces {
             let i = place[row as usize];
             let against = self.segments[i as usize].0 != self.given[row as usize];
-            self.add(ends, &[2 * i + Cover::from(against)]);
+            self.add(ends, &[2 * i + Cover::from(against)])?;
         }
         self.through = laid.through;
         self.crossings = laid.crossings;
+        Ok(())
     }
 
     /// Lays all of them. Those in `pairs` cross, in the vertices `meets`. `is_rounded` knows the
@@ -109,15 +120,15 @@ impl<'a> Splitter<'a> {
         pairs: &[[u32; 2]],
         meets: &[u32],
         is_rounded: impl Fn(u32) -> bool,
-        watch: &Watch,
     ) -> Result<()> {
         let mut own: Vec<[u32; 2]> = Vec::with_capacity(2 * pairs.len());
         for (&[s, t], &w) in pairs.iter().zip(meets) {
             own.extend([[s, w], [t, w]]);
             self.crossings.push([s, t, w]);
         }
-        own.sort_unstable();
+        order::sort(&mut own, self.pace.watch())?;
         for i in 0..self.segments.len() {
+            self.pace.spend(1)?;
             let ([a, b], row) = self.segments[i];
             let first = own.partition_point(|o| o[0] < row);
             let meets = own[first..].iter().take_while(|o| o[0] == row);
@@ -131,35 +142,32 @@ impl<'a> Splitter<'a> {
                 &mut self.through,
             )?;
             for pair in stops.windows(2).rev() {
-                self.wait([pair[0], pair[1]], &[2 * i as Cover]);
+                self.wait([pair[0], pair[1]], &[2 * i as Cover])?;
             }
-            self.work_off(watch)?;
+            self.work_off()?;
         }
         Ok(())
     }
 
     /// Lays what waits.
-    pub(super) fn work_off(&mut self, watch: &Watch) -> Result<()> {
-        let mut steps = 0_usize;
+    pub(super) fn work_off(&mut self) -> Result<()> {
         while let Some(job) = self.jobs.pop() {
-            steps += 1;
-            if steps.is_multiple_of(WATCH_EVERY) {
-                watch.check()?;
-            }
+            self.pace.spend(1)?;
             self.lay(job)?;
+            self.pace.spend(self.cavity.size() / TRIANGLES)?;
         }
         Ok(())
     }
 
     /// What became of the segments.
-    pub fn finish(self) -> Laid {
-        Laid {
-            pieces: self.all_pieces(),
+    pub fn finish(mut self) -> Result<Laid> {
+        Ok(Laid {
+            pieces: self.all_pieces()?,
             repeated: true,
             sorted: false,
             through: self.through,
             crossings: self.crossings,
-        }
+        })
     }
 
     fn lay(&mut self, job: Job) -> Result<()> {
@@ -176,13 +184,13 @@ impl<'a> Splitter<'a> {
                     });
                 }
                 let ends = if from == a { [a, to] } else { [to, b] };
-                self.add(ends, &job.covers);
-                Ok(())
+                self.add(ends, &job.covers)
             }
         }
     }
 
-    fn add(&mut self, [u, v]: [u32; 2], covers: &[Cover]) {
+    fn add(&mut self, [u, v]: [u32; 2], covers: &[Cover]) -> Result<()> {
+        self.pace.spend(1)?;
         let (key, covers) = if u < v {
             ([u, v], covers.to_vec())
         } else {
@@ -192,6 +200,7 @@ impl<'a> Splitter<'a> {
         all.extend(covers);
         all.sort_unstable();
         all.dedup();
+        Ok(())
     }
 
     /// Whether an edge is a piece.
@@ -219,7 +228,7 @@ impl<'a> Splitter<'a> {
         let x = x.unwrap_or_else(|| intersection(p, q, r, s));
         let w = self.part([u, v], x, e)?;
         for ends in [[w, b], [a, w]] {
-            self.wait(ends, &job.covers);
+            self.wait(ends, &job.covers)?;
         }
         Ok(())
     }
@@ -230,7 +239,11 @@ impl<'a> Splitter<'a> {
         let (w, parted) = self.marked.vertex_at(x, e)?;
         let found = self.marked.count - self.own;
         if found > self.limit {
-            let rows = self.all_pieces().into_iter().map(|piece| piece.1).collect();
+            let rows = self
+                .all_pieces()?
+                .into_iter()
+                .map(|piece| piece.1)
+                .collect();
             let at = |v| self.marked.at(v);
             return Err(Error::Budget {
                 what: "added vertices",
@@ -241,27 +254,29 @@ impl<'a> Splitter<'a> {
         }
         if let Some([p, q]) = parted {
             let covers = self.take([p, q])?;
-            self.add([p, w], &covers);
-            self.add([w, q], &covers);
+            self.add([p, w], &covers)?;
+            self.add([w, q], &covers)?;
         }
         let same = parted.is_some_and(|other| other == [u, v] || other == [v, u]);
         if w != u && w != v && !same {
             let covers = self.take([u, v])?;
             self.unmark(u, v)?;
             for ends in [[w, v], [u, w]] {
-                self.wait(ends, &covers);
+                self.wait(ends, &covers)?;
             }
         }
         Ok(w)
     }
 
-    fn wait(&mut self, ends: [u32; 2], covers: &[Cover]) {
+    fn wait(&mut self, ends: [u32; 2], covers: &[Cover]) -> Result<()> {
+        self.pace.spend(1)?;
         if ends[0] != ends[1] {
             self.jobs.push(Job {
                 ends,
                 covers: covers.to_vec(),
             });
         }
+        Ok(())
     }
 
     /// The edge u v is one like others again.
@@ -273,16 +288,18 @@ impl<'a> Splitter<'a> {
     }
 
     /// All pieces, directed as their rows are, in no order.
-    fn all_pieces(&self) -> Vec<([u32; 2], u32)> {
+    fn all_pieces(&mut self) -> Result<Vec<([u32; 2], u32)>> {
         let mut all = Vec::new();
-        for (&[u, v], covers) in &self.pieces {
+        // They go one by one, as to free them all takes long, too.
+        for ([u, v], covers) in self.pieces.drain() {
+            self.pace.spend(1)?;
             for cover in covers {
-                let (ends, row) = self.segments[*cover as usize / 2];
+                let (ends, row) = self.segments[cover as usize / 2];
                 let with = (cover % 2 == 0) == (ends == self.given[row as usize]);
                 all.push((if with { [u, v] } else { [v, u] }, row));
             }
         }
-        all
+        Ok(all)
     }
 }
 
@@ -324,7 +341,7 @@ pub(super) fn way(
 
 /// The segments that have a length, each from its lexicographically smaller end, sorted by their
 /// ends.
-fn in_order(marked: &Marked, segments: &[[u32; 2]]) -> Vec<([u32; 2], u32)> {
+fn in_order(marked: &Marked, segments: &[[u32; 2]], watch: &Watch) -> Result<Vec<([u32; 2], u32)>> {
     let at = |v: u32| marked.at(v);
     let real = (0u32..).zip(segments).filter(|(_, s)| s[0] != s[1]);
     let directed = |(row, &[a, b]): (u32, &[u32; 2])| match lexicographic(at(a), at(b)).is_lt() {
@@ -332,11 +349,11 @@ fn in_order(marked: &Marked, segments: &[[u32; 2]]) -> Vec<([u32; 2], u32)> {
         false => ([b, a], row),
     };
     let mut order: Vec<_> = real.map(directed).collect();
-    order.sort_by(|(s, i), (t, j)| {
+    order::sort_by(&mut order, watch, |(s, i), (t, j)| {
         let by = |k: usize| lexicographic(at(s[k]), at(t[k]));
         by(0).then_with(|| by(1)).then(i.cmp(j))
-    });
-    order
+    })?;
+    Ok(order)
 }
 
 /// Whether a point lies in the box of two others.

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use crate::error::{Error, Result};
 use crate::memory::with_room;
+use crate::order;
+use crate::watch::{Pace, Watch};
 
 /// Subsegments in the order of the first segment that covers them and along it, directed as it is.
 #[derive(Debug, Default)]
@@ -21,9 +23,9 @@ pub struct Subsegments {
 impl Subsegments {
     /// From edges with the rows of their segments, ascending; each edge comes once unless it is
     /// `repeated`.
-    pub fn of(pieces: &[([u32; 2], u32)], repeated: bool) -> Result<Self> {
+    pub fn of(pieces: &[([u32; 2], u32)], repeated: bool, watch: &Watch) -> Result<Self> {
         if repeated {
-            return Self::grouped(pieces);
+            return Self::grouped(pieces, watch);
         }
         let mut out = Self::with_room(pieces.len())?;
         out.ends
@@ -43,12 +45,14 @@ impl Subsegments {
         })
     }
 
-    fn grouped(pieces: &[([u32; 2], u32)]) -> Result<Self> {
+    fn grouped(pieces: &[([u32; 2], u32)], watch: &Watch) -> Result<Self> {
         let mut out = Self::with_room(pieces.len())?;
         let mut place: HashMap<[u32; 2], u32> = HashMap::new();
         // Entries by subsegment and row.
         let mut entries: Vec<(u32, i32, bool)> = with_room(pieces.len())?;
+        let mut pace = Pace::new(watch, 1 << 14);
         for &(ends, row) in pieces {
+            pace.spend(1)?;
             let [u, v] = ends;
             let next = out.ends.len() as u32;
             if place.len() == place.capacity() {
@@ -63,7 +67,9 @@ impl Subsegments {
             let forward = out.ends[at as usize][0] == u as i32;
             entries.push((at, row as i32, forward));
         }
-        entries.sort_unstable_by_key(|e| (e.0, e.1));
+        order::sort_by(&mut entries, watch, |d, e| {
+            (d.0, d.1, d.2).cmp(&(e.0, e.1, e.2))
+        })?;
         entries.dedup_by_key(|e| (e.0, e.1));
         out.start.push(0);
         for (i, &(at, row, forward)) in entries.iter().enumerate() {

@@ -22,10 +22,13 @@ use super::validate::{Findings, validate};
 use crate::arrays::{Arrays, Triangles};
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
-use crate::mesh2::{Code, Mesh2, Patch, export, import, next, prev, triangle};
+use crate::mesh2::{Code, Patch, export, import, next, prev, triangle};
 use crate::order::arrange;
 use crate::points;
 use crate::watch::Watch;
+
+/// Triangles between two looks at the watch where little is done with each.
+const LOT: usize = 1 << 16;
 
 /// Edges between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 14;
@@ -60,7 +63,7 @@ pub fn lawson(
             "simplices[{t}] = {s:?} is not counter-clockwise"
         )));
     }
-    let neighbors = import::adjacency(simplices, points.len())?;
+    let neighbors = import::adjacency(simplices, points.len(), watch)?;
     let given = Triangles {
         points,
         simplices,
@@ -73,27 +76,17 @@ pub fn lawson(
         return Err(Error::Shape(fault));
     }
     drop(neighbors);
-    let (rows, own) = compact(points, simplices)?;
+    let (rows, own) = compact(points, simplices, watch)?;
     let mut at = with_room(rows.len())?;
     at.extend(rows.iter().map(|&row| points[row as usize]));
-    let (mut mesh, ghost) = import::mesh(&own, rows.len())?;
-    let mut flips = Flips::over(&at, mesh.patch(), own.len(), record)?;
+    let (mut mesh, ghost) = import::mesh(&own, rows.len(), watch)?;
+    let mut flips = Flips::over(&at, mesh.patch(), own.len(), record, watch)?;
     flips.run(watch)?;
     let (flips, mut sequence) = (flips.count, flips.sequence);
     for flip in &mut sequence {
         *flip = flip.map(|v| rows[v as usize] as i32);
     }
-    finish(mesh, ghost, &rows, flips, sequence)
-}
-
-fn finish(
-    mesh: Mesh2,
-    ghost: Code,
-    rows: &[u32],
-    flips: usize,
-    sequence: Vec<[i32; 4]>,
-) -> Result<Flipped> {
-    let arrays = export::arrays(mesh, ghost, rows, 1)?;
+    let arrays = export::arrays(mesh, ghost, &rows, 1, watch)?;
     Ok(Flipped {
         arrays,
         flips,
@@ -139,10 +132,14 @@ fn fault(found: &Findings) -> Option<String> {
 pub(crate) fn compact(
     points: &[Point2],
     simplices: &[[i32; 3]],
+    watch: &Watch,
 ) -> Result<(Vec<u32>, Vec<[i32; 3]>)> {
     let mut place = filled(points.len(), -1i32)?;
-    for &v in simplices.iter().flatten() {
-        place[v as usize] = 0;
+    for lot in simplices.chunks(LOT) {
+        watch.check()?;
+        for &v in lot.as_flattened() {
+            place[v as usize] = 0;
+        }
     }
     let mut rows = with_room(points.len())?;
     for (row, place) in (0u32..).zip(&mut place).filter(|(_, place)| **place == 0) {
@@ -150,7 +147,10 @@ pub(crate) fn compact(
         rows.push(row);
     }
     let mut own = with_room(simplices.len())?;
-    own.extend(simplices.iter().map(|s| s.map(|v| place[v as usize])));
+    for lot in simplices.chunks(LOT) {
+        watch.check()?;
+        own.extend(lot.iter().map(|s| s.map(|v| place[v as usize])));
+    }
     Ok((rows, own))
 }
 
@@ -169,7 +169,13 @@ struct Flips<'a> {
 
 impl<'a> Flips<'a> {
     /// All edges of the first `triangles` records wait.
-    fn over(points: &'a [Point2], mesh: Patch<'a>, triangles: usize, record: bool) -> Result<Self> {
+    fn over(
+        points: &'a [Point2],
+        mesh: Patch<'a>,
+        triangles: usize,
+        record: bool,
+        watch: &Watch,
+    ) -> Result<Self> {
         let mut flips = Self {
             points,
             mesh,
@@ -180,6 +186,9 @@ impl<'a> Flips<'a> {
             sequence: Vec::new(),
         };
         for t in (0..triangles as u32).rev() {
+            if t.is_multiple_of(LOT as u32) {
+                watch.check()?;
+            }
             for e in 8 * t..8 * t + 3 {
                 if triangle(flips.mesh.opposite(e)) > t {
                     flips.push(e);
@@ -325,7 +334,7 @@ mod tests {
             let back = flipped(&points, &made(&stretched));
             assert_eq!(sorted(&back.arrays.simplices), sorted(&right));
             assert!(back.flips > 100);
-            let neighbors = import::adjacency(&back.arrays.simplices, 500).unwrap();
+            let neighbors = import::adjacency(&back.arrays.simplices, 500, &Watch::idle()).unwrap();
             assert_eq!(back.arrays.neighbors, neighbors);
         }
     }

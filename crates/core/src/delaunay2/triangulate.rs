@@ -100,7 +100,7 @@ pub fn triangulate(
     let mut clock = Clock::start();
     let built = mesh(input, method, workers, watch, &mut clock)?;
     watch.check()?;
-    let arrays = export::arrays(built.mesh, built.ghost, &built.rows, workers)?;
+    let arrays = export::arrays(built.mesh, built.ghost, &built.rows, workers, watch)?;
     clock.lap("export");
     Ok(Triangulation {
         arrays,
@@ -165,7 +165,7 @@ fn build(
     let one = !method.in_blocks() || arranged.starts.windows(2).any(few);
     let starts = if one { &whole } else { &arranged.starts[..] };
     let tasks = patches(mesh, starts, 1);
-    let mut ghosts = parallel::map(workers, tasks, |(i, mesh)| {
+    let mut ghosts = parallel::map_watched(workers, tasks, watch, |(i, mesh)| {
         block(
             points,
             starts[i] as u32..starts[i + 1] as u32,
@@ -173,24 +173,17 @@ fn build(
             method,
             watch,
         )
-    })
-    .into_iter()
-    .collect::<Result<Vec<Code>>>()?;
+    })?;
     let mut width = 2;
     while ghosts.len() > 1 {
         watch.check()?;
         let tasks = patches(mesh, starts, width);
-        ghosts = parallel::map(workers, tasks, |(i, mut mesh)| {
+        ghosts = parallel::map_watched(workers, tasks, watch, |(i, mut mesh)| {
             let spare = mesh.spare(starts[i * width + width / 2] - starts[i * width]);
             let sides = [ghosts[2 * i], ghosts[2 * i + 1]];
-            merge(
-                &mut mesh,
-                points,
-                sides,
-                arranged.cuts.axis(i, width),
-                spare,
-            )
-        });
+            let axis = arranged.cuts.axis(i, width);
+            Ok(merge(&mut mesh, points, sides, axis, spare))
+        })?;
         width *= 2;
     }
     Ok(ghosts[0])

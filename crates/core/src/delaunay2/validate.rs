@@ -13,8 +13,10 @@ use crate::error::Result;
 use crate::memory::filled;
 use crate::order::{Arranged, arrange};
 use crate::points;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
+/// Triangles, or vertices, between two looks at the watch where little is done with each.
+const LOT: usize = 1 << 16;
 /// Triangles between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 14;
 
@@ -60,10 +62,10 @@ pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, 1, watch)?;
     let mut found = Findings {
-        edges: repeated_edges(given)?,
+        edges: repeated_edges(given, watch)?,
         ..Findings::default()
     };
-    missing(given, &ordered, &mut found)?;
+    missing(given, &ordered, &mut found, watch)?;
     let mut boundary = Vec::new();
     for t in 0..given.simplices.len() {
         if t % WATCH_EVERY == 0 {
@@ -78,6 +80,7 @@ pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
             .count
             .push([expected as u32, given.simplices.len() as u32]);
     }
+    watch.check()?;
     hull(given, boundary, &mut found);
     Ok(found)
 }
@@ -121,9 +124,11 @@ fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec
 }
 
 /// Directed edges that occur twice, by a counting sort of the ends by origin.
-fn repeated_edges(given: Triangles) -> Result<Vec<[u32; 2]>> {
+fn repeated_edges(given: Triangles, watch: &Watch) -> Result<Vec<[u32; 2]>> {
+    let mut pace = Pace::new(watch, LOT);
     let mut start = filled(given.points.len() + 1, 0u32)?;
     for s in given.simplices {
+        pace.spend(1)?;
         for &v in s {
             start[v as usize + 1] += 1;
         }
@@ -133,6 +138,7 @@ fn repeated_edges(given: Triangles) -> Result<Vec<[u32; 2]>> {
     }
     let mut ends = filled(3 * given.simplices.len(), 0i32)?;
     for s in given.simplices {
+        pace.spend(1)?;
         for k in 0..3 {
             let at = &mut start[s[k] as usize];
             ends[*at as usize] = s[(k + 1) % 3];
@@ -142,6 +148,7 @@ fn repeated_edges(given: Triangles) -> Result<Vec<[u32; 2]>> {
     let mut repeated = Vec::new();
     let mut from = 0;
     for (u, &to) in (0u32..).zip(&start[..given.points.len()]) {
+        pace.spend(1)?;
         let list = &mut ends[from..to as usize];
         list.sort_unstable();
         let twice = list
@@ -156,10 +163,18 @@ fn repeated_edges(given: Triangles) -> Result<Vec<[u32; 2]>> {
 }
 
 /// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
-fn missing(given: Triangles, ordered: &Arranged, found: &mut Findings) -> Result<()> {
+fn missing(
+    given: Triangles,
+    ordered: &Arranged,
+    found: &mut Findings,
+    watch: &Watch,
+) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
-    for &v in given.simplices.iter().flatten() {
-        used[v as usize] = true;
+    for lot in given.simplices.chunks(LOT) {
+        watch.check()?;
+        for &v in lot.as_flattened() {
+            used[v as usize] = true;
+        }
     }
     for &[row, first] in &ordered.duplicates {
         if used[row as usize] {

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 use crate::mesh3::{Code, Records, corner, tetrahedron};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// Records that one task renumbers.
 const SHARE: usize = 1 << 14;
@@ -79,12 +80,14 @@ pub fn join(
     blocks: &[Block],
     fitted: Option<&Fitted>,
     workers: usize,
+    watch: &Watch,
 ) -> Result<Arrays<4>> {
     let starts: Vec<usize> = rooms
         .iter()
         .scan(0, |end, room| Some(std::mem::replace(end, *end + room)))
         .collect();
     let plan = plan(&starts, rooms, blocks, fitted)?;
+    watch.check()?;
     for array in [&mut records.corners, &mut records.opposite] {
         let more = plan.total.saturating_sub(array.len());
         let bytes = more * size_of::<[i32; 4]>();
@@ -93,8 +96,9 @@ pub fn join(
             .map_err(|_| Error::Memory { bytes })?;
         array.resize(array.len() + more, [0; 4]);
     }
-    renumber(&mut records, &starts, rooms, blocks, &plan, workers);
-    fill(&mut records, blocks, fitted, &plan, workers);
+    renumber(&mut records, &starts, rooms, blocks, &plan, workers, watch)?;
+    fill(&mut records, blocks, fitted, &plan, workers, watch)?;
+    watch.check()?;
     if let Some(fitted) = fitted {
         tie(&mut records, &starts, fitted, &plan);
     }
@@ -164,7 +168,8 @@ fn renumber(
     blocks: &[Block],
     plan: &Plan,
     workers: usize,
-) {
+    watch: &Watch,
+) -> Result<()> {
     let (mut corners, mut opposite) = (&mut records.corners[..], &mut records.opposite[..]);
     let mut tasks = Vec::new();
     for ((&start, &room), block) in starts.iter().zip(rooms).zip(blocks) {
@@ -177,9 +182,10 @@ fn renumber(
         tasks.extend(chunks.map(|chunk| (start, block, chunk)));
         (corners, opposite) = (rest_corners, rest_opposite);
     }
-    parallel::map(
+    parallel::map_watched(
         workers,
         tasks,
+        watch,
         |(start, block, ((corners, opposite), kinds))| {
             let row = |v: i32| block.rows[v as usize] as i32;
             let number = |e: i32| {
@@ -199,8 +205,10 @@ fn renumber(
                 *c = [row(c[0]), row(c[1]), row(c[2]), row(c[3])];
                 *o = [number(o[0]), number(o[1]), number(o[2]), number(o[3])];
             }
+            Ok(())
         },
-    );
+    )?;
+    Ok(())
 }
 
 /// Fills the holes with what the seam adds and with what moves.
@@ -210,15 +218,17 @@ fn fill(
     fitted: Option<&Fitted>,
     plan: &Plan,
     workers: usize,
-) {
+    watch: &Watch,
+) -> Result<()> {
     let (corners, last_corners) = records.corners.split_at_mut(plan.total);
     let (opposite, last_opposite) = records.opposite.split_at_mut(plan.total);
     let (last_corners, last_opposite) = (&*last_corners, &*last_opposite);
     let chunks = corners.chunks_mut(SHARE).zip(opposite.chunks_mut(SHARE));
     let tasks = chunks.zip((0..).step_by(SHARE)).collect();
-    parallel::map(
+    parallel::map_watched(
         workers,
         tasks,
+        watch,
         |((corners, opposite), start): ((&mut [_], &mut [_]), u32)| {
             let before = |end: usize| plan.holes.partition_point(|&to| (to as usize) < end);
             let here = before(start as usize)..before(start as usize + corners.len());
@@ -234,8 +244,10 @@ fn fill(
                 };
                 (corners[to], opposite[to]) = filling;
             }
+            Ok(())
         },
-    );
+    )?;
+    Ok(())
 }
 
 /// Joins the tetrahedra of the seam to the blocks.

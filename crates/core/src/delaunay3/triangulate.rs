@@ -143,7 +143,7 @@ impl Task<'_> {
         };
         clock.lap("build");
         drop(std::mem::take(&mut arranged.points));
-        let arrays = join(records, &rooms, &blocks, None, self.workers)?;
+        let arrays = join(records, &rooms, &blocks, None, self.workers, self.watch)?;
         clock.lap("join");
         Ok(Ok((arrays, arranged.duplicates)))
     }
@@ -182,24 +182,30 @@ impl Task<'_> {
             return Ok(None);
         };
         clock.lap("seam");
-        let arrays = join(records, &rooms, &blocks, Some(&fitted), self.workers)?;
+        let arrays = join(
+            records,
+            &rooms,
+            &blocks,
+            Some(&fitted),
+            self.workers,
+            self.watch,
+        )?;
         clock.lap("join");
         Ok(Some((arrays, duplicates)))
     }
 
     /// The points of each block along the curve, and one of NaN.
     fn parts(self, input: &[Point3], cuts: &Cuts3) -> Result<Vec<Arranged3>> {
-        let blocks = split(input, cuts, self.workers)?;
+        let blocks = split(input, cuts, self.workers, self.watch)?;
         let mut tasks = Vec::with_capacity(cuts.blocks());
         for (points, rows) in blocks.each() {
             tasks.push((points, rows, Room3::of(points.len())?));
         }
-        let parts = parallel::map(self.workers, tasks, |(points, rows, room)| {
+        parallel::map_watched(self.workers, tasks, self.watch, |(points, rows, room)| {
             let mut arranged = arrange_rows(points, Some(rows), room, self.watch)?;
             arranged.points.push([f64::NAN; 3]);
             Ok(arranged)
-        });
-        parts.into_iter().collect()
+        })
     }
 
     /// Triangulates each block and finds what is sound in it; nothing where one is degenerate. Where the
@@ -252,9 +258,10 @@ impl Task<'_> {
         {
             tasks.push((i, part, mesh, Room::of(room, vertices)?));
         }
-        let made = parallel::map(
+        let made = parallel::map_watched(
             self.workers,
             tasks,
+            self.watch,
             |(i, part, mesh, room): (usize, &Arranged3, Mesh3, Room)| {
                 let around = Surroundings {
                     cell: cuts.map_or(Extent3::EVERYWHERE, |cuts| cuts.cell(i)),
@@ -267,10 +274,10 @@ impl Task<'_> {
                 let rows = part.rows.clone();
                 Block::sift(&part.points, rows, &mesh, &room.spheres, &around).map(Some)
             },
-        );
-        let blocks: Result<Option<Vec<Block>>> = made.into_iter().collect();
+        )?;
+        let blocks: Option<Vec<Block>> = made.into_iter().collect();
         let rooms = rooms.into_iter().map(|(room, _)| room).collect();
-        Ok(blocks?.map(|blocks| (records, rooms, blocks)))
+        Ok(blocks.map(|blocks| (records, rooms, blocks)))
     }
 
     /// Triangulates the seam of the blocks of `whole` points and finds where it meets them; nothing where it
@@ -281,7 +288,9 @@ impl Task<'_> {
             return Ok(None);
         };
         let seam = Seam { vertices, arrays };
+        self.watch.check()?;
         let joints = joints(blocks, &seam, self.workers)?;
+        self.watch.check()?;
         let belongs = rest(&seam, &joints)?;
         Ok(Some(Fitted {
             seam,

@@ -24,8 +24,10 @@ use crate::memory::{filled, push};
 use crate::mesh3::FACETS;
 use crate::order::space::{Arranged3, arrange};
 use crate::points;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
+/// Facets, or tetrahedra, between two looks at the watch where little is done with each.
+const LOT: usize = 1 << 16;
 /// Tetrahedra between two looks at the watch.
 const WATCH_EVERY: usize = 1 << 12;
 
@@ -83,7 +85,7 @@ pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
         facets: repeated_facets(given, watch)?,
         ..Findings3::default()
     };
-    missing(given, &ordered, &mut found)?;
+    missing(given, &ordered, &mut found, watch)?;
     let mut boundary = Vec::new();
     for t in 0..given.simplices.len() {
         if t % WATCH_EVERY == 0 {
@@ -91,6 +93,7 @@ pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
         }
         tetrahedron(given, t, &mut found, &mut boundary)?;
     }
+    watch.check()?;
     hull(given, &boundary, &mut found);
     Ok(found)
 }
@@ -138,9 +141,11 @@ fn tetrahedron(
 
 /// Oriented facets that occur twice, by a counting sort by their smallest vertex.
 fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
+    let mut pace = Pace::new(watch, LOT);
     let facets = || (0..given.simplices.len()).flat_map(|t| (0..4).map(move |k| given.facet(t, k)));
     let mut start = filled(given.points.len() + 1, 0usize)?;
     for [a, ..] in facets() {
+        pace.spend(1)?;
         start[a as usize + 1] += 1;
     }
     for v in 0..given.points.len() {
@@ -149,6 +154,7 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
     watch.check()?;
     let mut ends = filled(4 * given.simplices.len(), [0i32; 2])?;
     for [a, b, c] in facets() {
+        pace.spend(1)?;
         let at = &mut start[a as usize];
         ends[*at] = [b, c];
         *at += 1;
@@ -157,6 +163,7 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
     let mut repeated = Vec::new();
     let mut from = 0;
     for (a, &to) in (0u32..).zip(&start[..given.points.len()]) {
+        pace.spend(1 + to - from)?;
         let list = &mut ends[from..to];
         list.sort_unstable();
         let twice = list.windows(2).filter(|w| w[0] == w[1]);
@@ -168,10 +175,18 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
 }
 
 /// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
-fn missing(given: Tetrahedra, ordered: &Arranged3, found: &mut Findings3) -> Result<()> {
+fn missing(
+    given: Tetrahedra,
+    ordered: &Arranged3,
+    found: &mut Findings3,
+    watch: &Watch,
+) -> Result<()> {
     let mut used = filled(given.points.len(), false)?;
-    for &v in given.simplices.iter().flatten() {
-        used[v as usize] = true;
+    for lot in given.simplices.chunks(LOT) {
+        watch.check()?;
+        for &v in lot.as_flattened() {
+            used[v as usize] = true;
+        }
     }
     for &[row, first] in &ordered.duplicates {
         if used[row as usize] {

@@ -17,7 +17,11 @@ use delone_predicates::{Point3, Sign};
 
 use super::inner::Inner;
 use super::insertion::{Hull, Towards};
+use crate::error::Result;
+use crate::watch::Watch;
 
+/// Points between two looks at the watch.
+const LOT: usize = 1 << 16;
 /// Points for each cell: its walks, to one point and one corner, are then worth a small part of what walks to
 /// all points would be.
 const POINTS: usize = 16;
@@ -85,16 +89,19 @@ impl Grid {
     }
 
     /// The deepest point of each cell that has one.
-    pub fn deepest(&self, points: &[Point3]) -> Vec<u32> {
+    pub fn deepest(&self, points: &[Point3], watch: &Watch) -> Result<Vec<u32>> {
         let mut most = vec![(0.0, u32::MAX); 6 * self.cells * self.cells];
-        for (row, &p) in (0u32..).zip(points) {
-            let Place { cell, depth, .. } = self.place(p);
-            if depth > most[cell].0 {
-                most[cell] = (depth, row);
+        for (first, lot) in (0u32..).step_by(LOT).zip(points.chunks(LOT)) {
+            watch.check()?;
+            for (row, &p) in (first..).zip(lot) {
+                let Place { cell, depth, .. } = self.place(p);
+                if depth > most[cell].0 {
+                    most[cell] = (depth, row);
+                }
             }
         }
         let found = most.into_iter().map(|(_, row)| row);
-        found.filter(|&row| row != u32::MAX).collect()
+        Ok(found.filter(|&row| row != u32::MAX).collect())
     }
 }
 

@@ -4,12 +4,24 @@
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
+use crate::error::Result;
+use crate::order::{sort, sort_by};
+use crate::watch::{Pace, Watch};
+
+/// Points between two looks at the watch.
+const LOT: usize = 1 << 16;
+
+/// Rows of a hull, and rows that repeat one of these with it.
+pub type Chain = (Vec<u32>, Vec<[u32; 2]>);
+
 /// The extreme points, counter-clockwise from the lexicographically smallest on, each by its first
 /// row; fewer than three where there is no area. And `[row, vertex]` for rows that repeat one.
-pub fn hull2(points: &[Point2]) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let mut rows = outside_of_octagon(points);
+pub fn hull2(points: &[Point2], watch: &Watch) -> Result<Chain> {
+    let mut rows = outside_of_octagon(points, watch)?;
     let at = |v: u32| points[v as usize];
-    rows.sort_unstable_by(|&u, &v| lexicographic(at(u), at(v)).then(u.cmp(&v)));
+    sort_by(&mut rows, watch, |&u, &v| {
+        lexicographic(at(u), at(v)).then(u.cmp(&v))
+    })?;
     let mut first: Vec<u32> = Vec::new();
     let mut repeats = Vec::new();
     for &row in &rows {
@@ -18,26 +30,28 @@ pub fn hull2(points: &[Point2]) -> (Vec<u32>, Vec<[u32; 2]>) {
             _ => first.push(row),
         }
     }
-    let mut hull = chain(points, first.iter().copied());
+    let mut hull = chain(points, first.iter().copied(), watch)?;
     hull.pop();
-    let mut above = chain(points, first.iter().rev().copied());
+    let mut above = chain(points, first.iter().rev().copied(), watch)?;
     above.pop();
     hull.append(&mut above);
     if hull.is_empty() {
         hull = first;
     }
     let mut vertices = hull.clone();
-    vertices.sort_unstable();
+    sort(&mut vertices, watch)?;
     repeats.retain(|[_, vertex]| vertices.binary_search(vertex).is_ok());
-    repeats.sort_unstable();
-    (hull, repeats)
+    sort(&mut repeats, watch)?;
+    Ok((hull, repeats))
 }
 
 /// The chain of left turns over points in order.
-fn chain(points: &[Point2], rows: impl Iterator<Item = u32>) -> Vec<u32> {
+fn chain(points: &[Point2], rows: impl Iterator<Item = u32>, watch: &Watch) -> Result<Vec<u32>> {
+    let mut pace = Pace::new(watch, LOT);
     let at = |v: u32| points[v as usize];
     let mut kept: Vec<u32> = Vec::new();
     for row in rows {
+        pace.spend(1)?;
         while let [.., a, b] = kept[..]
             && orient2d(at(a), at(b), at(row)) != Sign::Positive
         {
@@ -45,12 +59,13 @@ fn chain(points: &[Point2], rows: impl Iterator<Item = u32>) -> Vec<u32> {
         }
         kept.push(row);
     }
-    kept
+    Ok(kept)
 }
 
 /// Rows of points that are not known to be inside of the polygon of the extreme ones in eight
 /// directions.
-fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
+fn outside_of_octagon(points: &[Point2], watch: &Watch) -> Result<Vec<u32>> {
+    let mut pace = Pace::new(watch, LOT);
     let rows = || (0u32..).zip(points);
     let directions = [
         [1.0, 0.0],
@@ -65,6 +80,7 @@ fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
     let mut corners = [0usize; 8];
     let mut most = [f64::NEG_INFINITY; 8];
     for (row, p) in rows() {
+        pace.spend(1)?;
         for k in 0..8 {
             // Any point will do as a corner: rounding and overflow choose a worse one.
             let along = directions[k][0] * p[0] + directions[k][1] * p[1];
@@ -74,7 +90,7 @@ fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
         }
     }
     if points.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let polygon: Vec<Point2> = corners.iter().map(|&c| points[c]).collect();
     let inside = |p: Point2| {
@@ -97,10 +113,14 @@ fn outside_of_octagon(points: &[Point2]) -> Vec<u32> {
     let in_box = |p: Point2| {
         is_box && low[0] <= p[0] && p[0] <= high[0] && low[1] <= p[1] && p[1] <= high[1]
     };
-    rows()
-        .filter(|&(_, &p)| !in_box(p) && !inside(p))
-        .map(|(row, _)| row)
-        .collect()
+    let mut found = Vec::new();
+    for (row, &p) in rows() {
+        pace.spend(1)?;
+        if !in_box(p) && !inside(p) {
+            found.push(row);
+        }
+    }
+    Ok(found)
 }
 
 #[cfg(test)]
@@ -113,12 +133,17 @@ mod tests {
             .flat_map(|x| (0..5).map(move |y| [f64::from(x), f64::from(y)]))
             .chain([[0.0, 0.0], [4.0, 4.0], [2.0, 2.0]])
             .collect();
-        let (hull, repeats) = hull2(&points);
+        let (hull, repeats) = hull2(&points, &Watch::idle()).unwrap();
         assert_eq!(hull, [0, 20, 24, 4]);
         assert_eq!(repeats, [[25, 0], [26, 24]]);
-        assert_eq!(hull2(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).0, [0, 2]);
-        assert_eq!(hull2(&[[1.0, 1.0]; 3]).0, [0]);
-        assert!(hull2(&[]).0.is_empty());
+        assert_eq!(
+            hull2(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], &Watch::idle())
+                .unwrap()
+                .0,
+            [0, 2]
+        );
+        assert_eq!(hull2(&[[1.0, 1.0]; 3], &Watch::idle()).unwrap().0, [0]);
+        assert!(hull2(&[], &Watch::idle()).unwrap().0.is_empty());
     }
 
     #[test]
@@ -141,7 +166,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let (hull, _) = hull2(&points);
+            let (hull, _) = hull2(&points, &Watch::idle()).unwrap();
             // By definition: no point lies right of a side.
             for (i, &u) in hull.iter().enumerate() {
                 let (a, b) = (

@@ -20,6 +20,8 @@ const DIRECTIONS: usize = 40;
 const SAMPLE: usize = 1 << 9;
 /// Points from which on cells of directions save more walks than they take.
 const MANY: usize = 1 << 8;
+/// Points between two looks at the watch.
+const LOT: usize = 1 << 16;
 /// No row.
 const NONE: u32 = u32::MAX;
 
@@ -54,16 +56,22 @@ pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
     if points.len() > MANY
         && let Some(grid) = Grid::of(&hull, points.len())
     {
-        let deepest = grid.deepest(points);
+        let deepest = grid.deepest(points, watch)?;
         note(&deepest);
-        hull.insert_all(&rounds(points, deepest)?, watch)?;
+        hull.insert_all(&rounds(points, deepest, watch)?, watch)?;
         if let Some(cells) = Cells::of(&hull, grid) {
-            rows.retain(|&row| !cells.holds(points[row as usize]));
+            let mut left = with_room(rows.len())?;
+            for lot in rows.chunks(LOT) {
+                watch.check()?;
+                let out = |&row: &u32| !cells.holds(points[row as usize]);
+                left.extend(lot.iter().copied().filter(out));
+            }
+            rows = left;
         }
         watch.check()?;
     }
     let late = rows.iter().copied().filter(|&row| !done[row as usize]);
-    hull.insert_all(&rounds(points, late.collect())?, watch)?;
+    hull.insert_all(&rounds(points, late.collect(), watch)?, watch)?;
     Ok(Some(Surface {
         facets: living(&hull.facets),
         first: first.map(|v| points[v as usize]),
@@ -88,14 +96,31 @@ fn living(facets: &[Facet]) -> Vec<Facet> {
 }
 
 /// Rows in random rounds, each twice as large as the one before and along a curve.
-fn rounds(points: &[Point3], rows: Vec<u32>) -> Result<Vec<u32>> {
+fn rounds(points: &[Point3], rows: Vec<u32>, watch: &Watch) -> Result<Vec<u32>> {
     let mut at = with_room(rows.len())?;
     at.extend(rows.iter().map(|&row| points[row as usize]));
-    let order = order_of::<3>(&at, 1)?.concat();
+    let order = order_of::<3>(&at, 1, watch)?.concat();
     let mut rows: Vec<u32> = order.into_iter().map(|i| rows[i as usize]).collect();
     // Leading zeros of a random number: 0 for one half, the last round, 1 for a quarter, ...
-    rows.sort_by_cached_key(|&row| std::cmp::Reverse(random(row).leading_zeros()));
-    Ok(rows)
+    let mut last = with_room(rows.len())?;
+    let mut rounds = Vec::new();
+    for round in 0..=u64::BITS {
+        if rows.is_empty() {
+            break;
+        }
+        watch.check()?;
+        let mut own = Vec::new();
+        rows.retain(|&row| {
+            let here = random(row).leading_zeros() == round;
+            if here {
+                own.push(row);
+            }
+            !here
+        });
+        rounds.push(own);
+    }
+    rounds.into_iter().rev().for_each(|own| last.extend(own));
+    Ok(last)
 }
 
 /// The finaliser of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).

@@ -36,8 +36,9 @@ impl<'a> Adjacency<'a> {
         self.indptr[v] as usize..self.indptr[v + 1] as usize
     }
 
+    /// The neighbours of a vertex.
     #[inline]
-    pub(super) fn neighbours(&self, v: usize) -> &'a [i32] {
+    pub fn neighbours(&self, v: usize) -> &'a [i32] {
         &self.indices[self.range(v)]
     }
 }

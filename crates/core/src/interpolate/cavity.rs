@@ -13,6 +13,7 @@ use delone_predicates::{Point2, Sign, incircle};
 use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 use crate::locate::{Side, next, prev};
+use crate::watch::Pace;
 
 /// Edges that are closed, by the corner opposite; empty where none is.
 pub type Barrier<'a> = &'a [[bool; 3]];
@@ -44,7 +45,7 @@ pub struct Cavity {
 
 impl Cavity {
     /// Finds the cavity of `q`, which is in the closed triangle `seed`, on its edge opposite `on`
-    /// where there is such, and at no vertex.
+    /// where there is such, and at no vertex. The triangles count as work.
     pub fn find(
         &mut self,
         given: &Triangles,
@@ -52,12 +53,14 @@ impl Cavity {
         seed: usize,
         on: Option<usize>,
         q: Point2,
+        pace: &mut Pace,
     ) -> Result<()> {
         self.vertices.clear();
         self.points.clear();
         self.triangles.clear();
         self.ring.clear();
         self.flat = None;
+        self.open.clear();
         self.vertices.extend_from_slice(&given.simplices[seed]);
         self.points.extend_from_slice(&given.corners(seed));
         self.triangles.push([0, 1, 2]);
@@ -95,6 +98,7 @@ impl Cavity {
                     "natural neighbours need a Delaunay triangulation".into(),
                 ));
             }
+            pace.spend(1)?;
             let w = self.vertices.len() as u32;
             self.vertices.push(vertex);
             self.points.push(p);

@@ -232,7 +232,7 @@ pub fn clough_tocher(
 ) -> Result<Vec<f64>> {
     let given = &batch.locator.given;
     let width = field.columns * order.components();
-    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
+    let out = Output::filled(batch.queries.len() * width, f64::NAN, batch.watch)?;
     let state = Last::default;
     batch.each(state, |last, row, q, at| {
         let Located::Inside(place) = at else {
@@ -282,9 +282,9 @@ pub struct CornerWeights {
 pub fn clough_tocher_weights(batch: &Batch, barrier: Barrier) -> Result<CornerWeights> {
     let given = &batch.locator.given;
     let n = batch.queries.len();
-    let triangle = Output::filled(n, -1)?;
-    let weights = Output::filled(3 * n, f64::NAN)?;
-    let slopes = Output::filled(6 * n, f64::NAN)?;
+    let triangle = Output::filled(n, -1, batch.watch)?;
+    let weights = Output::filled(3 * n, f64::NAN, batch.watch)?;
+    let slopes = Output::filled(6 * n, f64::NAN, batch.watch)?;
     batch.each(
         || None,
         |last, row, q, at| {

@@ -14,10 +14,15 @@ use num_bigint::{BigInt, Sign};
 use super::cavity::Cavity;
 use super::kind::Kind;
 use super::number::Number;
+use crate::error::Result;
+use crate::watch::Pace;
 use crate::wide::{lowest, ratio, scaled};
 
 /// Binary places of a term.
 const DIGITS: usize = 160;
+
+/// Triangles of a cavity whose search takes about as long as one term here: 4 us and more.
+const TERM: usize = 40;
 
 /// An integer that depends on the place of the query; by it the derivatives x, y, xx, xy and yy,
 /// where they are asked for.
@@ -113,7 +118,8 @@ pub fn weights<T: Number>(
     q: Point2,
     unit: f64,
     values: &mut Vec<T>,
-) -> bool {
+    pace: &mut Pace,
+) -> Result<bool> {
     let mut all = cavity.points.clone();
     all.push(q);
     let low = lowest(&all, &[]);
@@ -124,30 +130,32 @@ pub fn weights<T: Number>(
         scale: None,
         sums: vec![Jets::constant(BigInt::ZERO, T::PARTS); cavity.points.len()],
     };
-    if !terms.add_fans(kind, cavity) {
-        return false;
+    if !terms.add_fans(kind, cavity, pace)? {
+        return Ok(false);
     }
     if kind != Kind::Laplace {
         for slots in &cavity.triangles {
+            pace.spend(3 * TERM)?;
             if !terms.add_triangle(slots.map(|s| s as usize)) {
-                return false;
+                return Ok(false);
             }
         }
     }
     let zero = Jets::constant(BigInt::ZERO, T::PARTS);
     let sum = terms.sums.iter().fold(zero, |sum, x| sum.plus(x));
     if sum.value().sign() != Sign::Plus {
-        return false;
+        return Ok(false);
     }
     let step = i64::from(decode_odd(unit).1) - low;
     values.clear();
-    values.extend(terms.sums.iter().map(|part| {
+    for part in &terms.sums {
+        pace.spend(TERM)?;
         let parts = part.over(&sum).into_iter().zip([0, 1, 1, 2, 2, 2]);
         let parts = parts.map(|((n, d), order)| ratio(&n, &d, order * step));
         let parts: Vec<f64> = parts.map(|x| x.unwrap_or(f64::INFINITY)).collect();
-        T::of_parts(&parts)
-    }));
-    true
+        values.push(T::of_parts(&parts));
+    }
+    Ok(true)
 }
 
 fn dot(a: &[Jets; 2], b: &[Jets; 2]) -> Jets {
@@ -165,7 +173,7 @@ impl Terms {
     }
 
     /// Adds the triangles from the query to the ring.
-    fn add_fans(&mut self, kind: Kind, cavity: &Cavity) -> bool {
+    fn add_fans(&mut self, kind: Kind, cavity: &Cavity, pace: &mut Pace) -> Result<bool> {
         let ring = &cavity.ring;
         let ends = |i: usize| (ring[i] as usize, ring[(i + 1) % ring.len()] as usize);
         let crosses: Vec<Jets> = (0..ring.len())
@@ -177,10 +185,11 @@ impl Terms {
         let is_flat = |x: &Jets| x.value().sign() == Sign::NoSign;
         let flat = crosses.iter().position(is_flat);
         if crosses.iter().filter(|x| is_flat(x)).count() > 1 {
-            return false;
+            return Ok(false);
         }
         self.scale = flat.map(|i| crosses[i].clone());
         for (i, area) in crosses.iter().enumerate() {
+            pace.spend(2 * TERM)?;
             let (u, v) = ends(i);
             let (a, b, edge) = (&self.seen[u], &self.seen[v], self.way(u, v));
             let (mut at_u, mut at_v) = (dot(&edge, b), dot(&self.way(v, u), a));
@@ -194,7 +203,7 @@ impl Terms {
             self.add(u, &at_u, if own { None } else { Some(area) });
             self.add(v, &at_v, if own { None } else { Some(area) });
         }
-        true
+        Ok(true)
     }
 
     /// Adds the parts of the cells of its corners in a triangle of the cavity.

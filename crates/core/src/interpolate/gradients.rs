@@ -6,13 +6,16 @@ use super::adjacency::Adjacency;
 use super::field::Field;
 use super::hubs::Hubs;
 use crate::error::Result;
-use crate::locate::{Output, in_unit, longer_side, unit_of};
+use crate::locate::{Output, in_unit, longest_side, unit_of};
 use crate::memory::{filled, with_room};
 use crate::parallel;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
 /// Vertices between two looks at the watch, and for a thread at once.
 const SHARE: usize = 1 << 12;
+
+/// Edges of vertices between two looks at the watch.
+const EDGES: usize = 1 << 17;
 
 /// Share of the longest edge below which an edge counts in a local fit no more than if it were as long. The rounding
 /// of two values makes a slope between them, the larger the nearer they are; and the nearer they are,
@@ -54,27 +57,29 @@ pub fn global_gradients(
         points,
         adjacency,
         unit,
-        side: longer_side(points, unit),
+        side: longest_side(points, unit),
         tol,
         floor,
         maxiter,
     };
     // All columns without gaps have the same equations.
-    let common = Network::of(&plan, |_| true)?;
+    let common = Network::of(&plan, |_| true, watch)?;
     let columns = (0..field.columns).collect();
     let solved = parallel::map(workers, columns, |column| {
         let known = |v: i32| field.value(v, column).is_finite();
         if (0..points.len() as i32).all(known) {
             return common.sweep(&plan, &field, column, watch);
         }
-        Network::of(&plan, known)?.sweep(&plan, &field, column, watch)
+        Network::of(&plan, known, watch)?.sweep(&plan, &field, column, watch)
     });
     let mut gradients = filled(2 * points.len() * field.columns, 0.0)?;
     let mut counts = Vec::with_capacity(field.columns);
+    let mut pace = Pace::new(watch, EDGES);
     for (column, solved) in solved.into_iter().enumerate() {
         let (found, count) = solved?;
         counts.push(count);
         for (v, g) in found.into_iter().enumerate() {
+            pace.spend(1)?;
             if let Some(g) = finite(g.map(|x| x / plan.unit)) {
                 let i = 2 * (v * field.columns + column);
                 gradients[i..i + 2].copy_from_slice(&g);
@@ -137,10 +142,12 @@ fn inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
 
 impl Network {
     /// Sets them up for the vertices whose values are known.
-    fn of(plan: &Sweeps, known: impl Fn(i32) -> bool) -> Result<Self> {
+    fn of(plan: &Sweeps, known: impl Fn(i32) -> bool, watch: &Watch) -> Result<Self> {
+        let mut pace = Pace::new(watch, EDGES);
         let mut edges = with_room(plan.adjacency.indices.len())?;
         let mut inverses = with_room(plan.points.len())?;
         for (v, &p) in plan.points.iter().enumerate() {
+            pace.spend(1 + plan.adjacency.neighbours(v).len())?;
             let mut m = [0.0; 3];
             for &other in plan.adjacency.neighbours(v) {
                 let way = in_unit(p, plan.points[other as usize], plan.unit);
@@ -168,15 +175,14 @@ impl Network {
         column: usize,
         watch: &Watch,
     ) -> Result<(Vec<[f64; 2]>, i64)> {
+        let mut pace = Pace::new(watch, EDGES);
         let n = self.inverses.len();
         let floor = plan.floor(field, column);
         let mut gradients = filled(n, [0.0; 2])?;
         for sweep in 1..=plan.maxiter {
             let mut worst: f64 = 0.0;
             for v in 0..n {
-                if v % SHARE == 0 {
-                    watch.check()?;
-                }
+                pace.spend(1 + plan.adjacency.neighbours(v).len())?;
                 let Some(new) = self.solve(plan, field, column, v, &gradients) else {
                     continue;
                 };
@@ -238,9 +244,9 @@ pub fn local_gradients(
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<f64>> {
-    let out = Output::filled(2 * points.len() * field.columns, 0.0)?;
+    let out = Output::filled(2 * points.len() * field.columns, 0.0, watch)?;
     let unit = unit_of(points);
-    let hubs = Hubs::of(points, adjacency);
+    let hubs = Hubs::of(points, adjacency, watch)?;
     let tasks = (0..points.len()).step_by(SHARE).collect();
     let ends = parallel::map(workers, tasks, |start: usize| {
         watch.check()?;

@@ -11,9 +11,13 @@ use std::collections::HashMap;
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::adjacency::Adjacency;
+use crate::error::Result;
+use crate::watch::{Pace, Watch};
 
 /// Neighbours above which a vertex is a hub. Among spread points none has half as many.
 const MANY: usize = 32;
+/// Vertices, and neighbors of hubs, between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// The neighbours of a hub.
 struct Ring {
@@ -32,10 +36,16 @@ pub struct Hubs<'a> {
 
 impl<'a> Hubs<'a> {
     /// Sorts the neighbours of hubs.
-    pub fn of(points: &[Point2], adjacency: Adjacency<'a>) -> Self {
+    pub fn of(points: &[Point2], adjacency: Adjacency<'a>, watch: &Watch) -> Result<Self> {
+        let mut pace = Pace::new(watch, LOT);
         let mut rings = HashMap::new();
         let all = 0..adjacency.vertices();
-        for v in all.filter(|&v| adjacency.neighbours(v).len() > MANY) {
+        for v in all {
+            pace.spend(1)?;
+            if adjacency.neighbours(v).len() <= MANY {
+                continue;
+            }
+            pace.spend(adjacency.neighbours(v).len())?;
             let mut around = adjacency.neighbours(v).to_vec();
             let at = |u: i32| points[u as usize];
             around.sort_unstable_by(|&a, &b| turn(points[v], at(a), at(b)).then(a.cmp(&b)));
@@ -44,7 +54,7 @@ impl<'a> Hubs<'a> {
             places.sort_unstable();
             rings.insert(v as i32, Ring { around, places });
         }
-        Self { adjacency, rings }
+        Ok(Self { adjacency, rings })
     }
 
     /// Adds the neighbours of `u` that count for its neighbour `v`.

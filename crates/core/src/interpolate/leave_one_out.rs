@@ -20,10 +20,14 @@ use crate::error::Result;
 use crate::locate::{Kept, Located, Locator, Side, barycentric_weights, next, prev};
 use crate::memory::filled;
 use crate::parallel;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
 /// Vertices that a thread takes at once.
 const SHARE: usize = 1 << 10;
+/// Vertices of holes between two looks at the watch.
+const WATCH_EVERY: usize = 1 << 14;
+/// Triangles to set out from between two looks at the watch.
+const LOT: usize = 1 << 16;
 /// Vertices of a hole up to which ears are tried one by one, in cubic time.
 const SMALL: usize = 32;
 
@@ -62,26 +66,29 @@ pub fn leave_one_out(
     let n = given.points.len();
     let mut stars = filled(n, None)?;
     for (triangle, vertices) in given.simplices.iter().enumerate() {
+        if triangle.is_multiple_of(LOT) {
+            watch.check()?;
+        }
         for (corner, &v) in vertices.iter().enumerate() {
             stars[v as usize] = Some(Side { triangle, corner });
         }
     }
     let tasks = (0..n).step_by(SHARE).collect();
-    let parts = parallel::map(workers, tasks, |start: usize| {
-        watch.check()?;
+    let parts = parallel::map_watched(workers, tasks, watch, |start: usize| {
+        let mut pace = Pace::new(watch, WATCH_EVERY);
         let mut part = Part::default();
         let mut hole = Hole::default();
         for (i, star) in stars[start..n.min(start + SHARE)].iter().enumerate() {
             if let Some(side) = *star {
                 hole.open(&given, side);
-                hole.weigh(&given, method, &mut part)?;
+                pace.spend(hole.cavity.ring.len())?;
+                hole.weigh(&given, method, &mut part, &mut pace)?;
             }
             part.close(start + i);
         }
         Ok(part)
-    });
-    let parts = parts.into_iter().collect::<Result<Vec<Part>>>()?;
-    Rows::of_parts(n, &parts, false, workers)
+    })?;
+    Rows::of_parts(n, &parts, false, workers, watch)
 }
 
 /// The star of a vertex without it.
@@ -130,7 +137,13 @@ impl Hole {
         cavity.ring.extend(0..cavity.vertices.len() as u32);
     }
 
-    fn weigh(&mut self, given: &Triangles, method: Method, part: &mut Part) -> Result<()> {
+    fn weigh(
+        &mut self,
+        given: &Triangles,
+        method: Method,
+        part: &mut Part,
+        pace: &mut Pace,
+    ) -> Result<()> {
         let q = given.point(self.vertex);
         if method == Method::Nearest {
             part.entry(self.nearest(q), 1.0, [0.0; 2]);
@@ -141,12 +154,12 @@ impl Hole {
             return Ok(());
         }
         if self.cavity.points.len() > SMALL {
-            return self.weigh_large(q, method, part);
+            return self.weigh_large(q, method, part, pace);
         }
         self.cut_ears();
         match method {
             Method::Natural(kind) => {
-                if self.weights.compute(kind, &self.cavity, q) {
+                if self.weights.compute(kind, &self.cavity, q, pace)? {
                     for (&v, &w) in self.cavity.vertices.iter().zip(&self.weights.values) {
                         part.entry(v, w, [0.0; 2]);
                     }
@@ -236,25 +249,31 @@ impl Hole {
     }
 
     /// The same by a triangulation of the ring, which has all natural neighbours.
-    fn weigh_large(&mut self, q: Point2, method: Method, part: &mut Part) -> Result<()> {
-        let idle = Watch::idle();
+    fn weigh_large(
+        &mut self,
+        q: Point2,
+        method: Method,
+        part: &mut Part,
+        pace: &mut Pace,
+    ) -> Result<()> {
         let ring = self.cavity.points.clone();
-        let made = triangulate(&ring, delaunay2::Method::Auto, 1, &idle)?;
+        let made = triangulate(&ring, delaunay2::Method::Auto, 1, pace.watch())?;
         let given = Triangles {
             points: &ring,
             simplices: &made.arrays.simplices,
             neighbors: &made.arrays.neighbors,
         };
-        let kept = Kept::of(&given)?;
-        let Some(Located::Inside(place)) = Locator::new(given, &kept).locate(q)? else {
+        let kept = Kept::of(&given, pace.watch())?;
+        let Some(Located::Inside(place)) = Locator::new(given, &kept, pace.watch()).locate(q)?
+        else {
             return Ok(());
         };
         let names = self.cavity.vertices.clone();
         let name = |slot: i32| names[slot as usize];
         if let Method::Natural(kind) = method {
             let cavity = &mut self.cavity;
-            cavity.find(&given, &[], place.triangle, place.edge(), q)?;
-            if self.weights.compute(kind, cavity, q) {
+            cavity.find(&given, &[], place.triangle, place.edge(), q, pace)?;
+            if self.weights.compute(kind, cavity, q, pace)? {
                 for (&v, &w) in cavity.vertices.iter().zip(&self.weights.values) {
                     part.entry(name(v), w, [0.0; 2]);
                 }

@@ -12,7 +12,7 @@ use crate::locate::{Batch, Located, Output, Place, barycentric, cross, seen_from
 pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
     let given = &batch.locator.given;
     let width = field.columns * order.components();
-    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
+    let out = Output::filled(batch.queries.len() * width, f64::NAN, batch.watch)?;
     batch.each(
         || (),
         |(), row, q, at| {

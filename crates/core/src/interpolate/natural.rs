@@ -12,6 +12,15 @@ use super::weights::Weights;
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::{Batch, Located, Output, Place, Side, barycentric};
+use crate::watch::Pace;
+
+/// Triangles of cavities between two looks at the watch, beside those before each lot of queries: a query
+/// may have very many neighbors.
+const WATCH_EVERY: usize = 1 << 14;
+
+fn pace<'a>(batch: &Batch<'a>) -> Pace<'a> {
+    Pace::new(batch.watch, WATCH_EVERY)
+}
 
 /// What a thread computes with.
 #[derive(Default)]
@@ -30,10 +39,12 @@ impl<T: Number> Room<T> {
         barrier: Barrier,
         place: &Place,
         q: Point2,
+        pace: &mut Pace,
     ) -> Result<()> {
         let edge = place.edge();
-        self.cavity.find(given, barrier, place.triangle, edge, q)?;
-        if !self.weights.compute(kind, &self.cavity, q) {
+        self.cavity
+            .find(given, barrier, place.triangle, edge, q, pace)?;
+        if !self.weights.compute(kind, &self.cavity, q, pace)? {
             let corners = barycentric(given, place, q);
             let slots = self.cavity.points.len();
             self.weights.fall_back(kind, corners, slots);
@@ -45,10 +56,13 @@ impl<T: Number> Room<T> {
 /// The weights of each query: sparse rows, empty outside.
 pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec<i32>)> {
     let given = &batch.locator.given;
-    let triangles = Output::filled(batch.queries.len(), -1)?;
-    let state = || (Room::<f64>::default(), Part::with_slopes(kind.is_smooth()));
+    let triangles = Output::filled(batch.queries.len(), -1, batch.watch)?;
+    let state = || {
+        let part = Part::with_slopes(kind.is_smooth());
+        (Room::<f64>::default(), part, pace(batch))
+    };
     let parts = batch.each(state, |state, row, q, at| {
-        let (room, part) = state;
+        let (room, part, pace) = state;
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -57,7 +71,7 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
             let triangle = place.triangle;
             part.entry(given.vertex(Side { triangle, corner }), 1.0, [0.0; 2]);
         } else {
-            room.compute(kind, given, barrier, &place, q)?;
+            room.compute(kind, given, barrier, &place, q, pace)?;
             for (slot, &vertex) in room.cavity.vertices.iter().enumerate() {
                 let slope = room.weights.slopes.get(slot).copied().unwrap_or_default();
                 part.entry(vertex, room.weights.values[slot], slope);
@@ -66,9 +80,9 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
         part.close(row);
         Ok(())
     })?;
-    let parts: Vec<Part> = parts.into_iter().map(|(_, part)| part).collect();
+    let parts: Vec<Part> = parts.into_iter().map(|(_, part, _)| part).collect();
     let count = batch.queries.len();
-    let rows = Rows::of_parts(count, &parts, kind.is_smooth(), batch.workers)?;
+    let rows = Rows::of_parts(count, &parts, kind.is_smooth(), batch.workers, batch.watch)?;
     Ok((rows, triangles.into_vec()))
 }
 
@@ -81,7 +95,7 @@ pub fn natural_values(
     order: Order,
 ) -> Result<Vec<f64>> {
     let width = field.columns * order.components();
-    let out = Output::filled(batch.queries.len() * width, f64::NAN)?;
+    let out = Output::filled(batch.queries.len() * width, f64::NAN, batch.watch)?;
     if order == Order::Value {
         sums(batch, kind, &field, barrier, &out)?;
     } else {
@@ -99,7 +113,8 @@ fn sums(
 ) -> Result<()> {
     let given = &batch.locator.given;
     let width = field.columns;
-    batch.each(Room::<f64>::default, |room, row, q, at| {
+    let state = || (Room::<f64>::default(), pace(batch));
+    batch.each(state, |(room, pace), row, q, at| {
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -108,7 +123,7 @@ fn sums(
             out.set_all(row * width, field.row(vertex));
             return Ok(());
         }
-        room.compute(kind, given, barrier, &place, q)?;
+        room.compute(kind, given, barrier, &place, q, pace)?;
         for column in 0..width {
             out.set(row * width + column, value(room, field, column));
         }
@@ -128,7 +143,8 @@ fn slopes(
     let given = &batch.locator.given;
     let components = order.components();
     let start = |row, column| components * (row * field.columns + column);
-    batch.each(Room::<Jet>::default, |room, row, q, at| {
+    let state = || (Room::<Jet>::default(), pace(batch));
+    batch.each(state, |(room, pace), row, q, at| {
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -141,7 +157,7 @@ fn slopes(
             }
             return Ok(());
         }
-        room.compute(kind, given, barrier, &place, q)?;
+        room.compute(kind, given, barrier, &place, q, pace)?;
         for column in 0..field.columns {
             let sum = derivatives(room, field, column);
             match order {

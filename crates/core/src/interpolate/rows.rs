@@ -5,10 +5,12 @@ use crate::error::{Error, Result};
 use crate::locate::Output;
 use crate::memory::{filled, zeroed};
 use crate::parallel;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
 /// Rows that a thread takes at once.
 const SHARE: usize = 1 << 13;
+/// Rows that are put in place between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// Rows in the order in which a thread has met them.
 #[derive(Debug, Default)]
@@ -67,19 +69,28 @@ pub struct Rows {
 
 impl Rows {
     /// Puts `count` rows in order; those that are in no part are empty.
-    pub fn of_parts(count: usize, parts: &[Part], sloped: bool, workers: usize) -> Result<Self> {
+    pub fn of_parts(
+        count: usize,
+        parts: &[Part],
+        sloped: bool,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Self> {
+        let mut pace = Pace::new(watch, LOT);
         let mut indptr = filled(count + 1, 0i64)?;
         // In which part each row is, and where it begins there.
         let mut places = filled(count, (0u32, 0usize))?;
         for (i, part) in (0u32..).zip(parts) {
             let mut start = 0;
             for &(row, end) in &part.ends {
+                pace.spend(1)?;
                 indptr[row + 1] = (end - start) as i64;
                 places[row] = (i, start);
                 start = end;
             }
         }
         for row in 0..count {
+            pace.spend(1)?;
             indptr[row + 1] += indptr[row];
         }
         let total = indptr[count] as usize;
@@ -89,12 +100,18 @@ impl Rows {
             weights: zeroed(total)?,
             slopes: zeroed(if sloped { 2 * total } else { 0 })?,
         };
-        rows.fill(parts, &places, workers);
+        rows.fill(parts, &places, workers, watch)?;
         Ok(rows)
     }
 
     /// Copies the entries of all rows from their places, each share of rows by one thread.
-    fn fill(&mut self, parts: &[Part], places: &[(u32, usize)], workers: usize) {
+    fn fill(
+        &mut self,
+        parts: &[Part],
+        places: &[(u32, usize)],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
         let (mut indices, mut weights) = (&mut self.indices[..], &mut self.weights[..]);
         let mut slopes = &mut self.slopes[..];
         let width = if slopes.is_empty() { 0 } else { 2 };
@@ -110,9 +127,10 @@ impl Rows {
             slopes = rest;
             tasks.push((ends, places, these_indices, these_weights, these_slopes));
         }
-        parallel::map(
+        parallel::map_watched(
             workers,
             tasks,
+            watch,
             |(ends, places, indices, weights, slopes)| {
                 for (pair, &(part, start)) in ends.windows(2).zip(places) {
                     let [from, to] = [pair[0], pair[1]].map(|end| (end - ends[0]) as usize);
@@ -129,8 +147,10 @@ impl Rows {
                         slopes[2 * from..2 * to].copy_from_slice(source);
                     }
                 }
+                Ok(())
             },
-        );
+        )?;
+        Ok(())
     }
 }
 
@@ -175,18 +195,16 @@ impl Table<'_> {
     ) -> Result<Vec<f64>> {
         self.check(vertices)?;
         let rows = self.indptr.len().saturating_sub(1);
-        let out = Output::filled(rows * field.columns, f64::NAN)?;
+        let out = Output::filled(rows * field.columns, f64::NAN, watch)?;
         let tasks = (0..rows).step_by(SHARE).collect();
-        let ends = parallel::map(workers, tasks, |start: usize| {
-            watch.check()?;
+        parallel::map_watched(workers, tasks, watch, |start: usize| {
             for row in start..rows.min(start + SHARE) {
                 self.combine_row(row, &field, |column, sum| {
                     out.set(row * field.columns + column, sum);
                 });
             }
             Ok(())
-        });
-        ends.into_iter().collect::<Result<()>>()?;
+        })?;
         Ok(out.into_vec())
     }
 

@@ -28,7 +28,9 @@ use super::cavity::Cavity;
 use super::exact;
 use super::kind::Kind;
 use super::number::Number;
+use crate::error::Result;
 use crate::locate::{certain, in_unit, plain, seen_from};
+use crate::watch::Pace;
 
 /// Squared sine of the angle below which a new triangle counts as flat.
 const FLAT: f64 = 1e-6;
@@ -84,8 +86,14 @@ struct Fan<T> {
 }
 
 impl<T: Number> Weights<T> {
-    /// Computes the weights of `q`; false where arithmetic gives none.
-    pub fn compute(&mut self, kind: Kind, cavity: &Cavity, q: Point2) -> bool {
+    /// Computes the weights of `q`; false where arithmetic gives none. What integers do counts as work.
+    pub fn compute(
+        &mut self,
+        kind: Kind,
+        cavity: &Cavity,
+        q: Point2,
+        pace: &mut Pace,
+    ) -> Result<bool> {
         let unit = self.look(cavity, q);
         self.fan(cavity, q, unit);
         let flat = self.flattest();
@@ -97,8 +105,8 @@ impl<T: Number> Weights<T> {
             self.areas(cavity, flat, unit);
         }
         self.slopes.clear();
-        if !self.normalise() && !exact::weights(kind, cavity, q, unit, &mut self.values) {
-            return false;
+        if !self.normalise() && !exact::weights(kind, cavity, q, unit, &mut self.values, pace)? {
+            return Ok(false);
         }
         match kind {
             Kind::Sibson1 => self.blend(unit),
@@ -107,14 +115,14 @@ impl<T: Number> Weights<T> {
         }
         if kind.is_smooth() && !self.is_finite() {
             // What tangent planes say is beyond the range; what values say is not.
-            let there = self.compute(Kind::Sibson, cavity, q);
+            let there = self.compute(Kind::Sibson, cavity, q, pace)?;
             self.slopes.resize(self.values.len(), [T::constant(0.0); 2]);
-            return there;
+            return Ok(there);
         }
         if unit != 1.0 {
             self.in_units(unit);
         }
-        true
+        Ok(true)
     }
 
     fn is_finite(&self) -> bool {

@@ -12,6 +12,7 @@ use delone_predicates::{Point3, Sign, insphere, orient3d};
 
 use crate::error::{Error, Result};
 use crate::locate3::{FACES, Tetrahedra};
+use crate::watch::Pace;
 
 /// Up to here a list is searched from its beginning; more go to a table.
 const FEW: usize = 64;
@@ -83,7 +84,15 @@ pub struct Cavity {
 impl Cavity {
     /// Finds the cavity of `q`, which is in the closed tetrahedron `seed` and at no vertex; `on` tells
     /// whether it is on a face of that.
-    pub fn find(&mut self, given: &Tetrahedra, seed: usize, on: bool, q: Point3) -> Result<()> {
+    /// Tetrahedra count as work.
+    pub fn find(
+        &mut self,
+        given: &Tetrahedra,
+        seed: usize,
+        on: bool,
+        q: Point3,
+        pace: &mut Pace,
+    ) -> Result<()> {
         self.vertices.clear();
         self.rim.clear();
         self.inside.clear();
@@ -92,6 +101,7 @@ impl Cavity {
         let mut next = 0;
         // Each tetrahedron comes once.
         while next < self.inside.keys.len() {
+            pace.spend(1)?;
             let t = self.inside.keys[next] as usize;
             next += 1;
             for (k, face) in FACES.into_iter().enumerate() {

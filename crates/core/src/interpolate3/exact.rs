@@ -26,10 +26,15 @@ use delone_predicates::Point3;
 use num_bigint::{BigInt, Sign};
 
 use super::cavity::Face;
+use crate::error::Result;
+use crate::watch::Pace;
 use crate::wide::{lowest, ratio, scaled};
 
 /// Binary places of a term.
 const DIGITS: usize = 160;
+
+/// Tetrahedra of a cavity whose search takes about as long as one face here.
+const FACE: usize = 40;
 
 type Vector = [BigInt; 3];
 
@@ -40,17 +45,23 @@ struct Seen(Vec<Vector>);
 /// where there are none: the tetrahedra are no Delaunay tetrahedra then.
 #[cold]
 #[inline(never)]
-pub fn in_space(points: &[Point3], rim: &[Face], q: Point3) -> Option<Vec<f64>> {
+pub fn in_space(
+    points: &[Point3],
+    rim: &[Face],
+    q: Point3,
+    pace: &mut Pace,
+) -> Result<Option<Vec<f64>>> {
     let Seen(seen) = &Seen::from(points, q);
     let mut sums = vec![BigInt::ZERO; points.len()];
     for face in rim {
+        pace.spend(FACE)?;
         let corners = face.corners.map(|i| i as usize);
         let sites = corners.map(|i| &seen[i]);
         let turns = [0, 1, 2].map(|k| cross(sites[(k + 1) % 3], sites[(k + 2) % 3]));
         let squares = sites.map(|p| dot(p, p));
         let volume = dot(sites[0], &turns[0]);
         if volume.sign() != Sign::Plus {
-            return None;
+            return Ok(None);
         }
         // The centre of the sphere, times twice the volume.
         let center = [0, 1, 2].map(|x| (0..3).map(|k| &squares[k] * &turns[k][x]).sum());
@@ -71,7 +82,7 @@ pub fn in_space(points: &[Point3], rim: &[Face], q: Point3) -> Option<Vec<f64>> 
             );
         }
     }
-    shares(sums)
+    Ok(shares(sums))
 }
 
 /// The same of a query in the plane of some hull faces: the areas that it would take there. Each of
@@ -83,24 +94,33 @@ pub fn in_plane(
     faces: &[[u32; 3]],
     edges: &[[u32; 2]],
     q: Point3,
-) -> Option<Vec<f64>> {
+    pace: &mut Pace,
+) -> Result<Option<Vec<f64>>> {
     let Seen(seen) = &Seen::from(points, q);
     let zero = [BigInt::ZERO, BigInt::ZERO, BigInt::ZERO];
     let mut sums = vec![BigInt::ZERO; points.len()];
     let mut axis = None;
     for face in faces {
+        pace.spend(FACE)?;
         let corners = face.map(|i| &seen[i as usize]);
-        for (i, (n, d)) in face.iter().zip(parts(corners, &mut axis)?) {
+        let Some(found) = parts(corners, &mut axis) else {
+            return Ok(None);
+        };
+        for (i, (n, d)) in face.iter().zip(found) {
             add(&mut sums[*i as usize], n, &d);
         }
     }
     for edge in edges {
+        pace.spend(FACE)?;
         let [u, v] = edge.map(|i| &seen[i as usize]);
-        for (i, (n, d)) in edge.iter().zip(parts([u, v, &zero], &mut axis)?) {
+        let Some(found) = parts([u, v, &zero], &mut axis) else {
+            return Ok(None);
+        };
+        for (i, (n, d)) in edge.iter().zip(found) {
             add(&mut sums[*i as usize], -n, &d);
         }
     }
-    shares(sums)
+    Ok(shares(sums))
 }
 
 /// Eight times the area of a triangle that lies nearest to each corner, over the cosine of its plane and

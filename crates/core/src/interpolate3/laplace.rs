@@ -35,6 +35,7 @@ use crate::error::Result;
 use crate::interpolate::{Part, Rows};
 use crate::locate::Output;
 use crate::locate3::{Batch, Located, Place, Side, Tetrahedra, barycentric};
+use crate::watch::Pace;
 
 /// Size of all terms over their sum above which too many digits are lost: about 1e-13 is left. It is
 /// 10 to 200 among spread points.
@@ -42,8 +43,9 @@ const LOST: f64 = 4096.0;
 /// The square of an area below which it may have lost digits at the lower end of the range.
 const LEAST: f64 = 1e-250;
 
-/// Faces of a rim from which on each query asks the watch: every neighbour may take tens of microseconds.
-const LARGE: usize = 500;
+/// Tetrahedra and faces of cavities between two looks at the watch, beside those before each lot of queries: a
+/// query may have very many neighbors.
+const WATCH_EVERY: usize = 1 << 14;
 
 /// What a thread computes with.
 #[derive(Debug, Default)]
@@ -78,9 +80,12 @@ struct Wall {
 /// The weights of each query, as sparse rows, empty outside; and the tetrahedron that holds it, or -1.
 pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
     let given = &batch.locator.given;
-    let simplices = Output::filled(batch.queries.len(), -1)?;
-    let state = || (Room::default(), Part::with_slopes(false));
-    let parts = batch.each(state, |(room, part), row, q, at| {
+    let simplices = Output::filled(batch.queries.len(), -1, batch.watch)?;
+    let state = || {
+        let pace = Pace::new(batch.watch, WATCH_EVERY);
+        (Room::default(), Part::with_slopes(false), pace)
+    };
+    let parts = batch.each(state, |(room, part, pace), row, q, at| {
         let Located::Inside(place) = at else {
             return Ok(());
         };
@@ -89,7 +94,7 @@ pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
         let vertex = |corner| given.vertex(Side { simplex, corner });
         if let Some(corner) = place.site() {
             part.entry(vertex(corner), 1.0, [0.0; 2]);
-        } else if room.compute(batch, &place, q)? {
+        } else if room.compute(given, &place, q, pace)? {
             for (&v, &weight) in room.cavity.vertices.keys().iter().zip(&room.weights) {
                 part.entry(v, weight, [0.0; 2]);
             }
@@ -101,21 +106,30 @@ pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
         part.close(row);
         Ok(())
     })?;
-    let parts: Vec<Part> = parts.into_iter().map(|(_, part)| part).collect();
-    let rows = Rows::of_parts(batch.queries.len(), &parts, false, batch.workers)?;
+    let parts: Vec<Part> = parts.into_iter().map(|(_, part, _)| part).collect();
+    let rows = Rows::of_parts(
+        batch.queries.len(),
+        &parts,
+        false,
+        batch.workers,
+        batch.watch,
+    )?;
     Ok((rows, simplices.into_vec()))
 }
 
 impl Room {
     /// Computes the weights of `q`, which is at no vertex; false where they are those of its
     /// tetrahedron.
-    fn compute(&mut self, batch: &Batch, place: &Place, q: Point3) -> Result<bool> {
-        let given = &batch.locator.given;
+    fn compute(
+        &mut self,
+        given: &Tetrahedra,
+        place: &Place,
+        q: Point3,
+        pace: &mut Pace,
+    ) -> Result<bool> {
         let on = place.on.contains(&true);
-        self.cavity.find(given, place.simplex, on, q)?;
-        if self.cavity.rim.len() > LARGE {
-            batch.watch.check()?;
-        }
+        self.cavity.find(given, place.simplex, on, q, pace)?;
+        pace.spend(self.cavity.rim.len())?;
         self.look(given, q);
         self.size = 0.0;
         if self.cavity.rim.iter().any(|face| face.flat) {
@@ -123,7 +137,7 @@ impl Room {
                 return Ok(false);
             }
             self.in_plane();
-            return Ok(self.normalise() || self.exactly_in_plane(q));
+            return Ok(self.normalise() || self.exactly_in_plane(q, pace)?);
         }
         if self.in_space(q) {
             if self.normalise() {
@@ -134,7 +148,7 @@ impl Room {
                 return Ok(true);
             }
         }
-        Ok(self.exactly_in_space(q))
+        self.exactly_in_space(q, pace)
     }
 
     /// Neighbours as seen from `q`, in a unit in which the farthest coordinate is 1 to 2.
@@ -279,19 +293,19 @@ impl Room {
 
     #[cold]
     #[inline(never)]
-    fn exactly_in_space(&mut self, q: Point3) -> bool {
-        let found = exact::in_space(&self.sites, &self.cavity.rim, q);
-        self.take(found)
+    fn exactly_in_space(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
+        let found = exact::in_space(&self.sites, &self.cavity.rim, q, pace)?;
+        Ok(self.take(found))
     }
 
     #[cold]
     #[inline(never)]
-    fn exactly_in_plane(&mut self, q: Point3) -> bool {
+    fn exactly_in_plane(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
         let flat = self.cavity.rim.iter().filter(|face| face.flat);
         let faces: Vec<[u32; 3]> = flat.map(|face| face.corners).collect();
         let edges: Vec<[u32; 2]> = outer(&self.edges).collect();
-        let found = exact::in_plane(&self.sites, &faces, &edges, q);
-        self.take(found)
+        let found = exact::in_plane(&self.sites, &faces, &edges, q, pace)?;
+        Ok(self.take(found))
     }
 
     fn take(&mut self, found: Option<Vec<f64>>) -> bool {

@@ -78,8 +78,7 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
             });
             return ends.into_iter().collect();
         }
-        let parts = order_of(queries, workers)?;
-        self.watch.check()?;
+        let parts = order_of(queries, workers, self.watch)?;
         let ends = parallel::map(workers, parts, |rows| {
             // Loads that do not wait for each other: gathering ahead hides that they miss the cache.
             let mut gathered = with_room(GATHER)?;
@@ -115,7 +114,7 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
 pub fn find<K: Walks<D, N>, const D: usize, const N: usize>(
     batch: &Batch<K, D, N>,
 ) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
+    let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;
     batch.each(
         || (),
         |(), row, _, at| {

@@ -8,7 +8,11 @@ use super::tiling::{Side, next, prev};
 use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 use crate::points::Extent;
+use crate::watch::Watch;
 use crate::wide::{lowest, ratio, scaled, sign};
+
+/// Triangles between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// The boundary edges of a tiling.
 #[derive(Debug)]
@@ -25,9 +29,12 @@ pub struct Boundary {
 
 impl Boundary {
     /// Reads the boundary off the arrays.
-    pub fn of(given: &Triangles) -> Result<Self> {
+    pub fn of(given: &Triangles, watch: &Watch) -> Result<Self> {
         let mut sides = Vec::new();
         for (triangle, row) in given.neighbors.iter().enumerate() {
+            if triangle.is_multiple_of(LOT) {
+                watch.check()?;
+            }
             let open = (0..3).filter(|&k| row[k] < 0);
             sides.extend(open.map(|corner| Side { triangle, corner }));
         }
@@ -41,7 +48,7 @@ impl Boundary {
         let mut places: Vec<_> = sides.iter().copied().zip(0..).collect();
         places.sort_unstable();
         let box_of = |i: usize| Extent::of(ends(given, sides[i]));
-        let boxes = (!convex).then(|| Boxes::over(sides.len(), box_of));
+        let boxes = (!convex).then(|| Boxes::over(sides.len(), box_of, watch));
         Ok(Self {
             boxes: boxes.transpose()?,
             sides,

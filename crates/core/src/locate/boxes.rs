@@ -8,9 +8,13 @@ use crate::error::Result;
 use crate::memory::with_room;
 use crate::order::order_of;
 use crate::points::Extent;
+use crate::watch::{Pace, Watch};
 
 /// Boxes, or items, in a box.
 const WIDTH: usize = 8;
+
+/// Items between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// The tree.
 #[derive(Debug)]
@@ -23,21 +27,33 @@ pub struct Boxes<const D: usize> {
 
 impl<const D: usize> Boxes<D> {
     /// A tree of items, by the box of each.
-    pub fn over(count: usize, box_of: impl Fn(usize) -> Extent<D>) -> Result<Self> {
+    pub fn over(count: usize, box_of: impl Fn(usize) -> Extent<D>, watch: &Watch) -> Result<Self> {
         let mut middles = with_room(count)?;
-        middles.extend((0..count).map(|i| {
+        let mut pace = Pace::new(watch, LOT);
+        for i in 0..count {
+            pace.spend(1)?;
             let Extent { min, max } = box_of(i);
-            std::array::from_fn(|k| min[k] / 2.0 + max[k] / 2.0)
-        }));
-        Ok(Self::packed(order_of::<D>(&middles, 1)?.concat(), box_of))
+            middles.push(std::array::from_fn(|k| min[k] / 2.0 + max[k] / 2.0));
+        }
+        let order = order_of::<D>(&middles, 1, watch)?.concat();
+        Self::packed(order, box_of, watch)
     }
 
     /// The same of items that are in order.
-    pub fn packed(order: Vec<u32>, box_of: impl Fn(usize) -> Extent<D>) -> Self {
+    pub fn packed(
+        order: Vec<u32>,
+        box_of: impl Fn(usize) -> Extent<D>,
+        watch: &Watch,
+    ) -> Result<Self> {
+        let mut pace = Pace::new(watch, LOT);
         let ends = |e: Extent<D>| [e.min, e.max];
         let join_items =
             |run: &[u32]| Extent::of(run.iter().flat_map(|&i| ends(box_of(i as usize))));
-        let mut level: Vec<Extent<D>> = order.chunks(WIDTH).map(join_items).collect();
+        let mut level = with_room(order.len().div_ceil(WIDTH))?;
+        for run in order.chunks(WIDTH) {
+            pace.spend(run.len())?;
+            level.push(join_items(run));
+        }
         let mut levels = Vec::new();
         while level.len() > 1 {
             let join = |run: &[Extent<D>]| Extent::of(run.iter().flat_map(|e| [e.min, e.max]));
@@ -45,7 +61,7 @@ impl<const D: usize> Boxes<D> {
             levels.push(std::mem::replace(&mut level, above));
         }
         levels.push(level);
-        Self { order, levels }
+        Ok(Self { order, levels })
     }
 
     /// The item of least distance from `q`, of several the first, and what came with the distance; on

@@ -24,11 +24,11 @@ pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
     let n = batch.queries.len();
     let locator = &batch.locator;
     let given = &locator.given;
-    let triangle = Output::filled(n, -1)?;
-    let weights = Output::filled(3 * n, f64::NAN)?;
-    let beside = Output::filled(n, -1)?;
-    let edge = Output::filled(2 * n, -1)?;
-    let along = Output::filled(n, f64::NAN)?;
+    let triangle = Output::filled(n, -1, batch.watch)?;
+    let weights = Output::filled(3 * n, f64::NAN, batch.watch)?;
+    let beside = Output::filled(n, -1, batch.watch)?;
+    let edge = Output::filled(2 * n, -1, batch.watch)?;
+    let along = Output::filled(n, f64::NAN, batch.watch)?;
     batch.each(
         || (),
         |(), row, q, at| {

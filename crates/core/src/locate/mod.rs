@@ -35,7 +35,7 @@ pub use coordinates::{Coordinates, coordinates};
 pub use cross::{certain, cross, plain};
 pub use nearest::nearest;
 pub use output::Output;
-pub use range::{in_unit, longer_side, seen_from, unit_of};
+pub use range::{in_unit, longest_side, seen_from, unit_of};
 pub use segment::along;
 pub use sites::Sites;
 pub use star::{Place, Star};
@@ -45,6 +45,7 @@ pub use tiling::{Side, next, prev};
 use crate::arrays::{Given, Triangles};
 use crate::error::Result;
 use crate::points::Extent;
+use crate::watch::Watch;
 use walk::{Found, walk};
 
 /// What is kept between calls for one triangulation.
@@ -60,10 +61,10 @@ pub struct Kept {
 
 impl Kept {
     /// A tree of starts for many calls; the rest is made when it is needed.
-    pub fn of(given: &Triangles) -> Result<Self> {
+    pub fn of(given: &Triangles, watch: &Watch) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
-            start: Start::of(given.simplices.len(), first)?,
+            start: Start::of(given.simplices.len(), first, watch)?,
             boundary: OnceLock::new(),
             boxes: OnceLock::new(),
             sites: OnceLock::new(),
@@ -77,6 +78,8 @@ pub struct Locator<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
     /// The arrays.
     pub given: Given<'a, D, N>,
     pub(crate) kept: &'a K,
+    /// Asked when something is made that is kept.
+    pub(crate) watch: &'a Watch<'a>,
 }
 
 impl<K, const D: usize, const N: usize> Copy for Locator<'_, K, D, N> {}
@@ -90,8 +93,8 @@ impl<K, const D: usize, const N: usize> Clone for Locator<'_, K, D, N> {
 
 impl<'a, K, const D: usize, const N: usize> Locator<'a, K, D, N> {
     /// A locator of what was kept for the same arrays.
-    pub fn new(given: Given<'a, D, N>, kept: &'a K) -> Self {
-        Self { given, kept }
+    pub fn new(given: Given<'a, D, N>, kept: &'a K, watch: &'a Watch<'a>) -> Self {
+        Self { given, kept, watch }
     }
 }
 
@@ -107,7 +110,9 @@ pub enum Located {
 impl<'a> Locator<'a> {
     /// The boundary.
     pub fn boundary(&self) -> Result<&'a Boundary> {
-        kept(&self.kept.boundary, || Boundary::of(&self.given))
+        kept(&self.kept.boundary, || {
+            Boundary::of(&self.given, self.watch)
+        })
     }
 
     /// A triangle near `q`.
@@ -166,7 +171,11 @@ impl<'a> Locator<'a> {
     fn first_of_all(&self, q: Point2) -> Result<Option<Place>> {
         let given = &self.given;
         let boxes = kept(&self.kept.boxes, || {
-            Boxes::over(given.simplices.len(), |t| Extent::of(given.corners(t)))
+            Boxes::over(
+                given.simplices.len(),
+                |t| Extent::of(given.corners(t)),
+                self.watch,
+            )
         })?;
         let mut best: Option<Place> = None;
         boxes.around(q, |triangle| {

@@ -25,7 +25,7 @@ const REACH: f64 = 64.0;
 
 /// For each query the nearest vertex, of several the first row; -1 for what is not finite.
 pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
-    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
+    let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;
     if batch.locator.given.simplices.is_empty() {
         return Ok(found.into_vec());
     }

@@ -4,6 +4,10 @@ use std::sync::atomic::{AtomicI32, AtomicU64, Ordering};
 
 use crate::error::Result;
 use crate::memory::with_room;
+use crate::watch::Watch;
+
+/// Numbers that are filled in between two looks at the watch: their pages are fresh.
+const LOT: usize = 1 << 18;
 
 /// Numbers that threads write to rows of their own, in any order.
 pub struct Output<T: Word> {
@@ -56,9 +60,13 @@ impl Word for f64 {
 
 impl<T: Word> Output<T> {
     /// `n` times the same number.
-    pub fn filled(n: usize, value: T) -> Result<Self> {
+    pub fn filled(n: usize, value: T, watch: &Watch) -> Result<Self> {
         let mut cells = with_room(n)?;
-        cells.extend((0..n).map(|_| value.cell()));
+        while cells.len() < n {
+            watch.check()?;
+            let lot = LOT.min(n - cells.len());
+            cells.extend((0..lot).map(|_| value.cell()));
+        }
         Ok(Self { cells })
     }
 

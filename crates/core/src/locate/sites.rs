@@ -12,6 +12,10 @@ use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::order::order_of;
 use crate::points::Extent;
+use crate::watch::Watch;
+
+/// Tetrahedra between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// The vertices of simplices along the curve, and boxes over them.
 #[derive(Debug)]
@@ -23,11 +27,15 @@ pub struct Sites<const D: usize> {
 
 impl<const D: usize> Sites<D> {
     /// The vertices that simplices have.
-    pub fn of<const N: usize>(given: &Given<D, N>) -> Result<Self> {
+    pub fn of<const N: usize>(given: &Given<D, N>, watch: &Watch) -> Result<Self> {
         let mut used = filled(given.points.len(), false)?;
-        for &v in given.simplices.as_flattened() {
-            used[v as usize] = true;
+        for lot in given.simplices.chunks(LOT) {
+            watch.check()?;
+            for &v in lot.as_flattened() {
+                used[v as usize] = true;
+            }
         }
+        watch.check()?;
         let count = used.iter().filter(|&&used| used).count();
         let mut vertices = with_room(count)?;
         vertices.extend(
@@ -38,14 +46,14 @@ impl<const D: usize> Sites<D> {
         );
         let mut points = with_room(count)?;
         points.extend(vertices.iter().map(|&v| given.point(v)));
-        let order = order_of(&points, 1)?.concat();
+        let order = order_of(&points, 1, watch)?.concat();
         let mut rows = with_room(count)?;
         rows.extend(order.iter().map(|&i| vertices[i as usize]));
         points.clear();
         points.extend(rows.iter().map(|&v| given.point(v)));
         let box_of = |i: usize| Extent::of([points[i]]);
         Ok(Self {
-            boxes: Boxes::packed((0..count as u32).collect(), box_of),
+            boxes: Boxes::packed((0..count as u32).collect(), box_of, watch)?,
             rows,
             points,
         })

@@ -8,9 +8,13 @@
 
 use crate::error::Result;
 use crate::memory::{filled, with_room};
+use crate::watch::{Pace, Watch};
 
 /// Simplices a node, at least.
 const SHARE: usize = 8;
+
+/// Nodes of samples between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// A node. Its left subtree has nothing beyond it along its axis, its right one nothing before it.
 #[derive(Debug, Clone, Copy)]
@@ -28,22 +32,24 @@ pub struct Start<const D: usize> {
 
 impl<const D: usize> Start<D> {
     /// A tree over some of `m` simplices, evenly spread, whose first corners `corner` knows.
-    pub fn of(m: usize, corner: impl Fn(usize) -> [f64; D]) -> Result<Self> {
+    pub fn of(m: usize, corner: impl Fn(usize) -> [f64; D], watch: &Watch) -> Result<Self> {
         // The largest perfect tree of at most m / SHARE nodes, and of one at least.
         let levels = (m / SHARE + 1).ilog2();
         let count = ((1 << levels) - 1).max(1).min(m);
         let mut sample = with_room(count)?;
-        sample.extend((0..count).map(|i| {
+        let mut pace = Pace::new(watch, LOT);
+        for i in 0..count {
+            pace.spend(1)?;
             let t = (i as u64 * m as u64 / count as u64) as usize;
-            (corner(t), t as u32)
-        }));
+            sample.push((corner(t), t as u32));
+        }
         let node = Node {
             at: [0.0; D],
             simplex: 0,
             axis: 0,
         };
         let mut nodes = filled(count, node)?;
-        fill(&mut nodes, 0, &mut sample);
+        fill(&mut nodes, 0, &mut sample, &mut pace)?;
         Ok(Self { nodes })
     }
 
@@ -79,10 +85,16 @@ impl<const D: usize> Start<D> {
 }
 
 /// Fills the subtree at `i` with the sample, which has as many items as the subtree has nodes.
-fn fill<const D: usize>(nodes: &mut [Node<D>], i: usize, sample: &mut [([f64; D], u32)]) {
+fn fill<const D: usize>(
+    nodes: &mut [Node<D>],
+    i: usize,
+    sample: &mut [([f64; D], u32)],
+    pace: &mut Pace,
+) -> Result<()> {
     if sample.is_empty() {
-        return;
+        return Ok(());
     }
+    pace.spend(sample.len())?;
     let axis = longest(sample);
     let middle = sample.len() / 2;
     let by_axis = |s: &([f64; D], u32), t: &([f64; D], u32)| s.0[axis].total_cmp(&t.0[axis]);
@@ -92,8 +104,8 @@ fn fill<const D: usize>(nodes: &mut [Node<D>], i: usize, sample: &mut [([f64; D]
         simplex,
         axis: axis as u32,
     };
-    fill(nodes, 2 * i + 1, left);
-    fill(nodes, 2 * i + 2, right);
+    fill(nodes, 2 * i + 1, left, pace)?;
+    fill(nodes, 2 * i + 2, right, pace)
 }
 
 /// The axis along which a sample is longest, the first of several.

@@ -19,9 +19,13 @@ use super::tiling::{FACES, Side, Tetrahedra};
 use crate::error::Result;
 use crate::locate::{Boxes, kept};
 use crate::points::Extent;
+use crate::watch::{Pace, Watch};
 
 /// Root of how many sizes of the boundary away rounded distances still tell one face from another.
 const REMOTE: f64 = 1024.0;
+
+/// Tetrahedra between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// The boundary faces of a tiling.
 #[derive(Debug)]
@@ -40,17 +44,24 @@ pub struct Boundary {
 
 impl Boundary {
     /// Reads the boundary off the arrays.
-    pub fn of(given: &Tetrahedra) -> Self {
-        let sides: Vec<Side> = given.boundary().collect();
-        let across = across_edges(given, &sides);
+    pub fn of(given: &Tetrahedra, watch: &Watch) -> Result<Self> {
+        let mut sides = Vec::new();
+        let (mut from, count) = (0, given.simplices.len());
+        while from < count {
+            watch.check()?;
+            let to = count.min(from + LOT);
+            sides.extend(given.boundary(from..to));
+            from = to;
+        }
+        let across = across_edges(given, &sides, watch)?;
         let corners = sides.iter().flat_map(|&side| given.face(side));
-        Self {
+        Ok(Self {
             extent: Extent::of(corners.map(|v| given.point(v))),
             convex: across.is_some(),
             across: across.unwrap_or_default(),
             sides,
             boxes: OnceLock::new(),
-        }
+        })
     }
 
     /// The boundary face with the nearest point to `q`, of several the first, and how its corners share in
@@ -60,9 +71,10 @@ impl Boundary {
         given: &Tetrahedra,
         q: Point3,
         last: &mut Option<usize>,
+        watch: &Watch,
     ) -> Result<Option<(Side, [f64; 3])>> {
         if !self.convex {
-            let found = self.of_any_shape(given, q, *last)?;
+            let found = self.of_any_shape(given, q, *last, watch)?;
             *last = found.map(|(i, _)| i);
             return Ok(found.map(|(i, shares)| (self.sides[i], shares)));
         }
@@ -71,7 +83,7 @@ impl Boundary {
         let mut start = last.filter(in_front);
         let mut found = None;
         if start.is_none() && !self.is_remote(q) {
-            found = self.by_boxes(given, q, *last)?;
+            found = self.by_boxes(given, q, *last, watch)?;
             start = found.map(|(i, _)| i).filter(in_front);
         }
         start = start.or_else(|| (0..self.sides.len()).find(beyond));
@@ -86,9 +98,10 @@ impl Boundary {
         given: &Tetrahedra,
         q: Point3,
         last: Option<usize>,
+        watch: &Watch,
     ) -> Result<Option<(usize, [f64; 3])>> {
         let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
-        let boxes = self.boxes(given)?;
+        let boxes = self.boxes(given, watch)?;
         Ok(boxes.nearest(q, last, |i, unit| on_face(corners(i), q, unit)))
     }
 
@@ -98,19 +111,20 @@ impl Boundary {
         given: &Tetrahedra,
         q: Point3,
         last: Option<usize>,
+        watch: &Watch,
     ) -> Result<Option<(usize, [f64; 3])>> {
         let face = |i: usize| {
             let vertices = given.face(self.sides[i]);
             (vertices, vertices.map(|v| given.point(v)))
         };
-        let boxes = self.boxes(given)?;
+        let boxes = self.boxes(given, watch)?;
         Ok(excess::nearest(boxes, &self.extent, q, last, face))
     }
 
-    fn boxes(&self, given: &Tetrahedra) -> Result<&Boxes<3>> {
+    fn boxes(&self, given: &Tetrahedra, watch: &Watch) -> Result<&Boxes<3>> {
         let corners = |i: usize| given.face(self.sides[i]).map(|v| given.point(v));
         kept(&self.boxes, || {
-            Boxes::over(self.sides.len(), |i| Extent::of(corners(i)))
+            Boxes::over(self.sides.len(), |i| Extent::of(corners(i)), watch)
         })
     }
 
@@ -184,8 +198,15 @@ impl Boundary {
 
 /// The faces across the edges of all boundary faces, where these are one surface that is convex at
 /// each edge: then it is the convex hull (Tietze's theorem), and all other tetrahedra are inside of it.
-fn across_edges(given: &Tetrahedra, sides: &[Side]) -> Option<Vec<[u32; 3]>> {
-    sides.first()?;
+fn across_edges(
+    given: &Tetrahedra,
+    sides: &[Side],
+    watch: &Watch,
+) -> Result<Option<Vec<[u32; 3]>>> {
+    if sides.is_empty() {
+        return Ok(None);
+    }
+    let mut pace = Pace::new(watch, LOT >> 4);
     let mut across = vec![[0; 3]; sides.len()];
     let mut met = vec![false; sides.len()];
     let mut open = vec![0];
@@ -195,7 +216,11 @@ fn across_edges(given: &Tetrahedra, sides: &[Side]) -> Option<Vec<[u32; 3]>> {
         let side = sides[here];
         let [a, b, c] = FACES[side.corner].map(|corner| Side { corner, ..side });
         for (k, (u, v, w)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
-            let next = around_edge(given, side, w)?;
+            let (next, steps) = around_edge(given, side, w);
+            pace.spend(steps)?;
+            let Some(next) = next else {
+                return Ok(None);
+            };
             let [u, v, w] = [u, v, w].map(|s| given.point(given.vertex(s)));
             let shared = given.simplices[side.simplex];
             for corner in FACES[next.corner] {
@@ -203,10 +228,12 @@ fn across_edges(given: &Tetrahedra, sides: &[Side]) -> Option<Vec<[u32; 3]>> {
                 // Seen from outside, faces are counter-clockwise; what is positive is beyond.
                 let beyond = orient3d(u, v, w, given.point(far));
                 if !shared.contains(&far) && beyond == Sign::Positive {
-                    return None;
+                    return Ok(None);
                 }
             }
-            let i = sides.binary_search(&next).ok()?;
+            let Ok(i) = sides.binary_search(&next) else {
+                return Ok(None);
+            };
             across[here][k] = i as u32;
             if !met[i] {
                 met[i] = true;
@@ -215,31 +242,33 @@ fn across_edges(given: &Tetrahedra, sides: &[Side]) -> Option<Vec<[u32; 3]>> {
             }
         }
     }
-    (count == sides.len()).then_some(across)
+    Ok((count == sides.len()).then_some(across))
 }
 
 /// The boundary face on the other side of the edge of `side` opposite its corner `w`, through the
-/// tetrahedra around the edge; nothing where these go in circles.
-fn around_edge(given: &Tetrahedra, side: Side, w: Side) -> Option<Side> {
+/// tetrahedra around the edge, and how many these are; nothing where they go in circles.
+fn around_edge(given: &Tetrahedra, side: Side, w: Side) -> (Option<Side>, usize) {
     // The edge is opposite the corners side.corner and w.corner: leave across the face opposite w.
     let mut exit = w.corner;
     let mut entry = side.corner;
     let mut simplex = side.simplex;
-    for _ in 0..given.simplices.len() {
+    for step in 1..=given.simplices.len() {
         let leave = Side {
             simplex,
             corner: exit,
         };
         let Some(next) = given.beyond(leave) else {
-            return Some(leave);
+            return (Some(leave), step);
         };
         // In the next one the edge is opposite the corner across, and the vertex at the old entry.
         let pivot = given.simplices[simplex][entry];
-        exit = given.simplices[next.simplex]
-            .iter()
-            .position(|&v| v == pivot)?;
+        let corners = given.simplices[next.simplex];
+        let Some(corner) = corners.iter().position(|&v| v == pivot) else {
+            return (None, step);
+        };
+        exit = corner;
         entry = next.corner;
         simplex = next.simplex;
     }
-    None
+    (None, given.simplices.len())
 }

@@ -33,8 +33,8 @@ pub struct Within {
 pub fn within(batch: &Batch) -> Result<Within> {
     let n = batch.queries.len();
     let given = &batch.locator.given;
-    let simplex = Output::filled(n, -1)?;
-    let weights = Output::filled(4 * n, f64::NAN)?;
+    let simplex = Output::filled(n, -1, batch.watch)?;
+    let weights = Output::filled(4 * n, f64::NAN, batch.watch)?;
     batch.each(
         || (),
         |(), row, q, at| {
@@ -56,18 +56,18 @@ pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
     let n = batch.queries.len();
     let locator = &batch.locator;
     let given = &locator.given;
-    let simplex = Output::filled(n, -1)?;
-    let weights = Output::filled(4 * n, f64::NAN)?;
-    let beside = Output::filled(n, -1)?;
-    let face = Output::filled(3 * n, -1)?;
-    let shares = Output::filled(3 * n, f64::NAN)?;
+    let simplex = Output::filled(n, -1, batch.watch)?;
+    let weights = Output::filled(4 * n, f64::NAN, batch.watch)?;
+    let beside = Output::filled(n, -1, batch.watch)?;
+    let face = Output::filled(3 * n, -1, batch.watch)?;
+    let shares = Output::filled(3 * n, f64::NAN, batch.watch)?;
     batch.each(
         || None,
         |last, row, q, at| {
             if let Located::Inside(place) = at {
                 simplex.set(row, place.simplex as i32);
                 weights.set_all(4 * row, &barycentric(given, &place, q));
-            } else if let Some((side, share)) = locator.boundary().nearest(given, q, last)? {
+            } else if let Some((side, share)) = locator.nearest_beside(q, last)? {
                 beside.set(row, side.simplex as i32);
                 face.set_all(3 * row, &given.face(side));
                 shares.set_all(3 * row, &share);

@@ -214,6 +214,7 @@ fn exactly(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::watch::Watch;
 
     /// Unit steps of a grid on both sides of a slab, two triangles to a square.
     fn walls() -> Vec<[Point3; 3]> {
@@ -236,7 +237,7 @@ mod tests {
             .map(|face| face.map(|p| p.map(|x| x * size)))
             .collect();
         let extent = Extent::of(walls.iter().flatten().copied());
-        let boxes = Boxes::over(walls.len(), |i| Extent::of(walls[i])).unwrap();
+        let boxes = Boxes::over(walls.len(), |i| Extent::of(walls[i]), &Watch::idle()).unwrap();
         // No vertex is known to be that of two triangles: all ties are left to integers.
         let face = |i: usize| ([0, 1, 2].map(|k| (3 * i + k) as i32), walls[i]);
         nearest(&boxes, &extent, q, None, face).unwrap()

@@ -30,6 +30,7 @@ use crate::error::Result;
 pub use crate::locate::find;
 use crate::locate::{self, Boxes, Sites, Start, is_finite, kept};
 use crate::points::Extent;
+use crate::watch::Watch;
 use boundary::Boundary;
 use walk::{Found, walk};
 
@@ -46,11 +47,11 @@ pub struct Kept {
 
 impl Kept {
     /// A tree of starts for many calls; the rest is found out when it is needed.
-    pub fn of(given: &Tetrahedra) -> Result<Self> {
+    pub fn of(given: &Tetrahedra, watch: &Watch) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
             extent: Extent::of(given.points.iter().copied()),
-            start: Start::of(given.simplices.len(), first)?,
+            start: Start::of(given.simplices.len(), first, watch)?,
             boundary: OnceLock::new(),
             boxes: OnceLock::new(),
             sites: OnceLock::new(),
@@ -88,9 +89,9 @@ impl<'a> Locator<'a> {
 
     /// Whether `q` is strictly beyond a boundary face, and thereby outside of all.
     #[inline]
-    pub fn is_beyond(&self, side: Side, q: Point3) -> bool {
+    pub fn is_beyond(&self, side: Side, q: Point3) -> Result<bool> {
         let [a, b, c] = self.given.face(side).map(|v| self.given.point(v));
-        self.boundary().convex && orient3d(a, b, c, q) == Sign::Positive
+        Ok(self.boundary()?.convex && orient3d(a, b, c, q) == Sign::Positive)
     }
 
     /// Where `q` is, on the way from tetrahedron `from`.
@@ -99,13 +100,15 @@ impl<'a> Locator<'a> {
         match walk(&self.given, from, q) {
             Some(Found::Inside(place)) => {
                 let first = star.first(&self.given, place);
-                if first.open && !self.boundary().convex {
+                if first.open && !self.boundary()?.convex {
                     let place = self.first_of_all(q)?;
                     return Ok(Located::Inside(place.unwrap_or(first.place)));
                 }
                 Ok(Located::Inside(first.place))
             }
-            Some(Found::Beyond(side)) if self.boundary().convex => Ok(Located::Outside(Some(side))),
+            Some(Found::Beyond(side)) if self.boundary()?.convex => {
+                Ok(Located::Outside(Some(side)))
+            }
             Some(Found::Beyond(side)) => {
                 let found = self.first_of_all(q)?;
                 Ok(found.map_or(Located::Outside(Some(side)), Located::Inside))
@@ -130,14 +133,24 @@ impl<'a> Locator<'a> {
     }
 
     /// The boundary.
-    pub fn boundary(&self) -> &'a Boundary {
-        let boundary = &self.kept.boundary;
-        boundary.get_or_init(|| Boundary::of(&self.given))
+    pub fn boundary(&self) -> Result<&'a Boundary> {
+        kept(&self.kept.boundary, || {
+            Boundary::of(&self.given, self.watch)
+        })
+    }
+
+    /// The boundary face with the nearest point to `q`, and how its corners share in that.
+    fn nearest_beside(
+        &self,
+        q: Point3,
+        last: &mut Option<usize>,
+    ) -> Result<Option<(Side, [f64; 3])>> {
+        self.boundary()?.nearest(&self.given, q, last, self.watch)
     }
 
     /// The vertices, for the nearest of them.
     fn sites(&self) -> Result<&'a Sites<3>> {
-        kept(&self.kept.sites, || Sites::of(&self.given))
+        kept(&self.kept.sites, || Sites::of(&self.given, self.watch))
     }
 
     /// The first tetrahedron that holds `q`, of all.
@@ -146,7 +159,11 @@ impl<'a> Locator<'a> {
     fn first_of_all(&self, q: Point3) -> Result<Option<Place>> {
         let given = &self.given;
         let boxes = kept(&self.kept.boxes, || {
-            Boxes::over(given.simplices.len(), |t| Extent::of(given.corners(t)))
+            Boxes::over(
+                given.simplices.len(),
+                |t| Extent::of(given.corners(t)),
+                self.watch,
+            )
         })?;
         let mut best: Option<Place> = None;
         boxes.around(q, |t| {

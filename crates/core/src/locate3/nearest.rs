@@ -9,7 +9,7 @@ use crate::locate::Output;
 /// For each query the nearest vertex, of several the first row; -1 for what is not finite.
 pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     let sites = batch.locator.sites()?;
-    let found = Output::<i32>::filled(batch.queries.len(), -1)?;
+    let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;
     batch.along(
         || None,
         |last, row, q| {

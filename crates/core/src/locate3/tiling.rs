@@ -1,5 +1,7 @@
 //! Exported arrays as a tiling of space: from tetrahedron to tetrahedron across faces.
 
+use std::ops::Range;
+
 use delone_predicates::{Point3, Sign, orient3d};
 
 pub use crate::arrays::Tetrahedra;
@@ -58,9 +60,9 @@ impl Tetrahedra<'_> {
         FACES[side.corner].map(|corner| self.vertex(Side { corner, ..side }))
     }
 
-    /// The faces with nothing beyond.
-    pub fn boundary(&self) -> impl Iterator<Item = Side> {
-        (0..self.simplices.len()).flat_map(move |simplex| {
+    /// The faces of some tetrahedra with nothing beyond.
+    pub fn boundary(&self, simplices: Range<usize>) -> impl Iterator<Item = Side> {
+        simplices.flat_map(move |simplex| {
             let outer = (0..4).filter(move |&corner| self.neighbors[simplex][corner] < 0);
             outer.map(move |corner| Side { simplex, corner })
         })

@@ -50,8 +50,11 @@ struct Walker<'a> {
 impl Walker<'_> {
     #[inline]
     fn go(&mut self, q: Point3) -> Result<Located> {
-        let beyond = |side| self.locator.is_beyond(side, q);
-        if self.locator.is_far(q) || self.beyond.is_some_and(beyond) {
+        let beyond = match self.beyond {
+            Some(side) => self.locator.is_beyond(side, q)?,
+            None => false,
+        };
+        if self.locator.is_far(q) || beyond {
             return Ok(Located::Outside(self.beyond));
         }
         // False for NaN, at first and where squares overflow: then the tree knows the start.

@@ -1,18 +1,20 @@
-//! The edges of triangles and of tetrahedra, and the faces of these, each once, in lexicographic order.
-//! Topology alone: no coordinate.
+//! The edges of triangles and of tetrahedra, and the faces of these, each once, in lexicographic order; the
+//! neighbors of vertices along edges. Topology alone: no coordinate.
 //!
 //! Vertices are divided in ranges small enough for a cache. A first pass over the simplices puts what
 //! is to be listed in the bucket of the range of its smallest vertex; then each bucket goes to its
 //! vertices by a counting sort, and what comes to a vertex, a few rows, is sorted. In all O(m), in
 //! tasks that share nothing.
 
-use crate::error::Result;
-use crate::memory::{Zero, filled, push, with_room, zeroed};
+use crate::error::{Error, Result};
+use crate::memory::{Zero, copied, filled, push, with_room, zeroed};
 use crate::parallel;
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
 
 /// The pairs of corners of a tetrahedron.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+/// Edges between two looks at the watch.
+const LOT: usize = 1 << 16;
 /// Simplices whose rows one task puts in buckets.
 const SHARE: usize = 1 << 16;
 /// Vertices in a bucket, at least.
@@ -87,6 +89,40 @@ pub fn faces3(
     distinct(simplices.len(), n, workers, watch, rows_of, row)
 }
 
+/// The neighbors of each of `n` vertices along `edges`, ascending: where they begin in the second result, and
+/// the end. Each edge comes once, the smaller vertex first; rows ascend.
+pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, Vec<i32>)> {
+    let wrong = || Error::Shape("edges are not in order, each once".into());
+    let mut pace = Pace::new(watch, LOT);
+    let mut starts = filled(n + 1, 0i32)?;
+    if !edges.is_sorted_by(|e, f| e < f) || edges.len() > i32::MAX as usize / 2 {
+        return Err(wrong());
+    }
+    for &[u, v] in edges {
+        pace.spend(1)?;
+        if u < 0 || u >= v || v as usize >= n {
+            return Err(wrong());
+        }
+        starts[u as usize + 1] += 1;
+        starts[v as usize + 1] += 1;
+    }
+    for v in 0..n {
+        starts[v + 1] += starts[v];
+    }
+    let mut next = copied(&starts)?;
+    let mut found = filled(2 * edges.len(), 0)?;
+    // First the smaller neighbors, which come in order, and then the larger ones.
+    for k in [0, 1] {
+        for edge in edges {
+            pace.spend(1)?;
+            let slot = &mut next[edge[1 - k] as usize];
+            found[*slot as usize] = edge[k];
+            *slot += 1;
+        }
+    }
+    Ok((starts, found))
+}
+
 /// The rows of some simplices, by the range of their first vertex.
 struct Buckets<T> {
     /// A range has 2^bits vertices.
@@ -148,7 +184,10 @@ where
         tasks.push((own, part));
         left = later;
     }
-    parallel::map(workers, tasks, |(own, part)| own.copy_from_slice(&part));
+    parallel::map_watched(workers, tasks, watch, |(own, part)| {
+        own.copy_from_slice(&part);
+        Ok(())
+    })?;
     Ok(found)
 }
 
@@ -220,6 +259,20 @@ mod tests {
             ];
             assert_eq!(found, expected);
             assert!(edges3(&[], 0, workers, &watch).unwrap().is_empty());
+        }
+    }
+
+    #[test]
+    fn two_triangles_on_an_edge() {
+        let watch = Watch::idle();
+        let (simplices, neighbors) = ([[0, 1, 3], [1, 2, 3]], [[1, -1, -1], [-1, 0, -1]]);
+        let found = edges2(&simplices, &neighbors, 5, 2, &watch).unwrap();
+        assert_eq!(found, [[0, 1], [0, 3], [1, 2], [1, 3], [2, 3]]);
+        let (starts, neighbors) = around(&found, 5, &watch).unwrap();
+        assert_eq!(starts, [0, 2, 5, 7, 10, 10]);
+        assert_eq!(neighbors, [1, 3, 0, 2, 3, 1, 3, 0, 1, 2]);
+        for wrong in [&[[1, 0]][..], &[[0, 1], [0, 1]], &[[0, 5]], &[[-1, 0]]] {
+            assert!(matches!(around(wrong, 5, &watch), Err(Error::Shape(_))));
         }
     }
 }

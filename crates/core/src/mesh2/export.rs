@@ -7,6 +7,7 @@ use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{with_room, zeroed};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// Stands for the other side of a hull edge once the ghosts are gone; shifted like a code it
 /// gives -1.
@@ -14,6 +15,8 @@ pub(super) const OUTSIDE: Code = Code::MAX;
 
 /// Triangles that one task writes.
 const SHARE: usize = 1 << 14;
+/// Triangles whose marks are read between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// As [`arrays`], and for each triangle and corner whether the edge opposite is marked.
 pub fn marked_arrays(
@@ -21,22 +24,39 @@ pub fn marked_arrays(
     ghost: Code,
     rows: &[u32],
     workers: usize,
+    watch: &Watch,
 ) -> Result<(Arrays<3>, Vec<[bool; 3]>)> {
-    let (mut mesh, out) = write(mesh, ghost, rows, workers)?;
+    let (mut mesh, out) = write(mesh, ghost, rows, workers, watch)?;
     let patch = mesh.patch();
     let count = out.simplices.len();
     let mut marks = with_room(count)?;
-    marks.extend((0..count as u32).map(|t| patch.marks(t)));
+    for first in (0..count).step_by(LOT) {
+        watch.check()?;
+        let lot = first..count.min(first + LOT);
+        marks.extend(lot.map(|t| patch.marks(t as u32)));
+    }
     Ok((out, marks))
 }
 
 /// Exports `mesh`, one of whose ghosts is `ghost`; vertex v becomes `rows[v]`.
-pub fn arrays(mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<Arrays<3>> {
-    write(mesh, ghost, rows, workers).map(|(_, arrays)| arrays)
+pub fn arrays(
+    mesh: Mesh2,
+    ghost: Code,
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Arrays<3>> {
+    write(mesh, ghost, rows, workers, watch).map(|(_, arrays)| arrays)
 }
 
 /// The arrays, and the mesh without ghosts.
-fn write(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<(Mesh2, Arrays<3>)> {
+fn write(
+    mut mesh: Mesh2,
+    ghost: Code,
+    rows: &[u32],
+    workers: usize,
+    watch: &Watch,
+) -> Result<(Mesh2, Arrays<3>)> {
     let count = drop_ghosts(&mut mesh, ghost)?;
     let mut out = Arrays {
         simplices: zeroed(count)?,
@@ -50,18 +70,24 @@ fn write(mut mesh: Mesh2, ghost: Code, rows: &[u32], workers: usize) -> Result<(
         .chunks(RECORD * SHARE)
         .zip(shares)
         .collect();
-    parallel::map(workers, tasks, |(records, (simplices, neighbors))| {
-        for ((r, s), n) in records
-            .as_chunks::<RECORD>()
-            .0
-            .iter()
-            .zip(simplices)
-            .zip(neighbors)
-        {
-            *s = [r[0], r[1], r[2]].map(|v| rows[v as usize] as i32);
-            *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
-        }
-    });
+    parallel::map_watched(
+        workers,
+        tasks,
+        watch,
+        |(records, (simplices, neighbors))| {
+            for ((r, s), n) in records
+                .as_chunks::<RECORD>()
+                .0
+                .iter()
+                .zip(simplices)
+                .zip(neighbors)
+            {
+                *s = [r[0], r[1], r[2]].map(|v| rows[v as usize] as i32);
+                *n = [r[OPPOSITE], r[OPPOSITE + 1], r[OPPOSITE + 2]].map(|e| e as i32 >> 3);
+            }
+            Ok(())
+        },
+    )?;
     Ok((mesh, out))
 }
 

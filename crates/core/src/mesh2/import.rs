@@ -4,24 +4,32 @@ use super::export::OUTSIDE;
 use super::{Code, Mesh2, next, prev};
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
+use crate::watch::{Pace, Watch};
 
 /// Most triangles: their codes must fit in 32 bits and leave [`OUTSIDE`] free.
 const LIMIT: usize = 1 << 29;
 
+/// Triangles, or vertices, between two looks at the watch.
+const LOT: usize = 1 << 16;
+
 /// The triangle across the edge opposite each corner, -1 outside, by a sort of the edges: O(m log m),
 /// less where no vertex has many. Corners must lie below `vertices`.
-pub fn adjacency(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[i32; 3]>> {
-    let opposites = opposites(simplices, vertices)?;
+pub fn adjacency(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<Vec<[i32; 3]>> {
+    let opposites = opposites(simplices, vertices, watch)?;
     let mut neighbors = with_room(simplices.len())?;
-    neighbors.extend(opposites.iter().map(|codes| codes.map(|e| e as i32 >> 3)));
+    for lot in opposites.chunks(LOT) {
+        watch.check()?;
+        neighbors.extend(lot.iter().map(|codes| codes.map(|e| e as i32 >> 3)));
+    }
     Ok(neighbors)
 }
 
 /// The mesh of triangles that tile the hull of `vertices` vertices, all of which they use, with
 /// one of its ghosts. Triangle t becomes record t.
-pub fn mesh(simplices: &[[i32; 3]], vertices: usize) -> Result<(Mesh2, Code)> {
+pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(Mesh2, Code)> {
+    let mut pace = Pace::new(watch, LOT);
     let broken = || Error::Internal("the triangles do not tile a hull".into());
-    let opposites = opposites(simplices, vertices)?;
+    let opposites = opposites(simplices, vertices, watch)?;
     let mut mesh = Mesh2::with_vertices(vertices)?;
     let outside = opposites.iter().flatten().filter(|&&e| e == OUTSIDE);
     if simplices.len() + outside.count() + 2 != 2 * vertices {
@@ -29,6 +37,7 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize) -> Result<(Mesh2, Code)> {
     }
     let mut patch = mesh.patch();
     for s in simplices {
+        pace.spend(1)?;
         let t = patch.fresh();
         patch.set(t, s.map(|v| v as u32));
     }
@@ -36,6 +45,7 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize) -> Result<(Mesh2, Code)> {
     let mut begins = filled(vertices, OUTSIDE)?;
     let mut hull: Vec<Code> = Vec::new();
     for (t, codes) in (0u32..).zip(&opposites) {
+        pace.spend(1)?;
         for (e, &across) in (8 * t..).zip(codes) {
             if across != OUTSIDE {
                 patch.link(e, across);
@@ -65,7 +75,8 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize) -> Result<(Mesh2, Code)> {
 
 /// The code on the other side of each edge: edges go by a counting sort to their smaller end, and
 /// there the two sides meet in a sort by the larger.
-fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> {
+fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<Vec<[Code; 3]>> {
+    let mut pace = Pace::new(watch, LOT);
     if simplices.len() > LIMIT {
         let found = simplices.len();
         return Err(Error::Shape(format!(
@@ -74,6 +85,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> 
     }
     let mut start = filled(vertices + 1, 0u32)?;
     for (t, s) in simplices.iter().enumerate() {
+        pace.spend(1)?;
         for [u, v] in [0, 1, 2].map(|k| edge(*s, k)) {
             if u == v {
                 return Err(Error::Shape(format!(
@@ -88,6 +100,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> 
     }
     let mut sides = filled(3 * simplices.len(), 0u64)?;
     for (t, s) in (0u64..).zip(simplices) {
+        pace.spend(1)?;
         for k in 0..3 {
             let [u, v] = edge(*s, k);
             let at = &mut start[u.min(v) as usize];
@@ -100,6 +113,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize) -> Result<Vec<[Code; 3]>> 
     let mut opposites = filled(simplices.len(), [OUTSIDE; 3])?;
     let mut from = 0;
     for &to in &start[..vertices] {
+        pace.spend(1)?;
         let list = &mut sides[from as usize..to as usize];
         list.sort_unstable();
         pair(list, simplices, &mut opposites)?;
@@ -140,11 +154,11 @@ mod tests {
 
     #[test]
     fn neighbours_share_their_edge() {
-        let neighbors = adjacency(&SQUARE, 4).unwrap();
+        let neighbors = adjacency(&SQUARE, 4, &Watch::idle()).unwrap();
         assert_eq!(neighbors, [[1, -1, -1], [-1, 0, -1]]);
-        assert!(adjacency(&[], 0).unwrap().is_empty());
+        assert!(adjacency(&[], 0, &Watch::idle()).unwrap().is_empty());
         // Triangles that touch in a vertex alone are no neighbours.
-        let neighbors = adjacency(&[[0, 1, 2], [2, 3, 4]], 5).unwrap();
+        let neighbors = adjacency(&[[0, 1, 2], [2, 3, 4]], 5, &Watch::idle()).unwrap();
         assert_eq!(neighbors, [[-1; 3]; 2]);
     }
 
@@ -152,12 +166,12 @@ mod tests {
     fn an_edge_used_twice_is_named() {
         let fold = [[0, 1, 3], [1, 2, 3], [4, 3, 1]];
         assert_eq!(
-            adjacency(&fold, 5).unwrap_err(),
+            adjacency(&fold, 5, &Watch::idle()).unwrap_err(),
             Error::Shape(
                 "the directed edge 3 -> 1 occurs twice: in simplices[1] and simplices[2]".into()
             )
         );
-        let flat = adjacency(&[[0, 1, 1]], 2).unwrap_err();
+        let flat = adjacency(&[[0, 1, 1]], 2, &Watch::idle()).unwrap_err();
         assert_eq!(
             flat,
             Error::Shape("simplices[0] = [0, 1, 1] has vertex 1 twice".into())
@@ -166,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_mesh_has_ghosts_all_round() {
-        let (mut mesh, ghost) = mesh(&SQUARE, 4).unwrap();
+        let (mut mesh, ghost) = mesh(&SQUARE, 4, &Watch::idle()).unwrap();
         let patch = mesh.patch();
         patch.check(6).unwrap();
         let ring: Vec<_> = (0..4)
@@ -180,6 +194,6 @@ mod tests {
 
     #[test]
     fn what_tiles_no_hull_is_no_mesh() {
-        assert!(mesh(&[[0, 1, 2], [2, 3, 4]], 5).is_err());
+        assert!(mesh(&[[0, 1, 2], [2, 3, 4]], 5, &Watch::idle()).is_err());
     }
 }

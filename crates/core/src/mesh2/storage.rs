@@ -2,12 +2,15 @@
 
 use crate::error::Result;
 use crate::memory::zeroed;
+use crate::watch::Watch;
 
 /// A half-edge: `8 t + k` for the edge opposite corner k of triangle t.
 pub type Code = u32;
 
 /// Words of a record.
 pub const RECORD: usize = 8;
+/// Numbers that are moved between two looks at the watch.
+const LOT: usize = RECORD << 16;
 /// Where the codes across begin in a record.
 pub const OPPOSITE: usize = 4;
 
@@ -75,14 +78,20 @@ impl Mesh2 {
 
     /// Changes the room to that of `vertices` vertices, where the first `used` records are
     /// triangles: what they call the infinite vertex changes with it.
-    pub fn resize(&mut self, vertices: usize, used: u32) -> Result<()> {
+    pub fn resize(&mut self, vertices: usize, used: u32, watch: &Watch) -> Result<()> {
         let (before, after) = (self.infinite, vertices as u32);
         let mut records = zeroed(RECORD * PER_VERTEX * vertices)?;
         let kept = RECORD * used as usize;
-        records[..kept].copy_from_slice(&self.records[..kept]);
-        for r in records[..kept].as_chunks_mut::<RECORD>().0 {
-            for v in &mut r[..3] {
-                *v = if *v == before { after } else { *v };
+        let lots = records[..kept]
+            .chunks_mut(LOT)
+            .zip(self.records[..kept].chunks(LOT));
+        for (lot, old) in lots {
+            watch.check()?;
+            lot.copy_from_slice(old);
+            for r in lot.as_chunks_mut::<RECORD>().0 {
+                for v in &mut r[..3] {
+                    *v = if *v == before { after } else { *v };
+                }
             }
         }
         (self.records, self.infinite) = (records, after);

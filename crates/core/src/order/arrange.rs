@@ -33,8 +33,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
         mut points,
         mut rows,
         starts,
-    } = split(points, &cuts, workers)?;
-    watch.check()?;
+    } = split(points, &cuts, workers, watch)?;
     let (mut rest_points, mut rest_rows) = (&mut points[..], &mut rows[..]);
     let mut tasks = Vec::with_capacity(cuts.blocks());
     for w in starts.windows(2) {
@@ -45,7 +44,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
     }
     // As many blocks are in work as there are workers, and each needs room for its time only.
     let rooms = Mutex::new(Vec::new());
-    let ordered = parallel::map(workers, tasks, |(points, rows)| {
+    let ordered = parallel::map_watched(workers, tasks, watch, |(points, rows)| {
         let room = rooms.lock().ok().and_then(|mut rooms| rooms.pop());
         let mut room: Scratch = room.unwrap_or_default();
         let ordered = along_curve(points, rows, &mut room, watch);
@@ -53,7 +52,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
             rooms.push(room);
         }
         ordered
-    });
+    })?;
     let mut out = Arranged {
         points,
         rows,
@@ -62,8 +61,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
         cuts,
     };
     let mut distinct = Vec::with_capacity(ordered.len());
-    for block in ordered {
-        let (count, duplicates) = block?;
+    for (count, duplicates) in ordered {
         distinct.push(count);
         out.duplicates.extend(duplicates);
     }

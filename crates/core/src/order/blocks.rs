@@ -8,6 +8,7 @@ use super::deal::{Blocks, deal};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::points::Extent;
+use crate::watch::Watch;
 
 /// Most points that a block should hold: its mesh of 80 bytes a point fits a shared cache.
 const BLOCK: usize = 1 << 17;
@@ -117,7 +118,7 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
 }
 
 /// Sorts `points` into the blocks of `cuts`.
-pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks<2>> {
+pub fn split(points: &[Point2], cuts: &Cuts, workers: usize, watch: &Watch) -> Result<Blocks<2>> {
     let blocks = cuts.blocks();
     if blocks == 1 {
         let mut rows = with_room(points.len())?;
@@ -130,7 +131,7 @@ pub fn split(points: &[Point2], cuts: &Cuts, workers: usize) -> Result<Blocks<2>
             starts: vec![0, points.len()],
         });
     }
-    deal(points, blocks, |p| cuts.block(p), workers)
+    deal(points, blocks, |p| cuts.block(p), workers, watch)
 }
 
 #[cfg(test)]
@@ -148,8 +149,8 @@ mod tests {
             .collect();
         let cuts = Cuts::of(&points);
         assert_eq!(cuts.blocks(), 4);
-        let one = split(&points, &cuts, 1).unwrap();
-        let two = split(&points, &cuts, 2).unwrap();
+        let one = split(&points, &cuts, 1, &Watch::idle()).unwrap();
+        let two = split(&points, &cuts, 2, &Watch::idle()).unwrap();
         assert_eq!((&one.rows, &one.starts), (&two.rows, &two.starts));
         let mut rows = one.rows.clone();
         rows.sort_unstable();

@@ -7,10 +7,15 @@
 use delone_predicates::lexicographic;
 
 use super::{hilbert, hilbert3};
+use crate::error::Result;
 use crate::points::Extent;
+use crate::watch::{Pace, Watch};
 
 /// Longest run of equal keys that is sorted lexicographically and not keyed again.
 pub const CROWD: usize = 16;
+
+/// Items of runs between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// Cells of a box: in the plane 65536 to the longer side, in space 1024 to the longest.
 pub struct Cells<const D: usize> {
@@ -78,10 +83,16 @@ pub fn row(item: u64) -> usize {
 
 /// Puts the items of each run of equal keys in order. A run that is keyed again splits, since the
 /// two ends of its box get different keys; so the stack of runs empties.
-pub fn order_runs<const D: usize>(points: &[[f64; D]], items: &mut [u64]) {
+pub fn order_runs<const D: usize>(
+    points: &[[f64; D]],
+    items: &mut [u64],
+    watch: &Watch,
+) -> Result<()> {
+    let mut pace = Pace::new(watch, LOT);
     let mut runs = Vec::new();
     push_runs(items, 0, &mut runs);
     while let Some((start, end)) = runs.pop() {
+        pace.spend(end - start)?;
         let run = &mut items[start..end];
         if run.len() <= CROWD {
             run.sort_unstable_by(|&i, &j| {
@@ -100,6 +111,7 @@ pub fn order_runs<const D: usize>(points: &[[f64; D]], items: &mut [u64]) {
         run.sort_unstable();
         push_runs(run, start, &mut runs);
     }
+    Ok(())
 }
 
 /// Lists the runs of two and more equal keys of `items`, whose first is item `offset` of all.

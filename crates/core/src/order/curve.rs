@@ -47,9 +47,8 @@ pub fn along_curve(
             .map(|(i, &p)| cells.key(p) & mask | i),
     );
     watch.check()?;
-    radix::sort(items, other, low_bit)?;
-    watch.check()?;
-    order_runs(points, items);
+    radix::sort(items, other, low_bit, watch)?;
+    order_runs(points, items, watch)?;
     watch.check()?;
     let duplicates = collect(points, rows, items, to, to_rows);
     points[..to.len()].copy_from_slice(to);

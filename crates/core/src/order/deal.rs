@@ -3,9 +3,14 @@
 use crate::error::Result;
 use crate::memory::{Zero, zeroed};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// Points that one task deals.
 const SHARE: usize = 1 << 16;
+
+/// Points between two looks at the watch: each may be the first to touch a huge page, which takes a
+/// millisecond.
+const LOT: usize = 1 << 6;
 
 /// Points sorted by block, in the order of their rows within each.
 #[derive(Debug)]
@@ -33,12 +38,13 @@ pub fn deal<const D: usize>(
     blocks: usize,
     block: impl Fn([f64; D]) -> usize + Sync,
     workers: usize,
+    watch: &Watch,
 ) -> Result<Blocks<D>>
 where
     [f64; D]: Zero,
 {
     let shares: Vec<&[[f64; D]]> = points.chunks(SHARE).collect();
-    let classified = parallel::map(workers, shares, |share| {
+    let classified = parallel::map_watched(workers, shares, watch, |share| {
         let mut counts = vec![0usize; blocks];
         let mut block_of = Vec::with_capacity(share.len());
         for &p in share {
@@ -46,8 +52,8 @@ where
             counts[b] += 1;
             block_of.push(b as u16);
         }
-        (block_of, counts)
-    });
+        Ok((block_of, counts))
+    })?;
     let mut out = Blocks {
         points: zeroed(points.len() + 1)?,
         rows: zeroed(points.len())?,
@@ -72,20 +78,26 @@ where
         out.starts.push(out.starts[b] + size);
     }
     let tasks = points.chunks(SHARE).zip(&classified).zip(parts).enumerate();
-    parallel::map(
+    parallel::map_watched(
         workers,
         tasks.collect(),
+        watch,
         |(i, ((share, (block_of, _)), mut part))| {
             let mut filled = vec![0usize; blocks];
             let first_row = (i * SHARE) as u32;
-            for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
-                let b = usize::from(b);
-                let (points, rows) = &mut part[b];
-                points[filled[b]] = p;
-                rows[filled[b]] = row;
-                filled[b] += 1;
+            let lots = share.chunks(LOT).zip(block_of.chunks(LOT));
+            for ((share, block_of), first_row) in lots.zip((first_row..).step_by(LOT)) {
+                watch.check()?;
+                for ((&p, &b), row) in share.iter().zip(block_of).zip(first_row..) {
+                    let b = usize::from(b);
+                    let (points, rows) = &mut part[b];
+                    points[filled[b]] = p;
+                    rows[filled[b]] = row;
+                    filled[b] += 1;
+                }
             }
+            Ok(())
         },
-    );
+    )?;
     Ok(out)
 }

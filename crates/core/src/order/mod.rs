@@ -10,8 +10,10 @@ mod hilbert;
 mod hilbert3;
 mod radix;
 mod rows;
+mod sort;
 pub mod space;
 pub mod space_blocks;
 
 pub use arrange::{Arranged, arrange};
 pub use rows::order_of;
+pub use sort::{sort, sort_by};

@@ -3,15 +3,18 @@
 
 use crate::error::Result;
 use crate::memory::clear_with_room;
+use crate::watch::Watch;
 
 const DIGIT: u32 = 8;
 const BUCKETS: usize = 1 << DIGIT;
 /// Below this length a comparison sort is faster than four histograms of 256.
 const SHORT: usize = 256;
+/// Items between two looks at the watch.
+const LOT: usize = 1 << 18;
 
 /// Sorts `items` by their upper 32 bits, of which those below `low_bit` are known to be zero.
 /// `other` is room for as many.
-pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32) -> Result<()> {
+pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32, watch: &Watch) -> Result<()> {
     if items.len() <= SHORT {
         items.sort_unstable();
         return Ok(());
@@ -19,7 +22,7 @@ pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32) -> Result<
     clear_with_room(other, items.len())?;
     other.resize(items.len(), 0);
     for shift in (32 + low_bit..64).step_by(DIGIT as usize) {
-        if scatter(items, other, shift) {
+        if scatter(items, other, shift, watch)? {
             std::mem::swap(items, other);
         }
     }
@@ -27,25 +30,31 @@ pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32) -> Result<
 }
 
 /// One pass; `false` where all items share the digit and nothing was moved.
-fn scatter(from: &[u64], to: &mut [u64], shift: u32) -> bool {
+fn scatter(from: &[u64], to: &mut [u64], shift: u32, watch: &Watch) -> Result<bool> {
     let digit = |item: u64| (item >> shift) as usize & (BUCKETS - 1);
     let mut start = [0usize; BUCKETS];
-    for &item in from {
-        start[digit(item)] += 1;
+    for lot in from.chunks(LOT) {
+        watch.check()?;
+        for &item in lot {
+            start[digit(item)] += 1;
+        }
     }
     if start[digit(from[0])] == from.len() {
-        return false;
+        return Ok(false);
     }
     let mut sum = 0;
     for s in &mut start {
         sum += std::mem::replace(s, sum);
     }
-    for &item in from {
-        let place = &mut start[digit(item)];
-        to[*place] = item;
-        *place += 1;
+    for lot in from.chunks(LOT) {
+        watch.check()?;
+        for &item in lot {
+            let place = &mut start[digit(item)];
+            to[*place] = item;
+            *place += 1;
+        }
     }
-    true
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -65,7 +74,7 @@ mod tests {
             .collect();
         let mut expected = items.clone();
         expected.sort();
-        sort(&mut items, &mut Vec::new(), 16).unwrap();
+        sort(&mut items, &mut Vec::new(), 16, &Watch::idle()).unwrap();
         assert_eq!(items, expected);
     }
 }

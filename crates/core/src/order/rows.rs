@@ -6,18 +6,26 @@ use crate::error::Result;
 use crate::memory::with_room;
 use crate::parallel;
 use crate::points::Extent;
+use crate::watch::{Pace, Watch};
 
 /// Fewest points that a thread is worth.
 const SHARE: usize = 1 << 14;
 
+/// Points between two looks at the watch.
+const LOT: usize = 1 << 18;
+
 /// The rows of the finite points along the curve, in parts of which each follows the one before.
 /// Whoever comes first among points of one cell is open.
-pub fn order_of<const D: usize>(points: &[[f64; D]], workers: usize) -> Result<Vec<Vec<u32>>> {
+pub fn order_of<const D: usize>(
+    points: &[[f64; D]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<Vec<u32>>> {
     let share = points.len().div_ceil(workers.max(1)).max(SHARE);
     let shares = || points.chunks(share).collect::<Vec<_>>();
-    let extents = parallel::map(workers, shares(), |share| {
-        Extent::of(share.iter().copied().filter(is_finite))
-    });
+    let extents = parallel::map_watched(workers, shares(), watch, |share| {
+        Ok(Extent::of(share.iter().copied().filter(is_finite)))
+    })?;
     let extent = Extent::of(
         extents
             .iter()
@@ -28,21 +36,24 @@ pub fn order_of<const D: usize>(points: &[[f64; D]], workers: usize) -> Result<V
     let low_bit = 32 - fine_bits(points.len());
     let mask = u64::MAX << (32 + low_bit);
     let tasks = (0u64..).step_by(share).zip(shares()).collect();
-    let sorted = parallel::map(workers, tasks, |(first, share)| {
+    let sorted = parallel::map_watched(workers, tasks, watch, |(first, share)| {
         let mut items = with_room(share.len())?;
-        let rows = (first..).zip(share).filter(|(_, p)| is_finite(p));
-        items.extend(rows.map(|(i, &p)| cells.key(p) & mask | i));
-        radix::sort(&mut items, &mut Vec::new(), low_bit)?;
+        let lots = (first..).step_by(LOT).zip(share.chunks(LOT));
+        for (first, lot) in lots {
+            watch.check()?;
+            let rows = (first..).zip(lot).filter(|(_, p)| is_finite(p));
+            items.extend(rows.map(|(i, &p)| cells.key(p) & mask | i));
+        }
+        radix::sort(&mut items, &mut Vec::new(), low_bit, watch)?;
         Ok(items)
-    });
-    let sorted = sorted.into_iter().collect::<Result<Vec<Vec<u64>>>>()?;
+    })?;
     let tasks = if sorted.len() > 1 {
         4 * workers as u64
     } else {
         1
     };
     let cut = |part: u64| ((u128::from(part) << 64) / u128::from(tasks)) as u64;
-    let parts = parallel::map(workers, (0..tasks).collect(), |part| {
+    parallel::map_watched(workers, (0..tasks).collect(), watch, |part| {
         let within = |items: &[u64]| {
             let place = |cut| items.partition_point(|&item| item < cut);
             let end = if part + 1 < tasks {
@@ -60,12 +71,14 @@ pub fn order_of<const D: usize>(points: &[[f64; D]], workers: usize) -> Result<V
             // Its few runs ascend, and it merges them.
             items.sort();
         }
-        order_crowds(points, &mut items);
+        order_crowds(points, &mut items, watch)?;
         let mut rows = with_room(items.len())?;
-        rows.extend(items.into_iter().map(|item| row(item) as u32));
+        for lot in items.chunks(LOT) {
+            watch.check()?;
+            rows.extend(lot.iter().map(|&item| row(item) as u32));
+        }
         Ok(rows)
-    });
-    parts.into_iter().collect()
+    })
 }
 
 fn is_finite<const D: usize>(p: &[f64; D]) -> bool {
@@ -73,12 +86,19 @@ fn is_finite<const D: usize>(p: &[f64; D]) -> bool {
 }
 
 /// Orders the items of each cell that holds many points.
-fn order_crowds<const D: usize>(points: &[[f64; D]], items: &mut [u64]) {
+fn order_crowds<const D: usize>(
+    points: &[[f64; D]],
+    items: &mut [u64],
+    watch: &Watch,
+) -> Result<()> {
+    let mut pace = Pace::new(watch, LOT);
     for run in items.chunk_by_mut(|i, j| i >> 32 == j >> 32) {
+        pace.spend(run.len())?;
         if run.len() > CROWD {
-            order_runs(points, run);
+            order_runs(points, run, watch)?;
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -98,12 +118,20 @@ mod tests {
             .chain([[f64::NAN, 0.0, 0.0], [f64::MAX, f64::MIN, 0.0]])
             .collect();
         for workers in [1, 3] {
-            let mut rows = order_of(&points, workers).unwrap().concat();
+            let mut rows = order_of(&points, workers, &Watch::idle()).unwrap().concat();
             rows.sort_unstable();
             assert!(rows.into_iter().eq((0..40_000).chain([40_001])));
         }
-        assert_eq!(order_of(&[[2.0; 3]; 3], 1).unwrap(), [[0, 1, 2]]);
-        assert!(order_of::<2>(&[], 2).unwrap().concat().is_empty());
+        assert_eq!(
+            order_of(&[[2.0; 3]; 3], 1, &Watch::idle()).unwrap(),
+            [[0, 1, 2]]
+        );
+        assert!(
+            order_of::<2>(&[], 2, &Watch::idle())
+                .unwrap()
+                .concat()
+                .is_empty()
+        );
     }
 
     #[test]
@@ -112,7 +140,7 @@ mod tests {
         let points: Vec<[f64; 3]> = (0..1 << 15)
             .map(|i| [i >> 10, i >> 5 & 31, i & 31].map(f64::from))
             .collect();
-        let rows = order_of(&points, 1).unwrap().concat();
+        let rows = order_of(&points, 1, &Watch::idle()).unwrap().concat();
         for pair in rows.windows(2) {
             let [p, q] = [pair[0], pair[1]].map(|row| points[row as usize]);
             let step: f64 = (0..3).map(|k| (p[k] - q[k]).abs()).sum();

@@ -71,9 +71,8 @@ pub fn arrange_rows(
     } = room;
     items.extend((0u64..).zip(points).map(|(i, &p)| cells.key(p) & mask | i));
     watch.check()?;
-    radix::sort(&mut items, &mut other, low_bit)?;
-    watch.check()?;
-    order_runs(points, &mut items);
+    radix::sort(&mut items, &mut other, low_bit, watch)?;
+    order_runs(points, &mut items, watch)?;
     watch.check()?;
     collect(points, rows, &items, out)
 }

@@ -8,6 +8,7 @@ use super::deal::{Blocks, deal};
 use super::space::Extent3;
 use crate::error::Result;
 use crate::memory::with_room;
+use crate::watch::Watch;
 
 /// Sampled points a block. A median of so many is off by 0.3 % of the points, and by so much two threads with
 /// a block each differ; to find it costs 2 ns a point of a million.
@@ -92,8 +93,8 @@ impl Cuts3 {
 }
 
 /// Sorts `points` into the blocks of `cuts`.
-pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize) -> Result<Blocks<3>> {
-    deal(points, cuts.blocks(), |p| cuts.block(p), workers)
+pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<Blocks<3>> {
+    deal(points, cuts.blocks(), |p| cuts.block(p), workers, watch)
 }
 
 fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point3]) {

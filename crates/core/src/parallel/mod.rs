@@ -3,6 +3,9 @@
 use std::sync::Mutex;
 use std::thread::Builder;
 
+use crate::error::Result;
+use crate::watch::Watch;
+
 /// Does `work` on each task with up to `workers` threads; the results come in the tasks' order.
 /// A panic in a task is a panic here.
 pub fn map<T: Send, R: Send>(
@@ -37,9 +40,39 @@ pub fn map<T: Send, R: Send>(
     results.into_iter().flatten().collect()
 }
 
+/// The same with a look at the watch before each task.
+pub fn map_watched<T: Send, R: Send>(
+    workers: usize,
+    tasks: Vec<T>,
+    watch: &Watch,
+    work: impl Fn(T) -> Result<R> + Sync,
+) -> Result<Vec<R>> {
+    let ends = map(workers, tasks, |task| {
+        watch.check()?;
+        work(task)
+    });
+    ends.into_iter().collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn a_watch_ends_it_between_two_tasks() {
+        for workers in [1, 3] {
+            let (asked, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let stop = || asked.fetch_add(1, Ordering::Relaxed) >= 5;
+            let ended = map_watched(workers, vec![(); 100], &Watch::new(&stop), |()| {
+                done.fetch_add(1, Ordering::Relaxed);
+                Ok(())
+            });
+            assert_eq!((ended, done.into_inner()), (Err(Error::Interrupted), 5));
+        }
+    }
 
     #[test]
     fn results_keep_the_order_of_tasks() {

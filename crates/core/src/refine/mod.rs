@@ -34,7 +34,10 @@ use crate::delaunay2::lawson::compact;
 use crate::error::{Error, Result};
 use crate::memory::{copied, filled, with_room};
 use crate::mesh2::{import, next, prev, triangle};
-use crate::watch::Watch;
+use crate::watch::{Pace, Watch};
+
+/// Triangles, or segments, between two looks at the watch.
+const LOT: usize = 1 << 16;
 
 /// Refines a triangulation.
 pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
@@ -93,12 +96,12 @@ fn scale(points: &[Point2]) -> f64 {
 }
 
 fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
-    let (rows, own) = compact(task.points, task.simplices)?;
+    let (rows, own) = compact(task.points, task.simplices, watch)?;
     let mut points = with_room(rows.len() + 1)?;
     points.extend(rows.iter().map(|&row| task.points[row as usize]));
     points.push([f64::NAN; 2]);
-    let (mesh, _) = import::mesh(&own, rows.len())?;
-    let mut marked = Marked::new(mesh, points)?;
+    let (mesh, _) = import::mesh(&own, rows.len(), watch)?;
+    let mut marked = Marked::new(mesh, points, watch)?;
     let mut place = filled(task.points.len(), u32::MAX)?;
     for (v, &row) in (0..).zip(&rows) {
         place[row as usize] = v;
@@ -118,12 +121,15 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
         }
     }
     let mut caps = filled(marked.triangles() as usize, f64::INFINITY)?;
+    let mut pace = Pace::new(watch, LOT);
     for (t, (&label, &area)) in (0..).zip(task.labels.iter().zip(task.areas)) {
+        pace.spend(1)?;
         // 0 is for ghosts and what lies outside.
         marked.patch().set_label(t, (label + 1).max(0) as u32);
         caps[t as usize] = 2.0 * area;
     }
     for &[u, v] in &pieces {
+        pace.spend(1)?;
         if u.max(v) as usize >= rows.len() {
             return Err(Error::Shape("a segment ends in no vertex".into()));
         }
@@ -132,11 +138,18 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     }
     let mut work = Work::new(marked, caps, on, [&pieces, lines], task)?;
     let exhausted = !work.run(watch, tell)?;
-    export(work, &rows, task.points.len(), exhausted)
+    export(work, &rows, task.points.len(), exhausted, watch)
 }
 
 /// Everything in rows.
-fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result<Refined> {
+fn export(
+    mut work: Work,
+    rows: &[u32],
+    given: usize,
+    exhausted: bool,
+    watch: &Watch,
+) -> Result<Refined> {
+    let mut pace = Pace::new(watch, LOT);
     let count = work.marked.count;
     let mut row_of = with_room(count)?;
     row_of.extend_from_slice(rows);
@@ -165,6 +178,7 @@ fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result
         exhausted,
     };
     for &t in &all {
+        pace.spend(1)?;
         let codes = [8 * t, 8 * t + 1, 8 * t + 2];
         let corners = mesh.corners(t).map(|v| row_of[v as usize] as i32);
         out.simplices.push(corners);
@@ -174,6 +188,7 @@ fn export(mut work: Work, rows: &[u32], given: usize, exhausted: bool) -> Result
         out.needles.push(work.needles.left(t));
     }
     for &t in &all {
+        pace.spend(1)?;
         let codes = [8 * t, 8 * t + 1, 8 * t + 2];
         let mut sides = [-1; 3];
         for (side, e) in sides.iter_mut().zip(codes) {

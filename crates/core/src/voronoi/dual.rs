@@ -26,14 +26,22 @@ pub struct Diagram {
 
 /// The diagram of a triangulation.
 pub fn diagram(given: Given<2, 3>, workers: usize, watch: &Watch) -> Result<Diagram> {
-    let (mut vertices, beyond) = centers::<Corners, 2, 3>(given, workers)?;
+    let (mut vertices, beyond) = centers::<Corners, 2, 3>(given, workers, watch)?;
     watch.check()?;
     let owned = |t, shared| owned(given, t, shared) << OWNED;
-    let masks = masks(given, &vertices, workers, |t, u| tied(given, t, u), owned)?;
+    let masks = masks(
+        given,
+        &vertices,
+        workers,
+        watch,
+        |t, u| tied(given, t, u),
+        owned,
+    )?;
     watch.check()?;
-    let (triangle_vertex, far) = number::<Corners, 2, 3>(given, &masks, &mut vertices, &beyond)?;
+    let (triangle_vertex, far) =
+        number::<Corners, 2, 3>(given, &masks, &mut vertices, &beyond, watch)?;
     watch.check()?;
-    let (ridges, first_ridge) = ridges(given, &masks, &triangle_vertex, &far, workers)?;
+    let (ridges, first_ridge) = ridges(given, &masks, &triangle_vertex, &far, workers, watch)?;
     watch.check()?;
     let walk = Walk {
         given,

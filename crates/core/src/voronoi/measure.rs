@@ -8,6 +8,7 @@ use delone_predicates::Point2;
 use crate::error::Result;
 use crate::memory::{filled, zeroed};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// Polygons that one task does.
 const SHARE: usize = 1 << 13;
@@ -27,7 +28,12 @@ pub struct Measures {
 }
 
 /// Measures polygons whose corners are `points[starts[i]..starts[i + 1]]`, counter-clockwise.
-pub fn measures(starts: &[i32], points: &[Point2], workers: usize) -> Result<Measures> {
+pub fn measures(
+    starts: &[i32],
+    points: &[Point2],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Measures> {
     let n = starts.len().saturating_sub(1);
     let mut out = Measures {
         areas: filled(n, 0.0)?,
@@ -39,9 +45,10 @@ pub fn measures(starts: &[i32], points: &[Point2], workers: usize) -> Result<Mea
         .chunks_mut(SHARE)
         .zip(out.centroids.chunks_mut(SHARE));
     let parts = parts.zip(out.perimeters.chunks_mut(SHARE)).enumerate();
-    parallel::map(
+    parallel::map_watched(
         workers,
         parts.collect(),
+        watch,
         |(i, ((areas, centroids), perimeters))| {
             for (k, ((area, centroid), perimeter)) in
                 areas.iter_mut().zip(centroids).zip(perimeters).enumerate()
@@ -50,8 +57,9 @@ pub fn measures(starts: &[i32], points: &[Point2], workers: usize) -> Result<Mea
                 let corners = &points[starts[row] as usize..starts[row + 1] as usize];
                 (*area, *centroid, *perimeter) = measure(corners);
             }
+            Ok(())
         },
-    );
+    )?;
     Ok(out)
 }
 
@@ -146,7 +154,7 @@ mod tests {
             [1e9 + 4.0, 1e9 + 2.0],
             [1e9, 1e9 + 2.0],
         ];
-        let found = measures(&[0, 4, 4], &corners, 1).unwrap();
+        let found = measures(&[0, 4, 4], &corners, 1, &Watch::idle()).unwrap();
         assert_eq!(found.areas, [8.0, 0.0]);
         assert_eq!(found.centroids[0], [1e9 + 2.0, 1e9 + 1.0]);
         assert!(found.centroids[1][0].is_nan());
@@ -157,11 +165,11 @@ mod tests {
     fn the_ends_of_the_range() {
         let huge = f64::from_bits(2046 << 52);
         let square = |h: f64| [[-h, -h], [h, -h], [h, h], [-h, h]];
-        let found = measures(&[0, 4], &square(huge), 1).unwrap();
+        let found = measures(&[0, 4], &square(huge), 1, &Watch::idle()).unwrap();
         assert_eq!(found.areas, [f64::INFINITY]);
         assert_eq!(found.centroids, [[0.0, 0.0]]);
         let corners = [[0.0, 0.0], [1e-200, 0.0], [1e-200, 1e-200], [0.0, 1e-200]];
-        let found = measures(&[0, 4], &corners, 1).unwrap();
+        let found = measures(&[0, 4], &corners, 1, &Watch::idle()).unwrap();
         assert_eq!(
             (found.areas[0], found.centroids[0]),
             (0.0, [5e-201, 5e-201])
@@ -175,7 +183,7 @@ mod tests {
             (5e-324, huge),
         ] {
             let corners = [[0.0, 0.0], [w, 0.0], [w, h / 2.0], [0.0, h / 2.0]];
-            let found = measures(&[0, 4], &corners, 1).unwrap();
+            let found = measures(&[0, 4], &corners, 1, &Watch::idle()).unwrap();
             assert_eq!(found.areas, [w * (h / 2.0)]);
             assert_eq!(found.centroids, [[w / 2.0, h / 4.0]]);
             assert_eq!(found.perimeters, [h]);

@@ -7,6 +7,7 @@ use super::given::Given;
 use crate::error::Result;
 use crate::memory::{push, with_room, zeroed};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// The mask of a triangle: bit k where it shares its centre across edge k, bit 3 + k where the ridge
 /// of edge k is numbered with it.
@@ -38,6 +39,7 @@ pub(super) fn ridges(
     vertex: &[i32],
     far: &[Point2],
     workers: usize,
+    watch: &Watch,
 ) -> Result<(Ridges, Vec<u32>)> {
     let (first, starts, count) = count(masks)?;
     let mut sites = zeroed::<[i32; 2]>(count)?;
@@ -50,12 +52,12 @@ pub(super) fn ridges(
         tasks.push((i * SHARE, s, e));
         (rest_sites, rest_ends) = (t, f);
     }
-    let open = parallel::map(workers, tasks, |(from, sites, ends)| {
+    let open = parallel::map_watched(workers, tasks, watch, |(from, sites, ends)| {
         fill(given, masks, vertex, from, sites, ends)
-    });
+    })?;
     let (mut rays, mut beyond) = (Vec::new(), Vec::new());
     for (open, &start) in open.into_iter().zip(&starts) {
-        for row in open?.into_iter().map(|row| start + row) {
+        for row in open.into_iter().map(|row| start + row) {
             for end in ends[row].into_iter().filter(|end| *end < 0) {
                 let at = far.get(!end as usize).copied().unwrap_or([f64::NAN; 2]);
                 push(&mut beyond, at)?;

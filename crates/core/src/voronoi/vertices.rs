@@ -5,9 +5,12 @@ use crate::error::Result;
 use crate::measure::center::{Center, Centered};
 use crate::memory::{filled, make_room, push, zeroed};
 use crate::parallel;
+use crate::watch::Watch;
 
 /// Simplices that one task does.
 const SHARE: usize = 1 << 14;
+/// Simplices that are numbered between two looks at the watch.
+const LOT: usize = 1 << 16;
 /// Simplices whose corners are fetched before the first of their centres is computed: loads that do
 /// not wait for each other.
 const BATCH: usize = 64;
@@ -31,32 +34,37 @@ fn corners_of<C: Centered<D, N>, const D: usize, const N: usize>(
 pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
     given: Given<D, N>,
     workers: usize,
+    watch: &Watch,
 ) -> Result<(Vec<[f64; D]>, Vec<Far<D>>)> {
     let mut centers = zeroed(given.simplices.len())?;
     let tasks = centers.chunks_mut(SHARE).enumerate().collect();
-    let found = parallel::map(workers, tasks, |(i, part): (usize, &mut [[f64; D]])| {
-        let mut beyond = Vec::new();
-        let mut batch = [corners_of::<C, D, N>(given, i * SHARE); BATCH];
-        for (j, part) in part.chunks_mut(BATCH).enumerate() {
-            let from = i * SHARE + j * BATCH;
-            for (t, corners) in (from..from + part.len()).zip(&mut batch) {
-                *corners = corners_of::<C, D, N>(given, t);
+    let found = parallel::map_watched(
+        workers,
+        tasks,
+        watch,
+        |(i, part): (usize, &mut [[f64; D]])| {
+            let mut beyond = Vec::new();
+            let mut batch = [corners_of::<C, D, N>(given, i * SHARE); BATCH];
+            for (j, part) in part.chunks_mut(BATCH).enumerate() {
+                let from = i * SHARE + j * BATCH;
+                for (t, corners) in (from..from + part.len()).zip(&mut batch) {
+                    *corners = corners_of::<C, D, N>(given, t);
+                }
+                for (t, (slot, corners)) in (from..).zip(part.iter_mut().zip(&batch)) {
+                    *slot = match corners.center() {
+                        Center::At(at) => at,
+                        Center::Beyond(at) => {
+                            push(&mut beyond, (t, at))?;
+                            [f64::NAN; D]
+                        }
+                    };
+                }
             }
-            for (t, (slot, corners)) in (from..).zip(part.iter_mut().zip(&batch)) {
-                *slot = match corners.center() {
-                    Center::At(at) => at,
-                    Center::Beyond(at) => {
-                        push(&mut beyond, (t, at))?;
-                        [f64::NAN; D]
-                    }
-                };
-            }
-        }
-        Ok(beyond)
-    });
+            Ok(beyond)
+        },
+    )?;
     let mut beyond = Vec::new();
     for part in found {
-        let part: Vec<Far<D>> = part?;
         make_room(&mut beyond, part.len())?;
         beyond.extend(part);
     }
@@ -70,12 +78,13 @@ pub(crate) fn masks<const D: usize, const N: usize>(
     given: Given<D, N>,
     centers: &[[f64; D]],
     workers: usize,
+    watch: &Watch,
     tied: impl Fn(usize, usize) -> Result<bool> + Sync,
     others: impl Fn(usize, u8) -> u8 + Sync,
 ) -> Result<Vec<u8>> {
     let mut masks = filled(given.simplices.len(), 0_u8)?;
     let tasks = masks.chunks_mut(SHARE).enumerate().collect();
-    let done = parallel::map(workers, tasks, |(i, part): (usize, &mut [u8])| {
+    parallel::map_watched(workers, tasks, watch, |(i, part): (usize, &mut [u8])| {
         for (t, mask) in (i * SHARE..).zip(part) {
             for k in 0..N {
                 let other = given.neighbors[t][k];
@@ -87,8 +96,7 @@ pub(crate) fn masks<const D: usize, const N: usize>(
             *mask |= others(t, *mask);
         }
         Ok(())
-    });
-    done.into_iter().collect::<Result<()>>()?;
+    })?;
     Ok(masks)
 }
 
@@ -108,6 +116,7 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
     masks: &[u8],
     centers: &mut Vec<[f64; D]>,
     beyond: &[Far<D>],
+    watch: &Watch,
 ) -> Result<(Vec<i32>, Vec<[f64; D]>)> {
     const NONE: i32 = i32::MIN;
     let shares = |t: usize| masks[t] & ((1 << N) - 1);
@@ -116,6 +125,9 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
     let mut stack = Vec::new();
     let mut count = 0;
     for t in 0..masks.len() {
+        if t.is_multiple_of(LOT) {
+            watch.check()?;
+        }
         if vertex[t] != NONE {
             continue;
         }

@@ -105,7 +105,7 @@ pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<C
         part.iter().map(cut).collect()
     });
     let bodies = bodies.into_iter().collect::<Result<Vec<Vec<Body>>>>()?;
-    collected(cells, &whole, measures(cells, workers)?, bodies)
+    collected(cells, &whole, measures(cells, workers, watch)?, bodies)
 }
 
 /// Which vertices lie inside, the boundary included.

@@ -26,18 +26,19 @@ pub struct Diagram {
 
 /// The diagram of a triangulation.
 pub fn diagram(given: Given<3, 4>, workers: usize, watch: &Watch) -> Result<Diagram> {
-    let (mut vertices, beyond) = centers::<Corners, 3, 4>(given, workers)?;
+    let (mut vertices, beyond) = centers::<Corners, 3, 4>(given, workers, watch)?;
     watch.check()?;
     let shared = masks(
         given,
         &vertices,
         workers,
+        watch,
         |t, u| tied(given, t, u),
         |_, _| 0,
     )?;
     watch.check()?;
     let (mut simplex_vertex, far) =
-        number::<Corners, 3, 4>(given, &shared, &mut vertices, &beyond)?;
+        number::<Corners, 3, 4>(given, &shared, &mut vertices, &beyond, watch)?;
     watch.check()?;
     let ridges = ridges(given, &simplex_vertex, far, workers, watch)?;
     watch.check()?;

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::voronoi::Given;
+use crate::watch::Watch;
 
 /// Ridges or cells that one task does.
 const SHARE: usize = 1 << 12;
@@ -230,22 +231,21 @@ fn polygon(corners: &[Point3], n: Point3) -> Face {
 }
 
 /// Measures all cells and ridges.
-pub fn measures(cells: Cells, workers: usize) -> Result<Measures> {
+pub fn measures(cells: Cells, workers: usize, watch: &Watch) -> Result<Measures> {
     let shares = |n: usize| (0..n).step_by(SHARE).map(move |i| i..n.min(i + SHARE));
     let tasks = shares(cells.sites.len()).collect();
-    let faces = parallel::map(workers, tasks, |range: std::ops::Range<usize>| {
+    let faces = parallel::map_watched(workers, tasks, watch, |range: std::ops::Range<usize>| {
         let mut corners = Vec::new();
-        range
-            .map(|r| face(cells, r, &mut corners))
-            .collect::<Vec<_>>()
-    });
+        let found = range.map(|r| face(cells, r, &mut corners));
+        Ok(found.collect::<Vec<_>>())
+    })?;
     let mut all: Vec<Face> = with_room(cells.sites.len())?;
     faces.into_iter().for_each(|part| all.extend(part));
     let n = cells.site.len();
     let tasks = shares(n).collect();
-    let bodies = parallel::map(workers, tasks, |range: std::ops::Range<usize>| {
-        range.map(|c| body(cells, c, &all)).collect::<Vec<_>>()
-    });
+    let bodies = parallel::map_watched(workers, tasks, watch, |range: std::ops::Range<usize>| {
+        Ok(range.map(|c| body(cells, c, &all)).collect::<Vec<_>>())
+    })?;
     let mut out = Measures {
         ridge_areas: with_room(all.len())?,
         volumes: with_room(n)?,

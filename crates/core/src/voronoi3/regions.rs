@@ -50,7 +50,7 @@ pub(super) fn regions(
     let (mut starts, mut around) = around;
     watch.check()?;
     let open = open_cells(given, cells, cell_of);
-    let kept = sorted(&starts, &mut around, workers);
+    let kept = sorted(&starts, &mut around, workers, watch)?;
     let vertices = closed_up(&mut starts, &around, &kept, &open)?;
     let (ridge_starts, ridges) = gathered(
         cells,
@@ -130,7 +130,7 @@ fn gathered(
 }
 
 /// Sorts each row and moves what comes again behind the rest; how many are left.
-fn sorted(starts: &[i32], rows: &mut [i32], workers: usize) -> Vec<usize> {
+fn sorted(starts: &[i32], rows: &mut [i32], workers: usize, watch: &Watch) -> Result<Vec<usize>> {
     let cells = starts.len() - 1;
     let mut tasks = Vec::new();
     let mut rest = rows;
@@ -140,7 +140,7 @@ fn sorted(starts: &[i32], rows: &mut [i32], workers: usize) -> Vec<usize> {
         tasks.push((&starts[from..=to], mine));
         rest = others;
     }
-    let kept = parallel::map(workers, tasks, |(starts, mine)| {
+    let kept = parallel::map_watched(workers, tasks, watch, |(starts, mine)| {
         let one = |w: &[i32], mine: &mut [i32]| {
             let row = &mut mine[(w[0] - starts[0]) as usize..(w[1] - starts[0]) as usize];
             row.sort_unstable();
@@ -153,7 +153,7 @@ fn sorted(starts: &[i32], rows: &mut [i32], workers: usize) -> Vec<usize> {
             }
             kept
         };
-        starts.windows(2).map(|w| one(w, mine)).collect::<Vec<_>>()
-    });
-    kept.into_iter().flatten().collect()
+        Ok(starts.windows(2).map(|w| one(w, mine)).collect::<Vec<_>>())
+    })?;
+    Ok(kept.into_iter().flatten().collect())
 }

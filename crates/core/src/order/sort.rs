@@ -1,0 +1,59 @@
+//! Sorts that can be stopped.
+
+use std::cmp::Ordering;
+
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// Items that are sorted without a look at the watch.
+const LOT: usize = 1 << 18;
+
+/// Sorts items by a total order; those that are equal come in any order. Larger sets are cut at their medians,
+/// which takes linear time a cut.
+pub fn sort_by<T>(
+    items: &mut [T],
+    watch: &Watch,
+    compare: impl Fn(&T, &T) -> Ordering + Copy,
+) -> Result<()> {
+    watch.check()?;
+    if items.len() <= LOT {
+        items.sort_unstable_by(compare);
+        return Ok(());
+    }
+    let middle = items.len() / 2;
+    let (before, _, after) = items.select_nth_unstable_by(middle, compare);
+    sort_by(before, watch, compare)?;
+    sort_by(after, watch, compare)
+}
+
+/// The same by the order of the items.
+pub fn sort<T: Ord>(items: &mut [T], watch: &Watch) -> Result<()> {
+    sort_by(items, watch, T::cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    #[test]
+    fn large_sets_are_sorted_and_can_be_stopped() {
+        let items: Vec<u64> = (0..4 * LOT as u64 + 7)
+            .map(|i| i * 0x9e37_79b9 % 1_000_003)
+            .collect();
+        let mut expected = items.clone();
+        expected.sort_unstable();
+        let asked = AtomicUsize::new(0);
+        let stop = |after: usize| asked.fetch_add(1, Ordering::Relaxed) >= after;
+        let mut sorted = items.clone();
+        sort(&mut sorted, &Watch::new(&|| stop(usize::MAX))).unwrap();
+        assert!(sorted == expected);
+        let all = asked.swap(0, Ordering::Relaxed);
+        for after in 0..all {
+            asked.store(0, Ordering::Relaxed);
+            assert!(sort(&mut items.clone(), &Watch::new(&|| stop(after))).is_err());
+        }
+        assert!(all > 8);
+    }
+}

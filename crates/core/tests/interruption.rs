@@ -1,0 +1,208 @@
+//! Long calls look at the watch often enough, and end where it says so.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use delone_core::Point2;
+use delone_core::arrays::{Tetrahedra, Triangles};
+use delone_core::constrained::{Options, constrain};
+use delone_core::delaunay2::lawson::lawson;
+use delone_core::delaunay2::validate::validate;
+use delone_core::delaunay2::{Method, triangulate};
+use delone_core::error::{Error, Result};
+use delone_core::interpolate::{self, Field, Kind, Method as Left, Order, global_gradients};
+use delone_core::locate::{self, Batch, Kept, Locator};
+use delone_core::watch::{IDLE, Watch};
+use delone_core::{delaunay3, hull, interpolate3, locate3, measure, order};
+
+/// More tasks than there are in any of these calls.
+const TASKS: usize = 100;
+
+/// How often `work` looks at its watch. It must end each time that a look says so, though each task that is left may
+/// look once.
+fn looks<T>(work: impl Fn(&Watch) -> Result<T>) -> usize {
+    let run = |after: usize| {
+        let asked = AtomicUsize::new(0);
+        let stop = || asked.fetch_add(1, Ordering::Relaxed) >= after;
+        let outcome = work(&Watch::new(&stop)).map(drop);
+        (outcome, asked.into_inner())
+    };
+    let (outcome, all) = run(usize::MAX);
+    assert_eq!(outcome, Ok(()));
+    for after in [0, 1, all / 3, all / 2, all - 1] {
+        let (outcome, asked) = run(after);
+        assert_eq!(outcome, Err(Error::Interrupted), "{after} of {all}");
+        assert!(asked <= after + 1 + TASKS, "{asked} for {after} of {all}");
+    }
+    all
+}
+
+fn scattered<const D: usize>(n: usize) -> Vec<[f64; D]> {
+    let mut x = 5u64;
+    let mut next = || {
+        x = x
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (x >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..n).map(|_| [0; D].map(|_| next())).collect()
+}
+
+fn circle(n: usize) -> Vec<Point2> {
+    let angle = |i: usize| i as f64 / n as f64 * std::f64::consts::TAU;
+    (0..n).map(|i| [angle(i).cos(), angle(i).sin()]).collect()
+}
+
+/// One worker, so that the number of looks is certain.
+fn plane(points: &[Point2], work: impl Fn(&Batch) -> Result<()>, queries: &[Point2]) -> usize {
+    let made = triangulate(points, Method::Auto, 1, &IDLE).unwrap();
+    let given = Triangles {
+        points,
+        simplices: &made.arrays.simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    let kept = Kept::of(&given, &IDLE).unwrap();
+    let run = |watch: &Watch| {
+        work(&Batch {
+            locator: Locator::new(given, &kept, watch),
+            queries,
+            workers: 1,
+            watch,
+        })
+    };
+    // The boundary is made once.
+    run(&IDLE).unwrap();
+    looks(run)
+}
+
+#[test]
+fn one_query_among_very_many_neighbors() {
+    let points = circle(3000);
+    let values = vec![0.0; points.len()];
+    for kind in [Kind::Sibson, Kind::Laplace] {
+        let found = plane(
+            &points,
+            |batch| {
+                let field = Field::new(&batch.locator.given, &values, None, 1)?;
+                interpolate::natural_values(batch, kind, field, &[], Order::Value).map(drop)
+            },
+            &[[0.1, 0.2]],
+        );
+        // One lot of output and of queries, and then one in a hundred neighbors or so.
+        assert!(found > 3000 / 400, "{found}");
+    }
+}
+
+#[test]
+fn one_query_among_very_many_neighbors_in_3d() {
+    let lifted = |p: [f64; 2]| {
+        let (sin, cos) = (p[0] * std::f64::consts::TAU).sin_cos();
+        let z = 2.0 * p[1] - 1.0;
+        let r = (1.0 - z * z).sqrt();
+        [r * cos, r * sin, z]
+    };
+    let points: Vec<_> = scattered(1500).into_iter().map(lifted).collect();
+    let made = delaunay3::triangulate(&points, 1, &IDLE).unwrap();
+    let given = Tetrahedra {
+        points: &points,
+        simplices: &made.arrays.simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    let kept = locate3::Kept::of(&given, &IDLE).unwrap();
+    let queries = [[0.1, 0.2, 0.3]; 20];
+    let found = looks(|watch| {
+        interpolate3::natural(&locate3::Batch {
+            locator: locate3::Locator::new(given, &kept, watch),
+            queries: &queries,
+            workers: 1,
+            watch,
+        })
+    });
+    assert!(found > 10, "{found}");
+}
+
+#[test]
+fn holes_with_very_many_corners() {
+    let mut points = circle(2000);
+    points.push([0.0, 0.0]);
+    let made = triangulate(&points, Method::Auto, 1, &IDLE).unwrap();
+    let given = Triangles {
+        points: &points,
+        simplices: &made.arrays.simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    let left = Left::Natural(Kind::Sibson);
+    let found = looks(|watch| interpolate::leave_one_out(given, left, 1, watch));
+    assert!(found > 10, "{found}");
+}
+
+#[test]
+fn queries_that_are_put_in_order() {
+    let points = scattered::<2>(1 << 12);
+    let queries = scattered::<2>(1 << 19);
+    let found = plane(&points, |batch| locate::find(batch).map(drop), &queries);
+    // Each lot of 512, two lots for each of three digits twice, and output.
+    assert!(found > (1 << 10) + 16, "{found}");
+    let alone = looks(|watch| order::order_of(&queries, 1, watch));
+    assert!(alone > 16, "{alone}");
+}
+
+#[test]
+fn a_large_triangulation_and_what_follows_from_it() {
+    let points = scattered::<2>(300_000);
+    let found = looks(|watch| triangulate(&points, Method::Auto, 1, watch));
+    // Points that are dealt, insertions, and triangles that are written.
+    assert!(
+        found > 300_000 / 64 + 300_000 / 4096 + 600_000 / (1 << 14),
+        "{found}"
+    );
+    let made = triangulate(&points, Method::Auto, 1, &IDLE).unwrap();
+    let simplices = &made.arrays.simplices;
+    let given = Triangles {
+        points: &points,
+        simplices,
+        neighbors: &made.arrays.neighbors,
+    };
+    assert!(looks(|watch| validate(given, watch)) > 300_000 / 64);
+    assert!(looks(|watch| lawson(&points, simplices, false, watch)) > 300_000 / 64);
+    assert!(looks(|watch| Kept::of(&given, watch)) > 5);
+    let edges = measure::edges2(simplices, given.neighbors, points.len(), 1, &IDLE).unwrap();
+    assert!(
+        looks(|watch| measure::edges2(simplices, given.neighbors, points.len(), 1, watch)) > 40
+    );
+    assert!(looks(|watch| measure::around(&edges, points.len(), watch)) > 40);
+    let (indptr, indices) = measure::around(&edges, points.len(), &IDLE).unwrap();
+    let around = interpolate::Adjacency::new(points.len(), &indptr, &indices).unwrap();
+    let values = vec![1.0; points.len()];
+    let field = Field::of_rows(points.len(), &values, None, 1).unwrap();
+    let found = looks(|watch| global_gradients(&points, around, field, 1e-6, None, 9, 1, watch));
+    assert!(found > 20, "{found}");
+}
+
+#[test]
+fn segments_that_cross() {
+    let n = 100;
+    let line = |i: usize| {
+        let x = 0.5 + i as f64;
+        [[[x, -1.0], [x, n as f64]], [[-1.0, x], [n as f64, x]]]
+    };
+    let points: Vec<Point2> = (0..n).flat_map(line).flatten().collect();
+    let segments: Vec<[u32; 2]> = (0..2 * n as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+    let options = Options {
+        split: true,
+        conforming: false,
+        max_vertices: 1 << 20,
+        method: Method::Auto,
+        workers: 1,
+    };
+    let found = looks(|watch| constrain(&points, &segments, options, watch));
+    // Pieces between n^2 crossings wait and are added.
+    assert!(found > 4 * n * n / 1024, "{found}");
+}
+
+#[test]
+fn hulls_of_very_many_points() {
+    let flat = circle(200_000);
+    assert!(looks(|watch| hull::hull2(&flat, watch)) > 8);
+    let points = scattered::<3>(600_000);
+    assert!(looks(|watch| hull::hull3(&points, watch)) > 16);
+}
