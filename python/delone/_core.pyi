@@ -31,6 +31,7 @@ __all__ = [
     "find_simplex2",
     "gradients_global2",
     "gradients_local2",
+    "gradients_local3",
     "hull2",
     "hull3",
     "improve3",
@@ -335,6 +336,14 @@ def gradients_local2(
     indices: NDArray[np.int32],
     values: NDArray[np.float64],
     degree: int,
+    workers: int,
+) -> NDArray[np.float64]: ...
+def gradients_local3(
+    points: NDArray[np.float64],
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    values: NDArray[np.float64],
+    vertices: NDArray[np.int32],
     workers: int,
 ) -> NDArray[np.float64]: ...
 def lawson2(

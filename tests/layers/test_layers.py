@@ -200,7 +200,8 @@ CORE: dict[str, set[str]] = {
     }
     | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
-    "interpolate3": {"interpolate", "locate", "locate3", "wide", "delone_predicates"} | GROUND,
+    "interpolate3": {"interpolate", "locate", "locate3", "parallel", "wide", "delone_predicates"}
+    | GROUND,
 }
 # The crates that each crate may need.
 NEEDS = {

@@ -1,17 +1,17 @@
 //! Interpolation: the bodies of the methods of `Locator2`, and functions beside it.
 
-use delone_core::Point2;
 use delone_core::error::{Error, Result};
 use delone_core::interpolate::{
     Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
+use delone_core::{Point2, Point3, interpolate3};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, flat, rows, shaped};
+use crate::arrays::{column, each_in_range, flat, rows, shaped};
 use crate::errors::raise;
 use crate::locator::Plane;
 use crate::signals::watched;
@@ -293,4 +293,31 @@ pub fn gradients_local2(
         local_gradients(rows, edges, field, degree, workers, watch)
     })?;
     shaped(py, found, [n, columns, 2])
+}
+
+/// Gradients of linear functions fitted around some vertices of a 3-D triangulation.
+#[pyfunction]
+pub fn gradients_local3(
+    py: Python<'_>,
+    points: Points<'_>,
+    indptr: PyReadonlyArray1<'_, i32>,
+    indices: PyReadonlyArray1<'_, i32>,
+    values: Values<'_>,
+    vertices: PyReadonlyArray1<'_, i32>,
+    workers: usize,
+) -> PyResult<Array> {
+    let fail = |e: Error| raise(py, &e);
+    let rows: &[Point3] = rows(&points, "points").map_err(fail)?;
+    let (n, columns) = (rows.len(), values.shape()[1]);
+    let starts = flat(&indptr, "indptr").map_err(fail)?;
+    let ends = flat(&indices, "indices").map_err(fail)?;
+    let vertices = flat(&vertices, "vertices").map_err(fail)?;
+    each_in_range(vertices, 0, n, "vertices").map_err(fail)?;
+    let items = flat(&values, "values").map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let found = watched(py, |watch| {
+        let edges = Adjacency::new(n, starts, ends)?;
+        interpolate3::local_gradients(rows, edges, field, vertices, workers, watch)
+    })?;
+    shaped(py, found, [vertices.len(), columns, 3])
 }

@@ -52,6 +52,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(interpolate::combine2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_global2, m)?)?;
     m.add_function(wrap_pyfunction!(interpolate::gradients_local2, m)?)?;
+    m.add_function(wrap_pyfunction!(interpolate::gradients_local3, m)?)?;
     m.add_function(wrap_pyfunction!(refine::refine2, m)?)?;
     m.add_function(wrap_pyfunction!(refine::judge2, m)?)?;
     m.add_function(wrap_pyfunction!(improve::improve3, m)?)?;

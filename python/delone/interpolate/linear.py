@@ -120,7 +120,7 @@ class Linear(Interpolator):
             return None
         mesh = self._mesh
         if self._ndim == SPACE:
-            return hull_gradients(mesh, columns)
+            return hull_gradients(mesh, columns, as_workers(self._workers))
         around = mesh.vertex_neighbor_vertices
         return plane_gradients(mesh.points, around, columns, as_workers(self._workers))
 

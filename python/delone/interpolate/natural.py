@@ -153,9 +153,9 @@ class NaturalNeighbor(Smooth):
             return super().gradients(columns)
         if self._extrapolate != "linear":
             return None
-        if self._ndim == SPACE:
-            return hull_gradients(self._mesh, columns)
         threads = as_workers(self._workers)
+        if self._ndim == SPACE:
+            return hull_gradients(self._mesh, columns, threads)
         return plane_gradients(self._sheet.points, self._around(), columns, threads)
 
     def _require_gradients(self) -> None:

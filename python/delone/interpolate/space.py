@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from delone import _core
 from delone.errors import InputError
 from delone.interpolate.hull import Terms
 from delone.space import geometry
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["SPACE", "face_terms", "hull_gradients", "refuse", "slopes"]
 
 SPACE = 3
-# Above, differences of coordinates may overflow.
-_LARGE = 1e300
 
 
 def refuse(what: str, instead: str) -> None:
@@ -103,15 +102,17 @@ def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
     return found
 
 
-def hull_gradients(mesh: Triangulation, columns: Floats) -> Floats:
-    """Return, at vertices of the hull, the slopes of linear functions that fit neighbours best.
+def hull_gradients(mesh: Triangulation, columns: Floats, workers: int) -> Floats:
+    """Return, at vertices of the hull, the slopes of linear functions that fit neighbors best.
 
     Parameters
     ----------
     mesh : Triangulation
-        Of points in space.
+        Of points in 3-D.
     columns : ndarray of float64, shape (n, c)
         Values at the points.
+    workers : int
+        Number of threads.
 
     Returns
     -------
@@ -120,31 +121,12 @@ def hull_gradients(mesh: Triangulation, columns: Floats) -> Floats:
 
     Notes
     -----
-    Neighbours count by the inverse square of their distance. Where they lie in one plane the slope
-    across it is 0.
+    Neighbors count by the inverse square of their distance, but no more than rounded values allow
+    where they nearly coincide. Where they determine no slope, or hardly, their neighbors are asked
+    as well; where these lie in one plane, too, the slope across it is 0.
     """
-    found = np.zeros((mesh.npoints, columns.shape[1], 3))
+    found = np.zeros((mesh.npoints, columns.shape[1], SPACE))
     rows = np.unique(mesh.convex_hull)
-    indptr, indices = mesh.vertex_neighbor_vertices
-    count = np.diff(indptr)[rows]
-    owner = np.repeat(np.arange(len(rows)), count)
-    first = np.repeat(indptr[rows].astype(np.int64), count)
-    ends = np.cumsum(count)
-    beside = indices[first + np.arange(len(owner)) - np.repeat(ends - count, count)]
-    points = mesh.points
-    # In units of their own, and halves of the largest, so that nothing overflows; slopes beyond the
-    # range of doubles are not finite.
-    half = 0.5 if np.abs(points).max(initial=0.0) > _LARGE else 1.0
-    with np.errstate(over="ignore", invalid="ignore"):
-        way = half * points[beside] - half * points[rows][owner]
-        unit = np.abs(way).max(axis=1, keepdims=True)
-        way /= unit
-        length = np.sqrt((way**2).sum(axis=1, keepdims=True))
-        way /= length
-        rise = (half * columns[beside] - half * columns[rows][owner]) / length / unit
-        begins = ends - count
-        matrix = np.add.reduceat(way[:, :, None] * way[:, None], begins, axis=0)
-        right = np.add.reduceat(way[:, :, None] * rise[:, None], begins, axis=0)
-        solved = np.linalg.pinv(matrix, hermitian=True) @ right
-    found[rows] = np.moveaxis(solved, 1, 2)
+    around = mesh.vertex_neighbor_vertices
+    found[rows] = _core.gradients_local3(mesh.points, *around, columns, rows, workers)
     return found

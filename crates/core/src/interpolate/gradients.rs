@@ -20,7 +20,7 @@ const EDGES: usize = 1 << 17;
 /// Share of the longest edge below which an edge counts in a local fit no more than if it were as long. The rounding
 /// of two values makes a slope between them, the larger the nearer they are; and the nearer they are,
 /// the more they would count. So about 1e-11 of the values over the distances is left of that.
-const NEAR: f64 = 1e-5;
+pub const NEAR: f64 = 1e-5;
 
 /// An edge from a vertex.
 #[derive(Debug, Clone, Copy)]
@@ -312,7 +312,7 @@ const SWING: f64 = 3.0;
 
 /// How much a gradient may move with the values, over their distances, before the plane of a wider
 /// ring is asked: where the neighbours are on a line but for one that all but coincides.
-const NOISY: f64 = 1e5;
+pub const NOISY: f64 = 1e5;
 
 /// The factors by which differences to surrounding values make a gradient.
 struct Fit<'a> {
