@@ -128,7 +128,7 @@ impl<'a> Locator<'a> {
         if asked < self.given.points.len() {
             return Ok(None);
         }
-        kept(&self.kept.sites, || Sites::of(&self.given)).map(Some)
+        kept(&self.kept.sites, || Sites::of(&self.given, self.watch)).map(Some)
     }
 
     /// Where `q` is, on the way from triangle `from`.
