@@ -95,12 +95,12 @@ impl<'a> Tree<'a> {
     }
 
     /// The rows of up to `most` points in conflict with a triangle, deepest first; and whether that
-    /// was all.
+    /// was all. The search looks for one point more than is asked: if there is none, that was all.
     fn query(&self, corners: [Point2; 3], most: usize, found: &mut Vec<(f64, u32)>) -> bool {
+        let wanted = most.saturating_add(1);
         let [x, y, radius] = disk(corners);
         let ([x, y], radius) = (measured([x, y], self.unit), radius / self.unit + LEAST);
         let reach = radius * radius;
-        let mut all = true;
         found.clear();
         let mut open = vec![(0.0, 0u32)];
         while let Some((distance, i)) = open.pop() {
@@ -108,20 +108,19 @@ impl<'a> Tree<'a> {
             if distance > reach {
                 continue;
             }
-            if found.len() == most && most > 0 {
+            if found.len() == wanted {
                 if radius.is_infinite() {
                     // No box is out of reach, and none is known to be the deeper: enough.
-                    return false;
+                    break;
                 }
-                if -distance * SLACK <= found[most - 1].0 {
-                    all = false;
+                if -distance * SLACK <= found[most].0 {
                     continue;
                 }
             }
             let node = &self.nodes[i as usize];
             if node.children == 0 {
                 for &row in &self.rows[node.start as usize..node.end as usize] {
-                    all &= self.meet(row, corners, [x, y], most, found);
+                    self.meet(row, corners, [x, y], wanted, found);
                 }
                 continue;
             }
@@ -136,31 +135,31 @@ impl<'a> Tree<'a> {
             }
             open.extend(pair);
         }
+        let all = found.len() <= most;
+        found.truncate(most);
         all
     }
 
-    /// Takes a point up among the deepest if it is in conflict; says no where one was left out.
+    /// Adds a point to the deepest `wanted` ones if it is in conflict and deep enough.
     fn meet(
         &self,
         row: u32,
         corners: [Point2; 3],
         center: [f64; 2],
-        most: usize,
+        wanted: usize,
         found: &mut Vec<(f64, u32)>,
-    ) -> bool {
+    ) {
         let p = self.points[row as usize];
         let [a, b, c] = corners;
         if corners.contains(&p) || incircle_canonical(a, b, c, p) != Sign::Positive {
-            return true;
+            return;
         }
         let [x, y] = measured(p, self.unit);
         let (dx, dy) = (x - center[0], y - center[1]);
         let depth = -(dx * dx + dy * dy);
         let at = found.partition_point(|&(other, _)| other >= depth);
         found.insert(at, (depth, row));
-        let more = found.len() > most;
-        found.truncate(most);
-        !more
+        found.truncate(wanted);
     }
 }
 
