@@ -14,6 +14,7 @@ import pytest
 
 from delone import Delaunay, distributed
 from delone.datasets import baja
+from delone.distributed.read import dem
 from delone.errors import FileFormatError, InputError
 from delone.interpolate import Linear, grid
 
@@ -110,6 +111,26 @@ def test_cells_of_a_raster_need_not_be_square(
         assert file.transform.almost_equals(
             rasterio.Affine(across, 0, low[0], 0, -up, low[1] + up * len(right.y)), 1e-6
         )
+
+
+@pytest.mark.parametrize("block", [1, 5, 1 << 18])
+@pytest.mark.parametrize("sides", [(2.0, 2.0), (2.0, 0.625), (0.625, 2.0)])
+def test_nodes_on_the_sides_of_the_hull(
+    sides: tuple[float, float], block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Centres of cells that lie on the last column or row of points have a value, too."""
+    rasterio = pytest.importorskip("rasterio")
+    monkeypatch.setattr(dem, "_BLOCK", block)
+    x, y = (values.ravel() for values in np.meshgrid(np.arange(6.0), np.arange(6.0)))
+    points = np.column_stack([x, y, 2 + 3 * x + 4 * y])
+    tin = distributed.triangulate(points, tmp_path / "tin", tile_points=9)
+    assert tin.ntiles == 4
+    tin.to_raster(sides, tmp_path / "dem.tif")
+    columns, rows = (np.arange(np.ceil(5 / side)) * side + side / 2 for side in sides)
+    assert max(columns[-1], rows[-1]) == 5
+    with rasterio.open(tmp_path / "dem.tif") as file:
+        found = file.read(1)[::-1]
+    np.testing.assert_allclose(found, 2 + 3 * columns + 4 * rows[:, None], rtol=1e-14)
 
 
 def test_a_disk_without_room_for_a_raster(

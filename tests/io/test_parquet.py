@@ -1,6 +1,6 @@
 """Tables by pyarrow: Parquet, Arrow, Feather."""
 
-from decimal import Decimal
+from decimal import Decimal, localcontext
 
 import numpy as np
 import pyarrow as pa
@@ -70,6 +70,23 @@ def test_decimals_are_the_doubles_that_their_digits_denote(tmp_path, name, bits)
     save(tmp_path / name, table)
     right = [[float(text) for text in row] for row in texts]
     assert read_points(tmp_path / name).points.tolist() == right
+
+
+@pytest.mark.parametrize("scale", [-6, -1, 0, 1, 15, 21, 22, 23, 24, 25, 30, 38])
+def test_decimals_of_every_power_of_ten(tmp_path, scale):
+    """The powers up to 10^22 are doubles; of more than 15 digits those that come back are read."""
+    rng = np.random.default_rng(scale + 6)
+    digits = rng.integers(-(10**15), 10**15, 1500).tolist()
+    digits += rng.integers(2**53, 10**17, 3000).tolist()
+    values = [Decimal(number).scaleb(-scale) for number in digits]
+    unit = Decimal(1).scaleb(-scale)
+    with localcontext(prec=100):
+        values = [v for v in values if Decimal(float(v)).quantize(unit) == v]
+    assert len(values) > 1500
+    column = pa.array(values, pa.decimal128(38, scale))
+    save(tmp_path / "a.feather", pa.table({"x": column, "y": np.zeros(len(values))}))
+    found = read_points(tmp_path / "a.feather").points[:, 0]
+    assert found.tolist() == [float(str(v)) for v in values]
 
 
 @pytest.mark.parametrize(
