@@ -44,6 +44,17 @@ def test_cells_carry_the_attributes_of_their_sites(suffix, sites, outline, figur
 
 
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".fgb", ".parquet"])
+def test_numbers_come_back_with_all_digits(suffix, figures, tmp_path):
+    path = tmp_path / f"cells{suffix}"
+    text = "x,y,w\n0.30000000000000004,0,0.19999999999999996\n4,0,1.0000000000000002\n0,3,1e-300\n"
+    (tmp_path / "a.csv").write_text(text)
+    figures("voronoi", tmp_path / "a.csv", "--attributes", "w", "--clip=-1,-1,5,4", "-o", path)
+    cells = (geopandas.read_parquet if suffix == ".parquet" else geopandas.read_file)(path)
+    # FlatGeobuf has an order of its own.
+    assert sorted(cells["w"].tolist()) == [1e-300, 0.19999999999999996, 1.0000000000000002]
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".fgb", ".parquet"])
 def test_empty_cells_are_written(suffix, figures, tmp_path):
     # The third site is hidden by the first, the last one is far from the box.
     (tmp_path / "a.csv").write_text("x,y,w\n0,0,9\n4,0,0\n1,0,0\n90,90,0\n")

@@ -113,3 +113,18 @@ def test_a_reference_system_that_nobody_knows(tmp_path, suffix, crs):
     with pytest.raises(FileFormatError, match="cannot hold the reference system"):
         write_mesh(tmp_path / f"a{suffix}", Delaunay(XY), crs=crs)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
+def test_doubles_beside_short_decimals_come_back(tmp_path, suffix):
+    """Their seventeen digits have a run of 0 or 9 near the end."""
+    dice = np.random.default_rng(7)
+    short = np.round(dice.random((200, 3)) * 10.0 ** dice.integers(0, 7, (200, 1)), 3)
+    values = np.nextafter(short, np.where(dice.random(short.shape) < 0.5, -np.inf, np.inf))
+    mesh, file = Delaunay(values[:, :2]), tmp_path / f"a{suffix}"
+    weights = values.ravel()[: mesh.nsimplex]
+    write_mesh(file, mesh, z=values[:, 2], attributes={"w": weights})
+    data = geopandas.read_file(file)
+    drawn = shapely.get_coordinates(data.geometry, include_z=True).reshape(-1, 4, 3)
+    assert np.array_equal(drawn[:, :3], values[mesh.simplices])
+    assert np.array_equal(data["w"], weights)

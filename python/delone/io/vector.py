@@ -47,9 +47,10 @@ __all__ = [
 # Layers are written in parts, so that the geometries of one part are in memory at a time.
 _PART = 1 << 18
 # When it closes files of these formats, GDAL does not tell whether the last part was written. So
-# their bytes are written here. Seventeen digits bring back every double.
+# their bytes are written here. Seventeen digits would bring back every double, but up to nineteen
+# GDAL takes a run of 0 or 9 near the end for a rounding error: 0.19999999999999996 becomes 0.2.
 _IN_MEMORY: dict[str, dict[str, Any]] = {
-    "GeoJSON": {"SIGNIFICANT_FIGURES": 17},
+    "GeoJSON": {"SIGNIFICANT_FIGURES": 20},
     "FlatGeobuf": {},
 }
 
