@@ -40,7 +40,9 @@ def test_files_of_solvers(mesh: delone.Mesh, tmp_path: Path, suffix: str) -> Non
         markers = np.concatenate(
             [d for b, d in zip(found.cells, found.cell_data[name], strict=True) if b.type == "line"]
         )
-        assert sorted(markers.tolist()) == sorted(mesh.segment_markers.tolist())
+        found_of = {frozenset(p): m for p, m in zip(lines.tolist(), markers.tolist(), strict=True)}
+        pairs = zip(mesh.segments.tolist(), mesh.segment_markers.tolist(), strict=True)
+        assert found_of == {frozenset(pair): marker for pair, marker in pairs}
 
 
 @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".gpkg", ".geojson", ".png", ".svg"])
