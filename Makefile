@@ -10,6 +10,8 @@ RUST_MINOR := 89
 FUZZ_SECONDS ?= 20
 BENCH ?=
 MUTANTS ?=
+# The order of the tests; any number, at random by default.
+SEED ?=
 DEMO_DATA := examples/data/ahn3_crop_100m.laz
 
 VENV := .venv
@@ -28,7 +30,7 @@ NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := -E $(EXTRAS) -G bench
 
-.PHONY: help need build demo test lint docs bench fuzz mutants clean
+.PHONY: help need build demo test lint docs bench fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
@@ -39,6 +41,7 @@ help:
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
+	@echo 'make map     the charts and tables of modules in ARCHITECTURE.md'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
 
@@ -83,9 +86,9 @@ demo: $(STAMPS)/demo
 
 test: $(STAMPS)/test
 	$(CARGO_TEST)
-	$(BIN)/pytest
-	$(BIN)/pytest --doctest-modules python/delone
-	$(BIN)/pytest --doctest-glob='*.rst' docs
+	$(BIN)/pytest $(if $(SEED),--randomly-seed=$(SEED))
+	$(BIN)/pytest -p no:randomly --doctest-modules python/delone
+	$(BIN)/pytest -p no:randomly --doctest-glob='*.rst' docs
 	for example in examples/*.py; do $(BIN)/python $$example || exit 1; done
 
 lint: $(STAMPS)/test
@@ -122,6 +125,10 @@ bench: $(STAMPS)/bench
 
 mutants: $(STAMPS)/test
 	$(BIN)/python tests/mutants/run.py $(foreach name,$(MUTANTS),'$(name)')
+
+# The map needs Python alone.
+map:
+	$(PYTHON) tests/oracles/structure.py
 
 fuzz: need
 	fuzz/run.sh $(FUZZ_SECONDS)

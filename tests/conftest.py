@@ -76,6 +76,7 @@ EXPECTED_SKIPS = {
         "tests/conformance/*",
         "SciPy is installed without its tests",
     ): "as packages of systems have it",
+    ("tests/refine/test_gaps.py*", "needs the countries*"): "data that are not shipped",
     ("*", "*POSIX*"): "Windows",
     ("*", "RLIMIT_AS is kept on Linux alone"): "macOS and Windows",
     ("*", "links need a privilege on Windows"): "Windows",

@@ -1,4 +1,4 @@
-"""Entry of the command ``delone`` and of ``python -m delone``.
+"""Entry point of the command ``delone`` and of ``python -m delone``.
 
 The command needs the extra ``cli``; without it, one line says so.
 """

@@ -1,4 +1,4 @@
-"""The one place that coerces what callers pass, and refuses what has no exact meaning.
+"""The one place that converts what callers pass, and rejects what has no exact meaning.
 
 After `as_points`, every other module may assume a float64, native, aligned, C-contiguous array of
 shape (n, 2) or (n, 3) whose values are exactly the ones that the caller wrote. Whatever float64

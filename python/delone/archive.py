@@ -1,4 +1,4 @@
-"""Triangulations in files: NumPy's .npz archives, checked before they are believed.
+"""Saving and loading: triangulations in NumPy's .npz archives, checked when they are read.
 
 An archive holds one array for each name in the layout of its kind, and the version of the layouts.
 Reading takes nothing on trust: what zip and array headers claim is compared with the bytes that are

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: written beside the target, then renamed.
+"""Atomic writing: files appear complete or not at all.
 
 Whatever keeps a file from being written ends as one kind of error here, which names the file.
 """

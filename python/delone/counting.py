@@ -1,4 +1,4 @@
-"""Numbers with their nouns and verbs, for sentences and representations."""
+"""Counts with singular or plural nouns and verbs, for messages and representations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The class Delaunay: a triangulation of points in the plane or in space as immutable arrays.
+"""The class Delaunay: a 2-D or 3-D Delaunay triangulation as immutable arrays.
 
 The core makes `simplices` and `neighbors`; what follows from them is in `triangulation` and, where
 there are three coordinates, in `space`. Here is what only a Delaunay triangulation has: its

@@ -1,4 +1,4 @@
-"""Reference systems of coordinates: what data say of theirs, and whether it is in degrees.
+"""Coordinate reference systems of input data, and the warning about degrees.
 
 Everything that delone computes is planar. Longitudes and latitudes are taken as they are, which is
 rarely what is meant: a degree of longitude is shorter near the poles, and 179.9 is next to -179.9.

@@ -1,4 +1,4 @@
-"""The class ConvexHull: the convex hull of points in the plane or in space, as immutable arrays."""
+"""The class ConvexHull: a 2-D or 3-D convex hull as immutable arrays."""
 
 from __future__ import annotations
 

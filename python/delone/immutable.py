@@ -1,4 +1,4 @@
-"""Objects that never change, and so may be shared by any number of threads.
+"""Base classes of immutable objects, which any number of threads may share.
 
 What follows from an object is computed on first use and kept; arrays that it hands out cannot be
 written to.

@@ -1,4 +1,4 @@
-"""Lawson's flips: make any triangulation of points the Delaunay triangulation, and watch it happen.
+"""Lawson's flips: turn any triangulation of points into the Delaunay triangulation, step by step.
 
 The core flips; this module coerces what goes in and, where asked, computes the angles after each
 flip from exact integers.

@@ -1,4 +1,4 @@
-"""Where points lie in a triangulation: the triangle, the weights of its corners, the hull beside.
+"""Results of point location: triangle, barycentric weights, nearest point of the boundary.
 
 The core keeps an index of starts for the walks (`Locator2`); a triangulation makes it on the first
 query and holds it. Decisions are exact; weights and the nearest points of the boundary are rounded

@@ -1,4 +1,4 @@
-"""Triangulations of points that are repeated at a period in x, in y, or both.
+"""Periodic Delaunay triangulations, with a period in x, in y, or both.
 
 The core triangulates the points and copies of them around, with predicates that are exact on the
 sums of coordinates and periods; here one triangle of each class of translates is kept, and

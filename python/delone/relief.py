@@ -1,4 +1,4 @@
-"""Pictures of rasters: colour by value, light and shadow by slope, contours where they help.
+"""Plots of rasters: colors, hillshade and contours.
 
 Needs matplotlib (extra ``plot``). Colours and light are those of `delone.plot`.
 """

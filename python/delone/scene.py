@@ -1,4 +1,4 @@
-"""Pictures of triangulations in space and of convex hulls, by pyvista (extra ``pyvista``).
+"""3-D plots of triangulations and convex hulls with PyVista (extra ``pyvista``).
 
 Tetrahedra hide each other, so half of them can be left out where a plane cuts through, and each can
 be shrunk about its centre. Drawn off screen where no window is wanted or there is none.

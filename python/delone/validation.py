@@ -1,4 +1,4 @@
-"""What an exact check of a triangulation found: nothing, or the culprits by number.
+"""Reports of exact validation: what is wrong with a triangulation, by number.
 
 The checks themselves run in the core; this module only gives their answer a name for each kind of
 fault and words that a person can read. `validate` takes triangles from anywhere.

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from structure import rust_text, used_modules
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
@@ -250,37 +252,10 @@ def python_faults(package: Path) -> list[str]:
     return faults
 
 
-def rust_text(path: Path) -> str:
-    """Source without comments and strings."""
-    text = path.read_text(encoding="utf-8")
-    text = re.sub(r"//[^\n]*", "", text)
-    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    return re.sub(r'"(\\.|[^"\\])*"', '""', text)
-
-
-def first_words(tree: str) -> list[str]:
-    """First words of the paths in a use tree: `{a::b, c}` has a and c."""
-    if not tree.startswith("{"):
-        return re.findall(r"^\w+", tree)
-    words, depth, start = [], 0, 1
-    for i, letter in enumerate(tree):
-        depth += {"{": 1, "}": -1}.get(letter, 0)
-        if (letter == "," and depth == 1) or depth == 0:
-            words += re.findall(r"^\w+", tree[start:i].strip())
-            start = i + 1
-        if depth == 0:
-            break
-    return words
-
-
 def rust_uses(path: Path) -> set[str]:
     """Modules of the same crate and names of other crates that a file mentions in paths."""
     text = rust_text(path)
-    found = {
-        word
-        for match in re.finditer(r"\bcrate::", text)
-        for word in first_words(text[match.end() :])
-    }
+    found = used_modules(path)
     found |= {name for name in NAMES_OF_CRATES if re.search(rf"\b{name}\b\s*(::|;|as\b)", text)}
     return found
 

@@ -1,4 +1,4 @@
-"""The structure of the sources, read from their imports: files of Python and of the core.
+"""The structure of the sources, read from their imports and from the heads of files.
 
 Python is read with `ast`: every import counts, those inside functions and those for types included.
 A name that a package exports again is followed to the file that defines it.
@@ -7,11 +7,16 @@ A name that a package exports again is followed to the file that defines it.
 from __future__ import annotations
 
 import ast
+import itertools
+import re
+import textwrap
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "python" / "delone"
+CORE = ROOT / "crates" / "core" / "src"
+PAGE = ROOT / "ARCHITECTURE.md"
 
 # A file of Python by its dotted name, and the files that it imports.
 Graph: TypeAlias = dict[str, set[str]]
@@ -90,3 +95,181 @@ def knots(graph: Graph) -> list[list[str]]:
         if node not in index:
             visit(node)
     return sorted(found, key=len, reverse=True)
+
+
+def sentence(text: str) -> str:
+    """The first sentence of a text, or all of it, on one line without a full stop."""
+    words = " ".join(text.split())
+    return re.split(r"(?<=[^.])\.(?: |$)", words)[0]
+
+
+def python_summary(path: Path) -> str:
+    """What a module of Python says first of itself."""
+    return sentence(ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "")
+
+
+def rust_summary(path: Path) -> str:
+    """What a module of Rust says first of itself."""
+    lines = itertools.takewhile(
+        lambda line: line.startswith("//!") and line != "//!",
+        path.read_text(encoding="utf-8").splitlines(),
+    )
+    return sentence(" ".join(line[3:] for line in lines))
+
+
+def parts_of(graph: Graph) -> Graph:
+    """What the parts of a package import of each other: modules and folders just below it."""
+    found: Graph = {}
+    for file, targets in graph.items():
+        part = _part(file)
+        found.setdefault(part, set()).update(_part(to) for to in targets)
+    return {part: to - {part} for part, to in found.items()}
+
+
+def _part(file: str) -> str:
+    words = file.split(".")
+    return words[1] if len(words) > 1 else words[0]
+
+
+def levels(graph: Graph) -> list[list[str]]:
+    """Parts in layers: each imports only parts of the layers before its own.
+
+    Parts that import each other in a circle share a layer.
+    """
+    together = {part: tuple(knot) for knot in knots(graph) for part in knot}
+    level: dict[str, int] = {}
+
+    def of(part: str) -> int:
+        if part not in level:
+            group = set(together.get(part, (part,)))
+            below = {to for each in group for to in graph[each] if to in graph} - group
+            found = 1 + max((of(to) for to in below), default=-1)
+            level.update(dict.fromkeys(group, found))
+        return level[part]
+
+    for part in graph:
+        of(part)
+    rows: list[list[str]] = [[] for _ in range(max(level.values()) + 1)]
+    for part in sorted(graph):
+        rows[level[part]].append(part)
+    return rows
+
+
+class Part(NamedTuple):
+    """A part of the core or of the package: where it is and what it says of itself."""
+
+    place: str
+    summary: str
+
+
+def core_parts() -> dict[str, Part]:
+    """The modules of the core by name."""
+    found = {}
+    for path in sorted(CORE.iterdir()):
+        head = path / "mod.rs" if path.is_dir() else path
+        if path.stem != "lib":
+            place = f"crates/core/src/{path.name}{'/' if path.is_dir() else ''}"
+            found[path.stem] = Part(place, rust_summary(head))
+    return found
+
+
+def python_parts() -> dict[str, Part]:
+    """The modules and folders of the package by name."""
+    found = {}
+    for path in sorted(PACKAGE.iterdir()):
+        head = path / "__init__.py" if path.is_dir() else path
+        if head.suffix == ".py" and head.exists() and path.name != "__init__.py":
+            place = f"python/delone/{path.name}{'/' if path.is_dir() else ''}"
+            found[path.stem] = Part(place, python_summary(head))
+    return found
+
+
+def drawn(core: Graph) -> str:
+    """The map of the core and of the package, as a text for ARCHITECTURE.md."""
+    package = {part: to for part, to in parts_of(python_graph()).items() if part != "delone"}
+    text = [
+        _chart("Modules of the core: each uses only modules on lines above its own", core),
+        _table(core_parts(), core),
+        _chart(
+            "Parts of the package: each imports parts on its own line or on lines above it",
+            package,
+        ),
+        _table(python_parts(), package),
+    ]
+    return "\n\n".join(text)
+
+
+def _chart(title: str, graph: Graph) -> str:
+    indent = " " * 4
+    rows = (
+        textwrap.fill("  ".join(row), 100, initial_indent=f"{i:2}  ", subsequent_indent=indent)
+        for i, row in enumerate(levels({part: to & set(graph) for part, to in graph.items()}))
+    )
+    return "\n".join((f"{title}.", "", "```text", *rows, "```"))
+
+
+def _table(parts: dict[str, Part], graph: Graph) -> str:
+    rows = ["| path | contents | uses |", "|---|---|---|"]
+    for name, part in parts.items():
+        uses = ", ".join(sorted(graph.get(name, set()) & set(parts)))
+        summary = part.summary.replace("|", "\\|")
+        rows.append(f"| `{part.place}` | {summary} | {uses} |")
+    return "\n".join(rows)
+
+
+BEGIN, END = "<!-- map: made by `make map` -->\n", "<!-- end of the map -->\n"
+
+
+def with_map(page: str, text: str) -> str:
+    """A page with the map between its marks replaced."""
+    before, rest = page.split(BEGIN)
+    return f"{before}{BEGIN}\n{text}\n\n{END}{rest.split(END)[1]}"
+
+
+def core_graph() -> Graph:
+    """What each module of the core uses of the others, wherever in its files."""
+    found: Graph = {name: set() for name in core_parts()}
+    for path in CORE.rglob("*.rs"):
+        part = path.relative_to(CORE).parts[0].removesuffix(".rs")
+        if part != "lib":
+            found[part] |= used_modules(path) & set(found) - {part}
+    return found
+
+
+def rust_text(path: Path) -> str:
+    """Source without comments and strings."""
+    text = path.read_text(encoding="utf-8")
+    text = re.sub(r"//[^\n]*", "", text)
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    return re.sub(r'"(\\.|[^"\\])*"', '""', text)
+
+
+def first_words(tree: str) -> list[str]:
+    """First words of the paths in a use tree: `{a::b, c}` has a and c."""
+    if not tree.startswith("{"):
+        return re.findall(r"^\w+", tree)
+    words, depth, start = [], 0, 1
+    for i, letter in enumerate(tree):
+        depth += {"{": 1, "}": -1}.get(letter, 0)
+        if (letter == "," and depth == 1) or depth == 0:
+            words += re.findall(r"^\w+", tree[start:i].strip())
+            start = i + 1
+        if depth == 0:
+            break
+    return words
+
+
+def used_modules(path: Path) -> set[str]:
+    """Modules of the same crate that a file of Rust mentions in paths."""
+    text = rust_text(path)
+    return {
+        word
+        for match in re.finditer(r"\bcrate::", text)
+        for word in first_words(text[match.end() :])
+    }
+
+
+if __name__ == "__main__":
+    PAGE.write_text(
+        with_map(PAGE.read_text(encoding="utf-8"), drawn(core_graph())), encoding="utf-8"
+    )

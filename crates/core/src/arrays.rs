@@ -1,4 +1,4 @@
-//! Triangulations as arrays: vertices are rows of points, neighbours simplices, or -1 outside.
+//! Triangulations as arrays: vertices are rows of points, neighbors are simplices or -1 outside.
 //! Simplices are triangles, `N` = 3 corners with `D` = 2 coordinates, or tetrahedra, 4 with 3.
 
 /// A triangulation that is given. Vertices must be rows of `points`, neighbours simplices or -1.

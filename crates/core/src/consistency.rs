@@ -1,6 +1,6 @@
-//! Whether arrays of unknown origin are a mesh at all: neighbors that agree, simplices that are
-//! positively oriented. Indices must be in range. Linear, by all workers; whether the mesh is Delaunay
-//! is for the `validate` modules.
+//! Whether arrays of unknown origin are a mesh: neighbors agree, simplices are positively oriented.
+//! Indices must be in range. Linear, by all workers; whether the mesh is Delaunay is for the `validate`
+//! modules.
 
 use delone_predicates::{Sign, orient2d, orient3d};
 

@@ -1,4 +1,4 @@
-//! What can go wrong in the core, each case with the rows that the caller needs to name.
+//! Errors of the core, each with the rows that the caller needs to name.
 
 use delone_predicates::Point2;
 

@@ -1,4 +1,4 @@
-//! Arrays whose memory may be refused: the core reports that and never aborts.
+//! Fallible allocation: if memory is refused, the core reports an error and never aborts.
 //!
 //! Large arrays ask the kernel for huge pages. First touch of fresh memory by 4 KiB pages costs
 //! 40 ns a point of a triangulation of a million, by 2 MiB pages 20: hence the `unsafe` below.

@@ -1,5 +1,5 @@
-//! What is known of a point set before anything is built: that its coordinates are finite, its
-//! box, and the lexicographic chain of a degenerate set.
+//! Checks of a point set before anything is built: finite coordinates, bounding box, the lexicographic
+//! chain of a degenerate set.
 
 use delone_predicates::{Point2, Point3, lexicographic, orient2d};
 

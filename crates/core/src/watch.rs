@@ -1,4 +1,4 @@
-//! How a caller stops a long loop: the loop asks every few thousand steps.
+//! Interruption: long loops ask a watch every few thousand steps whether to stop.
 
 use crate::error::{Error, Result};
 

@@ -1,5 +1,5 @@
-//! Doubles as integers of any width, and quotients, roots and angles of such integers as doubles: the last resort of
-//! predicates and constructions that no filter decides, and rare enough to allocate.
+//! Doubles as arbitrary-precision integers, with correctly rounded quotients, roots and angles: the
+//! last resort of predicates and constructions that no filter decides.
 
 use delone_predicates::Sign as Turn;
 use delone_predicates::arithmetic::decode_odd;

@@ -1,4 +1,4 @@
-"""The command ``delone``: it reads, calls the public interface, and reports.
+"""The command ``delone``: it reads files, calls the public interface, and reports.
 
 `app` has the commands and their options, `report` the figures, `show` what they look like, `exits`
 the exit codes. Needs typer and rich (extra ``cli``).

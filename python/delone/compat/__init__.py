@@ -1,4 +1,4 @@
-"""Drop-ins: the names and habits of other packages over delone's triangulations.
+"""Drop-in replacements: the interfaces of SciPy and of the package triangle.
 
 Each module is called after the package whose place it takes: `delone.compat.scipy` for
 ``scipy.spatial`` and the interpolators of ``scipy.interpolate``, `delone.compat.triangle` for

@@ -1,4 +1,4 @@
-"""Triangulations that have given segments among their edges, and triangles of geometries.
+"""Constrained triangulations of segments, polygons and lines.
 
 `delaunay` has the class, `segmented` its state, `segments` the report, `regions` and `coverage`
 areas and holes, `editing` changes, `validation` the proof; `polygons` and `geodata` take

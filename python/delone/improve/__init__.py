@@ -1,4 +1,4 @@
-"""Better tetrahedra: meshes of space whose vertices move and whose tetrahedra are replaced.
+"""Improvement of tetrahedral meshes: vertices move and tetrahedra are replaced.
 
 `improve` has the function of that name, `tetmesh` the class TetMesh, `report` what was reached.
 """

@@ -1,4 +1,4 @@
-"""Values between scattered points: exact at the sites, never NaN inside, weights that can be kept.
+"""Interpolation of scattered data: exact at the sites, no NaN inside the hull, reusable weights.
 
 Each interpolator is built once, from points or from a triangulation, and serves any number of
 fields and queries. `grid` makes rasters, `cross_validate` tells how good a method is on the data at

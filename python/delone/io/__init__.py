@@ -1,4 +1,4 @@
-"""Points from files, triangulations and rasters to files.
+"""Reading points, geometries and meshes from files; writing triangulations and rasters.
 
 `read_points` and `write_mesh` choose by the suffix of the file; one module of this package knows
 one family of formats, and imports the library it needs when it is used.

@@ -1,4 +1,4 @@
-"""Pictures of triangulations by matplotlib (extra ``plot``).
+"""2-D plots of triangulations with matplotlib (extra ``plot``).
 
 Where triangles can be seen they are drawn; where they are smaller than a few pixels the surface (or
 the density of points) is drawn as an image, so that a million points take a second and the picture

@@ -1,4 +1,4 @@
-"""Delaunay triangulation as a teacher would show it: short, slow and exact.
+"""Delaunay triangulation as a textbook shows it: short, slow and exact.
 
 Everything here computes with Python's unbounded integers and `fractions.Fraction`, so that no
 answer depends on rounding, and follows the textbook word for word where the fast core does not. It

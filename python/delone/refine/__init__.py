@@ -1,4 +1,4 @@
-"""Meshes: domains filled with triangles of bounded angles and sizes.
+"""Quality meshes: domains filled with triangles of bounded angles and sizes.
 
 `refine` has the function `mesh`, `meshed` the class Mesh, `domains` what is filled, `sizing` sizes
 of all kinds, `adaptivity` and `smoothing` later changes, `report` what was reached.

@@ -1,4 +1,4 @@
-"""Triangulations in space: what follows from tetrahedra, as its neighbours do from triangles.
+"""3-D triangulations: topology, geometry and quality of tetrahedra.
 
 `topology` needs no coordinates, `geometry` measures, `quality` judges, `location` finds points,
 `plane` triangulates points of one plane in space, and `spatial` is the base of `delone.Delaunay`

@@ -1,4 +1,4 @@
-"""Exact assertions about triangulations, for this package's tests and for everybody else's.
+"""Exact assertions about triangulations, for the tests of this package and of others.
 
 Nothing here uses the compiled core: coordinates become Python integers at one common power of two,
 which no arithmetic on them can round, and every test is a few lines of textbook geometry over NumPy

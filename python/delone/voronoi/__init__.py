@@ -1,4 +1,4 @@
-"""Voronoi diagrams of points in the plane and in space, whole or cut to an outline or polyhedron.
+"""2-D and 3-D Voronoi diagrams, whole or clipped to an outline or polyhedron.
 
 `diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
 is, `outline` where they end, `clipping` what that leaves of them, by `pieces` and `overlay`, and

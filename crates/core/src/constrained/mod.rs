@@ -1,6 +1,6 @@
 //! Constrained Delaunay triangulations: every segment is a chain of edges, and all other edges are
-//! Delaunay as far as the segments let two points see each other; ties go by coordinates, as
-//! everywhere. One set of points and segments has one such triangulation.
+//! Delaunay where segments do not block the view; ties are broken by coordinates. One set of points and
+//! segments has one such triangulation.
 //!
 //! The points are triangulated in bulk; then each segment that is not there makes way for itself.
 

@@ -1,4 +1,4 @@
-//! Delaunay triangulations of points in the plane, exact and canonical.
+//! 2-D Delaunay triangulations of points, exact and canonical.
 //!
 //! Every method ends in the same triangles: cocircular points are tied by their coordinates, as if
 //! each lifted point were lowered by an infinitesimal that is larger the smaller the point is in

@@ -1,4 +1,4 @@
-//! Delaunay triangulations of points in space, exact and canonical.
+//! 3-D Delaunay triangulations of points, exact and canonical.
 //!
 //! Each lifted point is lowered by an infinitesimal that is larger the smaller the point is in
 //! lexicographic order; the lower hull is then made of tetrahedra alone, none of them flat, whatever

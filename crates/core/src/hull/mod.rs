@@ -1,4 +1,4 @@
-//! Convex hulls in the plane and in space: exact, each vertex extreme, each facet canonical.
+//! 2-D and 3-D convex hulls: exact, each vertex extreme, each facet canonical.
 //!
 //! `plane` is one chain below and one above. In space `surface` makes one of triangles, by `insertion`, which walks
 //! round an `inner` point; `cells` keep from it most of what is inside. In the surface vertices may lie in

@@ -1,5 +1,5 @@
-//! Improvement of tetrahedra: edges and faces between vertices are removed and vertices are moved,
-//! as long as the worst tetrahedron that is touched becomes better.
+//! Improvement of tetrahedral meshes: edge and face removal and smoothing, as long as the worst
+//! tetrahedron involved gets better.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
 //! International Journal for Numerical Methods in Engineering 40 (1997); J. R. Shewchuk, "Two

@@ -1,4 +1,4 @@
-//! Values between scattered points, from a triangulation of them and a locator in it.
+//! 2-D interpolation of scattered data on a triangulation and its locator.
 //!
 //! `linear` in each triangle, `clough_tocher` on each split in three, `natural` by the cavity that a
 //! query would leave. All are linear in the values (and gradients), so weights serve many fields.

@@ -1,5 +1,4 @@
-//! Interpolation in 3-D: what a query would have for neighbors as a site, and how they count; gradients at
-//! vertices.
+//! 3-D natural neighbor weights of queries, and gradients at vertices.
 
 mod cavity;
 mod center;

@@ -1,4 +1,4 @@
-//! Which triangle holds a point: exact, boundary included, for any tiling in exported arrays.
+//! 2-D point location: exact, boundary included, for any tiling in exported arrays.
 //!
 //! `Locator` keeps what calls have in common: a tree of starts, the boundary. `batch` takes queries
 //! along the curve, or as they come where that is as good, and `walker` goes from each to the next.

@@ -1,4 +1,4 @@
-//! Which tetrahedron holds a point: exact, boundary included, for any tiling in exported arrays.
+//! 3-D point location: exact, boundary included, for any tiling in exported arrays.
 //!
 //! The rooms are those of `locate`, whose `batch` takes queries in order here as well: `Kept` has a tree
 //! of starts, `walker` goes from query to query, `star` finds the first of several that hold a point,

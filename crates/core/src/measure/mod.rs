@@ -1,4 +1,4 @@
-//! What is measured on simplices, triangles and tetrahedra: edges and faces, centers, sizes, shapes.
+//! Measures of triangles and tetrahedra: edges and faces, centers, sizes, shapes.
 //!
 //! `skeleton` lists edges and faces, without coordinates. The others read coordinates and round only
 //! their results: what cancels in a thin simplex is computed again with more digits. `circle` and

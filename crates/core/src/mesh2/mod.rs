@@ -1,4 +1,4 @@
-//! A triangle mesh with ghosts: topology only, no coordinate and no predicate.
+//! A triangle mesh with ghosts: topology only, no coordinates and no predicates.
 //!
 //! Every edge of the hull carries a *ghost* triangle to one infinite vertex, so each triangle has
 //! three neighbours and a mesh of n vertices has 2 n - 2 triangles. A triangle is a record of eight

@@ -1,4 +1,4 @@
-//! Tetrahedra with ghosts: topology only. Knows no coordinate and no predicate.
+//! A tetrahedral mesh with ghosts: topology only, no coordinates and no predicates.
 //!
 //! A tetrahedron has four corners, positively oriented: seen from corner 3 the corners 0, 1, 2 run
 //! clockwise, which is `orient3d > 0`. The [`Code`] `4 t + k` is the facet of tetrahedron t opposite

@@ -1,5 +1,5 @@
-//! Orders of points in which neighbours are near in the plane or in space, so that what walks from one to the
-//! next stays in the cache: blocks of a k-d tree, and the Hilbert curve in each. Knows no mesh.
+//! Insertion orders that keep neighbors close and the cache warm: blocks of a k-d tree, and the Hilbert
+//! curve in each. Knows no mesh.
 
 mod arrange;
 pub mod blocks;

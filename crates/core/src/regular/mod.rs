@@ -1,6 +1,5 @@
-//! Regular triangulations: the lower hull of sites lifted to |p|^2 - w, exact and canonical; and
-//! Delaunay triangulations of periodic sets, which are built by the same insertion. `records` and
-//! `heaviest` serve space as well.
+//! 2-D regular triangulations, the lower hull of sites lifted to |p|^2 - w, exact and canonical;
+//! periodic triangulations, built by the same insertion. `records` and `heaviest` serve space as well.
 
 mod heaviest;
 mod insertion;

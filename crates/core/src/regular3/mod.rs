@@ -1,4 +1,4 @@
-//! Regular triangulations of space: the lower hull of sites lifted to |p|^2 - w, exact and canonical.
+//! 3-D regular triangulations: the lower hull of sites lifted to |p|^2 - w, exact and canonical.
 
 mod insertion;
 mod power;

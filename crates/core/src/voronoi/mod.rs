@@ -1,4 +1,4 @@
-//! Voronoi and power diagrams: the dual of a triangulation, its cells cut to a box, their measures.
+//! 2-D Voronoi and power diagrams: the dual of a triangulation, its cells clipped, their measures.
 //!
 //! A triangulation is given as arrays; with weights it must be the regular one. Triangles of one
 //! circle share one vertex, which an exact test decides. Only the coordinates of vertices are

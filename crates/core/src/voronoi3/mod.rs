@@ -1,4 +1,5 @@
-//! Voronoi and power diagrams of space: the dual of a triangulation, measures, cells cut to a polyhedron.
+//! 3-D Voronoi and power diagrams: the dual of a triangulation, measures, cells clipped to a
+//! polyhedron.
 //!
 //! A triangulation is given as arrays; with weights it must be the regular one. Tetrahedra of one
 //! sphere share one vertex, which an exact test decides. Only the coordinates of vertices are rounded
