@@ -106,7 +106,7 @@ fn check(input: &Input) {
 
 fn meshed(input: &Input, points: &[Point2], base: &Constrained, lines: &[[u32; 2]]) -> Refined {
     let arrays = &base.arrays;
-    let labels = components(&arrays.neighbors, &base.constrained).expect("labels");
+    let labels = components(&arrays.neighbors, &base.constrained, &Watch::idle()).expect("labels");
     let task = Task {
         points,
         simplices: &arrays.simplices,
