@@ -53,9 +53,12 @@ def test_ctrl_c_ends_one_call(name: str, call: str) -> None:
         from delone import Delaunay
 
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        points = np.random.default_rng(0).random((200_000, 2))
-        queries = np.tile(points, (5, 1))
+        # Calls take several times the 50 ms between two looks at signals.
+        points = np.random.default_rng(0).random((2_000_000, 2))
+        queries = points[::-1].copy()
         mesh = Delaunay(points)
+        # The first query makes an index, in a call of another name.
+        mesh.find_simplex(points[0])
         interrupted = False
 
         def watch(frame, event, function):
@@ -99,8 +102,10 @@ def test_ctrl_c_ends_queries_among_very_many_neighbors(count: int) -> None:
     # Each takes a good part of a second, or more: all sites are its neighbors.
     process = start(
         f"""
+        import signal
         import numpy as np
         from delone.interpolate import NaturalNeighbor
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         angle = np.sort(np.random.default_rng(0).random(20_000)) * 2 * np.pi
         sites = np.column_stack((np.cos(angle), np.sin(angle)))
         height = NaturalNeighbor(sites, angle)

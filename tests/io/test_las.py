@@ -145,8 +145,9 @@ def test_unknown_attribute_and_columns(cloud):
 @pytest.mark.parametrize("count", [0, 1, N - 1])
 def test_header_that_claims_fewer_records(cloud, count):
     file, _ = cloud
-    if file.suffix == ".laz" and count:
-        pytest.skip("chunks do not say how many points the last one has")
+    if file.suffix == ".laz":
+        # The chunks do not say how many points the last one has; none at all is told apart.
+        count = 0
     whole = bytearray(file.read_bytes())
     struct.pack_into("<I", whole, COUNT_12, count)
     struct.pack_into("<Q", whole, COUNT_14, count) if whole[25] == 4 else None
@@ -159,8 +160,9 @@ def test_header_that_claims_fewer_records(cloud, count):
 def test_a_header_stamped_with_a_later_version(tmp_path, cloud, minor):
     file, _ = cloud
     whole = bytearray(file.read_bytes())
-    if whole[25] >= minor:
-        pytest.skip("it is of that version")
+    if whole[25] == 4:
+        assert len(read_points(file)) == N
+        return
     whole[25] = minor
     file.write_bytes(whole)
     with pytest.raises(FileFormatError, match=rf"says LAS 1\.{minor} and has 227 bytes"):
@@ -175,8 +177,6 @@ def test_a_header_stamped_with_a_later_version(tmp_path, cloud, minor):
 def test_a_header_stamped_with_an_earlier_version(cloud):
     file, _ = cloud
     whole = bytearray(file.read_bytes())
-    if whole[25] != 4:
-        pytest.skip("it is of version 1.2")
     whole[25] = 2
     file.write_bytes(whole)
     with contextlib.suppress(FileFormatError):
@@ -186,11 +186,12 @@ def test_a_header_stamped_with_an_earlier_version(cloud):
 def test_two_counts_that_differ(cloud):
     file, _ = cloud
     whole = bytearray(file.read_bytes())
-    if whole[25] != 4:
-        pytest.skip("it has one count")
-    struct.pack_into("<I", whole, COUNT_12, N - 1)
+    # A file of version 1.2 has one count, which then differs from its records.
+    where = "in one place" if whole[25] == 4 else "and holds"
+    struct.pack_into("<I", whole, COUNT_12, N - 1 if whole[25] == 4 else 0)
     file.write_bytes(whole)
-    with pytest.raises(FileFormatError, match=f"announces {N - 1} points in one place"):
+    announced = N - 1 if whole[25] == 4 else 0
+    with pytest.raises(FileFormatError, match=f"announces {announced} points {where}"):
         read_points(file)
 
 
