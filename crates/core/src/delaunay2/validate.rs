@@ -10,7 +10,7 @@ use delone_predicates::{Sign, incircle, lexicographic, orient2d, tie_flips};
 
 use crate::arrays::Triangles;
 use crate::error::Result;
-use crate::memory::filled;
+use crate::memory::{filled, zeroed};
 use crate::order::{Arranged, arrange};
 use crate::points;
 use crate::watch::{Pace, Watch};
@@ -126,7 +126,7 @@ fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec
 /// Directed edges that occur twice, by a counting sort of the ends by origin.
 fn repeated_edges(given: Triangles, watch: &Watch) -> Result<Vec<[u32; 2]>> {
     let mut pace = Pace::new(watch, LOT);
-    let mut start = filled(given.points.len() + 1, 0u32)?;
+    let mut start = zeroed::<u32>(given.points.len() + 1)?;
     for s in given.simplices {
         pace.spend(1)?;
         for &v in s {
@@ -136,7 +136,7 @@ fn repeated_edges(given: Triangles, watch: &Watch) -> Result<Vec<[u32; 2]>> {
     for v in 0..given.points.len() {
         start[v + 1] += start[v];
     }
-    let mut ends = filled(3 * given.simplices.len(), 0i32)?;
+    let mut ends = zeroed::<i32>(3 * given.simplices.len())?;
     for s in given.simplices {
         pace.spend(1)?;
         for k in 0..3 {

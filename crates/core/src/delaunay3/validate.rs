@@ -20,7 +20,7 @@ use delone_predicates::{orient2d, orient3d};
 
 use crate::arrays::Tetrahedra;
 use crate::error::Result;
-use crate::memory::{filled, push};
+use crate::memory::{filled, push, zeroed};
 use crate::mesh3::FACETS;
 use crate::order::space::{Arranged3, arrange};
 use crate::points;
@@ -152,7 +152,7 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
         start[v + 1] += start[v];
     }
     watch.check()?;
-    let mut ends = filled(4 * given.simplices.len(), [0i32; 2])?;
+    let mut ends = zeroed::<[i32; 2]>(4 * given.simplices.len())?;
     for [a, b, c] in facets() {
         pace.spend(1)?;
         let at = &mut start[a as usize];

@@ -94,15 +94,17 @@ pub fn faces3(
 pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, Vec<i32>)> {
     let wrong = || Error::Shape("edges are not in order, each once".into());
     let mut pace = Pace::new(watch, LOT);
-    let mut starts = filled(n + 1, 0i32)?;
-    if !edges.is_sorted_by(|e, f| e < f) || edges.len() > i32::MAX as usize / 2 {
+    let mut starts = zeroed::<i32>(n + 1)?;
+    if edges.len() > i32::MAX as usize / 2 {
         return Err(wrong());
     }
+    let mut last = [-1; 2];
     for &[u, v] in edges {
         pace.spend(1)?;
-        if u < 0 || u >= v || v as usize >= n {
+        if u < 0 || u >= v || v as usize >= n || [u, v] <= last {
             return Err(wrong());
         }
+        last = [u, v];
         starts[u as usize + 1] += 1;
         starts[v as usize + 1] += 1;
     }
@@ -110,7 +112,7 @@ pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, 
         starts[v + 1] += starts[v];
     }
     let mut next = copied(&starts)?;
-    let mut found = filled(2 * edges.len(), 0)?;
+    let mut found = zeroed(2 * edges.len())?;
     // First the smaller neighbors, which come in order, and then the larger ones.
     for k in [0, 1] {
         for edge in edges {

@@ -3,7 +3,7 @@
 use super::export::OUTSIDE;
 use super::{Code, Mesh2, next, prev};
 use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::memory::{filled, with_room, zeroed};
 use crate::watch::{Pace, Watch};
 
 /// Most triangles: their codes must fit in 32 bits and leave [`OUTSIDE`] free.
@@ -83,7 +83,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<V
             "{found} simplices are more than {LIMIT}"
         )));
     }
-    let mut start = filled(vertices + 1, 0u32)?;
+    let mut start = zeroed::<u32>(vertices + 1)?;
     for (t, s) in simplices.iter().enumerate() {
         pace.spend(1)?;
         for [u, v] in [0, 1, 2].map(|k| edge(*s, k)) {
@@ -98,7 +98,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<V
     for v in 0..vertices {
         start[v + 1] += start[v];
     }
-    let mut sides = filled(3 * simplices.len(), 0u64)?;
+    let mut sides = zeroed::<u64>(3 * simplices.len())?;
     for (t, s) in (0u64..).zip(simplices) {
         pace.spend(1)?;
         for k in 0..3 {
