@@ -11,7 +11,7 @@ import numpy as np
 
 from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
-from delone.io.extras import require
+from delone.extras import require
 from delone.plot.colours import add_bar, scale, shaded
 from delone.plot.picture import axis_names
 from delone.plot.shading import Raster, relief

@@ -12,7 +12,7 @@ import numpy as np
 
 from delone._arrays import as_choice, as_flag, as_optional_flag
 from delone.errors import InputError
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     import os

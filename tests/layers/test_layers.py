@@ -27,7 +27,7 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays", "_masks", "blocks", "counting", "georeference"}
+FOUNDATION = {"errors", "_arrays", "_masks", "blocks", "counting", "extras", "georeference"}
 PUBLIC = {
     "delone",
     "errors",
@@ -48,6 +48,7 @@ PYTHON: dict[str, set[str]] = {
     "_masks": {"errors"},
     "blocks": set(),
     "counting": set(),
+    "extras": {"errors"},
     "georeference": {"errors"},
     "_core": set(),
     "immutable": {"_arrays", "blocks"},
@@ -73,7 +74,6 @@ PYTHON: dict[str, set[str]] = {
         "_core",
         "delaunay",
         "hull",
-        "io",
         "periodic",
         "plane",
         "regular",
@@ -84,7 +84,6 @@ PYTHON: dict[str, set[str]] = {
         "immutable",
         "_core",
         "delaunay",
-        "io",
         "location",
         "periodic",
         "plane",
@@ -98,7 +97,6 @@ PYTHON: dict[str, set[str]] = {
         "delaunay",
         "hull",
         "interpolate",
-        "io",
         "plane",
         "predicates",
         "constrained",
@@ -112,12 +110,13 @@ PYTHON: dict[str, set[str]] = {
     "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     "datasets": FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"atomic", "plot", "relief", "scene", "_arrays", "counting"},
-    "plot": PUBLIC | {"atomic", "io", "_arrays"},
-    "scene": PUBLIC | {"io", "_arrays"},
-    "relief": PUBLIC | {"io", "plot", "_arrays"},
+    "io": PUBLIC | {"extras", "atomic", "plot", "relief", "scene", "_arrays", "counting"},
+    "plot": PUBLIC | {"extras", "atomic", "io", "_arrays"},
+    "scene": PUBLIC | {"extras", "_arrays"},
+    "relief": PUBLIC | {"extras", "plot", "_arrays"},
     "cli": PUBLIC
     | {
+        "extras",
         "atomic",
         "counting",
         "distributed",

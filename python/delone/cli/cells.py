@@ -16,8 +16,8 @@ from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
+from delone.extras import require
 from delone.io import input_suffixes, read_geometries, read_points
-from delone.io.extras import require
 from delone.io.gdal import DRIVERS
 from delone.io.vector import attribute_names, write_layer
 

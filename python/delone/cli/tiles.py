@@ -20,9 +20,9 @@ from delone.cli.referenced import Crs, Planar, note_degrees, require_known
 from delone.cli.show import memory_text, print_json, print_rows, spinner
 from delone.distributed.run.executors import Processes
 from delone.errors import DeloneError, OutputError
+from delone.extras import require
 from delone.georeference import is_geographic
 from delone.io import input_suffixes
-from delone.io.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from delone.errors import ShapeError
-from delone.io.extras import require
+from delone.extras import require
 
 __all__ = ["convex_hull_plot_2d", "delaunay_plot_2d"]
 

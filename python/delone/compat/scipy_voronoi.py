@@ -232,7 +232,7 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
     >>> len(figure.axes[0].collections)
     2
     """
-    from delone.io.extras import require
+    from delone.extras import require
 
     lines = require("matplotlib.collections", extra="plot", what="drawing")
     if vor.points.shape[1] != 2:

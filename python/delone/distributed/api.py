@@ -18,8 +18,8 @@ from delone.distributed.run.run import Progress, Run
 from delone.distributed.run.sources import Choice, find
 from delone.distributed.store.files import Store
 from delone.errors import InputError
+from delone.extras import require
 from delone.georeference import as_crs
-from delone.io.extras import require
 
 if TYPE_CHECKING:
     import os

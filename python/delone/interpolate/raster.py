@@ -115,7 +115,7 @@ class Grid:
         >>> ramp.to_xarray(name="height").sel(x=1, y=2).item()
         3.0
         """
-        from delone.io.extras import require
+        from delone.extras import require
 
         xarray = require("xarray", extra="xarray", what="a DataArray")
         further = [f"value{k}" for k in range(self.values.ndim - 2)]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.heights import as_values, split_attributes, with_heights
 from delone.refine.meshed import Mesh as QualityMesh
 

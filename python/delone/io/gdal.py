@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from delone.errors import FileFormatError
+from delone.extras import require
 from delone.io.compressed import SUFFIXES, Bounded, opened, torn_is_an_error
-from delone.io.extras import require
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from delone.counting import agreed, counted
 from delone.errors import FileFormatError
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system

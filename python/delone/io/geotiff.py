@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.systems import plain_system
 
 if TYPE_CHECKING:

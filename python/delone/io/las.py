@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import DeloneError, FileFormatError
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from delone._arrays import as_points
 from delone.errors import DeloneError, FileFormatError, InputError
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.systems import check_system

@@ -9,7 +9,7 @@ import numpy as np
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import FileFormatError
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

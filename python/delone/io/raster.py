@@ -15,8 +15,8 @@ import numpy as np
 
 from delone.atomic import replacing
 from delone.errors import FileFormatError, InputError
+from delone.extras import require
 from delone.georeference import as_crs
-from delone.io.extras import require
 from delone.io.geotiff import write_geotiff
 from delone.io.pointset import names_height
 from delone.io.referencing import cf_attributes, warn_if_left_out

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from delone.errors import FileFormatError
+from delone.extras import require
 from delone.georeference import CRSWarning
-from delone.io.extras import require
 
 if TYPE_CHECKING:
     import os

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import DeloneError, FileFormatError
+from delone.extras import require
 from delone.io.cells import cell_values
 from delone.io.compressed import SUFFIXES
-from delone.io.extras import require
 from delone.io.gdal import admitted, check_driver, local_name
 from delone.io.geometryset import GeometrySet
 from delone.io.heights import as_values, split_attributes

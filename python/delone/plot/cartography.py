@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.io.extras import require
+from delone.extras import require
 from delone.plot.shading import facet_values
 
 if TYPE_CHECKING:

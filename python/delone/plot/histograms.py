@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

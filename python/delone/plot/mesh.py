@@ -9,7 +9,7 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import InputError
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.heights import as_values
 from delone.plot import cartography
 from delone.plot.colours import add_bar, scale, shaded

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone.atomic import replacing
 from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.io.extras import require
+from delone.extras import require
 from delone.io.heights import as_values
 from delone.plot.mesh import plot, require_drawable, require_flat
 from delone.refine.meshed import Mesh as QualityMesh

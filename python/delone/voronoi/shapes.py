@@ -26,7 +26,7 @@ _MOST_DOTS = 2000
 
 def shapely_or_say() -> Any:
     """Import shapely, or say how to install it."""
-    from delone.io.extras import require
+    from delone.extras import require
 
     return require("shapely", extra="geo", what="polygons of Voronoi cells")
 
@@ -74,7 +74,7 @@ def table(polygons: NDArray[Any], data: Any, crs: Any) -> Any:
     InputError
         `data` has another number of rows.
     """
-    from delone.io.extras import require
+    from delone.extras import require
 
     geopandas = require("geopandas", extra="geo", what="a table of cells")
     if data is None:
@@ -142,7 +142,7 @@ def draw(
     >>> len(ax.collections)
     1
     """
-    from delone.io.extras import require
+    from delone.extras import require
 
     bar = as_flag(colorbar, name="colorbar")
     dots = as_optional_flag(points, name="points")

@@ -408,7 +408,7 @@ class SpaceVoronoi(Voronoi):
         >>> Voronoi(grid).to_pyvista().n_cells
         1
         """
-        from delone.io.extras import require
+        from delone.extras import require
 
         pyvista = require("pyvista", extra="pyvista", what="polyhedra of Voronoi cells")
         points: list[Floats] = []
@@ -464,7 +464,7 @@ class SpaceVoronoi(Voronoi):
         >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
         >>> Voronoi(corners, clip="box").plot().show()  # doctest: +SKIP
         """
-        from delone.io.extras import require
+        from delone.extras import require
 
         hidden = as_optional_flag(off_screen, name="off_screen")
         if ax is not None and hidden is not None:

@@ -17,8 +17,8 @@ from delone.atomic import replacing
 from delone.counting import gigabytes, grouped
 from delone.distributed.arguments import as_path
 from delone.errors import FileFormatError
+from delone.extras import require
 from delone.interpolate.raster import raster_nodes
-from delone.io.extras import require
 from delone.io.geotiff import write_geotiff
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from delone._arrays import as_choice
 from delone.distributed.arguments import as_path
 from delone.distributed.read.folder import TileFolder
 from delone.errors import InputError
-from delone.io.extras import require
+from delone.extras import require
 
 __all__ = ["dask_frame", "write_geoparquet"]
 

@@ -14,7 +14,7 @@ import numpy as np
 from delone import _core
 from delone.distributed.store.output import tile_names
 from delone.errors import FileFormatError
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone.distributed.run.stages import perform
 from delone.errors import DeloneError, InputError
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -10,7 +10,7 @@ import numpy as np
 
 from delone.distributed.pure.rows import coordinates, first_of_each
 from delone.distributed.store.files import digest
-from delone.io.extras import require
+from delone.extras import require
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -34,7 +34,7 @@ def require(module: str, *, extra: str, what: str) -> Any:
 
     Examples
     --------
-    >>> from delone.io.extras import require
+    >>> from delone.extras import require
     >>> require("json", extra="las", what="this example").__name__
     'json'
     """
