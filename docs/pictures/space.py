@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from delone import ConvexHull, Delaunay, datasets, scene
+from delone import ConvexHull, Delaunay, datasets, plot
 
 
 def tetrahedra() -> None:
@@ -21,6 +21,6 @@ def tetrahedra() -> None:
     )
     _, row = plt.subplots(1, 3, figsize=(12, 3.8), layout="constrained")
     for ax, (title, shape, options) in zip(row, pictures, strict=True):
-        ax.imshow(scene.image(shape, bar=False, **options))
+        ax.imshow(plot.image(shape, colorbar=False, **options))
         ax.set_title(title, fontsize="medium")
         ax.set_axis_off()

@@ -7,8 +7,8 @@
 `Delaunay` is of points in the plane or in space, `ConstrainedDelaunay` and `from_geometry` of
 segments and polygons, too. `mesh` and `improve` make triangles and tetrahedra of good shape;
 `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay` are their kin. The modules
-`interpolate`, `distributed`, `io`, `plot`, `scene`, `predicates`, `datasets`, `testing`,
-`reference` and `compat` have the rest. What goes wrong is a `DeloneError`.
+`interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`, `reference` and
+`compat` have the rest. What goes wrong is a `DeloneError`.
 """
 
 from __future__ import annotations
@@ -66,7 +66,6 @@ if TYPE_CHECKING:
         io,
         plot,
         reference,
-        scene,
         testing,
     )
 
@@ -121,7 +120,6 @@ __all__ = [
     "plot",
     "predicates",
     "reference",
-    "scene",
     "testing",
     "triangulate_polygon",
 ]
@@ -136,7 +134,6 @@ _LATER = frozenset(
         "io",
         "plot",
         "reference",
-        "scene",
         "testing",
     }
 )

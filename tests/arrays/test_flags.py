@@ -18,10 +18,8 @@ from delone import (
     io,
     lawson,
     mesh,
-    scene,
 )
-from delone.plot import plot
-from delone.relief import plot_raster
+from delone.plot import plot, plot_raster
 from delone.testing import assert_constrained_delaunay, assert_delaunay
 
 if TYPE_CHECKING:
@@ -104,13 +102,13 @@ def test_files(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_scenes() -> None:
+def test_plots_in_3d() -> None:
     pytest.importorskip("pyvista")
-    for name in ("points", "bar"):
+    for name in ("points", "colorbar"):
         with pytest.raises(DtypeError, match=f"{name} must be True or False"):
-            scene.plot(SOLID, **{name: "a"})
+            plot(SOLID, **{name: "a"})
     with pytest.raises(DtypeError, match="off_screen must be True, False or None"):
-        scene.plot(SOLID, off_screen="a")  # type: ignore[arg-type]
+        plot(SOLID, off_screen="a")  # type: ignore[arg-type]
 
 
 def test_cross_validation() -> None:

@@ -46,6 +46,7 @@ PYTHON: dict[str, set[str]] = {
     "errors": set(),
     "_arrays": {"_masks", "counting", "errors"},
     "_masks": {"errors"},
+    "_values": {"_arrays", "errors"},
     "blocks": set(),
     "counting": set(),
     "extras": {"errors"},
@@ -53,8 +54,7 @@ PYTHON: dict[str, set[str]] = {
     "_core": set(),
     "immutable": {"_arrays", "blocks"},
     "plane": {"_core", "immutable", "location", "plot"} | FOUNDATION,
-    "space": {"immutable", "_core", "location", "plane", "plot", "predicates", "scene"}
-    | FOUNDATION,
+    "space": {"immutable", "_core", "location", "plane", "plot", "predicates"} | FOUNDATION,
     "hull": {"immutable", "_core", "delaunay", "plane", "predicates", "space"} | FOUNDATION,
     "validation": {"immutable", "_core", "plane", "space"} | FOUNDATION,
     "predicates": {"_core"} | FOUNDATION,
@@ -76,6 +76,7 @@ PYTHON: dict[str, set[str]] = {
         "hull",
         "periodic",
         "plane",
+        "plot",
         "regular",
         "space",
     }
@@ -88,7 +89,6 @@ PYTHON: dict[str, set[str]] = {
         "periodic",
         "plane",
         "plot",
-        "relief",
         "space",
     }
     | FOUNDATION,
@@ -110,10 +110,9 @@ PYTHON: dict[str, set[str]] = {
     "distributed": {"_core", "atomic", "interpolate", "io"} | FOUNDATION,
     "datasets": FOUNDATION,
     # These call the public interface, as any other program would; readers coerce where all do.
-    "io": PUBLIC | {"extras", "atomic", "plot", "relief", "scene", "_arrays", "counting"},
-    "plot": PUBLIC | {"extras", "atomic", "io", "_arrays"},
-    "scene": PUBLIC | {"extras", "_arrays"},
-    "relief": PUBLIC | {"extras", "plot", "_arrays"},
+    "io": PUBLIC | {"extras", "atomic", "plot", "_arrays", "_values", "counting"},
+    # Takes objects by their attributes, and imports no class.
+    "plot": {"extras", "atomic", "_arrays", "_values", "errors"},
     "cli": PUBLIC
     | {
         "extras",
@@ -146,7 +145,6 @@ PYTHON: dict[str, set[str]] = {
         "reference",
         "refine",
         "regular",
-        "scene",
         "space",
         "testing",
         "validation",
@@ -339,18 +337,15 @@ def test_crates_need_what_they_may() -> None:
     assert crate_faults(CRATES) == []
 
 
-# Arrows up, which only the inside of a function may have: a triangulation asks plot to draw, io
-# plot and relief to write pictures; plot knows Delaunay and how io replaces files. A constrained
-# triangulation begins edits, which make another one.
+# Arrows up, which only the inside of a function may have: a triangulation, a diagram and io
+# ask plot to draw. A constrained triangulation begins edits, which make another one.
 # A mesh makes others of itself, measures draw themselves, and a mesh becomes what the libraries of
 # io take.
 LAZY = {
     ("plane", "plot"),
+    ("voronoi", "plot"),
     ("space", "plot"),
-    ("space", "scene"),
     ("io", "plot"),
-    ("io", "relief"),
-    ("io", "scene"),
     ("refine", "io"),
     ("improve", "io"),
     ("improve", "plot"),
@@ -406,7 +401,7 @@ def test_no_module_waits_for_itself() -> None:
     [
         ("io/text.py", "from delone import _core", "io/text.py imports _core"),
         ("io/text.py", "from delone.plane.topology import edges", "io/text.py imports plane"),
-        ("plot/mesh.py", "def f():\n    import delone._core", "plot/mesh.py imports _core"),
+        ("plot/axes.py", "def f():\n    import delone._core", "plot/axes.py imports _core"),
         (
             "plane/geometry.py",
             "from delone.delaunay import Delaunay",

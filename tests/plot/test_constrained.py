@@ -1,4 +1,4 @@
-"""Pictures of constrained triangulations: segments bold, regions coloured, holes white."""
+"""Plots of constrained triangulations: segments bold, regions colored, holes white."""
 
 import matplotlib
 
@@ -51,16 +51,16 @@ def noisy(count):
     return np.vstack((OUTER, INNER, points))
 
 
-def test_segments_are_bold_and_regions_coloured():
+def test_segments_are_bold_and_regions_colored():
     mesh = ConstrainedDelaunay(OUTER + INNER, RINGS)
     ax = plot(mesh, axes())
     assert drawn(ax) == pairs(mesh, mesh.segments)
     (facets,) = kinds(ax, PolyCollection)
-    colours = [tuple(colour) for colour in facets.get_facecolors()]
-    assert len(colours) == mesh.nsimplex
-    assert len(set(colours)) == 2
+    colors = [tuple(color) for color in facets.get_facecolors()]
+    assert len(colors) == mesh.nsimplex
+    assert len(set(colors)) == 2
     for label in range(2):
-        assert len({c for c, r in zip(colours, mesh.region, strict=True) if r == label}) == 1
+        assert len({c for c, r in zip(colors, mesh.region, strict=True) if r == label}) == 1
     (segments,) = (line for line in ax.lines if line.get_gid() == "segments")
     assert segments.get_linewidth() > 2 * facets.get_linewidths()[0]
     assert drawn(plot(mesh, axes(), segments=False)) == set()
@@ -99,21 +99,21 @@ def test_regions_at_one_segment_differ():
     cuts = random.random((24, 2, 2)).reshape(-1, 2)
     mesh = ConstrainedDelaunay(cuts, np.arange(48).reshape(-1, 2), crossing="split")
     assert mesh.region.max() > 20
-    colour = cartography.colour_of_regions(mesh)
+    color = cartography.color_of_regions(mesh)
     rows, corner = np.nonzero(mesh.neighbors >= 0)
     there = mesh.neighbors[rows, corner]
     across = mesh.region[rows] != mesh.region[there]
     assert across.any()
-    assert (colour[rows[across]] != colour[there[across]]).all()
-    assert (colour[rows[~across]] == colour[there[~across]]).all()
+    assert (color[rows[across]] != color[there[across]]).all()
+    assert (color[rows[~across]] == color[there[~across]]).all()
 
 
-def test_no_label_is_grey():
+def test_no_label_is_gray():
     mesh = ConstrainedDelaunay(OUTER + INNER, RINGS, regions=[(3, 3, 7)])
-    assert set(cartography.colour_of_regions(mesh)[mesh.region == -1]) == {-1}
+    assert set(cartography.color_of_regions(mesh)[mesh.region == -1]) == {-1}
     (facets,) = kinds(plot(mesh, axes()), PolyCollection)
-    colours = np.asarray(facets.get_facecolors())
-    assert np.allclose(colours[mesh.region == -1], to_rgba("#f1f1f1"))
+    colors = np.asarray(facets.get_facecolors())
+    assert np.allclose(colors[mesh.region == -1], to_rgba("#f1f1f1"))
 
 
 @pytest.mark.parametrize("deep", [False, True])
@@ -142,7 +142,7 @@ def test_many_triangles_become_an_image_with_a_white_hole(tmp_path, deep):
     assert np.asarray(Image.open(tmp_path / "a.png").convert("RGB")).std() > 5
 
 
-def test_pixels_have_the_region_of_their_centre():
+def test_pixels_have_the_region_of_their_center():
     mesh = ConstrainedDelaunay(OUTER + INNER, RINGS)
     raster = facet_values(mesh, mesh.region, 90)
     inner = raster.values[20:40, 20:40]
@@ -151,12 +151,12 @@ def test_pixels_have_the_region_of_their_centre():
     assert not np.isnan(raster.values).any()
 
 
-def test_heights_colour_triangles_and_segments_stay(tmp_path):
+def test_heights_color_triangles_and_segments_stay(tmp_path):
     mesh = ConstrainedDelaunay(OUTER + INNER, RINGS)
     ax = plot(mesh, axes(), z=np.arange(8.0))
     assert drawn(ax) == pairs(mesh, mesh.segments)
     (facets,) = kinds(ax, PolyCollection)
-    assert len({tuple(colour) for colour in facets.get_facecolors()}) > 3
+    assert len({tuple(color) for color in facets.get_facecolors()}) > 3
     with pytest.raises(InputError, match="hide each other"):
         plot(ConstrainedDelaunay(noisy(5000), []), axes(), circumcircles=True)
 

@@ -1,4 +1,4 @@
-"""Surfaces as pixels: planes come back exactly, light comes from the north-west."""
+"""Surfaces as pixels: planes are exact, light comes from the northwest."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ def plane(points):
     return 3 * points[..., 0] - 2 * points[..., 1] + 7
 
 
-def centres(raster):
+def centers(raster):
     left, _, bottom, _ = raster.extent
     rows, columns = raster.values.shape
     x = left + raster.cell * (np.arange(columns) + 0.5)
@@ -25,7 +25,7 @@ def test_a_plane_seen_through_few_points(monkeypatch, offset, block):
     monkeypatch.setattr("delone.plot.shading._BLOCK", block)
     points = datasets.uniform(200) + offset
     raster = rasterize(Delaunay(points), plane(points - offset), 40)
-    wanted = plane(centres(raster) - offset)
+    wanted = plane(centers(raster) - offset)
     inside = np.isfinite(raster.values)
     assert 0.8 < inside.mean() < 1
     assert raster.values[inside] == pytest.approx(wanted[inside], abs=1e-7)

@@ -298,10 +298,10 @@ class TetMesh(Immutable):
         >>> corner = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2, 3)]
         >>> delone.improve(corner).plot().show()  # doctest: +SKIP
         """
-        from delone.io import exchange
+        from delone.plot import plot
 
         bound = self._report.min_angle if below is None else as_number(below, name="below")
-        return exchange.draw_tetrahedra(self, plotter, bound)
+        return plot(self, plotter, below=bound)
 
     def __reduce__(self) -> tuple[Any, ...]:
         arrays = {name: getattr(self, f"_{name}") for name in _ARRAYS}

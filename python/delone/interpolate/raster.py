@@ -135,7 +135,7 @@ class Grid:
         ax : matplotlib Axes, optional
             Where to draw; by default on the axes of a new pyplot figure.
         **options
-            As in `delone.relief.plot_raster`: ``contours``, ``shade``, ``cmap``, ``colorbar``,
+            As for `delone.plot.plot_raster`: ``contours``, ``shade``, ``cmap``, ``colorbar``,
             ``label``, ``title``.
 
         Returns
@@ -159,7 +159,7 @@ class Grid:
         >>> ramp.plot(contours=4).get_aspect()
         1.0
         """
-        from delone.relief import plot_raster
+        from delone.plot import plot_raster
 
         if self.values.ndim != 2 or self.values.dtype.kind == "c":
             raise InputError(

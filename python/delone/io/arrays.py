@@ -16,9 +16,10 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points, as_simplices
+from delone._values import as_values
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
-from delone.io.heights import as_values, split_attributes
+from delone.io.heights import split_attributes
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.registry import MeshFile
 

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from delone.refine.meshed import Mesh
 
 __all__ = [
-    "draw_tetrahedra",
     "tetrahedra_to_meshio",
     "tetrahedra_to_pyvista",
     "to_dolfinx_arrays",
@@ -127,18 +126,3 @@ def tetrahedra_to_pyvista(mesh: TetMesh) -> Any:
     found.cell_data["region"] = mesh.region
     found.cell_data["smallest_dihedral"] = mesh.quality().smallest_dihedral
     return found
-
-
-def draw_tetrahedra(mesh: TetMesh, plotter: Any, bound: float) -> Any:
-    """Draw the surface and tetrahedra with small angles; see ``TetMesh.plot``."""
-    pyvista = require("pyvista", extra="pyvista", what="drawing")
-    grid = tetrahedra_to_pyvista(mesh)
-    plotter = pyvista.Plotter() if plotter is None else plotter
-    faces = np.column_stack((np.full(len(mesh.boundary), 3), mesh.boundary)).ravel()
-    surface = pyvista.PolyData(mesh.points, faces)
-    plotter.add_mesh(surface, color="#2f6f9f", opacity=0.15, show_edges=True)
-    below = np.flatnonzero(mesh.quality().smallest_dihedral < bound)
-    if len(below):
-        bad = grid.extract_cells(below)
-        plotter.add_mesh(bad, scalars="smallest_dihedral", clim=(0, bound), show_edges=True)
-    return plotter

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._values import as_values
 from delone.errors import FileFormatError
 from delone.extras import require
-from delone.io.heights import as_values, split_attributes, with_heights
+from delone.io.heights import split_attributes, with_heights
 from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._values import as_values
 from delone.counting import agreed, counted
 from delone.errors import FileFormatError
 from delone.extras import require
-from delone.io.heights import as_values
 from delone.io.pointset import PointSet
 from delone.io.systems import check_system
 

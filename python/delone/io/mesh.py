@@ -17,12 +17,13 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points, as_simplices
+from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.extras import require
 from delone.improve.tetmesh import TetMesh
 from delone.io.cells import cell_values
 from delone.io.counts import announced
-from delone.io.heights import as_values, split_attributes, with_heights
+from delone.io.heights import split_attributes, with_heights
 from delone.io.markup import refuse_document_type
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile

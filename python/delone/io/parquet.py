@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points
+from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
 from delone.extras import require
-from delone.io.heights import as_values
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.systems import check_system
 from delone.io.vector import from_frame, geometries_of

@@ -1,4 +1,4 @@
-"""Pictures as one more format of files: PNG and SVG by `delone.plot` (extra ``plot``)."""
+"""Plots as a file format: PNG and SVG by `delone.plot`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.delaunay import Delaunay
 from delone.errors import FileFormatError
 from delone.extras import require
 
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["require_libraries", "write_mesh"]
 
-# With fewer triangles, light and shadow show the triangles rather than the terrain.
+# With fewer triangles, light and shadow show the triangles instead of the terrain.
 _MANY = 2000
 
 
@@ -39,33 +37,33 @@ def write_mesh(
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Draw a triangulation into a file; a picture shows edges and triangles alike."""
+    """Draw a triangulation into a file; a plot shows both edges and triangles."""
     if triangulation.ndim == 3:
-        _draw_space(path, triangulation, attributes)
+        _draw_solid(path, triangulation, attributes)
         return
     from delone.plot.picture import draw_picture
+    from delone.plot.protocols import is_quality_mesh
 
     if attributes:
-        raise FileFormatError("a picture shows one value for each point: give it as z")
+        raise FileFormatError("a plot shows one value for each point: give it as z")
     # Heights are terrain, but on a quality mesh they are a field.
-    terrain = isinstance(triangulation, Delaunay | ConstrainedDelaunay)
-    lit = terrain and triangulation.nsimplex >= _MANY
+    lit = not is_quality_mesh(triangulation) and triangulation.nsimplex >= _MANY
     draw_picture(path, triangulation, z=z, crs=crs, shade=lit)
 
 
-def _draw_space(
+def _draw_solid(
     path: Path, triangulation: Mesh, attributes: Mapping[str, ArrayLike] | None
 ) -> None:
-    """Draw tetrahedra, those before a cut through the middle, in colours of their volumes."""
-    from delone.scene import draw
+    """Draw the tetrahedra in front of a cut through the middle, in colors of their volumes."""
+    from delone.plot import draw
 
     if attributes:
-        raise FileFormatError("a picture of tetrahedra shows their volumes, and no attributes")
+        raise FileFormatError("a plot of tetrahedra shows their volumes and no attributes")
     mesh: Any = triangulation
-    # pyvista tells formats by suffixes, and what replaces a file has one of its own.
+    # PyVista chooses the format by the suffix, which a temporary file does not have.
     picture = path.with_name(path.name + ".png")
-    # Triangulations of others have no volumes, and one colour.
+    # Triangulations without volumes have a single color.
     with np.errstate(divide="ignore"):
         size = np.log10(getattr(mesh, "volumes", 0.0))
-    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut="x", bar=False)
+    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut="x", colorbar=False)
     picture.replace(path)

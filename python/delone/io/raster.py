@@ -257,7 +257,7 @@ def _write_csv(
 def _write_picture(
     path: Path, raster: Raster, *, name: str, crs: str | None, units: str | None = None
 ) -> None:
-    from delone.relief import draw_raster
+    from delone.plot.raster import draw_raster
 
     values, terrain = _checked(path, raster), names_height(name)
     draw_raster(path, values, raster.x, raster.y, label=name, shade=terrain, crs=crs)

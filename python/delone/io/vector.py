@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError
 from delone.extras import require
 from delone.io.cells import cell_values
 from delone.io.compressed import SUFFIXES
 from delone.io.gdal import admitted, check_driver, local_name
 from delone.io.geometryset import GeometrySet
-from delone.io.heights import as_values, split_attributes
+from delone.io.heights import split_attributes
 from delone.io.pointset import PointSet, find_column
 from delone.io.systems import check_system
 

@@ -421,8 +421,7 @@ class Triangulation(Immutable):
         """
         from delone.plot import plot
 
-        mesh: Any = self
-        return plot(mesh, ax=ax, **options)
+        return plot(self, ax, **options)
 
     @classmethod
     def _from_arrays(

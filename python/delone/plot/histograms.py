@@ -1,4 +1,4 @@
-"""Histograms of angles, of triangles and of tetrahedra."""
+"""Histograms of the angles of triangles and tetrahedra."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
+from delone.plot.axes import new_axes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,12 +30,12 @@ def draw_angles(
     ax : matplotlib Axes, optional
         Where to draw; by default on new axes.
     bound : float, optional
-        An angle to be marked.
+        An angle to mark.
 
     Returns
     -------
     matplotlib Axes
-        What was drawn on.
+        Where it is drawn.
 
     Raises
     ------
@@ -49,8 +49,7 @@ def draw_angles(
     >>> draw_angles(np.array([45.0]), np.array([90.0])).get_xlabel()
     'angle in degrees'
     """
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    ax = new_axes(ax)
     bins = np.arange(0, 181, 2)
     for angles, color, label in (
         (smallest, "#2f6f9f", "smallest angle"),
@@ -73,18 +72,18 @@ def draw_histograms(
     Parameters
     ----------
     bounds : ndarray of float64, shape (k + 1,)
-        Bounds of the classes in degrees.
+        Bounds of the bins in degrees.
     counts : dict of ndarray of int64, shape (k,)
-        How many tetrahedra are in each class, by what the bars are called.
+        Number of tetrahedra in each bin, by the label of the bars.
     ax : matplotlib Axes, optional
         Where to draw; by default on new axes.
     bound : float, optional
-        An angle to be marked.
+        An angle to mark.
 
     Returns
     -------
     matplotlib Axes
-        What was drawn on.
+        Where it is drawn.
 
     Raises
     ------
@@ -99,8 +98,7 @@ def draw_histograms(
     >>> draw_histograms(np.array([0.0, 20, 40]), counts, bound=20).get_yscale()
     'log'
     """
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    ax = new_axes(ax)
     wide = np.diff(bounds) / (len(counts) + 0.5)
     for k, (label, color) in enumerate(zip(counts, ("#d98f3d", "#2f6f9f"), strict=False)):
         left = bounds[:-1] + wide * (k + 0.25)

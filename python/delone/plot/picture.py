@@ -1,15 +1,15 @@
-"""Triangulations in files of PNG and SVG; nothing here needs a display."""
+"""2-D triangulations in PNG and SVG files; no display is needed."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from delone._values import as_values
 from delone.atomic import replacing
-from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.extras import require
-from delone.io.heights import as_values
-from delone.plot.mesh import plot, require_drawable, require_flat
-from delone.refine.meshed import Mesh as QualityMesh
+from delone.plot.axes import axis_names
+from delone.plot.protocols import has, is_quality_mesh
+from delone.plot.triangles import plot, require_drawable, require_flat
 
 if TYPE_CHECKING:
     import os
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone.plot.mesh import Mesh
+    from delone.plot.protocols import Triangles
 
-__all__ = ["axis_names", "draw_picture", "save_picture"]
+__all__ = ["draw_picture", "save_picture"]
 
 
 def save_picture(
     path: str | os.PathLike[str],
-    triangulation: Mesh,
+    mesh: Triangles,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -33,33 +33,33 @@ def save_picture(
     dpi: int = 160,
     **options: Any,
 ) -> None:
-    """Draw a triangulation into a PNG or SVG file, whole or not at all.
+    """Draw a 2-D triangulation into a PNG or SVG file, atomically.
 
     Parameters
     ----------
     path : str or path-like
         The file.
-    triangulation : Delaunay, RegularTriangulation, ConstrainedDelaunay or Mesh, in the plane
-        What to draw.
+    mesh : Triangles
+        What to draw: a `Delaunay`, `RegularTriangulation`, `ConstrainedDelaunay` or `Mesh`.
     z : array_like of float, shape (n,), optional
-        Heights: triangles are coloured by them.
+        Heights: triangles are colored by them.
     crs : str, optional
-        Coordinate reference system, which names the axes where pyproj is installed.
+        Coordinate reference system, which names the axes if pyproj is installed.
     title : str, optional
         By default the numbers of points and triangles.
     size : float, optional
-        Longer side of the picture in inches.
+        Longer side of the image in inches.
     dpi : int, optional
         Pixels per inch.
     **options
-        As in `plot`.
+        As for `plot`.
 
     Raises
     ------
     MissingExtraError
         matplotlib is not installed.
     InputError
-        As in `plot`.
+        As for `plot`.
     OSError
         The file cannot be written.
 
@@ -76,14 +76,12 @@ def save_picture(
     b'PNG'
     """
     with replacing(path) as beside:
-        draw_picture(
-            beside, triangulation, z=z, crs=crs, title=title, size=size, dpi=dpi, **options
-        )
+        draw_picture(beside, mesh, z=z, crs=crs, title=title, size=size, dpi=dpi, **options)
 
 
 def draw_picture(
     path: Path,
-    triangulation: Mesh,
+    mesh: Triangles,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -92,54 +90,37 @@ def draw_picture(
     dpi: int = 160,
     **options: Any,
 ) -> None:
-    """Draw into the file itself; `save_picture` is the same by way of a temporary file."""
+    """Draw into the file itself; `save_picture` goes through a temporary file."""
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
-    require_flat(triangulation)
-    require_drawable(triangulation, as_values(z, triangulation.npoints))
-    width, height = _figure_size(triangulation, size, with_bar=z is not None)
-    if isinstance(triangulation, QualityMesh):
+    require_flat(mesh)
+    require_drawable(mesh, as_values(z, mesh.npoints))
+    width, height = _figure_size(mesh, size, with_bar=z is not None)
+    if is_quality_mesh(mesh):
         figure = figure_module.Figure(figsize=(width, height + 2.5), dpi=dpi, layout="constrained")
         ax, below = figure.subplots(2, 1, height_ratios=(height, 2.5))
-        triangulation.plot_quality(below)
+        cast("Any", mesh).plot_quality(below)
     else:
         figure = figure_module.Figure(figsize=(width, height), dpi=dpi, layout="constrained")
         ax = figure.add_subplot()
-    plot(triangulation, ax, z=z, title=title or _numbers(triangulation), **options)
+    plot(mesh, ax, z=z, title=title or _numbers(mesh), **options)
     xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")
 
 
-def _numbers(triangulation: Mesh) -> str:
-    numbers = f"{triangulation.npoints:,} points, {triangulation.nsimplex:,} triangles"
-    if isinstance(triangulation, ConstrainedDelaunay):
-        numbers += f", {len(triangulation.input_segments):,} segments"
+def _numbers(mesh: Triangles) -> str:
+    numbers = f"{mesh.npoints:,} points, {mesh.nsimplex:,} triangles"
+    if has(mesh, "input_segments"):
+        numbers += f", {len(cast('Any', mesh).input_segments):,} segments"
     return numbers
 
 
-def _figure_size(triangulation: Mesh, size: float, *, with_bar: bool) -> tuple[float, float]:
-    """Return width and height such that the data fill them, labels and colour bar beside."""
-    width, height = (triangulation.max_bound - triangulation.min_bound).tolist()
+def _figure_size(mesh: Triangles, size: float, *, with_bar: bool) -> tuple[float, float]:
+    """Return width and height that the data fill, with room for labels and a color bar."""
+    width, height = (mesh.max_bound - mesh.min_bound).tolist()
     ratio = min(max(width / height, 0.4), 2.5)
     beside, above = (1.9 if with_bar else 0.9), 0.9
     inner = size - max(beside, above)
     if ratio >= 1:
         return inner + beside, inner / ratio + above
     return inner * ratio + beside, inner + above
-
-
-def axis_names(crs: str | None) -> tuple[str, str]:
-    """Return what the axes are called in a reference system, with the unit."""
-    names = {"east": "x", "north": "y"}
-    if crs is None:
-        return names["east"], names["north"]
-    try:
-        import pyproj
-
-        axes = pyproj.CRS.from_user_input(crs).axis_info
-    except Exception:  # a label is not worth an error
-        return names["east"], names["north"]
-    for axis in axes:
-        if axis.direction in names:
-            names[axis.direction] = f"{axis.name} ({axis.unit_name})"
-    return names["east"], names["north"]

@@ -1,4 +1,4 @@
-"""Predictions against the values that were predicted: the picture of a cross-validation."""
+"""Predictions against the predicted values: the plot of a cross-validation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.extras import require
+from delone.plot.axes import new_axes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,12 +21,12 @@ _DOT, _LINE = "#2f6f9f", "#b3372f"
 def draw_predictions(
     values: Floats, predicted: Floats, *, ax: Any = None, title: str | None = None
 ) -> Any:
-    """Draw predictions over the values, with the line on which both are equal.
+    """Draw predictions over the values, with the line of equality.
 
     Parameters
     ----------
     values, predicted : ndarray of float64, shape (n,)
-        Values and what was predicted for them. Pairs that are not finite are left out.
+        Values and their predictions. Pairs that are not finite are left out.
     ax : matplotlib Axes, optional
         Where to draw; by default on new axes.
     title : str, optional
@@ -35,7 +35,7 @@ def draw_predictions(
     Returns
     -------
     matplotlib Axes
-        What was drawn on.
+        Where it is drawn.
 
     Raises
     ------
@@ -49,11 +49,10 @@ def draw_predictions(
     >>> draw_predictions(np.array([1.0, 2.0]), np.array([1.1, np.nan])).get_xlabel()
     'value'
     """
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    ax = new_axes(ax)
     known = np.isfinite(values) & np.isfinite(predicted)
     x, y = values[known], predicted[known]
-    # Smaller and fainter where there are many, so that dense parts can be told from thin ones.
+    # Smaller and fainter if there are many, so that dense parts stand out.
     size = float(np.clip(120 / np.sqrt(max(len(x), 1)), 1.0, 5.0))
     look = {"color": _DOT, "markersize": size, "markeredgewidth": 0, "alpha": 0.2 + 0.12 * size}
     ax.plot(x, y, "o", **look)

@@ -1,35 +1,32 @@
-"""Triangulated values as pixels: the picture of a surface whose triangles are smaller than pixels.
+"""Triangulated values as pixels: an image of a surface whose triangles are smaller than pixels.
 
-A pixel shows the mean of the points within it, which is what an eye sees from afar; a pixel
-without points shows the plane of the triangle at its centre; without a triangle there is nothing.
-Light and shadow follow B. K. P. Horn, "Hill shading and the reflectance map", 1981. NumPy alone is
+A pixel shows the mean of the points within it; a pixel without points shows the plane of the
+triangle at its center; a pixel without a triangle is empty.
+Light and shadow follow B. K. P. Horn, "Hill shading and the reflectance map", 1981. Only NumPy is
 needed.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.plot.protocols import segmented
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.delaunay import Delaunay
+    from delone.plot.protocols import Triangles
 
     Floats = NDArray[np.float64]
-    from delone.refine.meshed import Mesh as QualityMesh
-
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
 __all__ = ["Raster", "facet_light", "facet_values", "point_density", "rasterize", "relief"]
 
 _BLOCK = 1 << 20
-# Below this share of pixels with points, triangles are larger than pixels and show themselves.
+# Below this share of pixels with points, triangles are larger than pixels and are drawn as planes.
 _CROWDED = 0.5
-# From the north-west and above: the eye takes light from below for a hollow.
+# From the northwest and above: with light from below, hills look like hollows.
 _SUN = np.array([-0.5, 0.5, 0.7071067811865476])
 # The steep tenth of a surface is drawn as a slope of this tangent.
 _STEEP = 1.2
@@ -41,7 +38,7 @@ class Raster(NamedTuple):
     Parameters
     ----------
     values : ndarray of float64, shape (rows, columns)
-        NaN where there is nothing.
+        NaN for no value.
     cell : float
         Side of a pixel.
     extent : tuple of float
@@ -53,13 +50,13 @@ class Raster(NamedTuple):
     extent: tuple[float, float, float, float]
 
 
-def rasterize(triangulation: Mesh, values: Floats, pixels: int) -> Raster:
+def rasterize(mesh: Triangles, values: Floats, pixels: int) -> Raster:
     """Return a surface over a triangulation as pixels.
 
     Parameters
     ----------
-    triangulation : Delaunay or ConstrainedDelaunay
-        The triangulation.
+    mesh : Triangles
+        The mesh.
     values : ndarray of float64, shape (n,)
         A value for each point.
     pixels : int
@@ -83,8 +80,8 @@ def rasterize(triangulation: Mesh, values: Floats, pixels: int) -> Raster:
     >>> rasterize(mesh, np.array([0.0, 4.0, 4.0, 0.0]), 4).values[1]
     array([0.5, 1.5, 2.5, 3.5])
     """
-    frame = _frame(triangulation, pixels)
-    count, total = _gathered(triangulation.points, values, frame)
+    frame = _frame(mesh, pixels)
+    count, total = _gathered(mesh.points, values, frame)
     crowded = (count > 0).mean() >= _CROWDED
     surface = np.full(count.shape, np.nan)
     full = count > 0 if crowded else np.zeros(count.shape, dtype=bool)
@@ -92,20 +89,20 @@ def rasterize(triangulation: Mesh, values: Floats, pixels: int) -> Raster:
     empty = np.flatnonzero(~full)
     for start in range(0, len(empty), _BLOCK):
         some = empty[start : start + _BLOCK]
-        surface.flat[some] = _interpolated(triangulation, values, _centres(some, frame))
-    if isinstance(triangulation, ConstrainedDelaunay):
-        # Points of removed triangles have been counted, too.
-        surface[triangulation.find_simplex(_all_centres(frame)) < 0] = np.nan
+        surface.flat[some] = _interpolated(mesh, values, _centers(some, frame))
+    if segmented(mesh) is not None:
+        # Points of removed triangles have been counted as well.
+        surface[mesh.find_simplex(_all_centers(frame)) < 0] = np.nan
     return Raster(surface, frame.cell, frame.extent)
 
 
-def point_density(triangulation: Mesh, pixels: int) -> Raster:
+def point_density(mesh: Triangles, pixels: int) -> Raster:
     """Return how many points lie on the area of each pixel, per unit of area.
 
     Parameters
     ----------
-    triangulation : Delaunay or ConstrainedDelaunay
-        The triangulation.
+    mesh : Triangles
+        The mesh.
     pixels : int
         Number of pixels along the longer side.
 
@@ -123,20 +120,20 @@ def point_density(triangulation: Mesh, pixels: int) -> Raster:
     array([[1., 1.],
            [1., 1.]])
     """
-    frame = _frame(triangulation, pixels)
-    count, _ = _gathered(triangulation.points, None, frame)
+    frame = _frame(mesh, pixels)
+    count, _ = _gathered(mesh.points, None, frame)
     with np.errstate(divide="ignore", over="ignore"):
         density = np.where(count > 0, count / frame.cell / frame.cell, np.nan)
     return Raster(density, frame.cell, frame.extent)
 
 
-def facet_values(triangulation: Mesh, values: NDArray[np.integer] | Floats, pixels: int) -> Raster:
-    """Return values of triangles as pixels: those of the triangles at their centres.
+def facet_values(mesh: Triangles, values: NDArray[np.integer] | Floats, pixels: int) -> Raster:
+    """Return values of triangles as pixels: those of the triangles at their centers.
 
     Parameters
     ----------
-    triangulation : Delaunay or ConstrainedDelaunay
-        The triangulation.
+    mesh : Triangles
+        The mesh.
     values : ndarray, shape (m,)
         A value for each triangle.
     pixels : int
@@ -157,8 +154,8 @@ def facet_values(triangulation: Mesh, values: NDArray[np.integer] | Floats, pixe
     >>> facet_values(mesh, mesh.region, 4).values[0]
     array([0., 0., 1., 1.])
     """
-    frame = _frame(triangulation, pixels)
-    triangle = triangulation.find_simplex(_all_centres(frame))
+    frame = _frame(mesh, pixels)
+    triangle = mesh.find_simplex(_all_centers(frame))
     found = np.full(triangle.shape, np.nan)
     found[triangle >= 0] = values[triangle[triangle >= 0]]
     return Raster(found, frame.cell, frame.extent)
@@ -175,12 +172,12 @@ def relief(raster: Raster) -> Floats:
     Returns
     -------
     ndarray of float64, shape (rows, columns)
-        From 0 (away from the sun) to 1 (towards it); flat ground has 0.71.
+        From 0 (away from the sun) to 1 (toward it); flat ground has 0.71.
 
     Notes
     -----
-    Heights are exaggerated until the steep tenth of the ground is as steep as 50 degrees, so that a
-    plain, a town and metres over degrees all show relief.
+    Heights are exaggerated until the steepest tenth of the ground is as steep as 50 degrees, so
+    that plains, towns and heights in meters over degrees all show relief.
 
     Examples
     --------
@@ -260,9 +257,9 @@ class _Frame(NamedTuple):
         return x, x + self.columns * self.cell, y, y + self.rows * self.cell
 
 
-def _frame(triangulation: Mesh, pixels: int) -> _Frame:
-    low = triangulation.min_bound
-    width, height = (triangulation.max_bound - low).tolist()
+def _frame(mesh: Triangles, pixels: int) -> _Frame:
+    low = mesh.min_bound
+    width, height = (mesh.max_bound - low).tolist()
     cell = max(width, height) / pixels
     columns, rows = (max(1, min(pixels, int(np.ceil(side / cell)))) for side in (width, height))
     return _Frame(low, cell, rows, columns)
@@ -287,27 +284,27 @@ def _gathered(points: Floats, values: Floats | None, frame: _Frame) -> tuple[Flo
     return count.reshape(shape), total.reshape(shape)
 
 
-def _centres(flat: NDArray[np.int64], frame: _Frame) -> Floats:
+def _centers(flat: NDArray[np.int64], frame: _Frame) -> Floats:
     row, column = np.divmod(flat, frame.columns)
     return frame.low + frame.cell * (np.column_stack((column, row)) + 0.5)
 
 
-def _all_centres(frame: _Frame) -> Floats:
-    centres = _centres(np.arange(frame.rows * frame.columns), frame)
-    return centres.reshape(frame.rows, frame.columns, 2)
+def _all_centers(frame: _Frame) -> Floats:
+    centers = _centers(np.arange(frame.rows * frame.columns), frame)
+    return centers.reshape(frame.rows, frame.columns, 2)
 
 
-def _interpolated(triangulation: Mesh, values: Floats, xi: Floats) -> Floats:
+def _interpolated(mesh: Triangles, values: Floats, xi: Floats) -> Floats:
     """Return the height of the triangles at points, NaN outside."""
-    triangle = triangulation.find_simplex(xi)
+    triangle = mesh.find_simplex(xi)
     inside = triangle >= 0
-    corners = triangulation.simplices[triangle[inside]]
-    a, b, c = (triangulation.points[corners[:, k]] for k in range(3))
+    corners = mesh.simplices[triangle[inside]]
+    a, b, c = (mesh.points[corners[:, k]] for k in range(3))
     (ux, uy), (vx, vy), (px, py) = (b - a).T, (c - a).T, (xi[inside] - a).T
     with np.errstate(all="ignore"):
         twice = ux * vy - uy * vx
         s, t = (px * vy - py * vx) / twice, (ux * py - uy * px) / twice
-    # A sliver may lose its digits; its values stay between those of its corners.
+    # Rounding may be large in a sliver; its values stay between those of its corners.
     s, t = np.clip(np.nan_to_num(s), 0.0, 1.0), np.clip(np.nan_to_num(t), 0.0, 1.0)
     za, zb, zc = (values[corners[:, k]] for k in range(3))
     found = np.full(len(xi), np.nan)

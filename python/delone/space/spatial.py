@@ -332,7 +332,7 @@ class Spatial(Triangulation):
         ax : matplotlib Axes or pyvista Plotter, optional
             Where to draw; by default on a new one.
         **options
-            As in `delone.plot.plot` or, in space, `delone.scene.plot`.
+            As for `delone.plot.plot`.
 
         Returns
         -------
@@ -352,9 +352,6 @@ class Spatial(Triangulation):
         >>> ax.get_aspect()
         1.0
         """
-        if self.ndim == 2:
-            return super().plot(ax, **options)
-        from delone.scene import plot
+        from delone.plot import plot
 
-        mesh: Any = self
-        return plot(mesh, plotter=ax, **options)
+        return plot(self, ax, **options)

@@ -642,7 +642,9 @@ class Voronoi(Immutable):
         >>> ax.get_aspect()
         1.0
         """
-        return shapes.draw(self, ax, **options)
+        from delone.plot import plot
+
+        return plot(self, ax, **options)
 
     def __repr__(self) -> str:
         if not hasattr(self, "_clip"):  # the constructor failed, or has not run

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag, as_workers
+from delone._arrays import as_flag, as_workers
 from delone.counting import counted
 from delone.errors import InputError
 from delone.georeference import warn_of_degrees
@@ -464,16 +464,9 @@ class SpaceVoronoi(Voronoi):
         >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
         >>> Voronoi(corners, clip="box").plot().show()  # doctest: +SKIP
         """
-        from delone.extras import require
+        from delone.plot import plot
 
-        hidden = as_optional_flag(off_screen, name="off_screen")
-        if ax is not None and hidden is not None:
-            raise InputError("off_screen is for a new plotter: give it to that of ax")
-        pyvista = require("pyvista", extra="pyvista", what="drawing in space")
-        plotter = pyvista.Plotter(off_screen=hidden) if ax is None else ax
-        grid = self.to_pyvista()
-        plotter.add_mesh(grid.shrink(0.85), **({"scalars": "site", "show_edges": True} | options))
-        return plotter
+        return plot(self, ax, off_screen=off_screen, **options)
 
     def polygons(self) -> NDArray[Any]:
         """Cells in space are no polygons: `cell` has their faces, `to_pyvista` the polyhedra."""

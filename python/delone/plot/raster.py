@@ -1,7 +1,4 @@
-"""Plots of rasters: colors, hillshade and contours.
-
-Needs matplotlib (extra ``plot``). Colours and light are those of `delone.plot`.
-"""
+"""Plots of rasters: colors, hillshade and contours."""
 
 from __future__ import annotations
 
@@ -12,8 +9,8 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.extras import require
-from delone.plot.colours import add_bar, scale, shaded
-from delone.plot.picture import axis_names
+from delone.plot.axes import axis_names, new_axes
+from delone.plot.colors import add_bar, scale, shaded
 from delone.plot.shading import Raster, relief
 
 if TYPE_CHECKING:
@@ -39,34 +36,34 @@ def plot_raster(
     label: str = "z",
     title: str | None = None,
 ) -> Any:
-    """Draw a raster in colors of its values, as a relief map where it is terrain.
+    """Draw a raster in the colors of its values, optionally as a relief map.
 
     Parameters
     ----------
     values : ndarray of float64, shape (rows, columns)
-        Values, the first row lowest; NaN where there is nothing.
+        Values, the first row lowest; NaN for no value.
     x, y : ndarray of float64, shape (columns,) and (rows,)
         Nodes, evenly spaced.
     ax : matplotlib Axes, optional
         Where to draw; by default on the axes of a new pyplot figure.
     contours : int or sequence of float, optional
-        Draw lines of equal value: about so many, or at these values.
+        Draw lines of equal value: about this many, or at these values.
     shade : bool, optional
         Add light and shadow, for terrain. The colors then differ from those of the color bar, so
-        that by default this is done only with ``colorbar=False``.
+        by default this is done only with ``colorbar=False``.
     cmap : str or matplotlib Colormap, optional
-        Colours; by default those of land, or of water where nothing lies above zero.
+        Colors; by default those of land, or of water if nothing lies above zero.
     colorbar : bool, optional
-        Add the scale of the colours.
+        Add the scale of the mapped.
     label : str, optional
-        What the values are.
+        Name of the values.
     title : str, optional
         Title of the axes.
 
     Returns
     -------
     matplotlib Axes
-        What was drawn on.
+        Where it is drawn.
 
     Raises
     ------
@@ -80,18 +77,17 @@ def plot_raster(
     >>> import matplotlib
     >>> matplotlib.use("Agg")
     >>> from delone.interpolate import grid
-    >>> from delone.relief import plot_raster
+    >>> from delone.plot import plot_raster
     >>> ramp = grid([(0, 0), (4, 0), (4, 4), (0, 4)], [0.0, 4.0, 4.0, 0.0], shape=(40, 40))
     >>> plot_raster(ramp.values, ramp.x, ramp.y, contours=4).get_aspect()
     1.0
     """
     bar, lit = as_flag(colorbar, name="colorbar"), as_optional_flag(shade, name="shade")
     if not np.isfinite(values).any():
-        raise InputError("the raster has no finite value to be drawn")
-    if ax is None:
-        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
-    colours = scale(values, cmap)
-    rgba = colours.to_rgba(values)
+        raise InputError("the raster has no finite value to draw")
+    ax = new_axes(ax)
+    mapped = scale(values, cmap)
+    rgba = mapped.to_rgba(values)
     extent = _extent(x, y)
     if lit or (lit is None and not bar):
         light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
@@ -111,7 +107,7 @@ def plot_raster(
             alpha=0.45,
         )
     if bar:
-        add_bar(ax, colours, values, label)
+        add_bar(ax, mapped, values, label)
     if title:
         ax.set_title(title, fontsize="medium")
     return ax
@@ -136,15 +132,15 @@ def draw_raster(
     path : Path
         The file.
     values, x, y
-        As in `plot_raster`.
+        As for `plot_raster`.
     label : str, optional
-        What the values are.
+        Name of the values.
     shade : bool, optional
-        Add light and shadow, as in `plot_raster`.
+        Add light and shadow, as for `plot_raster`.
     crs : str, optional
-        Coordinate reference system, which names the axes where pyproj is installed.
+        Coordinate reference system, which names the axes if pyproj is installed.
     size : float, optional
-        Longer side of the picture in inches.
+        Longer side of the image in inches.
     dpi : int, optional
         Pixels per inch.
     """

@@ -1,4 +1,4 @@
-"""Colours of values: a scale that fits the bulk of them, light and shadow on it, and its bar."""
+"""Colors of values: a scale that fits most of them, light and shadow, and the color bar."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
 
 
 def scale(values: Floats, cmap: Any) -> Any:
-    """Return a scale of colours that fits the bulk of the values, and says if some are beyond."""
+    """Return a color scale that fits all but the lowest and the highest hundredth of the values."""
     colors = require("matplotlib.colors", extra="plot", what="drawing")
     cm = require("matplotlib.cm", extra="plot", what="drawing")
     known = values[np.isfinite(values)]
@@ -36,18 +36,18 @@ def scale(values: Floats, cmap: Any) -> Any:
 
 
 def shaded(rgb: Floats, light: Floats) -> Floats:
-    """Darken away from the sun, lighten towards it; flat ground keeps its colour nearly."""
+    """Darken away from the sun, lighten toward it; flat ground almost keeps its color."""
     strength = (0.30 + 0.95 * light)[..., None]
     return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
 
 
-def add_bar(ax: Any, colours: Any, values: Floats, label: str) -> None:
-    """Add the bar of a scale, pointed where values lie beyond."""
-    below = np.nanmin(values) < colours.norm.vmin
-    above = np.nanmax(values) > colours.norm.vmax
+def add_bar(ax: Any, mapped: Any, values: Floats, label: str) -> None:
+    """Add the color bar of a scale, pointed at an end if values lie beyond it."""
+    below = np.nanmin(values) < mapped.norm.vmin
+    above = np.nanmax(values) > mapped.norm.vmax
     extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
     bar = ax.figure.colorbar(
-        colours,
+        mapped,
         ax=ax,
         label=label,
         extend=extend[int(below), int(above)],

@@ -1,0 +1,59 @@
+"""Values that belong to points: converted to float64, their number checked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone._arrays import as_plain_array
+from delone.errors import DtypeError, ShapeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["as_values"]
+
+
+def as_values(
+    values: ArrayLike | None, count: int, *, name: str = "z"
+) -> NDArray[np.float64] | None:
+    """Return one float64 value for each point.
+
+    Parameters
+    ----------
+    values : array_like, shape (count,), or None
+        Numbers.
+    count : int
+        How many there must be.
+    name : str, optional
+        The name of the argument in error messages.
+
+    Returns
+    -------
+    ndarray of float64, shape (count,), or None
+        None for None.
+
+    Raises
+    ------
+    ShapeError
+        Another number of values.
+    DtypeError
+        The values are not real numbers.
+
+    Examples
+    --------
+    >>> from delone._values import as_values
+    >>> as_values([1, 2], 2)
+    array([1., 2.])
+    """
+    if values is None:
+        return None
+    if isinstance(values, np.ma.MaskedArray):
+        raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
+    array = as_plain_array(values, name)
+    if array.dtype.kind not in "iufb":
+        raise DtypeError(f"{name} must hold real numbers, got dtype {array.dtype}")
+    if array.shape != (count,):
+        raise ShapeError(f"{name} must have shape ({count},), got {array.shape}")
+    return np.ascontiguousarray(array, dtype=np.float64)

@@ -1,0 +1,116 @@
+"""The axes of 2-D plots: limits, ticks, names, and dots for points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["axis_names", "draw_dots", "frame", "new_axes", "pixels", "require_bounds"]
+
+_DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to a hundred
+_MOST_DOTS = 2000
+_DOT = "#17324d"
+
+
+def new_axes(ax: Any) -> Any:
+    """Return the given axes; for None, those of a new pyplot figure."""
+    if ax is None:
+        _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    return ax
+
+
+def require_bounds(low: Floats, high: Floats) -> None:
+    """Refuse coordinates for which the transforms of matplotlib overflow."""
+    far = max(np.abs(low).max(), np.abs(high).max())
+    # Halves, since the extent itself may overflow.
+    near = (high / 2 - low / 2).max()
+    if far > _DRAWABLE[1] or near < _DRAWABLE[0]:
+        raise InputError(
+            "a plot cannot hold coordinates beyond 1e305 or an extent below 1e-305; "
+            "multiply the points by a power of two first, which changes no triangle"
+        )
+
+
+def pixels(ax: Any, low: Floats, high: Floats) -> tuple[int, int]:
+    """Return the number of pixels that the data will have across and up."""
+    box = ax.get_window_extent()
+    width, height = (high - low).tolist()
+    scale = min(box.width / width, box.height / height)
+    return max(1, round(width * scale)), max(1, round(height * scale))
+
+
+def draw_dots(ax: Any, points: Floats, wanted: bool | None, *, count: int | None = None) -> None:
+    """Draw points, for None only if there are few enough to tell them apart.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes
+        Where to draw.
+    points : ndarray of float64, shape (n, 2)
+        The points.
+    wanted : bool or None
+        Whether to draw them.
+    count : int, optional
+        The number of points that None depends on; by default n.
+    """
+    if wanted or (wanted is None and (len(points) if count is None else count) <= _MOST_DOTS):
+        size = float(np.clip(60 / np.sqrt(max(len(points), 1)), 0.8, 5.0))
+        ax.plot(*points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
+
+
+def frame(ax: Any, low: Floats, high: Floats, title: str | None, *, margin: float) -> None:
+    """Set limits, aspect, title, and ticks that show the coordinates as they are.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes
+        The axes.
+    low, high : ndarray of float64, shape (2,)
+        The limits.
+    title : str or None
+        The title.
+    margin : float
+        How much more is shown on each side, in the unit of the data.
+    """
+    ticker = require("matplotlib.ticker", extra="plot", what="drawing")
+    ax.set_xlim(low[0] - margin, high[0] + margin)
+    ax.set_ylim(low[1] - margin, high[1] + margin)
+    ax.set_aspect("equal")
+    largest = float(np.abs((low, high)).max())
+    plain = largest == 0 or 1e-4 < largest < 1e9
+    across, up = pixels(ax, low, high)
+    # A label needs about an inch across, so that long coordinates do not overlap.
+    for axis, size, inches in ((ax.xaxis, across, 1.0), (ax.yaxis, up, 0.5)):
+        bins = int(np.clip(size / ax.figure.dpi / inches, 1, 7))
+        axis.set_major_locator(ticker.MaxNLocator(nbins=bins, steps=[1, 2, 5, 10]))
+        formatter = ticker.ScalarFormatter(useOffset=False)
+        formatter.set_scientific(not plain)
+        axis.set_major_formatter(formatter)
+    if title:
+        ax.set_title(title, fontsize="medium")
+
+
+def axis_names(crs: str | None) -> tuple[str, str]:
+    """Return the names of the axes of a reference system, with the unit."""
+    names = {"east": "x", "north": "y"}
+    if crs is None:
+        return names["east"], names["north"]
+    try:
+        import pyproj
+
+        axes = pyproj.CRS.from_user_input(crs).axis_info
+    except Exception:  # a label is not worth an error
+        return names["east"], names["north"]
+    for axis in axes:
+        if axis.direction in names:
+            names[axis.direction] = f"{axis.name} ({axis.unit_name})"
+    return names["east"], names["north"]

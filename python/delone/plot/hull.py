@@ -1,0 +1,67 @@
+"""2-D convex hulls: a polygon over the points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_optional_flag
+from delone.extras import require
+from delone.plot.axes import draw_dots, frame, new_axes, require_bounds
+
+if TYPE_CHECKING:
+    from delone.plot.protocols import Hull2
+
+__all__ = ["plot_hull"]
+
+_FACE, _RIM = "#c9dcea", "#b3372f"
+
+
+def plot_hull(
+    hull: Hull2, ax: Any = None, *, vertices: bool | None = None, title: str | None = None
+) -> Any:
+    """Draw a 2-D convex hull as a polygon, and the points.
+
+    Parameters
+    ----------
+    hull : Hull2
+        What to draw: a 2-D `ConvexHull`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on the axes of a new pyplot figure.
+    vertices : bool, optional
+        Draw the points. By default only if there are few enough to tell them apart.
+    title : str, optional
+        Title of the axes.
+
+    Returns
+    -------
+    matplotlib Axes
+        Where it is drawn.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        matplotlib cannot draw the coordinates.
+
+    Examples
+    --------
+    >>> from delone import ConvexHull
+    >>> from delone.plot import plot
+    >>> ax = plot(ConvexHull([(0, 0), (4, 0), (4, 3), (2, 1)]))
+    >>> len(ax.patches[0].get_xy())  # the first corner is repeated
+    4
+    """
+    patches = require("matplotlib.patches", extra="plot", what="drawing")
+    dots = as_optional_flag(vertices, name="vertices")
+    corners = hull.points[hull.vertices]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    require_bounds(low, high)
+    ax = new_axes(ax)
+    outline = patches.Polygon(corners, facecolor=_FACE, edgecolor=_RIM, linewidth=1.4, zorder=1)
+    ax.add_patch(outline)
+    draw_dots(ax, hull.points, dots)
+    frame(ax, low, high, title, margin=0.02 * float(np.max(high - low)))
+    return ax

@@ -1,0 +1,109 @@
+"""Periodic 2-D triangulations: the triangles of one period, and its box."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_flag, as_optional_flag
+from delone.extras import require
+from delone.plot.axes import draw_dots, frame, new_axes, require_bounds
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.plot.protocols import Periodic
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["plot_periodic"]
+
+_FACE, _INK, _BOX = "#eaf1f6", "#35506b", "#b3372f"
+
+
+def plot_periodic(
+    mesh: Periodic,
+    ax: Any = None,
+    *,
+    box: bool = True,
+    vertices: bool | None = None,
+    title: str | None = None,
+) -> Any:
+    """Draw one triangle of each class of translates of a periodic triangulation.
+
+    Parameters
+    ----------
+    mesh : Periodic
+        What to draw: a `PeriodicDelaunay`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on the axes of a new pyplot figure.
+    box : bool, optional
+        Draw the outline of one period around the points, dashed: a box, or two lines if only one
+        direction has a period.
+    vertices : bool, optional
+        Draw the points. By default only if there are few enough to tell them apart.
+    title : str, optional
+        Title of the axes.
+
+    Returns
+    -------
+    matplotlib Axes
+        Where it is drawn.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        matplotlib cannot draw the coordinates.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone import PeriodicDelaunay
+    >>> from delone.plot import plot
+    >>> mesh = PeriodicDelaunay(np.random.default_rng(1).random((9, 2)), (1, 1))
+    >>> len(plot(mesh).collections[0].get_paths()) == mesh.nsimplex
+    True
+    """
+    collections = require("matplotlib.collections", extra="plot", what="drawing")
+    outlined = as_flag(box, name="box")
+    dots = as_optional_flag(vertices, name="vertices")
+    corners = mesh.corners
+    start, end = _period(mesh)
+    # A direction without a period shows as much as the triangles do.
+    low = np.fmin(corners.min(axis=(0, 1)), start)
+    high = np.fmax(corners.max(axis=(0, 1)), end)
+    require_bounds(low, high)
+    ax = new_axes(ax)
+    facets = collections.PolyCollection(
+        corners,
+        facecolors=_FACE,
+        edgecolors=_INK,
+        linewidths=float(np.clip(30 / np.sqrt(len(corners)), 0.15, 1.0)),
+        zorder=1,
+    )
+    ax.add_collection(facets, autolim=False)
+    if outlined:
+        _draw_box(ax, np.array([start, end]), np.array([low, high]))
+    draw_dots(ax, mesh.points, dots)
+    frame(ax, low, high, title, margin=0.02 * float(np.max(high - low)))
+    return ax
+
+
+def _period(mesh: Periodic) -> tuple[Floats, Floats]:
+    """Return the ends of one period with the points in its middle; NaN without a period."""
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    lengths = np.array([np.nan if each is None else each for each in mesh.periods])
+    start = low - (lengths - (high - low)) / 2
+    return start, start + lengths
+
+
+def _draw_box(ax: Any, ends: Floats, shown: Floats) -> None:
+    """Draw the sides of a period, those along a direction without a period left out."""
+    for axis in (0, 1):
+        along = ends[:, 1 - axis] if np.isfinite(ends[0, 1 - axis]) else shown[:, 1 - axis]
+        for at in ends[np.isfinite(ends[:, axis]), axis].tolist():
+            side = [along, [at, at]] if axis else [[at, at], along]
+            ax.plot(*side, "--", color=_BOX, linewidth=1.4, zorder=3, gid="period")

@@ -1,0 +1,274 @@
+"""What an object must have to be drawn: protocols in place of the classes of delone."""
+
+from __future__ import annotations
+
+import inspect
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = [
+    "Cells2",
+    "Cells3",
+    "Hull2",
+    "Hulled",
+    "Periodic",
+    "Segmented",
+    "Simplices",
+    "Triangles",
+    "has",
+    "is_quality_mesh",
+    "kind_of",
+    "segmented",
+]
+
+
+class Simplices(Protocol):
+    """Points and the simplices between them."""
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates, (n, d)."""
+
+    @property
+    def simplices(self) -> Indices:
+        """Rows of `points`, (m, k)."""
+
+
+class Triangles(Simplices, Protocol):
+    """A 2-D triangulation."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of points."""
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of triangles."""
+
+    @property
+    def edges(self) -> Indices:
+        """The edges, (e, 2)."""
+
+    @property
+    def circumcenters(self) -> Floats:
+        """The center of the circle through the corners of each triangle, (m, 2)."""
+
+    @property
+    def min_bound(self) -> Floats:
+        """The smallest coordinates, (2,)."""
+
+    @property
+    def max_bound(self) -> Floats:
+        """The largest coordinates, (2,)."""
+
+    def find_simplex(self, xi: Any, /) -> Any:
+        """Return the triangle that contains each point, -1 outside."""
+
+
+class Hulled(Triangles, Protocol):
+    """A 2-D triangulation that fills the convex hull of its points."""
+
+    @property
+    def hull(self) -> NDArray[np.integer[Any]]:
+        """The vertices on the convex hull, counterclockwise, (h,)."""
+
+
+class Segmented(Triangles, Protocol):
+    """A 2-D triangulation with segments and regions."""
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each corner, (m, 3); -1 outside."""
+
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Which edges are on segments, (m, 3)."""
+
+    @property
+    def segments(self) -> Indices:
+        """The subsegments, (s, 2)."""
+
+    @property
+    def region(self) -> NDArray[Any]:
+        """The label of each triangle, (m,); negative for no label."""
+
+    @property
+    def areas(self) -> Floats:
+        """The areas of the triangles, (m,)."""
+
+
+class Hull2(Protocol):
+    """A 2-D convex hull."""
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates, (n, 2)."""
+
+    @property
+    def vertices(self) -> Indices:
+        """The extreme points, counterclockwise, (v,)."""
+
+
+class Periodic(Protocol):
+    """A periodic 2-D triangulation."""
+
+    @property
+    def points(self) -> Floats:
+        """The points of one period, (n, 2)."""
+
+    @property
+    def periods(self) -> tuple[float | None, float | None]:
+        """The periods in x and y; None for none."""
+
+    @property
+    def corners(self) -> Floats:
+        """The corners of the triangles, (m, 3, 2)."""
+
+
+class Cells2(Protocol):
+    """A 2-D Voronoi diagram."""
+
+    @property
+    def points(self) -> Floats:
+        """The sites, (n, 2)."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of sites."""
+
+    @property
+    def weights(self) -> Floats | None:
+        """The weights of the sites, (n,); None without."""
+
+    @property
+    def clip(self) -> Any:
+        """Where cells end: a box, a geometry with ``bounds``, or None."""
+
+    @property
+    def periods(self) -> tuple[float | None, float | None] | None:
+        """The periods in x and y; None without."""
+
+    @property
+    def duplicate_of(self) -> Indices:
+        """The first row with the same coordinates, (n,)."""
+
+    @property
+    def hidden(self) -> Indices:
+        """The rows without a cell."""
+
+    def cell(self, i: int, /) -> Any:
+        """Return the cell of a site, whose ``parts`` are tuples of rings."""
+
+
+class Cells3(Protocol):
+    """A 3-D Voronoi diagram."""
+
+    def to_pyvista(self) -> Any:
+        """Return the cells as polyhedra."""
+
+
+def has(thing: Any, *names: str) -> bool:
+    """Tell whether an object has all of these attributes, without computing any.
+
+    Parameters
+    ----------
+    thing : object
+        Anything.
+    *names : str
+        Names of attributes.
+
+    Returns
+    -------
+    bool
+        Whether it has them.
+
+    Examples
+    --------
+    >>> from delone import Delaunay
+    >>> from delone.plot.protocols import has
+    >>> mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
+    >>> has(mesh, "edges"), has(mesh, "edges", "region")
+    (True, False)
+    """
+    missing = object()
+    return all(inspect.getattr_static(thing, name, missing) is not missing for name in names)
+
+
+def segmented(mesh: Triangles) -> Segmented | None:
+    """Return the triangulation itself if it has segments and regions, else None.
+
+    Parameters
+    ----------
+    mesh : Triangles
+        A 2-D triangulation.
+
+    Returns
+    -------
+    Segmented or None
+        The same object.
+    """
+    names = ("region", "segments", "constrained", "neighbors", "areas")
+    return cast("Segmented", mesh) if has(mesh, *names) else None
+
+
+def is_quality_mesh(mesh: Any) -> bool:
+    """Tell whether an object is a quality mesh, that is, plots its own angles.
+
+    Parameters
+    ----------
+    mesh : object
+        Anything.
+
+    Returns
+    -------
+    bool
+        Whether it has ``plot_quality``.
+    """
+    return has(mesh, "plot_quality")
+
+
+def kind_of(thing: Any) -> str:
+    """Tell what an object is drawn as.
+
+    Parameters
+    ----------
+    thing : object
+        Anything.
+
+    Returns
+    -------
+    str
+        ``"triangles"``, ``"tetrahedra"`` (or a surface of triangles in 3-D), ``"hull"``,
+        ``"periodic"``, ``"cells2"``, ``"cells3"``; ``""`` for anything else.
+
+    Examples
+    --------
+    >>> from delone import ConvexHull, Voronoi
+    >>> from delone.plot.protocols import kind_of
+    >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    >>> kind_of(ConvexHull(square)), kind_of(Voronoi(square)), kind_of(square)
+    ('hull', 'cells2', '')
+    """
+    d, corners = (_columns(thing, name) for name in ("points", "simplices"))
+    if has(thing, "ridge_points", "cell"):
+        return {2: "cells2", 3: "cells3"}.get(d, "")
+    if d == 2 and corners == 3:
+        if has(thing, "periods", "corners"):
+            return "periodic"
+        return "triangles" if has(thing, "edges", "min_bound", "find_simplex") else ""
+    if d == corners == 2 and has(thing, "vertices"):
+        return "hull"
+    return "tetrahedra" if d == 3 and corners in (3, 4) else ""
+
+
+def _columns(thing: Any, name: str) -> int:
+    """Return the number of columns of an attribute, 0 if it is not a table."""
+    shape = np.shape(getattr(thing, name)) if has(thing, name) else ()
+    return int(shape[-1]) if len(shape) == 2 else 0

@@ -1,0 +1,191 @@
+"""3-D plots of tetrahedra and of surfaces of triangles with PyVista.
+
+Tetrahedra hide each other, so half of them can be left out in front of a plane, and each can be
+shrunk about its center.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_choice, as_flag, as_number
+from delone.errors import InputError
+from delone.extras import require
+from delone.plot.plotter import new_plotter
+from delone.plot.protocols import has, kind_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.plot.protocols import Simplices
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["plot"]
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+_VTK_TETRA = 10  # the number of this kind of cell
+_FACE, _EDGE, _POINT, _SKIN = "#9ecae1", "#08306b", "#08306b", "#2f6f9f"
+
+
+def plot(
+    mesh: Simplices,
+    ax: Any = None,
+    *,
+    values: ArrayLike | None = None,
+    cut: str = "none",
+    shrink: float = 1.0,
+    below: float | None = None,
+    points: bool = False,
+    cmap: str = "viridis",
+    colorbar: bool = True,
+    off_screen: bool | None = None,
+) -> Any:
+    """Draw tetrahedra or a surface of triangles, with edges.
+
+    Parameters
+    ----------
+    mesh : Simplices
+        What to draw: a 3-D `Delaunay`, `RegularTriangulation` or `ConvexHull`, or a `TetMesh`.
+    ax : pyvista.Plotter, optional
+        Where to draw; by default a new plotter.
+    values : array_like, shape (n,) or (m,), optional
+        A number for each point or each simplex (if there are as many of both, for each point), for
+        colors. By default a single color; with `below`, the smallest dihedral angles.
+    cut : {"none", "x", "y", "z"}, optional
+        The axis along which the farther half of the simplices is left out.
+    shrink : float, optional
+        Share of the size at which each simplex is drawn, at most 1.
+    below : float, optional
+        Draw only the tetrahedra whose smallest dihedral angle is below this, in degrees, within
+        the translucent surface of the mesh.
+    points : bool, optional
+        Draw the points as well.
+    cmap : str, optional
+        Colors of values.
+    colorbar : bool, optional
+        Add the color bar.
+    off_screen : bool, optional
+        Whether a new plotter draws without a window. Not together with `ax`.
+
+    Returns
+    -------
+    pyvista.Plotter
+        Where it is drawn: ``show()`` opens the window, ``screenshot(path)`` writes an image.
+
+    Raises
+    ------
+    InputError
+        `mesh` is 2-D or has no simplices, or an option is not one of its choices.
+    MissingExtraError
+        PyVista is not installed.
+
+    Examples
+    --------
+    >>> from delone import Delaunay, datasets
+    >>> from delone.plot import plot
+    >>> mesh = Delaunay(datasets.uniform(50, ndim=3))
+    >>> plotter = plot(mesh, values=mesh.volumes, cut="x", off_screen=True)
+    >>> plotter.close()
+    """
+    pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
+    as_choice(cut, ("none", *_AXES), name="cut")
+    dots, bar = as_flag(points, name="points"), as_flag(colorbar, name="colorbar")
+    _require_simplices(mesh)
+    if not 0 < shrink <= 1:
+        raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
+    shown, angles = _in_front(mesh, cut), None
+    if below is not None:
+        bound, angles = as_number(below, name="below"), _smallest_dihedrals(mesh)
+        shown &= angles < bound
+    chosen = _chosen(mesh, angles if values is None else values, shown)
+    plotter = new_plotter(ax, off_screen=off_screen)
+    if below is not None:
+        _draw_surface(pyvista, plotter, mesh)
+    look: dict[str, Any] = {"color": _FACE}
+    if chosen is not None:
+        look = {"scalars": "values", "cmap": cmap, "show_scalar_bar": bar}
+    if below is not None and values is None:
+        look["clim"] = (0, bound)
+    if shown.any():
+        grid = _grid(pyvista, mesh, shown, chosen)
+        _draw_simplices(plotter, grid, shrink, look)
+    if dots:
+        plotter.add_points(
+            np.array(mesh.points), color=_POINT, point_size=6, render_points_as_spheres=True
+        )
+    return plotter
+
+
+def _require_simplices(mesh: Any) -> None:
+    """Refuse anything but 3-D simplices, and name what draws it."""
+    kind = kind_of(mesh)
+    if kind == "tetrahedra":
+        return
+    if kind:
+        hint = "delone.plot.plot draws it"
+    else:
+        hint = "use its own plot()" if hasattr(mesh, "plot") else "draw delone.Delaunay(points)"
+    raise InputError(f"a {type(mesh).__name__} is not a mesh in 3-D: {hint}")
+
+
+def _in_front(mesh: Simplices, cut: str) -> NDArray[np.bool_]:
+    """Return the simplices whose center is in the nearer half of the box of the points."""
+    if cut == "none":
+        return np.ones(len(mesh.simplices), dtype=bool)
+    along = mesh.points[:, _AXES[cut]]
+    middle = along.min() / 2 + along.max() / 2
+    width = mesh.simplices.shape[1]
+    center = sum(along[mesh.simplices[:, k]] / width for k in range(width))
+    found: NDArray[np.bool_] = center <= middle
+    return found
+
+
+def _smallest_dihedrals(mesh: Any) -> Floats:
+    if mesh.simplices.shape[1] != 4 or not has(mesh, "quality"):
+        raise InputError(f"below is for tetrahedra, and a {type(mesh).__name__} has none")
+    angles: Floats = mesh.quality().smallest_dihedral
+    return angles
+
+
+def _chosen(mesh: Simplices, values: ArrayLike | None, shown: NDArray[np.bool_]) -> Floats | None:
+    """Return the values of all points or of the simplices shown."""
+    if values is None:
+        return None
+    array = np.asarray(values, dtype=np.float64)
+    npoints, nsimplex = len(mesh.points), len(mesh.simplices)
+    if array.shape not in ((npoints,), (nsimplex,)):
+        raise InputError(
+            f"values must be one for each of {npoints} points or {nsimplex} simplices, "
+            f"got shape {array.shape}"
+        )
+    return array if len(array) == npoints else array[shown]
+
+
+def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_], values: Floats | None) -> Any:
+    """Return the simplices shown as a mesh of PyVista."""
+    points, simplices = np.array(mesh.points), mesh.simplices[shown]
+    if simplices.shape[1] == 4:
+        grid = pyvista.UnstructuredGrid({_VTK_TETRA: simplices}, points)
+    else:
+        grid = pyvista.PolyData.from_regular_faces(points, simplices)
+    if values is not None:
+        data = grid.point_data if len(values) == len(points) else grid.cell_data
+        data["values"] = values
+    return grid
+
+
+def _draw_simplices(plotter: Any, grid: Any, shrink: float, look: dict[str, Any]) -> None:
+    whole = shrink == 1
+    if not whole:
+        grid = grid.shrink(shrink)
+    # Some light from all sides shows the colors in the shade.
+    plotter.add_mesh(grid, show_edges=whole, edge_color=_EDGE, line_width=1, ambient=0.4, **look)
+
+
+def _draw_surface(pyvista: Any, plotter: Any, mesh: Simplices) -> None:
+    whole = _grid(pyvista, mesh, np.ones(len(mesh.simplices), dtype=bool), None)
+    surface = whole.extract_geometry()
+    plotter.add_mesh(surface, color=_SKIN, opacity=0.15, show_edges=True)

@@ -1,0 +1,276 @@
+"""2-D triangulations on axes: as triangles, or as an image where these are too small to see."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from delone._arrays import as_flag, as_optional_flag
+from delone._values import as_values
+from delone.errors import InputError
+from delone.extras import require
+from delone.plot import cartography
+from delone.plot.axes import draw_dots, frame, new_axes, pixels, require_bounds
+from delone.plot.circles import bounds_with_circles, draw_circles, require_few
+from delone.plot.colors import add_bar, scale, shaded
+from delone.plot.protocols import kind_of, segmented
+from delone.plot.shading import Raster, facet_light, point_density, rasterize, relief
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.plot.protocols import Hulled, Triangles
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["plot", "require_drawable", "require_flat"]
+
+# A triangle of fewer pixels than this is not seen as a triangle.
+_VISIBLE = 14.0
+_INK, _RIM = "#35506b", "#b3372f"
+
+
+def plot(
+    mesh: Triangles,
+    ax: Any = None,
+    *,
+    z: ArrayLike | None = None,
+    hull: bool = True,
+    circumcircles: bool = False,
+    vertices: bool | None = None,
+    cmap: Any = None,
+    shade: bool | None = None,
+    colorbar: bool = True,
+    title: str | None = None,
+    segments: bool = True,
+) -> Any:
+    """Draw a 2-D triangulation.
+
+    Parameters
+    ----------
+    mesh : Triangles
+        What to draw: a `Delaunay`, `RegularTriangulation`, `ConstrainedDelaunay` or `Mesh`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default on the axes of a new pyplot figure.
+    z : array_like of float, shape (n,), optional
+        Heights: triangles are colored by them.
+    hull : bool, optional
+        Draw the convex hull; of a constrained triangulation the boundary except for its segments.
+    circumcircles : bool, optional
+        Draw the circle through the corners of each triangle, for up to 3000 triangles.
+    vertices : bool, optional
+        Draw the points. By default only if there are few enough to tell them apart.
+    cmap : str or matplotlib Colormap, optional
+        Colors of z. By default those of land, or of water if nothing lies above zero.
+    shade : bool, optional
+        Add light and shadow to the colors of z. They then differ from those of the color bar, so
+        this is for terrain. By default only with ``colorbar=False`` and at least 2000 triangles.
+    colorbar : bool, optional
+        Add the color bar.
+    title : str, optional
+        Title of the axes.
+    segments : bool, optional
+        Draw the segments of a constrained triangulation as bold lines.
+
+    Returns
+    -------
+    matplotlib Axes
+        Where it is drawn.
+
+    Raises
+    ------
+    MissingExtraError
+        matplotlib is not installed.
+    InputError
+        `mesh` is not a 2-D triangulation; `z` has the wrong length or no finite value; there are
+        too many triangles for circles.
+
+    Notes
+    -----
+    If triangles are smaller than 14 pixels on average, an image is drawn: the surface of z, or
+    without z the density of points. The color scale spans the values without the lowest and the
+    highest hundredth, which have the colors of its ends.
+
+    A `ConstrainedDelaunay` without z has its regions in colors, such that regions on both sides of
+    a segment differ; triangles without a label are gray, holes stay white.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> matplotlib.use("Agg")
+    >>> from delone import Delaunay
+    >>> from delone.plot import plot
+    >>> ax = plot(Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]), circumcircles=True)
+    >>> ax.get_aspect()
+    1.0
+    """
+    require("matplotlib", extra="plot", what="drawing")
+    require_flat(mesh)
+    for name, flag in {"hull": hull, "circumcircles": circumcircles, "segments": segments}.items():
+        as_flag(flag, name=name)
+    dots = as_optional_flag(vertices, name="vertices")
+    look: dict[str, Any] = {
+        "cmap": cmap,
+        "shade": as_optional_flag(shade, name="shade"),
+        "colorbar": as_flag(colorbar, name="colorbar"),
+    }
+    if circumcircles:
+        require_few(mesh)
+    heights = as_values(z, mesh.npoints)
+    require_drawable(mesh, heights)
+    ax = new_axes(ax)
+    _draw_areas(ax, mesh, heights, look)
+    constrained = segmented(mesh)
+    if constrained is not None and segments:
+        cartography.draw_segments(ax, constrained)
+    if hull:
+        _draw_hull(ax, mesh)
+    if circumcircles:
+        draw_circles(ax, mesh)
+    draw_dots(ax, _dots(mesh), dots, count=mesh.npoints)
+    low, high = bounds_with_circles(mesh) if circumcircles else (mesh.min_bound, mesh.max_bound)
+    margin = 0.02 * float((mesh.max_bound - mesh.min_bound).max())
+    frame(ax, low, high, title, margin=margin)
+    return ax
+
+
+def require_flat(mesh: Any) -> None:
+    """Refuse anything but a 2-D triangulation, and name what draws it."""
+    kind = kind_of(mesh)
+    if kind == "triangles":
+        return
+    if kind in {"tetrahedra", "cells3"}:
+        hint = "delone.plot.plot draws it with PyVista"
+    elif kind:
+        hint = "delone.plot.plot draws it"
+    elif hasattr(mesh, "plot"):
+        hint = "use its own plot()"
+    else:
+        hint = "draw delone.Delaunay(points)"
+    name = f"{type(mesh).__module__}.{type(mesh).__name__}"
+    raise InputError(f"a {name} is not a 2-D triangulation: {hint}")
+
+
+def require_drawable(mesh: Triangles, heights: Floats | None) -> None:
+    """Refuse what the transforms of matplotlib overflow on, and heights that show nothing."""
+    if heights is not None and not (finite := np.isfinite(heights)).all():
+        rows = np.flatnonzero(~finite)
+        if mesh.nsimplex and not finite[mesh.simplices].all(axis=1).any():
+            raise InputError(f"no triangle has a finite z at each corner; row {rows[0]} has none")
+    require_bounds(mesh.min_bound, mesh.max_bound)
+
+
+def _draw_areas(ax: Any, mesh: Triangles, z: Floats | None, look: dict[str, Any]) -> None:
+    """Draw regions, the surface, or edges; as an image if the triangles are too small to see."""
+    size = pixels(ax, mesh.min_bound, mesh.max_bound)
+    dense = size[0] * size[1] < _VISIBLE * mesh.nsimplex
+    constrained = segmented(mesh)
+    if constrained is not None and (z is None or not constrained.nsimplex):
+        cartography.draw_regions(ax, constrained, max(size) if dense else None)
+    elif dense:
+        _draw_image(ax, mesh, z, size=max(size), **look)
+    else:
+        _draw_triangles(ax, mesh, z, **look)
+
+
+def _draw_image(
+    ax: Any,
+    mesh: Triangles,
+    z: Floats | None,
+    *,
+    size: int,
+    cmap: Any,
+    shade: bool | None,
+    colorbar: bool,
+) -> None:
+    if z is None:
+        _draw_density(ax, mesh, size, cmap, colorbar)
+        return
+    raster = rasterize(mesh, z, size)
+    mapped = scale(raster.values, cmap)
+    rgba = mapped.to_rgba(raster.values)
+    if shade or (shade is None and not colorbar):
+        rgba[..., :3] = shaded(rgba[..., :3], relief(raster))
+    rgba[..., 3] = np.isfinite(raster.values)
+    _show(ax, raster, rgba)
+    if colorbar:
+        add_bar(ax, mapped, z, "z")
+
+
+def _draw_density(ax: Any, mesh: Triangles, size: int, cmap: Any, colorbar: bool) -> None:
+    colors = require("matplotlib.colors", extra="plot", what="drawing")
+    # A coarser grid than the screen's: else most of it would be one point or none.
+    fewer = int(np.clip(np.sqrt(mesh.npoints / 4), 50, size))
+    raster = point_density(mesh, fewer)
+    image = ax.imshow(
+        raster.values,
+        extent=raster.extent,
+        origin="lower",
+        cmap=cmap or "viridis",
+        norm=colors.LogNorm() if np.nanmin(raster.values) < np.nanmax(raster.values) else None,
+        interpolation="nearest",
+        zorder=0,
+    )
+    if colorbar:
+        ax.figure.colorbar(image, ax=ax, label="points per unit of area", shrink=0.75, pad=0.02)
+
+
+def _show(ax: Any, raster: Raster, rgba: Floats) -> None:
+    image = np.round(rgba * 255).astype(np.uint8)
+    ax.imshow(image, extent=raster.extent, origin="lower", interpolation="auto", zorder=0)
+
+
+def _draw_triangles(
+    ax: Any,
+    mesh: Triangles,
+    z: Floats | None,
+    *,
+    cmap: Any,
+    shade: bool | None,
+    colorbar: bool,
+) -> None:
+    collections = require("matplotlib.collections", extra="plot", what="drawing")
+    points, simplices = mesh.points, mesh.simplices
+    thin = float(np.clip(30 / np.sqrt(mesh.nsimplex), 0.15, 1.0))
+    if z is None:
+        lines = collections.LineCollection(
+            points[mesh.edges], colors=_INK, linewidths=thin, zorder=1
+        )
+        ax.add_collection(lines, autolim=False)
+        return
+    means = z[simplices].mean(axis=1)
+    mapped = scale(means, cmap)
+    rgba = mapped.to_rgba(means)
+    if shade or (shade is None and not colorbar and len(simplices) >= 2000):
+        rgba[:, :3] = shaded(rgba[:, :3], facet_light(points, z, simplices))
+    rgba[~np.isfinite(means)] = 0
+    facets = collections.PolyCollection(
+        points[simplices], facecolors=rgba, edgecolors="face", linewidths=0.5 * thin, zorder=1
+    )
+    ax.add_collection(facets, autolim=False)
+    # Fainter where there are many, so that they do not darken the colors.
+    lines = collections.LineCollection(
+        points[mesh.edges], colors=[(0, 0, 0, thin / 3)], linewidths=0.5 * thin, zorder=1
+    )
+    ax.add_collection(lines, autolim=False)
+    if colorbar:
+        add_bar(ax, mapped, means, "z")
+
+
+def _draw_hull(ax: Any, mesh: Triangles) -> None:
+    constrained = segmented(mesh)
+    if constrained is not None:
+        cartography.draw_boundary(ax, constrained, _RIM)
+        return
+    hull = cast("Hulled", mesh).hull
+    ring = mesh.points[np.append(hull, hull[0])]
+    ax.plot(*ring.T, color=_RIM, linewidth=1.4, solid_joinstyle="round", zorder=3)
+
+
+def _dots(mesh: Triangles) -> Floats:
+    """Return the points to draw: none where triangles have been removed."""
+    if segmented(mesh) is None:
+        return mesh.points
+    found: Floats = mesh.points[np.unique(mesh.simplices)]
+    return found
