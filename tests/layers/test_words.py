@@ -22,6 +22,7 @@ CONVERTED = (
     "docs/decisions/*.rst",
     "docs/guide/*.rst",
     "docs/mathematics/*.rst",
+    "python/delone/plot/*.py",
 )
 
 # Each is written out in the left column of the table in CONTRIBUTING.md.

@@ -71,7 +71,8 @@ def test_small_dihedral_angles_are_drawn_in_the_surface() -> None:
     bound = float(np.median(angles))
     surface, bad = drawn(mesh, below=bound)
     assert surface.n_cells == len(mesh.boundary)
-    assert bad.cell_data["values"].tolist() == angles[angles < bound].tolist()
+    assert bad.active_scalars.tolist() == angles[angles < bound].tolist()
+    assert bad.active_scalars_name == "smallest dihedral angle in degrees"
     (alone,) = drawn(mesh, below=0)
     assert alone.n_cells == len(mesh.boundary)
     plain = solid()

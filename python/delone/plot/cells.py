@@ -192,5 +192,6 @@ def plot_cells3(
     """
     plotter = new_plotter(ax, off_screen=off_screen)
     grid = diagram.to_pyvista()
-    plotter.add_mesh(grid.shrink(0.85), **({"scalars": "site", "show_edges": True} | options))
+    look: dict[str, Any] = {"scalars": "site", "show_edges": True, "ambient": 0.4}
+    plotter.add_mesh(grid.shrink(0.85), **(look | options))
     return plotter

@@ -270,5 +270,5 @@ def kind_of(thing: Any) -> str:
 
 def _columns(thing: Any, name: str) -> int:
     """Return the number of columns of an attribute, 0 if it is not a table."""
-    shape = np.shape(getattr(thing, name)) if has(thing, name) else ()
-    return int(shape[-1]) if len(shape) == 2 else 0
+    shape: tuple[int, ...] = np.shape(getattr(thing, name)) if has(thing, name) else ()
+    return shape[1] if len(shape) == 2 else 0

@@ -106,11 +106,13 @@ def plot(
         _draw_surface(pyvista, plotter, mesh)
     look: dict[str, Any] = {"color": _FACE}
     if chosen is not None:
-        look = {"scalars": "values", "cmap": cmap, "show_scalar_bar": bar}
+        name = "values" if values is not None else "smallest dihedral angle in degrees"
+        look = {"scalars": name, "cmap": cmap, "show_scalar_bar": bar}
     if below is not None and values is None:
         look["clim"] = (0, bound)
     if shown.any():
-        grid = _grid(pyvista, mesh, shown, chosen)
+        grid = _grid(pyvista, mesh, shown)
+        _add_values(grid, look.get("scalars"), chosen)
         _draw_simplices(plotter, grid, shrink, look)
     if dots:
         plotter.add_points(
@@ -164,17 +166,19 @@ def _chosen(mesh: Simplices, values: ArrayLike | None, shown: NDArray[np.bool_])
     return array if len(array) == npoints else array[shown]
 
 
-def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_], values: Floats | None) -> Any:
+def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_]) -> Any:
     """Return the simplices shown as a mesh of PyVista."""
     points, simplices = np.array(mesh.points), mesh.simplices[shown]
     if simplices.shape[1] == 4:
-        grid = pyvista.UnstructuredGrid({_VTK_TETRA: simplices}, points)
-    else:
-        grid = pyvista.PolyData.from_regular_faces(points, simplices)
+        return pyvista.UnstructuredGrid({_VTK_TETRA: simplices}, points)
+    return pyvista.PolyData.from_regular_faces(points, simplices)
+
+
+def _add_values(grid: Any, name: str | None, values: Floats | None) -> None:
+    """Add values of points or of simplices to a mesh of PyVista."""
     if values is not None:
-        data = grid.point_data if len(values) == len(points) else grid.cell_data
-        data["values"] = values
-    return grid
+        data = grid.point_data if len(values) == grid.n_points else grid.cell_data
+        data[name] = values
 
 
 def _draw_simplices(plotter: Any, grid: Any, shrink: float, look: dict[str, Any]) -> None:
@@ -186,6 +190,11 @@ def _draw_simplices(plotter: Any, grid: Any, shrink: float, look: dict[str, Any]
 
 
 def _draw_surface(pyvista: Any, plotter: Any, mesh: Simplices) -> None:
-    whole = _grid(pyvista, mesh, np.ones(len(mesh.simplices), dtype=bool), None)
-    surface = whole.extract_geometry()
+    opposite = [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]
+    faces = mesh.simplices[:, opposite].reshape(-1, 3)
+    # A face on the boundary belongs to a single tetrahedron.
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    surface = pyvista.PolyData.from_regular_faces(np.array(mesh.points), faces[first[count == 1]])
     plotter.add_mesh(surface, color=_SKIN, opacity=0.15, show_edges=True)
