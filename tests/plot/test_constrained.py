@@ -13,7 +13,7 @@ from PIL import Image
 
 from delone import ConstrainedDelaunay, InputError
 from delone.plot import cartography, plot, save_picture
-from delone.plot.shading import facet_values
+from delone.plot.shading import facet_values, rasterize
 
 OUTER = [(0, 0), (9, 0), (9, 6), (0, 6)]
 INNER = [(2, 2), (4, 2), (4, 4), (2, 4)]
@@ -149,6 +149,13 @@ def test_pixels_have_the_region_of_their_center():
     assert len(np.unique(inner)) == 1
     assert np.count_nonzero(raster.values == inner[0, 0]) == 400
     assert not np.isnan(raster.values).any()
+
+
+def test_crowded_pixels_of_a_hole_are_empty():
+    mesh = ConstrainedDelaunay(noisy(40_000), RINGS, holes=[(3, 3)], crossing="split")
+    values = rasterize(mesh, mesh.points[:, 0], 90).values
+    assert np.isnan(values[21:39, 21:39]).all()
+    assert np.isfinite(values[1:-1, 1:19]).all()
 
 
 def test_heights_color_triangles_and_segments_stay(tmp_path):

@@ -105,6 +105,14 @@ def test_one_period_has_two_sides(axis: int) -> None:
     assert abs(first[1] - first[0])[1 - axis] == pytest.approx(extent)
 
 
+def test_a_diagram_is_seen_as_far_as_its_clip() -> None:
+    ax = plot(Voronoi(POINTS, clip=(0.2, 0.3, 0.8, 0.9)), axes())
+    assert ax.get_xlim() + ax.get_ylim() == (0.2, 0.8, 0.3, 0.9)
+    corners = np.concatenate([path.vertices for path in ax.collections[0].get_paths()])
+    assert corners.min(axis=0).tolist() == [0.2, 0.3]
+    assert corners.max(axis=0).tolist() == [0.8, 0.9]
+
+
 def test_coordinates_that_overflow_are_refused() -> None:
     far = [(-1e308, -1e308), (1e308, -1e308), (0, 1.5e308)]
     with pytest.raises(InputError, match="power of two"):
