@@ -12,6 +12,7 @@ from delone._arrays import require_finite
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InternalError
+from delone.exchange.parts import Parts
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.plane import geometry as plane
 from delone.space import geometry as space
@@ -254,6 +255,10 @@ class ConvexHull(Immutable):
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("points", *_ARRAYS)
         return _restored, (type(self), {name: getattr(self, f"_{name}") for name in names})
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take."""
+        return Parts(self._points, self._simplices, of_simplices={"facet_of": self._facet_of})
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):  # the constructor failed, or has not run

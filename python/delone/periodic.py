@@ -17,6 +17,7 @@ from delone import _core
 from delone._arrays import as_number, require_finite
 from delone.counting import counted
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
+from delone.exchange.parts import Parts
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.plane.triangulation import first_rows
 from delone.regular import as_weights
@@ -231,6 +232,14 @@ class PeriodicDelaunay(Immutable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (self._arrays, self._periods)
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take: each triangle has three points of its own."""
+        return Parts(
+            self.corners.reshape(-1, 2),
+            _numbered(self.nsimplex),
+            of_points={"row": self.simplices.ravel()},
+        )
 
     def __repr__(self) -> str:
         if not hasattr(self, "_arrays"):  # the constructor failed, or has not run

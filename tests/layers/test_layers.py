@@ -27,7 +27,16 @@ PACKAGE = ROOT / "python" / "delone"
 CRATES = ROOT / "crates"
 
 # What each Python part may import of delone. A part is a module or a folder below delone.
-FOUNDATION = {"errors", "_arrays", "_masks", "blocks", "counting", "extras", "georeference"}
+FOUNDATION = {
+    "exchange",
+    "errors",
+    "_arrays",
+    "_masks",
+    "blocks",
+    "counting",
+    "extras",
+    "georeference",
+}
 PUBLIC = {
     "delone",
     "errors",
@@ -50,6 +59,7 @@ PYTHON: dict[str, set[str]] = {
     "blocks": set(),
     "counting": set(),
     "extras": {"errors"},
+    "exchange": {"_arrays", "errors", "extras"},
     "georeference": {"errors"},
     "_core": set(),
     "immutable": {"_arrays", "blocks"},
@@ -65,7 +75,7 @@ PYTHON: dict[str, set[str]] = {
     "delaunay": {"immutable", "_core", "archive", "periodic", "space", "validation"} | FOUNDATION,
     "constrained": {"immutable", "_core", "archive", "location", "plane", "validation"}
     | FOUNDATION,
-    "refine": {"immutable", "_core", "archive", "constrained", "io", "plane"} | FOUNDATION,
+    "refine": {"immutable", "_core", "archive", "constrained", "plane"} | FOUNDATION,
     "improve": {"immutable", "_core", "io", "plot", "space"} | FOUNDATION,
     "regular": {"immutable", "_core", "space"} | FOUNDATION,
     "periodic": {"immutable", "_core", "plane", "regular"} | FOUNDATION,

@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from delone import TetMesh
-    from delone.io.registry import Mesh
+    from delone.cli.report import Mesh
 
 __all__ = ["app", "run"]
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone import ConstrainedDelaunay
+    from delone.cli.report import Mesh
     from delone.io import PointSet
-    from delone.io.registry import Mesh
 
 __all__ = ["Constraints", "constraint_figures", "constraint_rows", "read_input", "triangulated"]
 

@@ -11,7 +11,7 @@ import math
 import sys
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.io.registry import Mesh
+    from delone import Delaunay
+
+    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
 __all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "summary"]
 

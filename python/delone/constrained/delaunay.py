@@ -27,6 +27,7 @@ from delone.constrained.segmented import Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import counted
 from delone.errors import InputError, InternalError
+from delone.exchange.parts import Parts
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy
 from delone.plane import topology
@@ -383,12 +384,9 @@ class ConstrainedDelaunay(Segmented):
         >>> frame.region.tolist(), frame.area.tolist()
         ([0], [0.5])
         """
-        from delone.constrained.geodata import frame
+        from delone.exchange.geopandas import to_geopandas
 
-        columns = {"region": self.region, "polygon": self.polygon}
-        if not self._found["rings"].any():
-            del columns["polygon"]
-        return frame(self._points, self._simplices, columns, self.crs if crs is None else crs)
+        return to_geopandas(self._parts(), crs)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the triangulation to an .npz file, whole or not at all.
@@ -481,6 +479,15 @@ class ConstrainedDelaunay(Segmented):
             crs=None if crs is None else str(crs),
         )
         return cls._restored(arrays, options, {})
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take."""
+        values = {"region": self.region}
+        if self._found["rings"].any():
+            values["polygon"] = self.polygon
+        return Parts(
+            self._points, self._simplices, of_simplices=values, segments=self.segments, crs=self.crs
+        )
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):  # the constructor failed, or has not run

@@ -1,4 +1,4 @@
-"""Geometries to arrays, and triangles to tables of geometries.
+"""Geometries to arrays.
 
 Shapely's geometries are read by shapely in bulk; what only has ``__geo_interface__``, or is such a
 mapping, is read by hand, so that no library is needed for it. Either way a geometry becomes parts:
@@ -8,7 +8,6 @@ coordinates are left out; missing and empty geometries have no parts.
 
 from __future__ import annotations
 
-import importlib
 import os
 import sys
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone._masks import refuse_masks
-from delone.errors import DtypeError, InputError, MissingExtraError, ShapeError
+from delone.errors import DtypeError, InputError, ShapeError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -32,7 +31,6 @@ __all__ = [
     "LINE",
     "POINTS",
     "Parts",
-    "frame",
     "is_shapely",
     "parts_of",
 ]
@@ -311,41 +309,3 @@ def _joined(parts: Iterable[Parts]) -> Parts:
         np.concatenate([each.kinds for each in many]),
         np.concatenate([each.geometries for each in many]),
     )
-
-
-def frame(points: Floats, simplices: Indices, columns: Mapping[str, Any], crs: Any) -> Any:
-    """Return triangles as a GeoDataFrame.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    columns : mapping of str to ndarray, each of length m
-        Columns besides the vertices v0, v1 and v2.
-    crs : any
-        Reference system, or None.
-
-    Returns
-    -------
-    geopandas.GeoDataFrame
-        One row for each triangle.
-
-    Raises
-    ------
-    MissingExtraError
-        geopandas or shapely is not installed.
-    """
-    geopandas, shapely = _required("geopandas"), _required("shapely")
-    table = {f"v{k}": simplices[:, k] for k in range(3)} | dict(columns)
-    return geopandas.GeoDataFrame(table, geometry=shapely.polygons(points[simplices]), crs=crs)
-
-
-def _required(module: str) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        library = (error.name or module).partition(".")[0]
-        message = f'a table needs {library}, which is not installed: pip install "delone[geo]"'
-        raise MissingExtraError(message, extra="geo") from error

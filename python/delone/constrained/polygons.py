@@ -18,6 +18,7 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.segmented import Origin
 from delone.counting import agreed
 from delone.errors import InputError, NonFiniteError
+from delone.exchange.parts import Parts
 from delone.georeference import as_crs, common_crs, is_geographic, warn_of_degrees
 from delone.plane.triangulation import first_rows
 
@@ -234,7 +235,9 @@ class PolygonTriangles(NamedTuple):
         >>> frame.area.tolist()
         [6.0]
         """
-        return geodata.frame(self.points, self.simplices, {}, crs)
+        from delone.exchange.geopandas import to_geopandas
+
+        return to_geopandas(Parts(self.points, self.simplices), crs)
 
 
 def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTriangles:

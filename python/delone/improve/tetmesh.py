@@ -14,6 +14,7 @@ from delone import _core
 from delone._arrays import as_number
 from delone.counting import counted
 from delone.errors import DtypeError
+from delone.exchange.parts import Parts
 from delone.immutable import Immutable, kept, sealed
 from delone.space import location as places
 from delone.space import topology
@@ -244,9 +245,9 @@ class TetMesh(Immutable):
         >>> delone.improve(corner).to_meshio().cells_dict["tetra"].shape
         (1, 4)
         """
-        from delone.io import exchange
+        from delone.exchange.meshio import to_meshio
 
-        return exchange.tetrahedra_to_meshio(self)
+        return to_meshio(self._parts())
 
     def to_pyvista(self) -> Any:
         """Return the mesh as an unstructured grid of PyVista.
@@ -268,9 +269,9 @@ class TetMesh(Immutable):
         >>> delone.improve(corner).to_pyvista().n_cells  # doctest: +SKIP
         1
         """
-        from delone.io import exchange
+        from delone.exchange.pyvista import to_pyvista
 
-        return exchange.tetrahedra_to_pyvista(self)
+        return to_pyvista(self._parts())
 
     def plot(self, plotter: Any = None, *, below: float | None = None) -> Any:
         """Draw the surface and the tetrahedra with small dihedral angles (extra ``pyvista``).
@@ -306,6 +307,14 @@ class TetMesh(Immutable):
     def __reduce__(self) -> tuple[Any, ...]:
         arrays = {name: getattr(self, f"_{name}") for name in _ARRAYS}
         return type(self)._of, (arrays, self._report)
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take."""
+        values: dict[str, NDArray[Any]] = {
+            "region": self._region,
+            "smallest_dihedral": self.quality().smallest_dihedral,
+        }
+        return Parts(self._points, self._simplices, of_simplices=values)
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts
 
 __all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
 
@@ -101,7 +101,7 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -115,12 +115,11 @@ def write_mesh(
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     split_attributes(further, triangulation.npoints, triangulation.nsimplex)
     own: set[str] = set()
-    if isinstance(triangulation, ConstrainedDelaunay):
+    saved: Any = triangulation
+    if hasattr(saved, "_with_crs"):
         # It writes its own.
-        triangulation._with_crs(crs).save(path)
-        crs, own = None, {"crs"}
-    else:
-        triangulation.save(path)
+        saved, crs, own = saved._with_crs(crs), None, {"crs"}
+    saved.save(path)
     if heights is not None:
         further["z"] = heights
     if crs is not None:

@@ -1,21 +1,22 @@
 """Meshes for solvers: XDMF and INP (Abaqus) by meshio (extra ``mesh``), and SU2.
 
-Triangles and the segments of a mesh are written, segments with their markers: as named parts of the
-boundary in SU2, as values in XDMF.
+Triangles or tetrahedra are written, and the segments of a mesh with their markers: as named parts
+of the boundary in SU2, as values in XDMF.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from delone._values import as_values
 from delone.errors import FileFormatError
+from delone.exchange.meshio import TAGS, to_meshio
+from delone.exchange.parts import boundary, boundary_segments, kind_of
 from delone.extras import require
-from delone.io.heights import split_attributes, with_heights
-from delone.refine.meshed import Mesh as QualityMesh
+from delone.io.content import content
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,11 +24,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts, Parts
 
 __all__ = ["require_libraries", "write_mesh"]
 
 _MODULES = {".xdmf": "xdmf", ".inp": "abaqus"}
+# The numbers that SU2 has for cells, those of VTK.
+_LINE, _TRIANGLE, _TETRAHEDRON = 3, 5, 10
 
 
 def require_libraries(suffix: str) -> None:
@@ -40,35 +43,30 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write triangles, and of a mesh its segments."""
-    meshio = require("meshio", extra="mesh", what="writing meshes")
+    """Write triangles or tetrahedra, and of a mesh its segments."""
     suffix = path.suffix.lower()
     if edges:
         raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    if given and suffix != ".xdmf":
+    if attributes and suffix != ".xdmf":
         raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .xdmf")
-    of_points, of_cells = split_attributes(given, triangulation.npoints, triangulation.nsimplex)
-    heights = as_values(z, triangulation.npoints)
+    found = content(triangulation, z=z, attributes=attributes)
     if suffix == ".su2":
-        if heights is not None:
-            raise FileFormatError(".su2 files of the plane hold no heights")
-        path.write_text(_su2(triangulation), encoding="utf-8")
+        if found.heights is not None:
+            raise FileFormatError(".su2 files of 2-D meshes hold no heights")
+        path.write_text(_su2(found.own), encoding="utf-8")
         return
-    points = with_heights(triangulation.points, heights)
-    cells, data = _cells(triangulation, suffix)
-    if of_cells:
-        # Values are of triangles; lines get NaN.
-        lines = [np.full(len(block[1]), np.nan) for block in cells[1:]]
-        data |= {name: [values, *lines] for name, values in of_cells.items()}
-    made = meshio.Mesh(points, cells, point_data=of_points, cell_data=data)
+    made = to_meshio(found.whole())
+    if suffix == ".inp":
+        made.point_data, made.cell_data = {}, {}
+    for tag in TAGS:
+        made.cell_data.pop(tag, None)
     module = importlib.import_module(f"meshio.{_MODULES[suffix]}")
     if suffix == ".xdmf":
         # Everything in the one file: no second one beside it.
@@ -77,47 +75,30 @@ def write_mesh(
         module.write(path, made)
 
 
-def _cells(triangulation: Mesh, suffix: str) -> tuple[list[Any], dict[str, list[Any]]]:
-    cells: list[Any] = [("triangle", triangulation.simplices)]
-    if not isinstance(triangulation, QualityMesh):
-        return cells, {}
-    markers = triangulation.segment_markers
-    cells.append(("line", triangulation.segments))
-    if suffix == ".xdmf":
-        region = triangulation.region
-        return cells, {
-            "region": [region, np.full(len(markers), -1, dtype=np.int32)],
-            "marker": [np.zeros(len(region), dtype=np.int32), markers],
-        }
-    return cells, {}
-
-
-def _su2(triangulation: Mesh) -> str:
+def _su2(parts: Parts) -> str:
     """The text of an SU2 file; its markers are the parts of the boundary."""
-    lines = ["NDIME= 2", f"NELEM= {triangulation.nsimplex}"]
-    for t, (a, b, c) in enumerate(triangulation.simplices.tolist()):
-        lines.append(f"5 {a} {b} {c} {t}")
-    lines.append(f"NPOIN= {triangulation.npoints}")
-    for i, (x, y) in enumerate(triangulation.points.tolist()):
-        lines.append(f"{x!r} {y!r} {i}")
-    parts = _boundary(triangulation)
-    lines.append(f"NMARK= {len(parts)}")
-    for marker, pairs in parts.items():
-        lines += [f"MARKER_TAG= {marker}", f"MARKER_ELEMS= {len(pairs)}"]
-        lines += [f"3 {a} {b}" for a, b in pairs.tolist()]
+    kind_of(parts, what="an SU2 file", kinds=("triangles", "tetrahedra"))
+    ndim = parts.points.shape[1]
+    cell, side = (_TRIANGLE, _LINE) if ndim == 2 else (_TETRAHEDRON, _TRIANGLE)
+    lines = [f"NDIME= {ndim}", f"NELEM= {len(parts.simplices)}"]
+    for t, corners in enumerate(parts.simplices.tolist()):
+        lines.append(" ".join(map(str, (cell, *corners, t))))
+    lines.append(f"NPOIN= {len(parts.points)}")
+    for i, place in enumerate(parts.points.tolist()):
+        lines.append(" ".join([*map(repr, place), str(i)]))
+    sides = _sides(parts)
+    lines.append(f"NMARK= {len(sides)}")
+    for marker, rows in sides.items():
+        lines += [f"MARKER_TAG= {marker}", f"MARKER_ELEMS= {len(rows)}"]
+        lines += [" ".join(map(str, (side, *row))) for row in rows.tolist()]
     return "\n".join(lines) + "\n"
 
 
-def _boundary(triangulation: Mesh) -> dict[int, NDArray[np.int32]]:
-    """The edges of the boundary by their markers."""
-    if not isinstance(triangulation, QualityMesh):
-        return {0: triangulation.convex_hull}
-    n = triangulation.npoints
-    pairs, markers = triangulation.segments, triangulation.segment_markers
-    rim = np.isin(_keys(pairs, n), _keys(triangulation.boundary_edges, n))
-    return {marker: pairs[rim & (markers == marker)] for marker in np.unique(markers[rim]).tolist()}
-
-
-def _keys(pairs: NDArray[np.int32], npoints: int) -> NDArray[np.int64]:
-    found: NDArray[np.int64] = pairs.min(axis=1).astype(np.int64) * npoints + pairs.max(axis=1)
-    return found
+def _sides(parts: Parts) -> dict[int, NDArray[np.int32]]:
+    """The facets of the boundary by their markers."""
+    marker = parts.of_segments.get("marker")
+    if parts.segments is None or marker is None:
+        return {0: boundary(parts.simplices)}
+    pairs, rows = boundary_segments(parts)
+    marker = marker[rows]
+    return {value: pairs[marker == value] for value in np.unique(marker).tolist()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -18,9 +18,8 @@ from delone.io.systems import check_system
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.constrained.delaunay import ConstrainedDelaunay
-
     Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
 
 __all__ = ["GeometrySet"]
 
@@ -28,6 +27,34 @@ _POINTS = (0, 4)  # shapely's numbers of Point and MultiPoint
 _LINES = (1, 2, 5)  # LineString, LinearRing and MultiLineString
 _AREAS = (3, 6)  # Polygon and MultiPolygon
 _COLLECTION = 7
+
+
+class HasSegments(Protocol):
+    """A triangulation that knows the segments it was made of."""
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, those of added vertices last."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of points."""
+
+    @property
+    def nadded(self) -> int:
+        """Number of added vertices."""
+
+    @property
+    def segments(self) -> Indices:
+        """The subsegments."""
+
+    @property
+    def input_segments(self) -> Indices:
+        """The segments that were given."""
+
+    @property
+    def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
+        """The rows that cover subsegments as compressed rows (indptr, indices)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -144,7 +171,7 @@ class GeometrySet:
         points, z = self._coordinates()
         return PointSet(points=points, z=z, crs=self.crs, source=self.source)
 
-    def z_of(self, mesh: ConstrainedDelaunay) -> Floats | None:
+    def z_of(self, mesh: HasSegments) -> Floats | None:
         """Return the heights of the vertices of a triangulation of these geometries.
 
         Parameters
@@ -204,7 +231,7 @@ def _parts(geometries: NDArray[Any]) -> NDArray[Any]:
     return geometries
 
 
-def _interpolate_added(mesh: ConstrainedDelaunay, z: Floats) -> None:
+def _interpolate_added(mesh: HasSegments, z: Floats) -> None:
     """Give added vertices heights between those of the ends of a row that they lie on."""
     start, source = mesh.segment_source
     row = np.tile(source[start[:-1]], 2)

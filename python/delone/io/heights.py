@@ -11,36 +11,7 @@ from delone.errors import ShapeError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["split_attributes", "with_heights"]
-
-
-def with_heights(points: NDArray[np.float64], z: NDArray[np.float64] | None) -> NDArray[np.float64]:
-    """Return points with a third coordinate, zero where there are no heights.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates.
-    z : ndarray of float64, shape (n,), or None
-        Heights.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        A copy.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.io.heights import with_heights
-    >>> with_heights(np.array([[1.0, 2.0]]), None)
-    array([[1., 2., 0.]])
-    """
-    space = np.zeros((len(points), 3))
-    space[:, :2] = points
-    if z is not None:
-        space[:, 2] = z
-    return space
+__all__ = ["split_attributes"]
 
 
 def split_attributes(

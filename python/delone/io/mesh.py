@@ -1,4 +1,4 @@
-"""Meshes of triangles: VTU, PLY, OBJ, STL and MSH by meshio (extra ``mesh``).
+"""Meshes: VTU, PLY, OBJ, STL and MSH by meshio (extra ``mesh``).
 
 What meshio would set memory aside for is compared with the size of the file first. Doubles stay
 doubles: a binary STL file has single precision only, so it is written where that is exact, and as
@@ -19,15 +19,13 @@ import numpy as np
 from delone._arrays import as_points, as_simplices
 from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError, InputError
+from delone.exchange.meshio import TAGS, to_meshio
 from delone.extras import require
-from delone.improve.tetmesh import TetMesh
-from delone.io.cells import cell_values
+from delone.io.content import content
 from delone.io.counts import announced
-from delone.io.heights import split_attributes, with_heights
 from delone.io.markup import refuse_document_type
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
-from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,12 +33,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts
+    from delone.io.content import Content
 
 __all__ = ["read_mesh", "read_points", "require_libraries", "write_mesh"]
 
 _MODULES = {".vtu": "vtu", ".ply": "ply", ".obj": "obj", ".stl": "stl", ".msh": "gmsh"}
 _DIMENSIONS = {"triangle": 2, "tetra": 3}
+# These hold triangles, and no lines or tetrahedra.
+_PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
 _RELATIVE = re.compile(rb"^[ \t]*f[ \t][^\r\n]*-\d", re.MULTILINE)
 
@@ -293,114 +294,43 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh | TetMesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write triangles, or edges as lines, with heights as the third coordinate."""
-    meshio = require("meshio", extra="mesh", what="writing meshes")
+    """Write simplices and segments, or edges as lines, with heights as the third coordinate."""
     suffix = path.suffix.lower()
-    if edges and suffix in (".stl", ".ply", ".obj"):
+    if edges and suffix in _PLAIN:
         raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
-    if isinstance(triangulation, TetMesh) and not edges:
-        _write_tetrahedra(path, triangulation, z, attributes)
-        return
-    if isinstance(triangulation, QualityMesh) and suffix in (".vtu", ".msh") and not edges:
-        _write_with_segments(path, triangulation, z, attributes)
-        return
-    if isinstance(triangulation, TetMesh) or triangulation.ndim == 3:
-        _write_space(path, triangulation, edges, attributes)
-        return
-    cells = triangulation.edges if edges else triangulation.simplices
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
-    if given and suffix in (".obj", ".stl"):
+    found = content(triangulation, z=z, edges=edges, attributes=attributes)
+    if found.given and suffix in (".obj", ".stl"):
         raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .ply")
-    if suffix in (".vtu", ".msh"):
-        of_cells = cell_values(triangulation, edges=edges) | of_cells
-    heights = as_values(z, triangulation.npoints)
-    if heights is not None and suffix == ".vtu":
-        of_points = {"z": heights, **of_points}
-    mesh = meshio.Mesh(
-        with_heights(triangulation.points, heights),
-        [("line" if edges else "triangle", cells)],
-        point_data=of_points,
-        cell_data={name: [values] for name, values in of_cells.items()},
-    )
-    _write(path, suffix, mesh)
-
-
-def _write_space(
-    path: Path,
-    triangulation: Mesh | TetMesh,
-    edges: bool,
-    attributes: Mapping[str, ArrayLike] | None,
-) -> None:
-    """Write tetrahedra, or edges as lines."""
-    meshio = require("meshio", extra="mesh", what="writing meshes")
-    cells = triangulation.edges if edges else triangulation.simplices
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    of_points, of_cells = split_attributes(given, triangulation.npoints, len(cells))
-    mesh = meshio.Mesh(
-        np.array(triangulation.points),
-        [("line" if edges else "tetra", cells)],
-        point_data=of_points,
-        cell_data={name: [values] for name, values in of_cells.items()},
-    )
-    _write(path, path.suffix.lower(), mesh)
-
-
-def _write_tetrahedra(
-    path: Path,
-    mesh: TetMesh,
-    z: ArrayLike | None,
-    attributes: Mapping[str, ArrayLike] | None,
-) -> None:
-    """Write tetrahedra with their regions and smallest dihedral angles."""
-    if z is not None:
-        raise FileFormatError("points in space have their heights already: z must be None")
-    made = mesh.to_meshio()
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    of_points, of_cells = split_attributes(given, mesh.npoints, mesh.nsimplex)
-    made.point_data |= of_points
-    made.cell_data |= {name: [values] for name, values in of_cells.items()}
-    _write(path, path.suffix.lower(), made)
-
-
-def _write_with_segments(
-    path: Path,
-    mesh: QualityMesh,
-    z: ArrayLike | None,
-    attributes: Mapping[str, ArrayLike] | None,
-) -> None:
-    """Write triangles and segments, with regions and markers."""
-    suffix = path.suffix.lower()
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    of_points, of_cells = split_attributes(given, mesh.npoints, mesh.nsimplex)
-    made = mesh.to_meshio()
-    heights = as_values(z, mesh.npoints)
-    made.points = with_heights(mesh.points, heights)
-    if heights is not None and suffix == ".vtu":
-        made.point_data["z"] = heights
-    made.point_data |= of_points
-    for name, values in of_cells.items():
-        made.cell_data[name] = [values, np.full(len(mesh.segments), np.nan)]
-    if suffix == ".vtu":
-        for name in ("gmsh:physical", "gmsh:geometrical"):
-            del made.cell_data[name]
-        _write(path, suffix, made)
+    made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
+    if suffix == ".msh" and TAGS[0] in made.cell_data:
+        _write_tagged(path, made, found)
         return
-    # Version 4 wants to know the entities of CAD that points lie on, and in neither does meshio
-    # read values of several kinds of cells back: regions and markers are tags.
-    if of_cells:
+    for tag in TAGS:
+        made.cell_data.pop(tag, None)
+    if found.heights is not None and suffix == ".vtu":
+        made.point_data.setdefault("z", made.points[:, 2].copy())
+    _write(path, suffix, made)
+
+
+def _write_tagged(path: Path, mesh: Any, found: Content) -> None:
+    """Write triangles and segments to an MSH file, with regions and markers as its tags.
+
+    Version 4 needs the entities of CAD that points lie on, and in neither version does meshio read
+    values of several kinds of cells back.
+    """
+    if found.of_simplices:
         raise FileFormatError(".msh files of meshes hold no attributes of triangles; use .vtu")
-    made.cell_data = {name: made.cell_data[name] for name in ("gmsh:physical", "gmsh:geometrical")}
-    del made.point_data["marker"]
+    mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
+    mesh.point_data = dict(found.of_points)
     module = importlib.import_module("meshio.gmsh")
-    module.write(path, made, "2.2", binary=True)
+    module.write(path, mesh, "2.2", binary=True)
 
 
 def _write(path: Path, suffix: str, mesh: Any) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts
 
 __all__ = ["require_libraries", "write_mesh"]
 
@@ -30,7 +30,7 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -38,7 +38,7 @@ def write_mesh(
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
     """Draw a triangulation into a file; a plot shows both edges and triangles."""
-    if triangulation.ndim == 3:
+    if triangulation.points.shape[1] == 3:
         _draw_solid(path, triangulation, attributes)
         return
     from delone.plot.picture import draw_picture
@@ -46,15 +46,16 @@ def write_mesh(
 
     if attributes:
         raise FileFormatError("a plot shows one value for each point: give it as z")
+    mesh: Any = triangulation
     # Heights are terrain, but on a quality mesh they are a field.
-    lit = not is_quality_mesh(triangulation) and triangulation.nsimplex >= _MANY
-    draw_picture(path, triangulation, z=z, crs=crs, shade=lit)
+    lit = not is_quality_mesh(mesh) and len(mesh.simplices) >= _MANY
+    draw_picture(path, mesh, z=z, crs=crs, shade=lit)
 
 
 def _draw_solid(
-    path: Path, triangulation: Mesh, attributes: Mapping[str, ArrayLike] | None
+    path: Path, triangulation: HasParts, attributes: Mapping[str, ArrayLike] | None
 ) -> None:
-    """Draw the tetrahedra in front of a cut through the middle, in colors of their volumes."""
+    """Draw a surface, or the tetrahedra in front of a cut, in colors of their volumes."""
     from delone.plot import draw
 
     if attributes:
@@ -62,8 +63,9 @@ def _draw_solid(
     mesh: Any = triangulation
     # PyVista chooses the format by the suffix, which a temporary file does not have.
     picture = path.with_name(path.name + ".png")
-    # Triangulations without volumes have a single color.
+    # Surfaces and triangulations without volumes have a single color.
     with np.errstate(divide="ignore"):
         size = np.log10(getattr(mesh, "volumes", 0.0))
-    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut="x", colorbar=False)
+    cut = "x" if mesh.simplices.shape[1] == 4 else "none"
+    draw(picture, mesh, values=size if np.isfinite(size).all() else None, cut=cut, colorbar=False)
     picture.replace(path)

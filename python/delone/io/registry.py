@@ -9,7 +9,7 @@ import importlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,14 +26,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.constrained.delaunay import ConstrainedDelaunay
-    from delone.delaunay import Delaunay
-    from delone.improve.tetmesh import TetMesh
+    from delone.exchange.parts import HasParts
     from delone.io.geometryset import GeometrySet
     from delone.io.pointset import PointSet
-    from delone.refine.meshed import Mesh as QualityMesh
-
-    Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
 __all__ = [
     "MeshFile",
@@ -69,8 +64,17 @@ _WRITERS = {
     ".npz": "arrays",
     **dict.fromkeys((".png", ".svg"), "picture"),
 }
-# What holds tetrahedra, or draws them.
-_SPACE = (".vtu", ".msh", ".npz", ".png")
+# What holds tetrahedra, or triangles in 3-D, or draws them.
+_TETRAHEDRA = (".vtu", ".msh", ".xdmf", ".inp", ".su2", ".npz", ".png")
+_SURFACES = (*_MESHES, ".xdmf", ".inp", ".png")
+# What holds triangles that share no points.
+_SEPARATE = (*_MESHES, ".xdmf", ".gpkg", ".geojson")
+_HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
+    "triangles": (tuple(_WRITERS), "triangles"),
+    "separate": (_SEPARATE, "triangles that share no points"),
+    "surface": (_SURFACES, "surfaces in 3-D"),
+    "tetrahedra": (_TETRAHEDRA, "tetrahedra"),
+}
 _GEOMETRIES = ("vector", "parquet")
 # What has a place for a reference system, or labels the axes by it.
 _LABELS = (".png", ".svg")
@@ -446,7 +450,7 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
 
 def write_mesh(
     path: str | os.PathLike[str],
-    triangulation: Mesh | TetMesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: Any = None,
@@ -460,8 +464,10 @@ def write_mesh(
     path : str or path-like
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
         GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
-    triangulation : Delaunay, ConstrainedDelaunay, Mesh or TetMesh
-        What to write. Tetrahedra go to VTU, MSH and PNG, those of a `Delaunay` to npz as well, all
+    triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
+        What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
+        Tetrahedra go to VTU, MSH, XDMF, INP, SU2 and PNG, those of a `Delaunay` to npz as well. The
+        surface of a hull goes to VTU, MSH, PLY, OBJ, STL, XDMF, INP and PNG. Both are written
         without `z` and `crs`.
     z : array_like of float, shape (n,), optional
         Heights, the third coordinate; in pictures the color, with light and shadow on it where
@@ -512,25 +518,46 @@ def write_mesh(
     ...     len(read_points(Path(folder) / "mesh.npz"))
     5
     """
-    name, ndim = type(triangulation).__name__, getattr(triangulation, "ndim", 0)
-    # Sides of a hull have a corner less.
-    if np.shape(getattr(triangulation, "simplices", ()))[1:] != (ndim + 1,):
-        raise InputError(f"a {name} is no triangulation: there is nothing to write")
+    suffix, kind = Path(path).suffix.lower(), _kind(triangulation)
     lines = as_flag(edges, name="edges")
     if lines and not hasattr(triangulation, "edges"):
+        name = type(triangulation).__name__
         raise InputError(f"this {name} has no array of edges: write delone.Delaunay(points)")
-    if ndim == 3 and z is not None:
-        raise FileFormatError("points in space have their heights already: z must be None")
-    given = _plain(attributes, Path(path).suffix.lower())
-    write = writer(path, space=ndim == 3)
-    if Path(path).suffix.lower() == ".npz" and not hasattr(triangulation, "save"):
-        raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
+    flat = kind in ("triangles", "separate")
+    if not flat and z is not None:
+        raise FileFormatError("3-D points have their heights already: z must be None")
+    given = _plain(attributes, suffix)
+    _require_place(path, triangulation, kind, edges=lines)
+    write = _writer(path, kind)
     system = as_crs(crs)
-    warn_if_left_out(path, system, WITH_CRS if ndim == 2 else _LABELS)
-    if system is None and ndim == 2:
+    warn_if_left_out(path, system, WITH_CRS if flat else _LABELS)
+    if system is None and flat:
         system = crs_of(triangulation)
     with replacing(path) as beside:
         write(beside, triangulation, z=z, crs=system, edges=lines, attributes=given)
+
+
+def _kind(triangulation: Any) -> str:
+    """Tell which simplices there are to be written: a key of `_HOLDERS`."""
+    shapes = (np.shape(getattr(triangulation, name, ())) for name in ("points", "simplices"))
+    coordinates, corners = (shape[1] if len(shape) == 2 else 0 for shape in shapes)
+    # Meshes of others say by ndim that they are triangulations.
+    if hasattr(triangulation, "_parts") or getattr(triangulation, "ndim", 0) == corners - 1:
+        if (coordinates, corners) == (2, 3):
+            return "separate" if hasattr(triangulation, "offsets") else "triangles"
+        if coordinates == 3 and corners in (3, 4):
+            return "surface" if corners == 3 else "tetrahedra"
+    name = type(triangulation).__name__
+    raise InputError(f"a {name} is no triangulation: there is nothing to write")
+
+
+def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges: bool) -> None:
+    """Refuse what the format has no place for."""
+    name, suffix = type(mesh).__name__, Path(path).suffix.lower()
+    if suffix == ".npz" and not hasattr(mesh, "save"):
+        raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
+    if kind == "separate" and edges:
+        raise FileFormatError(f"{path}: edges of a {name} are not written; write its triangles")
 
 
 def _plain(
@@ -582,13 +609,17 @@ def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[...
     >>> writer("mesh.npz").__name__
     'write_mesh'
     """
+    return _writer(path, "tetrahedra" if space else "triangles")
+
+
+def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:
     file = Path(path)
-    if space and file.suffix.lower() in _WRITERS and file.suffix.lower() not in _SPACE:
-        raise FileFormatError(
-            f"{file}: {file.suffix} files hold no tetrahedra; use {', '.join(_SPACE)}"
-        )
-    module = _module(_WRITERS, file.suffix.lower(), file, "write")
-    module.require_libraries(file.suffix.lower())
+    suffix = file.suffix.lower()
+    holders, what = _HOLDERS[kind]
+    if suffix in _WRITERS and suffix not in holders:
+        raise FileFormatError(f"{file}: {suffix} files hold no {what}; use {', '.join(holders)}")
+    module = _module(_WRITERS, suffix, file, "write")
+    module.require_libraries(suffix)
     write: Callable[..., None] = module.write_mesh
     return write
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone.errors import FileFormatError, InputError
+from delone.exchange.parts import boundary
+from delone.io.content import content
 from delone.io.pointset import PointSet
 from delone.io.registry import MeshFile
-from delone.refine.meshed import Mesh as QualityMesh
 
 if TYPE_CHECKING:
     import os
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts, Parts
+    from delone.io.content import Content
 
     Floats = NDArray[np.float64]
 
@@ -227,7 +229,7 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -238,40 +240,40 @@ def write_mesh(
     if edges or attributes:
         raise FileFormatError(f"{path.suffix} files hold neither edges nor named attributes")
     suffix = path.suffix.lower()
+    found = content(triangulation, z=z)
     if suffix == ".ele":
-        extra: NDArray[Any]
-        if isinstance(triangulation, QualityMesh):
-            extra = triangulation.region[:, None]
-        else:
-            extra = np.empty((triangulation.nsimplex, 0))
-        head = f"{triangulation.nsimplex} 3 {extra.shape[1]}"
-        text = _table(head, (triangulation.simplices, extra))
+        text = _elements(found.own)
     else:
-        text = _nodes(triangulation, z)
+        text = _nodes(found)
         if suffix == ".poly":
-            text += _poly(triangulation)
+            text += _poly(found.own)
     path.write_text(text, encoding="utf-8")
 
 
-def _nodes(triangulation: Mesh, z: ArrayLike | None) -> str:
-    n = triangulation.npoints
-    values: list[NDArray[Any]] = [triangulation.points]
-    if z is not None:
-        values.append(np.asarray(z, dtype=np.float64).reshape(n, 1))
-    marked = isinstance(triangulation, QualityMesh)
-    if isinstance(triangulation, QualityMesh):
-        values.append(triangulation.point_markers[:, None])
-    return _table(f"{n} 2 {int(z is not None)} {int(marked)}", values)
+def _elements(parts: Parts) -> str:
+    """Triangles, and the regions of those of a mesh."""
+    count, extra = len(parts.simplices), np.empty((len(parts.simplices), 0))
+    if "marker" in parts.of_segments:
+        extra = parts.of_simplices["region"][:, None]
+    return _table(f"{count} 3 {extra.shape[1]}", (parts.simplices, extra))
 
 
-def _poly(triangulation: Mesh) -> str:
+def _nodes(found: Content) -> str:
+    points, marker = found.own.points, found.own.of_points.get("marker")
+    values: list[NDArray[Any]] = [points]
+    if found.heights is not None:
+        values.append(found.heights[:, None])
+    if marker is not None:
+        values.append(marker[:, None])
+    flags = f"{int(found.heights is not None)} {int(marker is not None)}"
+    return _table(f"{len(points)} 2 {flags}", values)
+
+
+def _poly(parts: Parts) -> str:
     """Segments and seeds of holes, none: what is outside of triangles is not told."""
-    if isinstance(triangulation, QualityMesh):
-        pairs, markers = triangulation.segments, triangulation.segment_markers[:, None]
-    else:
-        pairs = getattr(triangulation, "segments", triangulation.convex_hull)
-        markers = np.zeros((len(pairs), 1), dtype=np.int32)
-    return _table(f"{len(pairs)} 1", (pairs, markers)) + "0\n"
+    pairs = boundary(parts.simplices) if parts.segments is None else parts.segments
+    markers = parts.of_segments.get("marker", np.zeros(len(pairs), dtype=np.int32))
+    return _table(f"{len(pairs)} 1", (pairs, markers[:, None])) + "0\n"
 
 
 def _table(head: str, columns: Sequence[NDArray[Any]]) -> str:

@@ -17,12 +17,12 @@ import numpy as np
 
 from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError
+from delone.exchange.geopandas import to_geopandas
 from delone.extras import require
-from delone.io.cells import cell_values
 from delone.io.compressed import SUFFIXES
+from delone.io.content import content
 from delone.io.gdal import admitted, check_driver, local_name
 from delone.io.geometryset import GeometrySet
-from delone.io.heights import split_attributes
 from delone.io.pointset import PointSet, find_column
 from delone.io.systems import check_system
 
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from delone.io.registry import Mesh
+    from delone.exchange.parts import HasParts
 
 __all__ = [
     "attribute_names",
@@ -238,7 +238,7 @@ def require_libraries(suffix: str) -> None:
 
 def write_mesh(
     path: Path,
-    triangulation: Mesh,
+    triangulation: HasParts,
     *,
     z: ArrayLike | None = None,
     crs: str | None = None,
@@ -247,25 +247,21 @@ def write_mesh(
 ) -> None:
     """Write triangles as polygons, or edges as lines, with vertices as columns v0, v1 (, v2)."""
     require_libraries(path.suffix.lower())
-    geopandas = require("geopandas", extra="geo", what="writing geometries")
-    heights = as_values(z, triangulation.npoints)
-    cells = triangulation.edges if edges else triangulation.simplices
-    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
-    _, of_cells = split_attributes(given, triangulation.npoints, len(cells))
-    of_cells = cell_values(triangulation, edges=edges) | of_cells
-    points = triangulation.points
+    parts = content(triangulation, z=z, edges=edges, attributes=attributes).whole()
     system = _system(crs, path.suffix.lower())
     # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.
     driver = "GeoJSON" if path.suffix.lower() == ".geojson" else "GPKG"
-    part = len(cells) if driver == "GeoJSON" else _PART
+    count = len(parts.simplices)
+    part = count if driver == "GeoJSON" else _PART
     layer = "edges" if edges else "triangles"
-    for start in range(0, len(cells), part):
-        rows = cells[start : start + part]
-        columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
-        columns |= {name: values[start : start + part] for name, values in of_cells.items()}
-        frame = geopandas.GeoDataFrame(columns, geometry=_shapes(points, heights, rows), crs=system)
+    for start in range(0, count, part):
+        rows = slice(start, start + part)
+        some = parts._replace(
+            simplices=parts.simplices[rows],
+            of_simplices={name: values[rows] for name, values in parts.of_simplices.items()},
+        )
         options = {"append": True} if start else {}
-        write_layer(path, frame, layer, driver=driver, **options)
+        write_layer(path, to_geopandas(some, system), layer, driver=driver, **options)
 
 
 def _system(crs: str | None, suffix: str) -> Any:
@@ -280,16 +276,6 @@ def _system(crs: str | None, suffix: str) -> Any:
         raise FileFormatError(
             f"{suffix} files cannot hold the reference system {crs!r}: pyproj does not know it"
         ) from error
-
-
-def _shapes(
-    points: NDArray[np.float64], z: NDArray[np.float64] | None, rows: NDArray[np.int32]
-) -> Any:
-    shapely = require("shapely", extra="geo", what="writing geometries")
-    corners = points[rows]
-    if z is not None:
-        corners = np.dstack((corners, z[rows]))
-    return shapely.polygons(corners) if rows.shape[1] == 3 else shapely.linestrings(corners)
 
 
 def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: Any) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from delone import _core, location
 from delone._arrays import as_vectors, as_workers
+from delone.exchange.parts import Parts
 from delone.immutable import Immutable, kept, sealed
 from delone.plane import geometry, topology
 
@@ -434,6 +435,10 @@ class Triangulation(Immutable):
     def _arrays(self) -> dict[str, NDArray[Any]]:
         """Everything from which the object can be made again."""
         raise NotImplementedError
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take."""
+        return Parts(self._points, self._simplices)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self)._from_arrays, (self._arrays(), self._stages, self._workers)

@@ -42,9 +42,9 @@ class HandedOver:
         >>> delone.mesh(square).to_meshio().cells_dict["triangle"].shape
         (2, 3)
         """
-        from delone.io import exchange
+        from delone.exchange.meshio import to_meshio
 
-        return exchange.to_meshio(self._mesh)
+        return to_meshio(self._mesh._parts())
 
     def to_skfem(self) -> Any:
         """Return the mesh as a mesh of scikit-fem.
@@ -67,9 +67,9 @@ class HandedOver:
         >>> delone.mesh(square).to_skfem().nelements
         2
         """
-        from delone.io import exchange
+        from delone.exchange.skfem import to_skfem
 
-        return exchange.to_skfem(self._mesh)
+        return to_skfem(self._mesh._parts())
 
     def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
         """Return the mesh as the arrays of which DOLFINx makes one.
@@ -87,9 +87,9 @@ class HandedOver:
         >>> sorted(delone.mesh(square).to_dolfinx_arrays())
         ['cell_tags', 'cells', 'facet_tags', 'facets', 'x']
         """
-        from delone.io import exchange
+        from delone.exchange.dolfinx import to_dolfinx_arrays
 
-        return exchange.to_dolfinx_arrays(self._mesh)
+        return to_dolfinx_arrays(self._mesh._parts())
 
     def to_pyvista(self) -> Any:
         """Return the mesh as a surface of PyVista.
@@ -111,9 +111,9 @@ class HandedOver:
         >>> delone.mesh(square).to_pyvista().n_cells
         2
         """
-        from delone.io import exchange
+        from delone.exchange.pyvista import to_pyvista
 
-        return exchange.to_pyvista(self._mesh)
+        return to_pyvista(self._mesh._parts())
 
     def to_matplotlib(self) -> Any:
         """Return the mesh as a triangulation of matplotlib.
@@ -135,6 +135,6 @@ class HandedOver:
         >>> delone.mesh(square).to_matplotlib().triangles.shape
         (2, 3)
         """
-        from delone.io import exchange
+        from delone.exchange.matplotlib import to_matplotlib
 
-        return exchange.to_matplotlib(self._mesh)
+        return to_matplotlib(self._mesh._parts())

@@ -12,6 +12,7 @@ import numpy as np
 
 from delone.counting import counted
 from delone.errors import DtypeError
+from delone.exchange.parts import Parts
 from delone.immutable import kept, sealed
 from delone.plane import quality, topology
 from delone.plane.triangulation import Triangulation
@@ -603,6 +604,17 @@ class Mesh(HandedOver, Triangulation):
         from delone import archive
 
         return cls._from_arrays(archive.read(path, archive.MESH), {}, None)
+
+    def _parts(self) -> Parts:
+        """What other libraries and files take."""
+        return Parts(
+            self._points,
+            self._simplices,
+            of_points={"marker": self._point_markers},
+            of_simplices={"region": self._region},
+            segments=self.segments,
+            of_segments={"marker": self.segment_markers},
+        )
 
     def __repr__(self) -> str:
         if not hasattr(self, "_points"):

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone.exchange.geopandas import shapely_or_say
 from delone.voronoi import pieces, torus
 from delone.voronoi.outline import next_corner, times
 from delone.voronoi.overlay import as_polygons, intersections, with_shared_corners
-from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

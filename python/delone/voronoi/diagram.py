@@ -14,6 +14,7 @@ import numpy as np
 
 from delone._arrays import as_flag, as_workers
 from delone.counting import counted
+from delone.exchange.geopandas import by_region, cells_to_geopandas
 from delone.georeference import warn_of_degrees
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.regular import as_weights
@@ -572,7 +573,7 @@ class Voronoi(Immutable):
         >>> left.area, left.intersection(right).length
         (4.0, 2.0)
         """
-        return shapes.chosen(self._clipped.polygons(), self.point_region)
+        return by_region(self._clipped.polygons(), self.point_region)
 
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
         """Return the cells as a table of geopandas (extra ``geo``).
@@ -605,7 +606,7 @@ class Voronoi(Immutable):
         >>> table.columns.tolist(), table.area.tolist()
         (['name', 'geometry'], [4.0, 4.0])
         """
-        return shapes.table(self.polygons(), data, crs)
+        return cells_to_geopandas(self.polygons(), data, crs)
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the diagram with matplotlib (extra ``plot``).

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.errors import InputError
-from delone.voronoi.shapes import shapely_or_say
+from delone.exchange.geopandas import shapely_or_say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.exchange.geopandas import shapely_or_say
 from delone.voronoi.outline import areal_parts, next_corner, times, unit_of
-from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone.exchange.geopandas import shapely_or_say
 from delone.voronoi.outline import next_corner
-from delone.voronoi.shapes import shapely_or_say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -408,29 +408,12 @@ class SpaceVoronoi(Voronoi):
         >>> Voronoi(grid).to_pyvista().n_cells
         1
         """
-        from delone.extras import require
+        from delone.exchange.polyhedra import polyhedra_to_pyvista
 
-        pyvista = require("pyvista", extra="pyvista", what="polyhedra of Voronoi cells")
-        points: list[Floats] = []
-        streams: list[list[int]] = []
-        rows: list[int] = []
-        count = 0
-        for cell in self._cells_with_an_end():
-            stream = [len(cell.faces)]
-            for face in cell.faces:
-                stream += [len(face), *(face + count).tolist()]
-            streams.append([len(stream), *stream])
-            points.append(cell.vertices)
-            rows.append(cell.site)
-            count += len(cell.vertices)
-        polyhedron = 42  # VTK's number of that kind of cell
-        kinds = np.full(len(streams), polyhedron, dtype=np.uint8)
-        grid = pyvista.UnstructuredGrid(
-            np.concatenate([np.array(s) for s in streams] or [np.empty(0, dtype=np.int64)]),
-            kinds,
-            np.concatenate([*points, np.empty((0, 3))]),
-        )
-        grid.cell_data["site"] = np.array(rows, dtype=np.int32)
+        cells = list(self._cells_with_an_end())
+        grid = polyhedra_to_pyvista(cells)
+        rows = np.array([cell.site for cell in cells], dtype=np.int32)
+        grid.cell_data["site"] = rows
         grid.cell_data["volume"] = self.cell_volumes[rows]
         return grid
 

@@ -1,0 +1,128 @@
+"""Tables of geopandas: triangles, edges and Voronoi cells as geometries of shapely."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.errors import InputError
+from delone.exchange.parts import parts_of
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.exchange.parts import Given
+
+__all__ = ["by_region", "cells_to_geopandas", "shapely_or_say", "to_geopandas"]
+
+
+def to_geopandas(mesh: Given, crs: Any = None) -> Any:
+    """Return triangles or edges as a table of geometries.
+
+    Parameters
+    ----------
+    mesh : Parts, mesh of delone, or pair of points and simplices
+        Triangles or edges, in 2-D or 3-D.
+    crs : any, optional
+        Reference system of the coordinates, as geopandas takes it; by default that of the mesh.
+
+    Returns
+    -------
+    geopandas.GeoDataFrame
+        One row for each simplex: its vertices ``v0``, ``v1`` (and ``v2``), its values, and its
+        geometry, a polygon or a line.
+
+    Raises
+    ------
+    InputError
+        The simplices are tetrahedra.
+    MissingExtraError
+        geopandas or shapely is not installed (extra ``geo``).
+
+    Examples
+    --------
+    >>> from delone.exchange.geopandas import to_geopandas
+    >>> to_geopandas(([(0, 0), (4, 0), (4, 3)], [(0, 1, 2)])).area.tolist()
+    [6.0]
+    """
+    geopandas = require("geopandas", extra="geo", what="a table of geometries")
+    shapely = require("shapely", extra="geo", what="a table of geometries")
+    parts = parts_of(mesh)
+    rows = parts.simplices
+    if rows.shape[1] not in (2, 3):
+        raise InputError("a table of geometries cannot be made of tetrahedra, only of triangles")
+    columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
+    corners = parts.points[rows]
+    shapes = shapely.polygons(corners) if rows.shape[1] == 3 else shapely.linestrings(corners)
+    return geopandas.GeoDataFrame(
+        columns | dict(parts.of_simplices),
+        geometry=shapes,
+        crs=parts.crs if crs is None else crs,
+    )
+
+
+def shapely_or_say() -> Any:
+    """Import shapely, or say how to install it."""
+    return require("shapely", extra="geo", what="polygons of Voronoi cells")
+
+
+def by_region(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any]:
+    """Return the geometry of each region number, an empty polygon for -1.
+
+    Parameters
+    ----------
+    polygons : ndarray of object, shape (c,)
+        Geometries.
+    regions : ndarray of int32, shape (n,)
+        Their numbers, or -1.
+
+    Returns
+    -------
+    ndarray of object, shape (n,)
+        Geometries.
+    """
+    found: NDArray[Any] = np.append(polygons, shapely_or_say().Polygon())[regions]
+    return found
+
+
+def cells_to_geopandas(polygons: NDArray[Any], data: Any = None, crs: Any = None) -> Any:
+    """Return cells beside the columns of their sites.
+
+    Parameters
+    ----------
+    polygons : ndarray of object, shape (n,)
+        Geometries.
+    data : DataFrame, mapping or None
+        Columns to carry.
+    crs : any
+        Reference system; by default that of `data`.
+
+    Returns
+    -------
+    GeoDataFrame
+        A row for each polygon.
+
+    Raises
+    ------
+    InputError
+        `data` has another number of rows.
+    MissingExtraError
+        geopandas is not installed (extra ``geo``).
+    """
+    geopandas = require("geopandas", extra="geo", what="a table of cells")
+    if data is None:
+        return geopandas.GeoDataFrame(geometry=polygons, crs=crs)
+    if hasattr(data, "geometry") and hasattr(data, "crs"):
+        crs = data.crs if crs is None else crs
+        data = data.drop(columns=data.geometry.name)
+    frame = (
+        data
+        if hasattr(data, "index")
+        else require("pandas", extra="geo", what="a table of cells").DataFrame(data)
+    )
+    if len(frame) != len(polygons):
+        raise InputError(f"data has {len(frame)} rows for {len(polygons)} points")
+    geometry = geopandas.GeoSeries(polygons, index=frame.index, crs=crs)
+    return geopandas.GeoDataFrame(frame.copy(), geometry=geometry)

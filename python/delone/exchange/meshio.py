@@ -1,0 +1,95 @@
+"""Meshes of meshio."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.exchange.parts import kind_of, parts_of, with_third
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.exchange.parts import Given, Parts
+
+__all__ = ["TAGS", "to_meshio"]
+
+_CELLS = {"edges": "line", "triangles": "triangle", "surface": "triangle", "tetrahedra": "tetra"}
+# What programs that read MSH files know parts of a mesh by.
+TAGS = ("gmsh:physical", "gmsh:geometrical")
+
+
+def to_meshio(mesh: Given) -> Any:
+    """Return a mesh of meshio.
+
+    Parameters
+    ----------
+    mesh : Parts, mesh of delone, or pair of points and simplices
+        Triangles in 2-D or 3-D, tetrahedra, or edges in 2-D.
+
+    Returns
+    -------
+    meshio.Mesh
+        With points in 3-D. Segments are a second block of cells, of type ``line``. Where only
+        simplices have a value, segments have -1 (integers) or NaN; where only segments have one,
+        simplices have 0 or NaN. Where segments have a ``marker``, markers and regions are tags of
+        gmsh as well, regions from 1 on.
+
+    Raises
+    ------
+    InputError
+        The arrays are no mesh.
+    MissingExtraError
+        meshio is not installed (extra ``mesh``).
+
+    Examples
+    --------
+    >>> from delone.exchange.meshio import to_meshio
+    >>> to_meshio(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).cells_dict["triangle"]
+    array([[0, 1, 2]], dtype=int32)
+    """
+    meshio = require("meshio", extra="mesh", what="to_meshio")
+    parts = parts_of(mesh)
+    cells = [(_CELLS[kind_of(parts, what="a mesh of meshio")], parts.simplices)]
+    if parts.segments is not None:
+        cells.append(("line", parts.segments))
+    return meshio.Mesh(
+        with_third(parts.points),
+        cells,
+        point_data={name: np.array(values) for name, values in parts.of_points.items()},
+        cell_data=_values(parts) | _tags(parts),
+    )
+
+
+def _values(parts: Parts) -> dict[str, list[NDArray[Any]]]:
+    """The values of simplices and of segments, block by block."""
+    if parts.segments is None:
+        return {name: [np.array(values)] for name, values in parts.of_simplices.items()}
+    found = {}
+    for name in dict.fromkeys((*parts.of_simplices, *parts.of_segments)):
+        first, second = parts.of_simplices.get(name), parts.of_segments.get(name)
+        if first is None:
+            first = _missing(parts.of_segments[name], len(parts.simplices), 0)
+        if second is None:
+            second = _missing(first, len(parts.segments), -1)
+        found[name] = [np.array(first), np.array(second)]
+    return found
+
+
+def _missing(like: NDArray[Any], count: int, integer: int) -> NDArray[Any]:
+    """What stands for no value: an integer where the values are signed ones, else NaN."""
+    if like.dtype.kind == "i":
+        return np.full(count, integer, dtype=like.dtype)
+    return np.full(count, np.nan)
+
+
+def _tags(parts: Parts) -> dict[str, list[NDArray[Any]]]:
+    """Regions and markers as gmsh has them, where 0 stands for no part of the mesh."""
+    if parts.segments is None or "marker" not in parts.of_segments:
+        return {}
+    none = np.zeros(len(parts.simplices), dtype=np.int32)
+    region = np.asarray(parts.of_simplices.get("region", none)).astype(np.int32)
+    tags = [region - region.min(initial=0) + 1, parts.of_segments["marker"].astype(np.int32)]
+    return {name: [tag.copy() for tag in tags] for name in TAGS}

@@ -1,0 +1,288 @@
+"""The parts of a mesh: points, simplices and segments as plain arrays, and their values."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+
+from delone._arrays import as_points, as_simplices
+from delone.errors import DtypeError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Values = Mapping[str, NDArray[Any]]
+
+__all__ = [
+    "Given",
+    "HasParts",
+    "Parts",
+    "boundary",
+    "boundary_segments",
+    "facet_segments",
+    "kind_of",
+    "parts_of",
+    "with_third",
+]
+
+_NONE: Values = MappingProxyType({})
+# By numbers of corners and coordinates.
+_KINDS = {
+    (2, 2): "edges",
+    (2, 3): "edges",
+    (3, 2): "triangles",
+    (3, 3): "surface",
+    (4, 3): "tetrahedra",
+}
+# The facet opposite each corner: edges with the triangle to their left, faces seen from outside.
+_FACETS = {3: ((1, 2), (2, 0), (0, 1)), 4: ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))}
+
+
+class Parts(NamedTuple):
+    """The arrays of a mesh and the values of its points, simplices and segments.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, d)
+        Coordinates, with d of 2 or 3.
+    simplices : ndarray of int32, shape (m, k)
+        Edges, triangles or tetrahedra as rows of `points`.
+    of_points : mapping of str to ndarray of length n
+        Values of points.
+    of_simplices : mapping of str to ndarray of length m
+        Values of simplices.
+    segments : ndarray of int32, shape (q, 2), or None
+        Edges that are part of the input, None where the mesh has no such thing.
+    of_segments : mapping of str to ndarray of length q
+        Values of segments.
+    crs : str or None
+        Coordinate reference system.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.exchange.parts import Parts
+    >>> Parts(np.eye(3), np.array([[0, 1, 2]])).segments is None
+    True
+    """
+
+    points: Floats
+    simplices: Indices
+    of_points: Values = _NONE
+    of_simplices: Values = _NONE
+    segments: Indices | None = None
+    of_segments: Values = _NONE
+    crs: str | None = None
+
+
+class HasParts(Protocol):
+    """A mesh that describes itself by its parts."""
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, d)."""
+
+    @property
+    def simplices(self) -> Indices:
+        """The simplices, (m, k)."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of points."""
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of simplices."""
+
+    def _parts(self) -> Parts:
+        """The arrays and their values."""
+
+
+Given: TypeAlias = "Parts | HasParts | tuple[ArrayLike, ArrayLike]"
+
+
+def parts_of(mesh: Any) -> Parts:
+    """Return the parts of a mesh.
+
+    Parameters
+    ----------
+    mesh : Parts, object with ``_parts()``, pair of arrays, or object with points and simplices
+        The mesh. Arrays are checked; parts are taken as they are.
+
+    Returns
+    -------
+    Parts
+        Without values, unless the mesh brings them.
+
+    Raises
+    ------
+    DtypeError
+        `mesh` is none of these, or its arrays do not hold numbers.
+    InputError
+        The arrays do not have the shapes of a mesh, or name points that do not exist.
+
+    Examples
+    --------
+    >>> from delone.exchange.parts import parts_of
+    >>> parts_of(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).simplices
+    array([[0, 1, 2]], dtype=int32)
+    """
+    if isinstance(mesh, Parts):
+        return mesh
+    if hasattr(mesh, "_parts"):
+        found: Parts = mesh._parts()
+        return found
+    if hasattr(mesh, "points") and hasattr(mesh, "simplices"):
+        return _checked(mesh.points, mesh.simplices)
+    if isinstance(mesh, tuple | list) and len(mesh) == 2:
+        return _checked(*mesh)
+    raise DtypeError(f"a mesh is needed, or a pair (points, simplices), got {mesh!r:.60}")
+
+
+def _checked(points: ArrayLike, simplices: ArrayLike) -> Parts:
+    places = as_points(points)
+    width = np.shape(simplices)[-1:] or (0,)
+    # Triangles may be those of a surface; everything else has a corner more than coordinates.
+    corners = 3 if width == (3,) else places.shape[1] + 1
+    return Parts(places, as_simplices(simplices, len(places), corners - 1))
+
+
+def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
+    """Tell what the simplices are.
+
+    Parameters
+    ----------
+    parts : Parts
+        The mesh.
+    what : str
+        What is asked for, as the beginning of an error message.
+    kinds : tuple of str, optional
+        The kinds that it can be made of; by default all.
+
+    Returns
+    -------
+    {"edges", "triangles", "surface", "tetrahedra"}
+        A surface is of triangles in 3-D.
+
+    Raises
+    ------
+    InputError
+        The simplices are of another kind.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.exchange.parts import Parts, kind_of
+    >>> kind_of(Parts(np.eye(3), np.array([[0, 1, 2]])), what="a table")
+    'surface'
+    """
+    corners, coordinates = parts.simplices.shape[1], parts.points.shape[1]
+    kind = _KINDS.get((corners, coordinates))
+    if kind is None:
+        raise InputError(f"simplices of {corners} corners in {coordinates}-D are no mesh")
+    if kinds and kind not in kinds:
+        shown = {"surface": "a surface in 3-D", "edges": "edges"}.get(kind, kind)
+        raise InputError(f"{what} cannot be made of {shown}, only of {' or '.join(kinds)}")
+    return kind
+
+
+def with_third(points: Floats) -> Floats:
+    """Return a copy of points with a third coordinate, zero where there was none."""
+    found = np.zeros((len(points), 3))
+    found[:, : points.shape[1]] = points
+    return found
+
+
+def boundary(simplices: Indices) -> Indices:
+    """Return the facets that belong to one simplex.
+
+    Parameters
+    ----------
+    simplices : ndarray of int32, shape (m, k)
+        Triangles or positively oriented tetrahedra.
+
+    Returns
+    -------
+    ndarray of int32, shape (h, k - 1)
+        Edges with the triangle to their left, faces counter-clockwise as seen from outside.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from delone.exchange.parts import boundary
+    >>> boundary(np.array([[0, 1, 2], [0, 2, 3]])).tolist()
+    [[1, 2], [0, 1], [2, 3], [3, 0]]
+    """
+    facets = _facets(simplices)
+    _, place, count = np.unique(_keys(facets), return_inverse=True, return_counts=True)
+    found: Indices = facets[count[place] == 1]
+    return found
+
+
+def facet_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
+    """Return the segments that are edges of triangles.
+
+    Segments in a hole are edges of no triangle, and finite elements have no place for them.
+
+    Parameters
+    ----------
+    parts : Parts
+        The mesh.
+
+    Returns
+    -------
+    pairs : ndarray of int32, shape (s, k - 1)
+        The segments; none where simplices are not triangles.
+    rows : ndarray of int64, shape (s,)
+        Their rows among the segments of the mesh.
+    """
+    return _segments_among(parts, _facets(parts.simplices))
+
+
+def boundary_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
+    """Return the segments that are edges of one triangle alone.
+
+    Parameters
+    ----------
+    parts : Parts
+        The mesh.
+
+    Returns
+    -------
+    pairs : ndarray of int32, shape (s, k - 1)
+        The segments; none where simplices are not triangles.
+    rows : ndarray of int64, shape (s,)
+        Their rows among the segments of the mesh.
+    """
+    return _segments_among(parts, boundary(parts.simplices))
+
+
+def _segments_among(parts: Parts, sides: Indices) -> tuple[Indices, NDArray[np.int64]]:
+    segments, width = parts.segments, sides.shape[1]
+    if segments is None or width != 2:
+        return np.empty((0, width), dtype=np.int32), np.empty(0, dtype=np.int64)
+    both = _keys(np.concatenate((segments, sides)))
+    rows = np.flatnonzero(np.isin(both[: len(segments)], both[len(segments) :]))
+    return segments[rows], rows
+
+
+def _facets(simplices: Indices) -> Indices:
+    width = simplices.shape[1]
+    found: Indices = simplices[:, _FACETS[width]].reshape(-1, width - 1)
+    return found
+
+
+def _keys(facets: Indices) -> NDArray[np.int64]:
+    """A number for each facet, the same for the same corners in any order."""
+    corners = np.sort(facets, axis=1).astype(np.int64)
+    key = corners[:, 0]
+    for column in corners.T[1:]:
+        # Numbers of what is there so far leave room for the next corner.
+        key = np.unique(key, return_inverse=True)[1] * (int(corners.max(initial=0)) + 1) + column
+    return key

@@ -1,0 +1,85 @@
+"""Meshes of scikit-fem."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone.exchange.parts import facet_segments, kind_of, parts_of
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.exchange.parts import Given, Parts
+
+__all__ = ["to_skfem"]
+
+
+def to_skfem(mesh: Given) -> Any:
+    """Return a mesh of scikit-fem.
+
+    Parameters
+    ----------
+    mesh : Parts, mesh of delone, or pair of points and simplices
+        Triangles in 2-D, or tetrahedra.
+
+    Returns
+    -------
+    skfem.MeshTri or skfem.MeshTet
+        With subdomains ``"region 0"`` and so on where simplices have a ``region``. Segments are
+        boundaries: ``"marker 0"`` and so on where they have a ``marker``, else ``"segments"``.
+
+    Raises
+    ------
+    InputError
+        The simplices are triangles in 3-D or edges.
+    MissingExtraError
+        scikit-fem is not installed (extra ``fem``).
+
+    Examples
+    --------
+    >>> from delone.exchange.skfem import to_skfem
+    >>> to_skfem(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).nelements
+    1
+    """
+    skfem = require("skfem", extra="fem", what="to_skfem")
+    parts = parts_of(mesh)
+    kinds = ("triangles", "tetrahedra")
+    kind = kind_of(parts, what="a mesh of scikit-fem", kinds=kinds)
+    make = skfem.MeshTri if kind == "triangles" else skfem.MeshTet
+    found = make(
+        np.ascontiguousarray(parts.points.T),
+        np.ascontiguousarray(parts.simplices.T.astype(np.int64)),
+    )
+    region = parts.of_simplices.get("region")
+    if region is not None:
+        found = found.with_subdomains(_groups(region, np.arange(len(region)), "region"))
+    if parts.segments is not None:
+        found = found.with_boundaries(_boundaries(parts, found.facets))
+    return found
+
+
+def _boundaries(parts: Parts, facets: NDArray[Any]) -> dict[str, NDArray[np.int64]]:
+    """The facets that are segments, by the markers of these."""
+    pairs, rows = facet_segments(parts)
+    numbers = _facets(facets, pairs, len(parts.points))
+    marker = parts.of_segments.get("marker")
+    return {"segments": numbers} if marker is None else _groups(marker[rows], numbers, "marker")
+
+
+def _groups(
+    values: NDArray[Any], numbers: NDArray[np.int64], name: str
+) -> dict[str, NDArray[np.int64]]:
+    """The numbers that have each value."""
+    return {f"{name} {value}": numbers[values == value] for value in np.unique(values).tolist()}
+
+
+def _facets(facets: NDArray[Any], pairs: NDArray[np.int32], npoints: int) -> NDArray[np.int64]:
+    """Return the number of the facet that each pair of points is."""
+    keys = np.min(facets, axis=0).astype(np.int64) * npoints + np.max(facets, axis=0)
+    wanted = pairs.min(axis=1).astype(np.int64) * npoints + pairs.max(axis=1)
+    order = np.argsort(keys)
+    found: NDArray[np.int64] = order[np.searchsorted(keys, wanted, sorter=order)]
+    return found

@@ -1,0 +1,136 @@
+"""What goes into a file: the parts of a mesh, with heights and values that a caller gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone.exchange.parts import Parts, parts_of, with_third
+from delone._values import as_values
+from delone.io.heights import split_attributes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import HasParts
+
+__all__ = ["Content", "content"]
+
+
+class Content(NamedTuple):
+    """The parts of a mesh, and beside them what a caller gives.
+
+    Attributes
+    ----------
+    own : Parts
+        Points, simplices or edges, and the values that the mesh has of them.
+    heights : ndarray of float64, shape (n,), or None
+        The third coordinate of points in 2-D.
+    of_points, of_simplices : mapping of str to ndarray
+        The values that are given.
+    """
+
+    own: Parts
+    heights: NDArray[np.float64] | None
+    of_points: Mapping[str, NDArray[Any]]
+    of_simplices: Mapping[str, NDArray[Any]]
+
+    @property
+    def given(self) -> bool:
+        """Whether there are values that were given."""
+        return bool(self.of_points or self.of_simplices)
+
+    def whole(self) -> Parts:
+        """Return everything, given values in place of own ones with the same name.
+
+        Segments without values are left out: they are among the edges of the mesh, and libraries
+        read no values of simplices from some files with several kinds of cells.
+        """
+        found = self.own if self.own.of_segments else self.own._replace(segments=None)
+        return self._lifted(found)._replace(
+            of_points={**found.of_points, **self.of_points},
+            of_simplices={**found.of_simplices, **self.of_simplices},
+        )
+
+    def bare(self) -> Parts:
+        """Return points and simplices with the given values alone."""
+        return self._lifted(Parts(self.own.points, self.own.simplices))._replace(
+            of_points=self.of_points, of_simplices=self.of_simplices
+        )
+
+    def _lifted(self, parts: Parts) -> Parts:
+        if self.heights is None:
+            return parts
+        points = with_third(parts.points)
+        points[:, 2] = self.heights
+        return parts._replace(points=points)
+
+
+def content(
+    mesh: HasParts,
+    *,
+    z: ArrayLike | None = None,
+    edges: bool = False,
+    attributes: Mapping[str, ArrayLike] | None = None,
+) -> Content:
+    """Return what goes into a file.
+
+    Parameters
+    ----------
+    mesh : object with ``_parts()``, or with points and simplices
+        The mesh.
+    z : array_like of float, shape (n,), optional
+        Heights of points in 2-D.
+    edges : bool, optional
+        Whether edges are written in place of simplices: with ``segment``, 1 for edges that are part
+        of one, where the mesh has segments.
+    attributes : mapping of str to array_like, optional
+        Values of points, (n,), or of simplices or edges.
+
+    Returns
+    -------
+    Content
+        Of a mesh that has points of its own for each simplex, heights and values of points are
+        those of their rows.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        Heights or values do not fit the mesh, or are no numbers.
+
+    Examples
+    --------
+    >>> from delone import ConstrainedDelaunay
+    >>> from delone.io.content import content
+    >>> square = ConstrainedDelaunay([(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 3)])
+    >>> content(square).own.of_simplices
+    {'region': array([0, 1], dtype=int32)}
+    >>> square.edges[content(square, edges=True).own.of_simplices["segment"] == 1].tolist()
+    [[1, 3]]
+    """
+    own = parts_of(mesh)
+    if edges:
+        own = _edges(own, mesh)
+    npoints = len(mesh.points)
+    given = {name: np.asarray(values) for name, values in (attributes or {}).items()}
+    of_points, of_simplices = split_attributes(given, npoints, len(own.simplices))
+    heights = as_values(z, npoints)
+    row = own.of_points.get("row")
+    if row is not None:
+        of_points = {name: values[row] for name, values in of_points.items()}
+        heights = None if heights is None else heights[row]
+    return Content(own, heights, of_points, of_simplices)
+
+
+def _edges(parts: Parts, mesh: Any) -> Parts:
+    """The edges of a mesh in place of its simplices."""
+    edges: NDArray[np.int32] = mesh.edges
+    found = Parts(parts.points, edges)
+    if parts.segments is None:
+        return found
+    n = np.int64(len(parts.points))
+    keys, wanted = (p.min(axis=1) * n + p.max(axis=1) for p in (edges, parts.segments))
+    return found._replace(of_simplices={"segment": np.isin(keys, wanted).astype(np.int32)})
