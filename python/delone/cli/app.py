@@ -191,7 +191,8 @@ def triangulate(
     """Triangulate the points of a file, report, and write meshes and pictures.
 
     Lines and the sides of polygons become edges of the triangulation. Heights are values over the
-    plane, or with --3d a third coordinate: then tetrahedra go to .vtu, .msh, .npz and .png.
+    plane, or with --3d a third coordinate: then tetrahedra go to .vtu, .msh, .npz, .xdmf, .inp,
+    .su2 and .png.
     """
     if min_angle is not None and not better:
         raise Failure("--min-angle is the goal of --improve: give that, too", Exit.USAGE)

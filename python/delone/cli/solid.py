@@ -143,7 +143,7 @@ def improved(
     """
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
-            raise Failure(f"{path}: --improve writes .vtu, .msh and .png files", Exit.USAGE)
+            raise Failure(f"{path}: --improve writes no such files; use .vtu or .msh", Exit.USAGE)
     most = _PASSES if passes is None else passes
     say("improving")
 

@@ -502,9 +502,12 @@ def write_mesh(
     Vertex numbers in the file are the rows of ``triangulation.points``; duplicates stay as points
     that no triangle uses. Coordinates are written as doubles, or with all their digits.
 
-    Of a `ConstrainedDelaunay` the triangles that are kept are written. VTU, MSH, GeoPackage and
-    GeoJSON have their `region`, and `polygon` if there are some, as attributes; edges have 1 in
+    Of a `ConstrainedDelaunay` the triangles that are kept are written. VTU, MSH, XDMF, GeoPackage
+    and GeoJSON have their `region`, and `polygon` if there are some, as attributes; edges have 1 in
     ``segment`` where they are part of one, else 0. An npz file holds the whole object.
+
+    Of a `PeriodicDelaunay` each triangle has three points of its own in the file, with ``row``, the
+    row of ``triangulation.points`` that each is a copy of; `z` and attributes are those of rows.
 
     Examples
     --------
