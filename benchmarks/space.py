@@ -6,10 +6,13 @@ is timed to its own data structure. SciPy takes part where a run lasts some seco
 Every answer of delone is checked exactly, once.
 """
 
+from __future__ import annotations
+
 import argparse
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import adapters
 import crates
@@ -17,6 +20,9 @@ import numpy as np
 import report
 from numpy.typing import NDArray
 from worker import Peer
+
+if TYPE_CHECKING:
+    from delone import _core
 
 SEED = 2026
 SETS = (
@@ -65,14 +71,19 @@ def delone(workers: int) -> adapters.Adapter:
 
     return adapters.Adapter(
         lambda points: _core.triangulate3(points, workers),
-        lambda points, answer: _verdict(_core.validate3(points, *answer[:2]), len(answer[0])),
+        _verdict,
         library.__version__,
     )
 
 
-def _verdict(found: dict[str, NDArray[np.int32]], count: int) -> NDArray[np.int32]:
+def _verdict(points: NDArray[np.float64], answer: _core.Triangulation) -> NDArray[np.int32]:
     """The number of tetrahedra, and how many things are wrong with them."""
-    return np.array([count, sum(len(rows) for rows in found.values())], np.int32)
+    from delone import _core
+
+    found = _core.validate3(points, answer.simplices, answer.neighbors)
+    single = (found.orientation, found.neighbors, found.missing, found.repeats)
+    wrong = (*single, found.facets, found.hull, found.delaunay, found.ties)
+    return np.array([len(answer.simplices), sum(map(len, wrong))], np.int32)
 
 
 def scipy() -> adapters.Adapter:

@@ -7,8 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "Faults2",
+    "Faults3",
+    "FlippedTriangulation",
+    "Hull3",
     "Locator2",
     "Locator3",
+    "PeriodicTriangulation",
+    "RegularTriangulation",
+    "Triangulation",
     "__version__",
     "areas2",
     "around",
@@ -72,19 +79,170 @@ __all__ = [
 
 __version__: Final[str]
 
+@final
+class Triangulation:
+    """A Delaunay triangulation of either dimension d."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the simplices, (m, d + 1)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat others, and the first of these, (k, 2)."""
+    @property
+    def stages(self) -> tuple[tuple[str, float], ...]:
+        """Pairs of the name of each stage and its seconds."""
+
+@final
+class Faults2:
+    """What is wrong with a triangulation of the plane; arrays are empty where nothing is."""
+
+    @property
+    def orientation(self) -> NDArray[np.int32]:
+        """Triangles that are not counter-clockwise, (k,)."""
+    @property
+    def edges(self) -> NDArray[np.int32]:
+        """Directed edges that more than one triangle uses, (k, 2)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """Triangles whose row of neighbors is wrong, (k,)."""
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Boundary edges that are not on the hull, (k, 2)."""
+    @property
+    def missing(self) -> NDArray[np.int32]:
+        """Rows of distinct points that no triangle uses, (k,)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Rows used in spite of an earlier row with the same coordinates, (k,)."""
+    @property
+    def delaunay(self) -> NDArray[np.int32]:
+        """Pairs of triangles that are not locally Delaunay, (k, 2)."""
+    @property
+    def ties(self) -> NDArray[np.int32]:
+        """Pairs of cocircular triangles that are not canonical, (k, 2)."""
+    @property
+    def count(self) -> NDArray[np.int32]:
+        """Numbers of triangles expected and found, (2,), where they differ; else (0,)."""
+
+@final
+class Faults3:
+    """What is wrong with a triangulation of space; arrays are empty where nothing is."""
+
+    @property
+    def orientation(self) -> NDArray[np.int32]:
+        """Tetrahedra that are not positively oriented, (k,)."""
+    @property
+    def facets(self) -> NDArray[np.int32]:
+        """Oriented faces that more than one tetrahedron has, (k, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """Tetrahedra whose row of neighbors is wrong, (k,)."""
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Boundary faces that are not on the hull, (k, 3)."""
+    @property
+    def missing(self) -> NDArray[np.int32]:
+        """Rows of distinct points that no tetrahedron uses, (k,)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Rows used in spite of an earlier row with the same coordinates, (k,)."""
+    @property
+    def delaunay(self) -> NDArray[np.int32]:
+        """Pairs of tetrahedra that are not locally Delaunay, (k, 2)."""
+    @property
+    def ties(self) -> NDArray[np.int32]:
+        """Pairs of cospherical tetrahedra that are not canonical, (k, 2)."""
+
+@final
+class RegularTriangulation:
+    """The regular triangulation of weighted points, of either dimension d."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the simplices, (m, d + 1)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
+    @property
+    def chain(self) -> NDArray[np.int32]:
+        """Rows that are not hidden in order, where all points lie on one line, (k,)."""
+    @property
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, -1 for one that is hidden, (n,)."""
+
+@final
+class PeriodicTriangulation:
+    """The triangulation of points and their copies."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, as numbers of copies, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def chain(self) -> NDArray[np.int32]:
+        """The copies in their order, where all lie on one line, (k,)."""
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """The row of each copy, (c,)."""
+    @property
+    def moved(self) -> NDArray[np.int32]:
+        """By how many periods each copy is moved, (c, 2)."""
+
+@final
+class Hull3:
+    """The convex hull of points in space."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles of facets, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, (m, 3)."""
+    @property
+    def facet_of(self) -> NDArray[np.int32]:
+        """The facet of each triangle, (m,)."""
+    @property
+    def polygons(self) -> NDArray[np.int32]:
+        """Vertices of the facets one after the other, (k,)."""
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Where the vertices of each facet begin, and the end, (f + 1,)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat others, and the first of these, (d, 2)."""
+
+@final
+class FlippedTriangulation:
+    """A triangulation that flips have made canonical."""
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def flips(self) -> int:
+        """How many flips there were."""
+    @property
+    def sequence(self) -> NDArray[np.int32] | None:
+        """The vertices of each flip, (flips, 4); None where they were not recorded."""
+
 def methods2() -> list[str]: ...
-def triangulate2(
-    points: NDArray[np.float64], method: str, workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], list[tuple[str, float]]]: ...
+def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
 def validate2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> dict[str, NDArray[np.int32]]: ...
-def triangulate3(
-    points: NDArray[np.float64], workers: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], list[tuple[str, float]]]: ...
+) -> Faults2: ...
+def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation: ...
 def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> dict[str, NDArray[np.int32]]: ...
+) -> Faults3: ...
 def fault2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
@@ -241,19 +399,7 @@ class Locator2:
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]: ...
 
 def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
-def hull3(
-    points: NDArray[np.float64],
-) -> (
-    tuple[
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.int32],
-    ]
-    | None
-): ...
+def hull3(points: NDArray[np.float64]) -> Hull3 | None: ...
 
 @final
 class Locator3:
@@ -348,7 +494,7 @@ def gradients_local3(
 ) -> NDArray[np.float64]: ...
 def lawson2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], record: bool
-) -> tuple[NDArray[np.int32], NDArray[np.int32], int, NDArray[np.int32] | None]: ...
+) -> FlippedTriangulation: ...
 def neighbors2(simplices: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
 def orient2d(
     a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
@@ -411,9 +557,7 @@ def measures3(
     diagram: dict[str, NDArray[Any]],
     workers: int,
 ) -> dict[str, NDArray[Any]]: ...
-def regular3(
-    points: NDArray[np.float64], weights: NDArray[np.float64]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
+def regular3(points: NDArray[np.float64], weights: NDArray[np.float64]) -> RegularTriangulation: ...
 def measures2(
     starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
@@ -433,17 +577,13 @@ def pieces2(
     outline: NDArray[np.float64],
     workers: int,
 ) -> dict[str, NDArray[Any]]: ...
-def regular2(
-    points: NDArray[np.float64], weights: NDArray[np.float64]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
+def regular2(points: NDArray[np.float64], weights: NDArray[np.float64]) -> RegularTriangulation: ...
 def periodic2(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     periods: tuple[float, float],
     taken: NDArray[np.int32],
-) -> tuple[
-    NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]
-]: ...
+) -> PeriodicTriangulation: ...
 def periodic_centers2(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,

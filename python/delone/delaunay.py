@@ -17,7 +17,7 @@ from delone.georeference import warn_of_degrees
 from delone.immutable import own_copy
 from delone.space.plane import plane_of
 from delone.space.spatial import Spatial
-from delone.validation import SpaceReport, ValidationReport
+from delone.validation import ValidationReport, of_tetrahedra, of_triangles
 
 if TYPE_CHECKING:
     import os
@@ -227,17 +227,17 @@ class Delaunay(Spatial):
             where = "" if own.shape[1] == 2 else " in space"
             raise InputError(f"method must be one of {names}{where}, got {method!r}")
         try:
-            simplices, neighbors, duplicates, stages = _triangles(own, method, threads)
+            made = _triangles(own, method, threads)
         except InternalError as error:
             error.points = own
             raise
         arrays: dict[str, NDArray[Any]] = {
             "points": own,
-            "simplices": simplices,
-            "neighbors": neighbors,
-            "duplicates": duplicates,
+            "simplices": made.simplices,
+            "neighbors": made.neighbors,
+            "duplicates": made.duplicates,
         }
-        self._fill(arrays, dict(stages), workers)
+        self._fill(arrays, dict(made.stages), workers)
 
     @property
     def _sites(self) -> tuple[_core.Locator2, None]:
@@ -264,10 +264,10 @@ class Delaunay(Spatial):
         a canonical Delaunay triangulation
         """
         if self.ndim == 3:
-            found = _core.validate3(self._points, self._simplices, self._neighbors)
-            return SpaceReport.from_culprits(found)
-        found = _core.validate2(self._points, self._simplices, self._neighbors)
-        return ValidationReport.from_culprits(found)
+            solid = _core.validate3(self._points, self._simplices, self._neighbors)
+            return of_tetrahedra(solid)
+        flat = _core.validate2(self._points, self._simplices, self._neighbors)
+        return of_triangles(flat)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the triangulation to an .npz file, whole or not at all.
@@ -374,8 +374,8 @@ def _refuse_options(unknown: Mapping[str, Any]) -> None:
         raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r}")
 
 
-def _triangles(points: NDArray[np.float64], method: str, workers: int) -> Any:
-    """Simplices, neighbours, duplicates and stages, as the core gives them."""
+def _triangles(points: NDArray[np.float64], method: str, workers: int) -> _core.Triangulation:
+    """The triangulation, as the core gives it."""
     if points.shape[1] == 2:
         return _core.triangulate2(points, method, workers)
     try:

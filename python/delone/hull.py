@@ -309,15 +309,14 @@ def _in_space(points: Floats) -> dict[str, NDArray[Any]] | None:
     found = _core.hull3(points)
     if found is None:
         return None
-    simplices, neighbors, facet_of, polygons, starts, duplicates = found
     extreme = np.zeros(len(points), dtype=bool)
-    extreme[polygons] = True
+    extreme[found.polygons] = True
     return {
-        "simplices": simplices,
-        "neighbors": neighbors,
+        "simplices": found.simplices,
+        "neighbors": found.neighbors,
         "vertices": np.flatnonzero(extreme).astype(np.int32),
-        "facet_of": facet_of,
-        "polygons": polygons,
-        "starts": starts,
-        "duplicates": duplicates,
+        "facet_of": found.facet_of,
+        "polygons": found.polygons,
+        "starts": found.starts,
+        "duplicates": found.duplicates,
     }

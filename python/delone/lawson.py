@@ -142,16 +142,14 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
     """
     points = as_points(points, ndim=2)
     simplices = as_simplices(simplices, len(points), 2)
-    flipped, neighbors, flips, sequence = _core.lawson2(
-        points, simplices, as_flag(record, name="record")
-    )
-    angles = None if sequence is None else _angles(points, simplices, sequence)
+    made = _core.lawson2(points, simplices, as_flag(record, name="record"))
+    sequence = made.sequence
     return LawsonResult(
-        simplices=flipped,
-        neighbors=neighbors,
-        flips=flips,
+        simplices=made.simplices,
+        neighbors=made.neighbors,
+        flips=made.flips,
         sequence=sequence,
-        angles=angles,
+        angles=None if sequence is None else _angles(points, simplices, sequence),
     )
 
 

@@ -446,11 +446,12 @@ def _copied(
     """
     x, y = lengths.tolist()
     try:
-        triangles, _, chain, row, moved = _core.periodic2(points, weights, (x, y), copies)
+        made = _core.periodic2(points, weights, (x, y), copies)
     except InternalError as error:
         error.points = points
         raise
-    simplices, offsets = row[triangles], moved[triangles]
+    row, moved, chain = made.rows, made.moved, made.chain
+    simplices, offsets = row[made.simplices], moved[made.simplices]
     # Of each triangle the corner with the smallest row stands first; where a row comes more than
     # once, the one moved least in lexicographic order.
     keys = (simplices.astype(np.int64) * 3 + (offsets[..., 0] + 1)) * 3 + (offsets[..., 1] + 1)

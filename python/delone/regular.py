@@ -207,12 +207,9 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     DegenerateInputError
         Points in space lie in one plane; ``error.plane`` has its triangulation.
     """
-    chain = np.empty(0, dtype=np.int32)
     try:
-        if points.shape[1] == _SPACE:
-            simplices, neighbors, stands_for = _core.regular3(points, weights)
-        else:
-            simplices, neighbors, chain, stands_for = _core.regular2(points, weights)
+        regular = _core.regular3 if points.shape[1] == _SPACE else _core.regular2
+        made = regular(points, weights)
     except InternalError as error:
         error.points = np.column_stack((points, weights))
         raise
@@ -223,11 +220,11 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     arrays: dict[str, NDArray[Any]] = {
         "points": points,
         "weights": weights,
-        "simplices": simplices,
-        "neighbors": neighbors,
-        "duplicates": twins(stands_for, weights),
+        "simplices": made.simplices,
+        "neighbors": made.neighbors,
+        "duplicates": twins(made.stands_for, weights),
     }
-    return arrays, chain
+    return arrays, made.chain
 
 
 def _degenerate(points: Floats, chain: Indices) -> DegenerateInputError:

@@ -7,13 +7,12 @@ fault and words that a person can read. `validate` takes triangles from anywhere
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from delone import _core
 from delone._arrays import as_neighbors, as_points, as_simplices, require_finite
-from delone.errors import InternalError
 from delone.immutable import ReadOnly
 from delone.plane import topology
 from delone.space import topology as space
@@ -23,7 +22,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["SENTENCES", "SpaceReport", "ValidationReport", "validate"]
+__all__ = [
+    "SENTENCES",
+    "SpaceReport",
+    "ValidationReport",
+    "of_tetrahedra",
+    "of_triangles",
+    "validate",
+]
 
 _SHOWN = 5
 
@@ -119,40 +125,8 @@ class ValidationReport(ReadOnly):
     def __post_init__(self) -> None:
         for each in fields(self):
             array = np.array(getattr(self, each.name), dtype=np.int64)
-            if each.name == "count":
-                array = array.reshape(-1)  # the core gives a table of one row
             object.__setattr__(self, each.name, array)
         super().__post_init__()
-
-    @classmethod
-    def from_culprits(cls, culprits: Mapping[str, NDArray[np.integer]]) -> Self:
-        """Make a report of what the core found.
-
-        Parameters
-        ----------
-        culprits : mapping of str to ndarray of int
-            Culprits by kind of fault; what is absent is right.
-
-        Returns
-        -------
-        ValidationReport
-            The report.
-
-        Raises
-        ------
-        InternalError
-            The core names a fault that this class does not know.
-
-        Examples
-        --------
-        >>> from delone.validation import ValidationReport
-        >>> bool(ValidationReport.from_culprits({}))
-        True
-        """
-        unknown = set(culprits) - {each.name for each in fields(cls)}
-        if unknown:
-            raise InternalError(f"unknown kinds of fault: {', '.join(sorted(unknown))}")
-        return cls(**culprits)
 
     @property
     def ok(self) -> bool:
@@ -279,7 +253,7 @@ def validate(
         beyond = topology.neighbors(triangles, len(rows))
     else:
         beyond = as_neighbors(neighbors, len(triangles), 2)
-    return ValidationReport.from_culprits(_core.validate2(rows, triangles, beyond))
+    return of_triangles(_core.validate2(rows, triangles, beyond))
 
 
 def _validate_space(
@@ -290,7 +264,58 @@ def _validate_space(
         beyond = space.neighbors(tetrahedra)
     else:
         beyond = as_neighbors(neighbors, len(tetrahedra), 3)
-    return SpaceReport.from_culprits(_core.validate3(points, tetrahedra, beyond))
+    return of_tetrahedra(_core.validate3(points, tetrahedra, beyond))
+
+
+def of_triangles(faults: _core.Faults2) -> ValidationReport:
+    """Make a report of what the core found wrong with triangles.
+
+    Parameters
+    ----------
+    faults : Faults2
+        The culprits.
+
+    Returns
+    -------
+    ValidationReport
+        The same, with words.
+    """
+    return ValidationReport(
+        orientation=faults.orientation,
+        edges=faults.edges,
+        neighbors=faults.neighbors,
+        hull=faults.hull,
+        missing=faults.missing,
+        repeats=faults.repeats,
+        delaunay=faults.delaunay,
+        ties=faults.ties,
+        count=faults.count,
+    )
+
+
+def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
+    """Make a report of what the core found wrong with tetrahedra.
+
+    Parameters
+    ----------
+    faults : Faults3
+        The culprits.
+
+    Returns
+    -------
+    SpaceReport
+        The same, with words.
+    """
+    return SpaceReport(
+        orientation=faults.orientation,
+        facets=faults.facets,
+        neighbors=faults.neighbors,
+        hull=faults.hull,
+        missing=faults.missing,
+        repeats=faults.repeats,
+        delaunay=faults.delaunay,
+        ties=faults.ties,
+    )
 
 
 def _list(culprits: NDArray[np.integer]) -> str:

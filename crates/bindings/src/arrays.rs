@@ -2,12 +2,17 @@
 
 use numpy::ndarray::{Dimension, IntoDimension};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2,
+    Element, PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2,
     PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
 use delone_core::error::{Error, Result};
+
+/// A one-dimensional array of Python.
+pub type Column<T> = Py<PyArray1<T>>;
+/// A two-dimensional array of Python.
+pub type Table<T> = Py<PyArray2<T>>;
 
 /// The rows of a C-contiguous array of width `D`.
 pub fn rows<'a, T: Element, const D: usize>(
@@ -58,27 +63,27 @@ pub fn are_starts(starts: &[i32], length: usize) -> Result<()> {
 }
 
 /// A vector of rows as an `(n, D)` array that owns it.
-pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> PyResult<Py<PyAny>> {
+pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> PyResult<Table<T>> {
     let shape = [rows.len(), D];
     let array = PyArray1::from_vec(py, rows.into_flattened()).reshape(shape)?;
-    Ok(Bound::<PyArray2<T>>::into_any(array).unbind())
+    Ok(array.unbind())
 }
 
 /// A read-only copy of rows: where they are few, cheaper than an array that owns a vector.
 pub fn frozen<T: Element + Copy, const D: usize>(
     py: Python<'_>,
     rows: &[[T; D]],
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<T>> {
     let array = PyArray2::<T>::zeros(py, [rows.len(), D], false);
     let mut lent = array.try_readwrite()?;
     lent.as_slice_mut()?.copy_from_slice(rows.as_flattened());
     lent.make_nonwriteable();
-    Ok(array.into_any().unbind())
+    Ok(array.unbind())
 }
 
 /// A vector as a one-dimensional array that owns it.
-pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyAny> {
-    PyArray1::from_vec(py, values).into_any().unbind()
+pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Column<T> {
+    PyArray1::from_vec(py, values).unbind()
 }
 
 /// The items of a C-contiguous array of any shape, row after row.
@@ -96,18 +101,18 @@ pub fn shaped<T: Element, S: IntoDimension>(
     py: Python<'_>,
     values: Vec<T>,
     shape: S,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Py<PyArray<T, S::Dim>>> {
     let array = PyArray1::from_vec(py, values).reshape(shape)?;
-    Ok(array.into_any().unbind())
+    Ok(array.unbind())
 }
 
 /// A list of numbers as an array.
-pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Py<PyAny> {
+pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Column<i32> {
     column(py, numbers.into_iter().map(|v| v as i32).collect())
 }
 
 /// Rows of numbers as an array.
-pub fn number_rows<const D: usize>(py: Python<'_>, rows: Vec<[u32; D]>) -> PyResult<Py<PyAny>> {
+pub fn number_rows<const D: usize>(py: Python<'_>, rows: Vec<[u32; D]>) -> PyResult<Table<i32>> {
     let signed: Vec<[i32; D]> = rows.into_iter().map(|row| row.map(|v| v as i32)).collect();
     table(py, signed)
 }

@@ -9,7 +9,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, frozen, in_range, number_rows, numbers, rows, table};
+use crate::arrays::{Column, Table, column, frozen, in_range, number_rows, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::pairs;
 use crate::signals::watched;
@@ -69,7 +69,7 @@ pub fn components2(
     py: Python<'_>,
     neighbors: PyReadonlyArray2<'_, i32>,
     constrained: PyReadonlyArray2<'_, bool>,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i32>> {
     let given = || -> Result<_> {
         let sides: &[[i32; 3]] = rows(&neighbors, "neighbors")?;
         let walls: &[[bool; 3]] = rows(&constrained, "constrained")?;
@@ -93,7 +93,7 @@ pub fn polygon2(
     points: PyReadonlyArray2<'_, f64>,
     starts: PyReadonlyArray1<'_, i32>,
     nonzero: bool,
-) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+) -> PyResult<(Table<f64>, Table<i32>)> {
     let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let starts = bounds(&starts, points.len()).map_err(|e| raise(py, &e))?;
     let rule = if nonzero {
@@ -113,7 +113,7 @@ pub fn polygon2(
 pub fn ring2(
     py: Python<'_>,
     points: &Bound<'_, PyAny>,
-) -> PyResult<Option<(Py<PyAny>, Py<PyAny>)>> {
+) -> PyResult<Option<(Table<f64>, Table<i32>)>> {
     let Ok(points) = points.extract::<PyReadonlyArray2<'_, f64>>() else {
         return Ok(None);
     };

@@ -6,7 +6,7 @@ use delone_core::memory::with_room;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, in_range, rows, table};
+use crate::arrays::{Column, Table, column, in_range, rows, table};
 use crate::errors::raise;
 use crate::signals::watched;
 
@@ -19,7 +19,7 @@ pub fn disks2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
     in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
@@ -44,7 +44,7 @@ pub fn within2(
     own: usize,
     bounds: [f64; 4],
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<bool>> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
     in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
@@ -55,7 +55,7 @@ pub fn within2(
 }
 
 /// `(starts, rows, all)`.
-type Found = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+type Found = (Column<i64>, Column<i32>, Column<bool>);
 
 /// For each triangle, six coordinates a row, up to `most` points in conflict, and whether that is all.
 #[pyfunction]

@@ -1,15 +1,15 @@
 //! Convex hulls as arrays.
 
-use delone_core::hull::{self, Hull3};
+use delone_core::hull;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{number_rows, numbers, rows};
+use crate::arrays::{Column, Table, number_rows, numbers, rows};
 use crate::errors::raise;
 use crate::signals::watched;
 
 /// `(vertices, duplicates)`.
-type Chain = (Py<PyAny>, Py<PyAny>);
+type Chain = (Column<i32>, Table<i32>);
 
 /// The extreme points in the plane, counter-clockwise, and the rows that repeat them.
 #[pyfunction]
@@ -19,37 +19,36 @@ pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chai
     Ok((numbers(py, vertices), number_rows(py, duplicates)?))
 }
 
-/// `(simplices, neighbors, facet, polygons, starts, duplicates)`.
-type Faces = (
-    Py<PyAny>,
-    Py<PyAny>,
-    Py<PyAny>,
-    Py<PyAny>,
-    Py<PyAny>,
-    Py<PyAny>,
-);
+/// The convex hull of points in space.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Hull3 {
+    /// Vertices of the triangles of facets, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, (m, 3).
+    pub neighbors: Table<i32>,
+    /// The facet of each triangle, (m,).
+    pub facet_of: Column<i32>,
+    /// Vertices of the facets one after the other, (k,).
+    pub polygons: Column<i32>,
+    /// Where the vertices of each facet begin, and the end, (f + 1,).
+    pub starts: Column<i32>,
+    /// Rows that repeat others, and the first of these, (d, 2).
+    pub duplicates: Table<i32>,
+}
 
 /// The hull of points in space; nothing where they span no volume.
 #[pyfunction]
-pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Option<Faces>> {
+pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Option<Hull3>> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let Some(found) = watched(py, |watch| hull::hull3(points, watch))? else {
         return Ok(None);
     };
-    let Hull3 {
-        simplices,
-        neighbors,
-        facet,
-        polygons,
-        starts,
-        duplicates,
-    } = found;
-    Ok(Some((
-        number_rows(py, simplices)?,
-        number_rows(py, neighbors)?,
-        numbers(py, facet),
-        numbers(py, polygons),
-        numbers(py, starts),
-        number_rows(py, duplicates)?,
-    )))
+    Ok(Some(Hull3 {
+        simplices: number_rows(py, found.simplices)?,
+        neighbors: number_rows(py, found.neighbors)?,
+        facet_of: numbers(py, found.facet),
+        polygons: numbers(py, found.polygons),
+        starts: numbers(py, found.starts),
+        duplicates: number_rows(py, found.duplicates)?,
+    }))
 }

@@ -2,16 +2,18 @@
 
 use delone_core::error::{Error, Result};
 use delone_core::interpolate::{
-    Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table, clough_tocher,
+    Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table as Sums, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
 use delone_core::{Point2, Point3, interpolate3};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::{
+    PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, each_in_range, flat, rows, shaped};
+use crate::arrays::{Column, Table, column, each_in_range, flat, rows, shaped};
 use crate::errors::raise;
 use crate::locator::Plane;
 use crate::signals::watched;
@@ -25,7 +27,7 @@ pub type Gradients<'py> = PyReadonlyArray3<'py, f64>;
 /// Closed edges.
 pub type Closed<'py> = PyReadonlyArray2<'py, bool>;
 
-/// An array.
+/// An array of two axes, or of three where there are derivatives.
 type Array = Py<PyAny>;
 
 fn order_of(order: usize) -> PyResult<Order> {
@@ -60,8 +62,8 @@ fn table_of(
     order: Order,
 ) -> PyResult<Array> {
     match order {
-        Order::Value => shaped(py, found, [queries, columns]),
-        _ => shaped(py, found, [queries, columns, order.components()]),
+        Order::Value => Ok(shaped(py, found, [queries, columns])?.into_any()),
+        _ => Ok(shaped(py, found, [queries, columns, order.components()])?.into_any()),
     }
 }
 
@@ -136,7 +138,7 @@ pub fn corner_weights_of(
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
-) -> PyResult<(Array, Array, Array)> {
+) -> PyResult<(Column<i32>, Table<f64>, Py<PyArray3<f64>>)> {
     let fail = |e: Error| raise(py, &e);
     let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
     let (found, n) = locator.batch(xi, workers, |batch| clough_tocher_weights(batch, barrier))?;
@@ -148,7 +150,13 @@ pub fn corner_weights_of(
 }
 
 /// `(indptr, indices, weights, slopes, triangle)` of natural neighbours.
-pub type Neighbours = (Array, Array, Array, Option<Array>, Array);
+pub type Neighbours = (
+    Column<i64>,
+    Column<i32>,
+    Column<f64>,
+    Option<Table<f64>>,
+    Column<i32>,
+);
 
 /// The weights of natural neighbours.
 pub fn natural_of(
@@ -185,7 +193,7 @@ pub fn leave_one_out_of(
     locator: &Plane,
     kind: &str,
     workers: usize,
-) -> PyResult<(Array, Array, Array)> {
+) -> PyResult<(Column<i64>, Column<i32>, Column<f64>)> {
     let method = Method::named(kind)
         .ok_or_else(|| PyValueError::new_err(format!("nothing to leave out for {kind:?}")))?;
     let Rows {
@@ -214,12 +222,12 @@ pub fn combine2(
     slopes: Option<PyReadonlyArray2<'_, f64>>,
     gradients: Option<Gradients<'_>>,
     workers: usize,
-) -> PyResult<Array> {
+) -> PyResult<Table<f64>> {
     let fail = |e: Error| raise(py, &e);
     let [n, columns] = [0, 1].map(|k| values.shape()[k]);
     let slopes = slopes.as_ref().map(|s| rows(s, "slopes"));
     let gradients = gradients.as_ref().map(|g| flat(g, "gradients"));
-    let table = Table {
+    let table = Sums {
         indptr: flat(&indptr, "indptr").map_err(fail)?,
         indices: flat(&indices, "indices").map_err(fail)?,
         weights: flat(&weights, "weights").map_err(fail)?,
@@ -252,7 +260,7 @@ pub fn gradients_global2(
     maxiter: usize,
     workers: usize,
     floor: Option<f64>,
-) -> PyResult<(Array, Array)> {
+) -> PyResult<(Py<PyArray3<f64>>, Column<i64>)> {
     let fail = |e: Error| raise(py, &e);
     let rows: &[Point2] = rows(&points, "points").map_err(fail)?;
     let (n, columns) = (rows.len(), values.shape()[1]);
@@ -277,7 +285,7 @@ pub fn gradients_local2(
     values: Values<'_>,
     degree: usize,
     workers: usize,
-) -> PyResult<Array> {
+) -> PyResult<Py<PyArray3<f64>>> {
     let fail = |e: Error| raise(py, &e);
     if !(1..=2).contains(&degree) {
         return Err(PyValueError::new_err("degree must be 1 or 2"));
@@ -305,7 +313,7 @@ pub fn gradients_local3(
     values: Values<'_>,
     vertices: PyReadonlyArray1<'_, i32>,
     workers: usize,
-) -> PyResult<Array> {
+) -> PyResult<Py<PyArray3<f64>>> {
     let fail = |e: Error| raise(py, &e);
     let rows: &[Point3] = rows(&points, "points").map_err(fail)?;
     let (n, columns) = (rows.len(), values.shape()[1]);

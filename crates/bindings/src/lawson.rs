@@ -5,13 +5,23 @@ use delone_core::mesh2::import::adjacency;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{rows, table};
+use crate::arrays::{Table, rows, table};
 use crate::errors::raise;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
-/// `(simplices, neighbors, flips, sequence)`.
-type Flipped = (Py<PyAny>, Py<PyAny>, usize, Option<Py<PyAny>>);
+/// A triangulation that flips have made canonical.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct FlippedTriangulation {
+    /// Vertices of the triangles, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    pub neighbors: Table<i32>,
+    /// How many flips there were.
+    pub flips: usize,
+    /// The vertices of each flip, (flips, 4); None where they were not recorded.
+    pub sequence: Option<Table<i32>>,
+}
 
 /// The canonical triangulation by flips, how many they were, and which, where that is recorded.
 #[pyfunction]
@@ -20,7 +30,7 @@ pub fn lawson2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     record: bool,
-) -> PyResult<Flipped> {
+) -> PyResult<FlippedTriangulation> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let simplices = simplices_of(&simplices, points.len()).map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| lawson(points, simplices, record, watch))?;
@@ -29,12 +39,12 @@ pub fn lawson2(
     } else {
         None
     };
-    Ok((
-        table(py, made.arrays.simplices)?,
-        table(py, made.arrays.neighbors)?,
-        made.flips,
+    Ok(FlippedTriangulation {
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        flips: made.flips,
         sequence,
-    ))
+    })
 }
 
 /// The triangle across the edge opposite each corner, -1 outside.
@@ -43,7 +53,7 @@ pub fn neighbors2(
     py: Python<'_>,
     simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<i32>> {
     let simplices = simplices_of(&simplices, npoints).map_err(|e| raise(py, &e))?;
     let neighbors = watched(py, |watch| adjacency(simplices, npoints, watch))?;
     table(py, neighbors)

@@ -34,6 +34,13 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(predicates::incircle, m)?)?;
     m.add_function(wrap_pyfunction!(predicates::orient3d, m)?)?;
     m.add_function(wrap_pyfunction!(predicates::insphere, m)?)?;
+    m.add_class::<triangulation::Triangulation>()?;
+    m.add_class::<triangulation::Faults2>()?;
+    m.add_class::<space::Faults3>()?;
+    m.add_class::<regular::RegularTriangulation>()?;
+    m.add_class::<regular::PeriodicTriangulation>()?;
+    m.add_class::<hull::Hull3>()?;
+    m.add_class::<lawson::FlippedTriangulation>()?;
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;

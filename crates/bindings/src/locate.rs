@@ -2,10 +2,10 @@
 
 use delone_core::error::Error;
 use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{column, rows, shaped};
+use crate::arrays::{Column, Table, column, rows, shaped};
 use crate::errors::raise;
 use crate::given::checked;
 use crate::interpolate::{
@@ -16,7 +16,13 @@ use crate::locator::Plane;
 use crate::signals::watched;
 
 /// `(triangle, weights, beside, edge, along)`.
-type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+type Places = (
+    Column<i32>,
+    Table<f64>,
+    Column<i32>,
+    Table<i32>,
+    Column<f64>,
+);
 
 /// A triangulation for many calls.
 #[pyclass(frozen, module = "delone._core")]
@@ -34,7 +40,7 @@ impl Locator2 {
     }
 
     /// For each query the first triangle that holds it, or -1.
-    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
 
@@ -51,7 +57,7 @@ impl Locator2 {
     }
 
     /// The nearest vertex to each query; of a Delaunay triangulation.
-    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }
 
@@ -61,7 +67,7 @@ impl Locator2 {
         py: Python<'_>,
         a: PyReadonlyArray1<'_, f64>,
         b: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Py<PyAny>> {
+    ) -> PyResult<Column<i32>> {
         let end = |p: &PyReadonlyArray1<'_, f64>| {
             let pair = p.as_slice().ok().and_then(|p| p.try_into().ok());
             pair.ok_or_else(|| raise(py, &Error::Shape("an end needs two coordinates".into())))
@@ -118,7 +124,7 @@ impl Locator2 {
         xi: Points<'_>,
         barrier: Option<Closed<'_>>,
         workers: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+    ) -> PyResult<(Column<i32>, Table<f64>, Py<PyArray3<f64>>)> {
         corner_weights_of(py, &self.0, &xi, barrier.as_ref(), workers)
     }
 
@@ -167,7 +173,7 @@ impl Locator2 {
         py: Python<'_>,
         kind: &str,
         workers: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+    ) -> PyResult<(Column<i64>, Column<i32>, Column<f64>)> {
         leave_one_out_of(py, &self.0, kind, workers)
     }
 }
@@ -181,7 +187,7 @@ pub fn find_simplex2(
     neighbors: PyReadonlyArray2<'_, i32>,
     xi: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i32>> {
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| {

@@ -5,15 +5,15 @@ use delone_core::locate3::{Kept, coordinates, find, nearest, within};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, shaped};
+use crate::arrays::{Column, Table, column, shaped};
 use crate::interpolate::Points;
 use crate::locator::Space;
 
 /// `(simplex, weights, beside, face, shares)`.
-type Places = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+type Places = (Column<i32>, Table<f64>, Column<i32>, Table<i32>, Table<f64>);
 
 /// `(indptr, indices, weights, simplex)`.
-type Neighbours3 = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+type Neighbours3 = (Column<i64>, Column<i32>, Column<f64>, Column<i32>);
 
 /// A triangulation in space for many calls.
 #[pyclass(frozen, module = "delone._core")]
@@ -31,7 +31,7 @@ impl Locator3 {
     }
 
     /// For each query the first tetrahedron that holds it, or -1.
-    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+    fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
 
@@ -41,7 +41,7 @@ impl Locator3 {
         py: Python<'_>,
         xi: Points<'_>,
         workers: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    ) -> PyResult<(Column<i32>, Table<f64>)> {
         let (found, n) = self.0.batch(&xi, workers, within)?;
         let weights = shaped(py, found.weights, [n, 4])?;
         Ok((column(py, found.simplex), weights))
@@ -71,7 +71,7 @@ impl Locator3 {
     }
 
     /// The nearest vertex to each query; of a Delaunay triangulation.
-    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Py<PyAny>> {
+    fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }
 }

@@ -8,7 +8,7 @@ use delone_core::watch::Watch;
 use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{column, rows};
+use crate::arrays::{Column, column, rows};
 use crate::errors::raise;
 use crate::given::{Held, answered, checked};
 use crate::signals::watched;
@@ -81,7 +81,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
         work: impl FnOnce(&Batch<K, D, N>) -> Result<Vec<T>> + Send,
-    ) -> PyResult<Py<PyAny>> {
+    ) -> PyResult<Column<T>> {
         let (found, _) = self.batch(xi, workers, work)?;
         Ok(column(xi.py(), found))
     }

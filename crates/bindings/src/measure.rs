@@ -3,10 +3,10 @@
 use delone_core::error::Result;
 use delone_core::measure;
 use delone_core::watch::Watch;
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{column, rows, shaped, table};
+use crate::arrays::{Column, Table, column, rows, shaped, table};
 use crate::errors::attached;
 use crate::given::simplices_of;
 use crate::signals::watched;
@@ -19,7 +19,7 @@ pub fn edges2(
     neighbors: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<i32>> {
     let (simplices, neighbors) = attached(py, || {
         Ok((
             simplices_of(&simplices, npoints)?,
@@ -39,7 +39,7 @@ pub fn edges3(
     simplices: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<i32>> {
     let simplices = attached(py, || simplices_of(&simplices, npoints))?;
     let found = watched(py, |watch| {
         measure::edges3(simplices, npoints, workers, watch)
@@ -55,7 +55,7 @@ pub fn faces3(
     neighbors: PyReadonlyArray2<'_, i32>,
     npoints: usize,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<i32>> {
     let (simplices, neighbors) = attached(py, || {
         Ok((
             simplices_of(&simplices, npoints)?,
@@ -74,7 +74,7 @@ pub fn around(
     py: Python<'_>,
     edges: PyReadonlyArray2<'_, i32>,
     npoints: usize,
-) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+) -> PyResult<(Column<i32>, Column<i32>)> {
     let edges: &[[i32; 2]] = attached(py, || rows(&edges, "edges"))?;
     let (starts, found) = watched(py, |watch| measure::around(edges, npoints, watch))?;
     Ok((column(py, starts), column(py, found)))
@@ -101,7 +101,7 @@ pub fn areas2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::areas(points, simplices, workers, watch)
     })?;
@@ -115,7 +115,7 @@ pub fn volumes3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::volumes(points, simplices, workers, watch)
     })?;
@@ -129,7 +129,7 @@ pub fn face_areas3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::face_areas(points, simplices, workers, watch)
     })?;
@@ -143,7 +143,7 @@ pub fn face_normals3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::face_normals(points, simplices, workers, watch)
     })?;
@@ -157,7 +157,7 @@ pub fn circumcenters2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::circumcenters2(points, simplices, workers, watch)
     })?;
@@ -171,7 +171,7 @@ pub fn circumcenters3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::circumcenters3(points, simplices, workers, watch)
     })?;
@@ -185,7 +185,7 @@ pub fn qualities2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities2(points, simplices, workers, watch)
     })?;
@@ -199,7 +199,7 @@ pub fn qualities3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities3(points, simplices, workers, watch)
     })?;
@@ -213,7 +213,7 @@ pub fn dihedral_angles3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Table<f64>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::dihedral_angles(points, simplices, workers, watch)
     })?;
@@ -228,7 +228,7 @@ pub fn below2(
     simplices: PyReadonlyArray2<'_, i32>,
     squared_cosine: f64,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i32>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::below(points, simplices, squared_cosine, workers, watch)
     })?;
@@ -242,7 +242,7 @@ pub fn transforms2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Py<PyArray3<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::transforms2(points, simplices, workers, watch)
     })?;
@@ -258,7 +258,7 @@ pub fn transforms3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Py<PyArray3<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::transforms3(points, simplices, workers, watch)
     })?;

@@ -7,7 +7,7 @@ use delone_predicates::Sign;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{column, rows};
+use crate::arrays::{Column, column, rows};
 use crate::errors::{detached, raise};
 
 /// One sign a row of `M` arrays of `D`-dimensional points.
@@ -15,7 +15,7 @@ fn signs<const D: usize, const M: usize>(
     py: Python<'_>,
     arguments: [&PyReadonlyArray2<'_, f64>; M],
     sign: impl Fn([[f64; D]; M]) -> Sign + Send + Sync,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i8>> {
     let mut columns: [&[[f64; D]]; M] = [&[]; M];
     for (column, argument) in columns.iter_mut().zip(arguments) {
         *column = rows(argument, "argument").map_err(|e| raise(py, &e))?;
@@ -42,7 +42,7 @@ pub fn orient2d(
     a: PyReadonlyArray2<'_, f64>,
     b: PyReadonlyArray2<'_, f64>,
     c: PyReadonlyArray2<'_, f64>,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i8>> {
     signs(py, [&a, &b, &c], |[a, b, c]| exact::orient2d(a, b, c))
 }
 
@@ -55,7 +55,7 @@ pub fn incircle(
     c: PyReadonlyArray2<'_, f64>,
     d: PyReadonlyArray2<'_, f64>,
     canonical: bool,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i8>> {
     let sign = if canonical {
         exact::incircle_canonical
     } else {
@@ -72,7 +72,7 @@ pub fn orient3d(
     b: PyReadonlyArray2<'_, f64>,
     c: PyReadonlyArray2<'_, f64>,
     d: PyReadonlyArray2<'_, f64>,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i8>> {
     signs(py, [&a, &b, &c, &d], |[a, b, c, d]| {
         exact::orient3d(a, b, c, d)
     })
@@ -88,7 +88,7 @@ pub fn insphere(
     d: PyReadonlyArray2<'_, f64>,
     e: PyReadonlyArray2<'_, f64>,
     canonical: bool,
-) -> PyResult<Py<PyAny>> {
+) -> PyResult<Column<i8>> {
     let sign = if canonical {
         exact::insphere_canonical
     } else {

@@ -8,7 +8,7 @@ use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, in_range, numbers, rows, table};
+use crate::arrays::{Column, column, in_range, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::pairs;
 use crate::signals::watched;
@@ -149,7 +149,7 @@ pub fn judge2<'py>(
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     cos2: f64,
-) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+) -> PyResult<(Column<i32>, Column<i32>, Column<i32>)> {
     let given = || -> Result<_> {
         let all = rows(&points, "points")?;
         let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;

@@ -5,13 +5,23 @@ use delone_core::{regular, regular3 as space, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{column, numbers, rows, table};
+use crate::arrays::{Column, Table, column, numbers, rows, table};
 use crate::errors::attached;
 use crate::given::finite_weights;
 use crate::signals::watched;
 
-/// `(simplices, neighbors, chain, stands_for)`.
-type Weighed = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+/// The regular triangulation of weighted points, of either dimension d.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct RegularTriangulation {
+    /// Vertices of the simplices, (m, d + 1).
+    pub simplices: Table<i32>,
+    /// The simplex opposite each vertex, -1 outside, (m, d + 1).
+    pub neighbors: Table<i32>,
+    /// The rows that are not hidden in their order, where all points lie on one line, (k,).
+    pub chain: Column<i32>,
+    /// The row that stands for each point, -1 for one that is hidden, (n,).
+    pub stands_for: Column<i32>,
+}
 
 /// The regular triangulation of weighted points; a chain of rows where all are in line.
 #[pyfunction]
@@ -19,22 +29,19 @@ pub fn regular2(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Weighed> {
+) -> PyResult<RegularTriangulation> {
     let (points, weights) = attached(py, || {
         let points = rows(&points, "points")?;
         Ok((points, finite_weights(Some(&weights), points.len())?))
     })?;
     let made = watched(py, |watch| regular::regular(points, weights, watch))?;
-    Ok((
-        table(py, made.triangles.simplices)?,
-        table(py, made.triangles.neighbors)?,
-        numbers(py, made.chain),
-        column(py, made.stands_for),
-    ))
+    Ok(RegularTriangulation {
+        simplices: table(py, made.triangles.simplices)?,
+        neighbors: table(py, made.triangles.neighbors)?,
+        chain: numbers(py, made.chain),
+        stands_for: column(py, made.stands_for),
+    })
 }
-
-/// `(simplices, neighbors, stands_for)`.
-type Weighed3 = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
 /// The regular triangulation of weighted points of space.
 #[pyfunction]
@@ -42,21 +49,34 @@ pub fn regular3(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     weights: PyReadonlyArray1<'_, f64>,
-) -> PyResult<Weighed3> {
+) -> PyResult<RegularTriangulation> {
     let (points, weights) = attached(py, || {
         let points = rows(&points, "points")?;
         Ok((points, finite_weights(Some(&weights), points.len())?))
     })?;
     let made = watched(py, |watch| space::regular(points, weights, watch))?;
-    Ok((
-        table(py, made.tetrahedra.simplices)?,
-        table(py, made.tetrahedra.neighbors)?,
-        column(py, made.stands_for),
-    ))
+    Ok(RegularTriangulation {
+        simplices: table(py, made.tetrahedra.simplices)?,
+        neighbors: table(py, made.tetrahedra.neighbors)?,
+        chain: column(py, Vec::new()),
+        stands_for: column(py, made.stands_for),
+    })
 }
 
-/// `(simplices, neighbors, chain, rows, moved)`.
-type Repeated = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+/// The triangulation of points and their copies.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct PeriodicTriangulation {
+    /// Vertices of the triangles, as numbers of copies, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    pub neighbors: Table<i32>,
+    /// The copies in their order, where all lie on one line, (k,).
+    pub chain: Column<i32>,
+    /// The row of each copy, (c,).
+    pub rows: Column<i32>,
+    /// By how many periods each copy is moved, (c, 2).
+    pub moved: Table<i32>,
+}
 
 /// The Delaunay triangulation (with weights the regular one) of points and their copies one period
 /// away: `taken` has rows and by how
@@ -68,7 +88,7 @@ pub fn periodic2(
     weights: Option<PyReadonlyArray1<'_, f64>>,
     periods: [f64; 2],
     taken: PyReadonlyArray2<'_, i32>,
-) -> PyResult<Repeated> {
+) -> PyResult<PeriodicTriangulation> {
     let (points, heavy, taken) = attached(py, || {
         let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
         let heavy = finite_weights(weights.as_ref(), points.len())?;
@@ -87,13 +107,13 @@ pub fn periodic2(
     let made = watched(py, |watch| {
         regular::periodic(points, heavy, periods, taken, watch)
     })?;
-    Ok((
-        table(py, made.triangles.simplices)?,
-        table(py, made.triangles.neighbors)?,
-        numbers(py, made.chain),
-        column(py, made.rows),
-        table(py, made.moved)?,
-    ))
+    Ok(PeriodicTriangulation {
+        simplices: table(py, made.triangles.simplices)?,
+        neighbors: table(py, made.triangles.neighbors)?,
+        chain: numbers(py, made.chain),
+        rows: column(py, made.rows),
+        moved: table(py, made.moved)?,
+    })
 }
 
 /// `(centers, shared)`: the centre of each triangle of copies, and whether it is that of the neighbour
@@ -107,7 +127,7 @@ pub fn periodic_centers2(
     corners: PyReadonlyArray2<'_, i32>,
     apexes: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+) -> PyResult<(Table<f64>, Table<bool>)> {
     let (points, heavy, corners, apexes) = attached(py, || {
         let points = rows(&points, "points")?;
         let heavy = finite_weights(weights.as_ref(), points.len())?;

@@ -1,16 +1,15 @@
 //! Triangulations of points in space as arrays.
 
 use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::{Findings3, validate};
+use delone_core::delaunay3::validate::validate;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::arrays::{number_rows, rows, table};
+use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::checked;
 use crate::signals::watched;
-use crate::triangulation::{Made, Report};
+use crate::triangulation::{Triangulation, seconds};
 
 /// The triangulation of the points as arrays.
 #[pyfunction]
@@ -18,46 +17,56 @@ pub fn triangulate3(
     py: Python<'_>,
     points: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Made> {
+) -> PyResult<Triangulation> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| triangulate(points, workers, watch))?;
-    let stages = made.stages.iter();
-    Ok((
-        table(py, made.arrays.simplices)?,
-        table(py, made.arrays.neighbors)?,
-        number_rows(py, made.duplicates)?,
-        stages.map(|(name, t)| (*name, t.as_secs_f64())).collect(),
-    ))
+    Ok(Triangulation {
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        duplicates: number_rows(py, made.duplicates)?,
+        stages: seconds(py, &made.stages)?,
+    })
 }
 
-/// What is wrong with a triangulation of space, by kind; empty where nothing is.
+/// What is wrong with a triangulation of space; arrays are empty where nothing is.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Faults3 {
+    /// Tetrahedra that are not positively oriented, (k,).
+    pub orientation: Column<i32>,
+    /// Oriented faces that more than one tetrahedron has, (k, 3).
+    pub facets: Table<i32>,
+    /// Tetrahedra whose row of neighbors is wrong, (k,).
+    pub neighbors: Column<i32>,
+    /// Boundary faces that are not on the hull, (k, 3).
+    pub hull: Table<i32>,
+    /// Rows of distinct points that no tetrahedron uses, (k,).
+    pub missing: Column<i32>,
+    /// Rows that are used in spite of an earlier row with the same coordinates, (k,).
+    pub repeats: Column<i32>,
+    /// Pairs of tetrahedra that are not locally Delaunay, (k, 2).
+    pub delaunay: Table<i32>,
+    /// Pairs of cospherical tetrahedra that are not canonical, (k, 2).
+    pub ties: Table<i32>,
+}
+
+/// What is wrong with a triangulation of space.
 #[pyfunction]
 pub fn validate3<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     neighbors: PyReadonlyArray2<'py, i32>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Faults3> {
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| validate(given, watch))?;
-    let Findings3 {
-        orientation,
-        facets,
-        neighbors,
-        hull,
-        missing,
-        repeats,
-        delaunay,
-        ties,
-    } = found;
-    let report = Report::new(py);
-    report.list("orientation", orientation)?;
-    report.list("neighbors", neighbors)?;
-    report.list("missing", missing)?;
-    report.list("repeats", repeats)?;
-    report.table("facets", facets)?;
-    report.table("hull", hull)?;
-    report.table("delaunay", delaunay)?;
-    report.table("ties", ties)?;
-    Ok(report.found)
+    Ok(Faults3 {
+        orientation: numbers(py, found.orientation),
+        facets: number_rows(py, found.facets)?,
+        neighbors: numbers(py, found.neighbors),
+        hull: number_rows(py, found.hull)?,
+        missing: numbers(py, found.missing),
+        repeats: numbers(py, found.repeats),
+        delaunay: number_rows(py, found.delaunay)?,
+        ties: number_rows(py, found.ties)?,
+    })
 }

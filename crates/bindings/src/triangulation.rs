@@ -1,13 +1,15 @@
 //! Triangulations as arrays.
 
-use delone_core::delaunay2::validate::{Findings, validate};
+use std::time::Duration;
+
+use delone_core::delaunay2::validate::validate;
 use delone_core::delaunay2::{Method, triangulate};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::PyTuple;
 
-use crate::arrays::{number_rows, numbers, rows, table};
+use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::checked;
 use crate::signals::watched;
@@ -24,8 +26,26 @@ pub fn method_of(name: &str) -> PyResult<Method> {
     Method::named(name).ok_or_else(|| PyValueError::new_err(message()))
 }
 
-/// `(simplices, neighbors, duplicates, stages)`.
-pub type Made = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Vec<(&'static str, f64)>);
+/// A Delaunay triangulation of either dimension d.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Triangulation {
+    /// Vertices of the simplices, (m, d + 1).
+    pub simplices: Table<i32>,
+    /// The simplex opposite each vertex, -1 outside, (m, d + 1).
+    pub neighbors: Table<i32>,
+    /// Rows that repeat others, and the first of these, (k, 2).
+    pub duplicates: Table<i32>,
+    /// Pairs of the name of each stage and its seconds.
+    pub stages: Py<PyTuple>,
+}
+
+/// Pairs of names and seconds.
+pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> PyResult<Py<PyTuple>> {
+    let pairs = stages
+        .iter()
+        .map(|(name, time)| (*name, time.as_secs_f64()));
+    Ok(PyTuple::new(py, pairs)?.unbind())
+}
 
 /// The triangulation of the points as arrays.
 #[pyfunction]
@@ -34,83 +54,60 @@ pub fn triangulate2(
     points: PyReadonlyArray2<'_, f64>,
     method: &str,
     workers: usize,
-) -> PyResult<Made> {
+) -> PyResult<Triangulation> {
     let method = method_of(method)?;
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
-    Ok((
-        table(py, made.arrays.simplices)?,
-        table(py, made.arrays.neighbors)?,
-        number_rows(py, made.duplicates)?,
-        made.stages
-            .iter()
-            .map(|(name, time)| (*name, time.as_secs_f64()))
-            .collect(),
-    ))
+    Ok(Triangulation {
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        duplicates: number_rows(py, made.duplicates)?,
+        stages: seconds(py, &made.stages)?,
+    })
 }
 
-/// What is wrong with a triangulation, by kind; empty where nothing is.
+/// What is wrong with a triangulation of the plane; arrays are empty where nothing is.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Faults2 {
+    /// Triangles that are not counter-clockwise, (k,).
+    pub orientation: Column<i32>,
+    /// Directed edges that more than one triangle uses, (k, 2).
+    pub edges: Table<i32>,
+    /// Triangles whose row of neighbors is wrong, (k,).
+    pub neighbors: Column<i32>,
+    /// Boundary edges that are not on the hull, (k, 2).
+    pub hull: Table<i32>,
+    /// Rows of distinct points that no triangle uses, (k,).
+    pub missing: Column<i32>,
+    /// Rows that are used in spite of an earlier row with the same coordinates, (k,).
+    pub repeats: Column<i32>,
+    /// Pairs of triangles that are not locally Delaunay, (k, 2).
+    pub delaunay: Table<i32>,
+    /// Pairs of cocircular triangles that are not canonical, (k, 2).
+    pub ties: Table<i32>,
+    /// Numbers of triangles expected and found, (2,), where they differ; otherwise (0,).
+    pub count: Column<i32>,
+}
+
+/// What is wrong with a triangulation.
 #[pyfunction]
 pub fn validate2<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     neighbors: PyReadonlyArray2<'py, i32>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Faults2> {
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| validate(given, watch))?;
-    let Findings {
-        orientation,
-        edges,
-        neighbors,
-        hull,
-        missing,
-        repeats,
-        delaunay,
-        ties,
-        count,
-    } = found;
-    let report = Report::new(py);
-    report.list("orientation", orientation)?;
-    report.list("neighbors", neighbors)?;
-    report.list("missing", missing)?;
-    report.list("repeats", repeats)?;
-    report.table("edges", edges)?;
-    report.table("hull", hull)?;
-    report.table("delaunay", delaunay)?;
-    report.table("ties", ties)?;
-    report.table("count", count)?;
-    Ok(report.found)
-}
-
-/// What was found, by name, where something was.
-pub struct Report<'py> {
-    /// The names, and numbers or rows of numbers.
-    pub found: Bound<'py, PyDict>,
-}
-
-impl<'py> Report<'py> {
-    /// Nothing yet.
-    pub fn new(py: Python<'py>) -> Self {
-        Self {
-            found: PyDict::new(py),
-        }
-    }
-
-    /// Numbers.
-    pub fn list(&self, name: &str, found: Vec<u32>) -> PyResult<()> {
-        if found.is_empty() {
-            return Ok(());
-        }
-        self.found.set_item(name, numbers(self.found.py(), found))
-    }
-
-    /// Rows of numbers.
-    pub fn table<const D: usize>(&self, name: &str, found: Vec<[u32; D]>) -> PyResult<()> {
-        if found.is_empty() {
-            return Ok(());
-        }
-        self.found
-            .set_item(name, number_rows(self.found.py(), found)?)
-    }
+    Ok(Faults2 {
+        orientation: numbers(py, found.orientation),
+        edges: number_rows(py, found.edges)?,
+        neighbors: numbers(py, found.neighbors),
+        hull: number_rows(py, found.hull)?,
+        missing: numbers(py, found.missing),
+        repeats: numbers(py, found.repeats),
+        delaunay: number_rows(py, found.delaunay)?,
+        ties: number_rows(py, found.ties)?,
+        count: numbers(py, found.count.into_flattened()),
+    })
 }

@@ -6,7 +6,9 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{are_starts, column, each_in_range, flat, in_range, rows, table};
+use crate::arrays::{
+    Column, Table, are_starts, column, each_in_range, flat, in_range, rows, table,
+};
 use crate::errors::{attached, detached, raise};
 use crate::given::{checked, unequal, weights_of};
 use crate::signals::watched;
@@ -57,7 +59,7 @@ pub fn voronoi2<'py>(
 }
 
 /// Polygons as arrays: `(starts, corners, ridges)`.
-type Cut = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
+type Cut = (Column<i32>, Table<f64>, Column<i32>);
 
 /// The cells of a diagram, as `voronoi2` gives it, cut to a box.
 #[pyfunction]
@@ -135,7 +137,7 @@ pub fn measures2(
     starts: PyReadonlyArray1<'_, i32>,
     corners: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<Cut> {
+) -> PyResult<(Column<f64>, Table<f64>, Column<f64>)> {
     let (starts, corners) = attached(py, || {
         let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
         are_starts(starts, corners.len())?;
@@ -159,7 +161,7 @@ pub fn touched2(
     corners: PyReadonlyArray2<'_, f64>,
     ridges: PyReadonlyArray1<'_, i32>,
     segments: PyReadonlyArray2<'_, f64>,
-) -> PyResult<(Py<PyAny>, usize)> {
+) -> PyResult<(Column<i32>, usize)> {
     let (starts, corners, ridges, segments) = attached(py, || {
         let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
         are_starts(starts, corners.len())?;

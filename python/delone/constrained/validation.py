@@ -108,20 +108,26 @@ def validate(
         The culprits.
     """
     points, simplices, neighbors = found["points"], found["simplices"], found["neighbors"]
-    culprits: dict[str, NDArray[Any]] = dict(_core.validate2(points, simplices, neighbors))
+    faults = _core.validate2(points, simplices, neighbors)
     edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], len(points))
     segments = edge_keys(found["segments"][:, 0], found["segments"][:, 1], len(points))
     wanted = among(edges, segments)
-    culprits["flags"] = np.flatnonzero((wanted != found["constrained"]).any(axis=1))
-    culprits["absent"] = found["segments"][~among(segments, edges.ravel())]
-    for name in ("delaunay", "ties"):
-        if name in culprits:
-            culprits[name] = _not_across(culprits[name], neighbors, wanted)
     ends = duplicate_of[found["input"]]
-    culprits["uncovered"] = _uncovered(found, ends, len(points))
-    if not conforming:
-        culprits["bent"] = _bent(found, ends)
-    return ConstrainedReport.from_culprits(culprits)
+    return ConstrainedReport(
+        orientation=faults.orientation,
+        edges=faults.edges,
+        neighbors=faults.neighbors,
+        hull=faults.hull,
+        missing=faults.missing,
+        repeats=faults.repeats,
+        delaunay=_not_across(faults.delaunay, neighbors, wanted),
+        ties=_not_across(faults.ties, neighbors, wanted),
+        count=faults.count,
+        flags=np.flatnonzero((wanted != found["constrained"]).any(axis=1)),
+        absent=found["segments"][~among(segments, edges.ravel())],
+        uncovered=_uncovered(found, ends, len(points)),
+        bent=_no_pairs() if conforming else _bent(found, ends),
+    )
 
 
 def _not_across(pairs: Indices, neighbors: Indices, wanted: Bools) -> Indices:

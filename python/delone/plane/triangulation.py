@@ -229,8 +229,8 @@ class Triangulation(Immutable):
         if not len(rows):
             return None, rows
         sites = self._points[rows]
-        simplices, neighbors, _, _ = _core.triangulate2(sites, "auto", as_workers(self._workers))
-        return location.locator(sites, simplices, neighbors), rows
+        made = _core.triangulate2(sites, "auto", as_workers(self._workers))
+        return location.locator(sites, made.simplices, made.neighbors), rows
 
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None

@@ -130,12 +130,14 @@ def plane_of(
     axis, pair, first = corners
     extended = np.concatenate((points, _apex(points, first[0], axis)))
     if weights is None:
-        simplices, neighbors, duplicates, _ = _core.triangulate3(extended, workers)
+        made = _core.triangulate3(extended, workers)
+        simplices, neighbors, duplicates = made.simplices, made.neighbors, made.duplicates
     else:
         # The weight of the apex is of no account; one of the others' keeps exponents together.
         own = np.append(weights, weights[first[0]])
-        simplices, neighbors, stands_for = _core.regular3(extended, own)
-        duplicates = twins(stands_for, own)
+        heavy = _core.regular3(extended, own)
+        simplices, neighbors = heavy.simplices, heavy.neighbors
+        duplicates = twins(heavy.stands_for, own)
     # Three columns of each row: those of the base, which is opposite the apex.
     rows, corner = np.nonzero(simplices == len(points))
     order = np.array(FACES)[corner]

@@ -112,8 +112,9 @@ def advance(
     rows = np.concatenate([border.rows, news])
     owner = np.concatenate([border.owner, known.tiles.locate(coordinates(news))])
     points = coordinates(rows)
-    simplices, neighbors, twins, _ = _core.triangulate2(points, "auto", 1)
-    if len(twins):
+    made = _core.triangulate2(points, "auto", 1)
+    simplices, neighbors = made.simplices, made.neighbors
+    if len(made.duplicates):
         raise InternalError("two vertices of a border are the same point")
     inside = _within(simplices, neighbors, border.edges)
     certain = inside & (owner[simplices] == known.tile).any(axis=1)

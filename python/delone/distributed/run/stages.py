@@ -98,7 +98,8 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     known = known_to(store, layout, key)
     rows, own = gather(store, slices, layout, key)
     points = coordinates(rows)
-    simplices, neighbors, twins, _ = _core.triangulate2(points, "auto", threads)
+    made = _core.triangulate2(points, "auto", threads)
+    simplices, neighbors, twins = made.simplices, made.neighbors, made.duplicates
     owner = np.full(len(rows), key, dtype=np.int32)
     owner[own:] = layout.tiles.locate(points[own:])
     # Nearly all triangles are certain and have own corners alone; what follows looks at the rest.
