@@ -7,13 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "ConstrainedTriangulation",
     "Faults2",
     "Faults3",
     "FlippedTriangulation",
     "Hull3",
+    "ImprovedMesh",
+    "ImprovementCounts",
+    "JudgedTriangles",
     "Locator2",
     "Locator3",
     "PeriodicTriangulation",
+    "RefinedMesh",
     "RegularTriangulation",
     "Triangulation",
     "__version__",
@@ -234,6 +239,171 @@ class FlippedTriangulation:
     def sequence(self) -> NDArray[np.int32] | None:
         """The vertices of each flip, (flips, 4); None where they were not recorded."""
 
+@final
+class ConstrainedTriangulation:
+    """A constrained Delaunay triangulation of the whole hull."""
+
+    @property
+    def added(self) -> NDArray[np.float64]:
+        """Vertices that the input does not have, (a, 2)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, added ones behind the input, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Whether the edge opposite each vertex is a subsegment, (m, 3)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat others, and the first of these, (k, 2)."""
+    @property
+    def segments(self) -> NDArray[np.int32]:
+        """The subsegments, (q, 2)."""
+    @property
+    def source_start(self) -> NDArray[np.int64]:
+        """Where the rows of each subsegment begin in `source`, and the end, (q + 1,)."""
+    @property
+    def source(self) -> NDArray[np.int32]:
+        """The rows of segments that cover subsegments, (c,)."""
+    @property
+    def forward(self) -> NDArray[np.bool_]:
+        """Whether each of these runs as the subsegment does, (c,)."""
+    @property
+    def zero(self) -> NDArray[np.int32]:
+        """Rows of segments whose ends are one point, (k,)."""
+    @property
+    def through(self) -> NDArray[np.int32]:
+        """Rows of segments and the vertices of the input inside them, (k, 2)."""
+    @property
+    def crossings(self) -> NDArray[np.int32]:
+        """Rows of segments that crossed, two by two, and where they meet, (k, 3)."""
+    def __new__(
+        cls,
+        added: NDArray[np.float64],
+        simplices: NDArray[np.int32],
+        neighbors: NDArray[np.int32],
+        constrained: NDArray[np.bool_],
+        duplicates: NDArray[np.int32],
+        segments: NDArray[np.int32],
+        source_start: NDArray[np.int64],
+        source: NDArray[np.int32],
+        forward: NDArray[np.bool_],
+        zero: NDArray[np.int32],
+        through: NDArray[np.int32],
+        crossings: NDArray[np.int32],
+    ) -> ConstrainedTriangulation:
+        """Check the shapes of the arrays."""
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order in which the constructor takes them."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """What a pickle holds."""
+
+@final
+class RefinedMesh:
+    """A refined triangulation of the hull."""
+
+    @property
+    def added(self) -> NDArray[np.float64]:
+        """Vertices that were added; they come behind those given, (a, 2)."""
+    @property
+    def on(self) -> NDArray[np.int32]:
+        """The line that each of these lies on, or -1, (a,)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the triangles, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def sides(self) -> NDArray[np.int32]:
+        """The line under the edge opposite each vertex, or -1, (m, 3)."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The label of each triangle, -1 outside of the domain, (m,)."""
+    @property
+    def needles(self) -> NDArray[np.int32]:
+        """The number of the needle that each triangle is left in, or -1, (m,)."""
+    @property
+    def for_segments(self) -> int:
+        """How many vertices were added on segments."""
+    @property
+    def for_angles(self) -> int:
+        """How many were added inside for angles."""
+    @property
+    def for_sizes(self) -> int:
+        """How many were added inside for sizes."""
+    @property
+    def exhausted(self) -> bool:
+        """Whether the limit on vertices ended the work."""
+
+@final
+class JudgedTriangles:
+    """Triangles whose angles are known to be small, or large, or not known."""
+
+    @property
+    def below(self) -> NDArray[np.int32]:
+        """Those with an angle below the bound, (k,)."""
+    @property
+    def extremes(self) -> NDArray[np.int32]:
+        """Those among which the smallest and the largest angles are, (e,)."""
+    @property
+    def beyond(self) -> NDArray[np.int32]:
+        """Those that are beyond the range of doubles, (b,)."""
+
+@final
+class ImprovementCounts:
+    """How often tetrahedra were changed, by kind."""
+
+    @property
+    def edges(self) -> int:
+        """Edges removed."""
+    @property
+    def boundary(self) -> int:
+        """Edges of the boundary among these."""
+    @property
+    def faces(self) -> int:
+        """Faces removed."""
+    @property
+    def moves(self) -> int:
+        """Vertices moved."""
+    @property
+    def weights(self) -> int:
+        """Weights given."""
+    @property
+    def passes(self) -> int:
+        """Passes."""
+    @property
+    def refused(self) -> int:
+        """Changes refused."""
+
+@final
+class ImprovedMesh:
+    """Improved tetrahedra."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates, (n, 3)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Vertices of the tetrahedra, (m, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """The weight of each point, 0 for most, (n,)."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The label of each tetrahedron, (m,)."""
+    @property
+    def counts(self) -> ImprovementCounts:
+        """What was done."""
+    @property
+    def exhausted(self) -> bool:
+        """Whether the limit on passes ended the work while it still gained."""
+
 def methods2() -> list[str]: ...
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
 def validate2(
@@ -316,7 +486,7 @@ def constrained2(
     max_vertices: int,
     method: str,
     workers: int,
-) -> dict[str, Any]: ...
+) -> tuple[ConstrainedTriangulation, tuple[tuple[str, float], ...]]: ...
 def components2(
     neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
 ) -> NDArray[np.int32]: ...
@@ -440,10 +610,10 @@ def refine2(
     circles: bool = False,
     sizes_yield: bool = False,
     progress: Callable[[int, float], object] | None = None,
-) -> dict[str, Any]: ...
+) -> RefinedMesh: ...
 def judge2(
     points: NDArray[np.float64], simplices: NDArray[np.int32], cos2: float
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]: ...
+) -> JudgedTriangles: ...
 def improve3(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],
@@ -456,7 +626,7 @@ def improve3(
     turn: bool,
     passes: int,
     progress: Callable[[int, int], object] | None = None,
-) -> dict[str, Any]: ...
+) -> ImprovedMesh: ...
 def combine2(
     indptr: NDArray[np.int64],
     indices: NDArray[np.int32],

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import delone
 from delone import ConstrainedDelaunay, Delaunay, _core
 from delone.constrained import validation
+from delone.errors import ShapeError
 
 OUTER = [(0, 0), (6, 0), (6, 6), (0, 6)]
 INNER = [(2, 2), (4, 2), (4, 4), (2, 4)]
@@ -374,7 +375,7 @@ def holders(triangles: Any, query: Any) -> list[int]:
 
 class TestObject:
     def test_nothing_can_be_set(self, frame: ConstrainedDelaunay) -> None:
-        for name in ("points", "segments", "region", "_found", "anything"):
+        for name in ("points", "segments", "region", "_made", "anything"):
             with pytest.raises(AttributeError):
                 setattr(frame, name, None)
         with pytest.raises(AttributeError, match="never changes"):
@@ -494,6 +495,49 @@ def same_in_all(one: ConstrainedDelaunay, other: ConstrainedDelaunay) -> None:
     assert str(one.report) == str(other.report)
 
 
+ARRAYS = (
+    *("added", "simplices", "neighbors", "constrained", "duplicates", "segments"),
+    *("source_start", "source", "forward", "zero", "through", "crossings"),
+)
+
+
+def replaced(made: _core.ConstrainedTriangulation, **changes: Any) -> Any:
+    """The same result with other arrays."""
+    arrays = dict(zip(ARRAYS, made.arrays(), strict=True))
+    return _core.ConstrainedTriangulation(**(arrays | changes))
+
+
+class TestResult:
+    """The result of the core can be made of arrays, which are checked."""
+
+    def test_it_has_the_arrays_that_it_is_made_of(self, frame: ConstrainedDelaunay) -> None:
+        again = pickle.loads(pickle.dumps(frame._made))
+        for name, array in zip(ARRAYS, frame._made.arrays(), strict=True):
+            assert getattr(frame._made, name) is array
+            assert np.array_equal(getattr(again, name), array)
+            assert getattr(again, name).dtype == array.dtype
+
+    def test_it_cannot_be_changed(self, frame: ConstrainedDelaunay) -> None:
+        with pytest.raises(AttributeError):
+            frame._made.simplices = frame.simplices  # type: ignore[misc]
+
+    @pytest.mark.parametrize("name", ARRAYS)
+    def test_other_shapes_are_refused(self, frame: ConstrainedDelaunay, name: str) -> None:
+        array = getattr(frame._made, name)
+        if array.ndim == 2:
+            with pytest.raises(ShapeError, match=f"{name} has {array.shape[1] + 1} columns"):
+                replaced(frame._made, **{name: np.zeros((1, array.shape[1] + 1), array.dtype)})
+        with pytest.raises(TypeError):
+            replaced(frame._made, **{name: array[None]})
+        with pytest.raises(TypeError):
+            replaced(frame._made, **{name: array.astype(np.float32)})
+
+    @pytest.mark.parametrize("name", ["neighbors", "constrained", "segments", "forward"])
+    def test_lengths_that_differ_are_refused(self, frame: ConstrainedDelaunay, name: str) -> None:
+        with pytest.raises(ShapeError, match="differ in length"):
+            replaced(frame._made, **{name: getattr(frame._made, name)[:-1]})
+
+
 class TestValidation:
     """Each kind of damage is found, and nothing else is."""
 
@@ -509,13 +553,19 @@ class TestValidation:
     def test_damage_is_named(
         self, frame: ConstrainedDelaunay, name: str, change: Any, culprit: str
     ) -> None:
-        found = dict(frame._found)
-        found[name] = np.ascontiguousarray(change(found[name])).astype(found[name].dtype)
+        made, ends = frame._made, frame.duplicate_of[frame.input_segments]
+        changes = {}
+        if name == "input":
+            ends = change(ends)
+        else:
+            old = getattr(made, name)
+            changes[name] = np.ascontiguousarray(change(old)).astype(old.dtype)
         if name == "segments":  # the new one belongs to row 0
-            found["source"] = np.append(found["source"], 0).astype(np.int32)
-            found["forward"] = np.append(found["forward"], True)
-            found["source_start"] = np.append(found["source_start"], len(found["source"]))
-        report = validation.validate(found, frame.duplicate_of)
+            changes["source"] = np.append(made.source, 0).astype(np.int32)
+            changes["forward"] = np.append(made.forward, True)
+            changes["source_start"] = np.append(made.source_start, len(made.source) + 1)
+        made = replaced(made, **changes)
+        report = validation.validate(frame.points, made, ends)
         assert not report
         assert len(getattr(report, culprit))
         assert culprit in str(report)
@@ -524,24 +574,23 @@ class TestValidation:
     def test_an_edge_without_segment_must_be_locally_delaunay(self) -> None:
         rhomb = [(0, 0), (3, -1), (6, 0), (3, 1)]
         mesh = ConstrainedDelaunay(rhomb, [(0, 2)])
-        found = dict(mesh._found)
-        found |= {
-            "constrained": np.zeros((2, 3), dtype=bool),
-            "segments": np.empty((0, 2), dtype=np.int32),
-            "source": np.empty(0, dtype=np.int32),
-            "forward": np.empty(0, dtype=bool),
-            "source_start": np.zeros(1, dtype=np.int64),
-            "input": np.empty((0, 2), dtype=np.int32),
-        }
-        report = validation.validate(found, mesh.duplicate_of)
+        nothing = np.empty((0, 2), dtype=np.int32)
+        made = replaced(
+            mesh._made,
+            constrained=np.zeros((2, 3), dtype=bool),
+            segments=nothing,
+            source=np.empty(0, dtype=np.int32),
+            forward=np.empty(0, dtype=bool),
+            source_start=np.zeros(1, dtype=np.int64),
+        )
+        report = validation.validate(mesh.points, made, nothing)
         assert report.delaunay.tolist() == [[0, 1]]
         assert mesh.validate()
 
     def test_a_row_must_be_straight(self) -> None:
         mesh = ConstrainedDelaunay([(0, 0), (4, 0), (2, 1), (2, -4)], [(0, 2), (2, 1)])
-        found = dict(mesh._found)
-        found["input"] = np.array([[0, 1], [2, 2]], dtype=np.int32)
-        found["source"] = np.zeros(2, dtype=np.int32)
-        report = validation.validate(found, mesh.duplicate_of)
+        made = replaced(mesh._made, source=np.zeros(2, dtype=np.int32))
+        ends = np.array([[0, 1], [2, 2]], dtype=np.int32)
+        report = validation.validate(mesh.points, made, ends)
         assert report.bent.tolist() == [[0, 2]]
         assert report.uncovered.size == 0

@@ -16,6 +16,15 @@ def test_a_conforming_mesh_without_subsegments_has_a_report(segments: list) -> N
     assert len(mesh.report.overlaps) == 0
 
 
+@pytest.mark.parametrize("segments", [[], [(0, 0)]])
+def test_a_conforming_mesh_without_subsegments_can_be_loaded(segments: list, tmp_path) -> None:
+    """Its sources once began twice, so that no file of it could be read."""
+    mesh = ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], segments, conforming=True)
+    assert mesh.segment_source[0].tolist() == [0]
+    mesh.save(tmp_path / "mesh.npz")
+    assert ConstrainedDelaunay.load(tmp_path / "mesh.npz").validate()
+
+
 def test_a_cut_that_is_rounded_to_a_point_is_reported() -> None:
     """The middle of the row is rounded to the other point, which is not exactly on it."""
     points = [(500000.004, 5400000.002), (500000.003, 5400000.001), (500000.002, 5400000.0)]

@@ -7,15 +7,79 @@ use delone_core::constrained::{
 use delone_core::error::{Error, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::PyTuple;
 
 use crate::arrays::{Column, Table, column, frozen, in_range, number_rows, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::pairs;
+use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
-use crate::triangulation::method_of;
+use crate::triangulation::{method_of, seconds};
 
-/// The constrained triangulation of points and segments, by name.
+/// A constrained Delaunay triangulation of the whole hull.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ConstrainedTriangulation {
+    /// Vertices that the input does not have, (a, 2).
+    pub added: Table<f64>,
+    /// Vertices of the triangles, added ones behind those of the input, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    pub neighbors: Table<i32>,
+    /// Whether the edge opposite each vertex is a subsegment, (m, 3).
+    pub constrained: Table<bool>,
+    /// Rows that repeat others, and the first of these, (k, 2).
+    pub duplicates: Table<i32>,
+    /// The subsegments, (q, 2).
+    pub segments: Table<i32>,
+    /// Where the rows that cover each subsegment begin in `source`, and the end, (q + 1,).
+    pub source_start: Column<i64>,
+    /// The rows of segments that cover subsegments, (c,).
+    pub source: Column<i32>,
+    /// Whether each of these runs as the subsegment does, (c,).
+    pub forward: Column<bool>,
+    /// Rows of segments whose ends are one point, (k,).
+    pub zero: Column<i32>,
+    /// Rows of segments and the vertices of the input inside them, (k, 2).
+    pub through: Table<i32>,
+    /// Rows of segments that crossed, two by two, and where they meet, (k, 3).
+    pub crossings: Table<i32>,
+}
+
+made_of_arrays!(ConstrainedTriangulation {
+    added: Table<f64>,
+    simplices: Table<i32>,
+    neighbors: Table<i32>,
+    constrained: Table<bool>,
+    duplicates: Table<i32>,
+    segments: Table<i32>,
+    source_start: Column<i64>,
+    source: Column<i32>,
+    forward: Column<bool>,
+    zero: Column<i32>,
+    through: Table<i32>,
+    crossings: Table<i32>,
+});
+
+impl ConstrainedTriangulation {
+    fn check(&self, py: Python<'_>) -> Result<()> {
+        rows_of(py, &self.added, 2, "added")?;
+        rows_of(py, &self.duplicates, 2, "duplicates")?;
+        rows_of(py, &self.through, 2, "through")?;
+        rows_of(py, &self.crossings, 3, "crossings")?;
+        let triangles = rows_of(py, &self.simplices, 3, "simplices")?;
+        require_equal(&[
+            (triangles, rows_of(py, &self.neighbors, 3, "neighbors")?),
+            (triangles, rows_of(py, &self.constrained, 3, "constrained")?),
+            (
+                rows_of(py, &self.segments, 2, "segments")? + 1,
+                len_of(py, &self.source_start),
+            ),
+            (len_of(py, &self.source), len_of(py, &self.forward)),
+        ])
+    }
+}
+
+/// The constrained triangulation of points and segments, and the seconds of its stages.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the options, one by one")]
 pub fn constrained2<'py>(
@@ -27,7 +91,7 @@ pub fn constrained2<'py>(
     max_vertices: usize,
     method: &str,
     workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<(ConstrainedTriangulation, Py<PyTuple>)> {
     let method = method_of(method)?;
     let options = Options {
         split,
@@ -39,28 +103,26 @@ pub fn constrained2<'py>(
     let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let segments = pairs(&segments, points.len(), "segments").map_err(|e| raise(py, &e))?;
     let made = watched(py, |watch| constrain(points, &segments, options, watch))?;
-    by_name(py, made)
+    let stages = seconds(py, &made.stages)?;
+    Ok((arrays_of(py, made)?, stages))
 }
 
-fn by_name(py: Python<'_>, made: Constrained) -> PyResult<Bound<'_, PyDict>> {
-    let out = PyDict::new(py);
+fn arrays_of(py: Python<'_>, made: Constrained) -> PyResult<ConstrainedTriangulation> {
     let sub = made.subsegments;
-    out.set_item("added", table(py, made.added)?)?;
-    out.set_item("simplices", table(py, made.arrays.simplices)?)?;
-    out.set_item("neighbors", table(py, made.arrays.neighbors)?)?;
-    out.set_item("constrained", table(py, made.constrained)?)?;
-    out.set_item("duplicates", number_rows(py, made.duplicates)?)?;
-    out.set_item("segments", table(py, sub.ends)?)?;
-    out.set_item("source_start", column(py, sub.start))?;
-    out.set_item("source", column(py, sub.source))?;
-    out.set_item("forward", column(py, sub.forward))?;
-    out.set_item("zero", numbers(py, made.zero))?;
-    out.set_item("through", number_rows(py, made.through)?)?;
-    out.set_item("crossings", number_rows(py, made.crossings)?)?;
-    let stages = made.stages.iter();
-    let stages: Vec<_> = stages.map(|(name, t)| (*name, t.as_secs_f64())).collect();
-    out.set_item("stages", stages)?;
-    Ok(out)
+    Ok(ConstrainedTriangulation {
+        added: table(py, made.added)?,
+        simplices: table(py, made.arrays.simplices)?,
+        neighbors: table(py, made.arrays.neighbors)?,
+        constrained: table(py, made.constrained)?,
+        duplicates: number_rows(py, made.duplicates)?,
+        segments: table(py, sub.ends)?,
+        source_start: column(py, sub.start),
+        source: column(py, sub.source),
+        forward: column(py, sub.forward),
+        zero: numbers(py, made.zero),
+        through: number_rows(py, made.through)?,
+        crossings: number_rows(py, made.crossings)?,
+    })
 }
 
 /// Components of triangles that share edges which are not constrained.

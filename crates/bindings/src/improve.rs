@@ -4,13 +4,50 @@ use delone_core::error::{Error, Result};
 use delone_core::improve::{Improved, Task, improve};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::arrays::{column, flat, in_range, rows, table};
+use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
 use crate::errors::raise;
 use crate::signals::watched;
 
-/// Better tetrahedra, by name. `progress` is called after each pass with its number and how many
+/// How often tetrahedra were changed, by kind.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ImprovementCounts {
+    /// Edges removed.
+    pub edges: usize,
+    /// Edges of the boundary among these.
+    pub boundary: usize,
+    /// Faces removed.
+    pub faces: usize,
+    /// Vertices moved.
+    pub moves: usize,
+    /// Weights given.
+    pub weights: usize,
+    /// Passes.
+    pub passes: usize,
+    /// Changes refused.
+    pub refused: usize,
+}
+
+/// Improved tetrahedra.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ImprovedMesh {
+    /// Coordinates, (n, 3).
+    pub points: Table<f64>,
+    /// Vertices of the tetrahedra, (m, 4).
+    pub simplices: Table<i32>,
+    /// The tetrahedron opposite each vertex, -1 outside, (m, 4).
+    pub neighbors: Table<i32>,
+    /// The weight of each point, 0 for most, (n,).
+    pub weights: Column<f64>,
+    /// The label of each tetrahedron, (m,).
+    pub labels: Column<i32>,
+    /// What was done.
+    pub counts: Py<ImprovementCounts>,
+    /// Whether the limit on passes ended the work while it still gained.
+    pub exhausted: bool,
+}
+
+/// Better tetrahedra. `progress` is called after each pass with its number and how many
 /// tetrahedra are below the bound.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, exude, turn, passes,
@@ -29,7 +66,7 @@ pub fn improve3<'py>(
     turn: bool,
     passes: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<ImprovedMesh> {
     let task = || -> Result<Task<'_>> {
         let points = rows(&points, "points")?;
         let simplices = rows(&simplices, "simplices")?;
@@ -63,30 +100,27 @@ pub fn improve3<'py>(
     if let Some(error) = refused {
         return Err(error);
     }
-    dictionary(py, outcome?)
+    arrays_of(py, outcome?)
 }
 
-/// The arrays, by name.
-fn dictionary(py: Python<'_>, made: Improved) -> PyResult<Bound<'_, PyDict>> {
-    let out = PyDict::new(py);
-    out.set_item("points", table(py, made.points)?)?;
-    out.set_item("simplices", table(py, made.simplices)?)?;
-    out.set_item("neighbors", table(py, made.neighbors)?)?;
-    out.set_item("weights", column(py, made.weights))?;
-    out.set_item("labels", column(py, made.labels))?;
-    let counts = PyDict::new(py);
-    for (name, count) in [
-        ("edges", made.counts.edges),
-        ("boundary", made.counts.boundary),
-        ("faces", made.counts.faces),
-        ("moves", made.counts.moves),
-        ("weights", made.counts.weights),
-        ("passes", made.counts.passes),
-        ("refused", made.counts.refused),
-    ] {
-        counts.set_item(name, count)?;
-    }
-    out.set_item("counts", counts)?;
-    out.set_item("exhausted", made.exhausted)?;
-    Ok(out)
+/// The arrays, as Python has them.
+fn arrays_of(py: Python<'_>, made: Improved) -> PyResult<ImprovedMesh> {
+    let counts = ImprovementCounts {
+        edges: made.counts.edges,
+        boundary: made.counts.boundary,
+        faces: made.counts.faces,
+        moves: made.counts.moves,
+        weights: made.counts.weights,
+        passes: made.counts.passes,
+        refused: made.counts.refused,
+    };
+    Ok(ImprovedMesh {
+        points: table(py, made.points)?,
+        simplices: table(py, made.simplices)?,
+        neighbors: table(py, made.neighbors)?,
+        weights: column(py, made.weights),
+        labels: column(py, made.labels),
+        counts: Py::new(py, counts)?,
+        exhausted: made.exhausted,
+    })
 }

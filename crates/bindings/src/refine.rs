@@ -6,9 +6,8 @@ use delone_core::error::{Error, Result};
 use delone_core::refine::{Lines, Refined, Task, judge, refine_telling};
 use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::arrays::{Column, column, in_range, numbers, rows, table};
+use crate::arrays::{Column, Table, column, in_range, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::pairs;
 use crate::signals::watched;
@@ -40,7 +39,34 @@ type Given<'py> = (
 /// Least time between two calls of `progress`.
 const BETWEEN: Duration = Duration::from_millis(100);
 
-/// A refined triangulation, by name. `progress` is called with the number of vertices added and the
+/// A refined triangulation of the hull.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct RefinedMesh {
+    /// Vertices that were added; they come behind those given, (a, 2).
+    pub added: Table<f64>,
+    /// The line that each of these lies on, or -1, (a,).
+    pub on: Column<i32>,
+    /// Vertices of the triangles, (m, 3).
+    pub simplices: Table<i32>,
+    /// The triangle opposite each vertex, -1 outside, (m, 3).
+    pub neighbors: Table<i32>,
+    /// The line under the edge opposite each vertex, or -1, (m, 3).
+    pub sides: Table<i32>,
+    /// The label of each triangle, -1 outside of the domain, (m,).
+    pub labels: Column<i32>,
+    /// The number of the needle that each triangle is left in, or -1, (m,).
+    pub needles: Column<i32>,
+    /// How many vertices were added on segments.
+    pub for_segments: usize,
+    /// How many were added inside for angles.
+    pub for_angles: usize,
+    /// How many were added inside for sizes.
+    pub for_sizes: usize,
+    /// Whether the limit on vertices ended the work.
+    pub exhausted: bool,
+}
+
+/// A refined triangulation. `progress` is called with the number of vertices added and the
 /// smallest angle now.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, areas, segments, frozen, min_angle, max_vertices,
@@ -60,7 +86,7 @@ pub fn refine2<'py>(
     circles: bool,
     sizes_yield: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<RefinedMesh> {
     let found = || -> Result<_> {
         let n = rows::<f64, 2>(&points, "points")?.len();
         let ends = lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
@@ -122,23 +148,35 @@ pub fn refine2<'py>(
     if let Some(error) = refused {
         return Err(error);
     }
-    dictionary(py, outcome?)
+    arrays_of(py, outcome?)
 }
 
-/// The arrays, by name.
-fn dictionary(py: Python<'_>, made: Refined) -> PyResult<Bound<'_, PyDict>> {
-    let out = PyDict::new(py);
-    out.set_item("added", table(py, made.added)?)?;
-    out.set_item("on", column(py, made.on))?;
-    out.set_item("simplices", table(py, made.simplices)?)?;
-    out.set_item("neighbors", table(py, made.neighbors)?)?;
-    out.set_item("sides", table(py, made.sides)?)?;
-    out.set_item("labels", column(py, made.labels))?;
-    out.set_item("needles", column(py, made.needles))?;
-    let counts = made.counts;
-    out.set_item("counts", (counts.segment, counts.angle, counts.size))?;
-    out.set_item("exhausted", made.exhausted)?;
-    Ok(out)
+/// The arrays, as Python has them.
+fn arrays_of(py: Python<'_>, made: Refined) -> PyResult<RefinedMesh> {
+    Ok(RefinedMesh {
+        added: table(py, made.added)?,
+        on: column(py, made.on),
+        simplices: table(py, made.simplices)?,
+        neighbors: table(py, made.neighbors)?,
+        sides: table(py, made.sides)?,
+        labels: column(py, made.labels),
+        needles: column(py, made.needles),
+        for_segments: made.counts.segment,
+        for_angles: made.counts.angle,
+        for_sizes: made.counts.size,
+        exhausted: made.exhausted,
+    })
+}
+
+/// Triangles whose angles are known to be small, or large, or not known.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct JudgedTriangles {
+    /// Those with an angle below the bound, (k,).
+    pub below: Column<i32>,
+    /// Those among which the smallest and the largest angles are, (e,).
+    pub extremes: Column<i32>,
+    /// Those that are beyond the range of doubles, (b,).
+    pub beyond: Column<i32>,
 }
 
 /// The triangles with an angle below a bound, given by its squared cosine; those among which the
@@ -149,7 +187,7 @@ pub fn judge2<'py>(
     points: PyReadonlyArray2<'py, f64>,
     simplices: PyReadonlyArray2<'py, i32>,
     cos2: f64,
-) -> PyResult<(Column<i32>, Column<i32>, Column<i32>)> {
+) -> PyResult<JudgedTriangles> {
     let given = || -> Result<_> {
         let all = rows(&points, "points")?;
         let simplices: &[[i32; 3]] = rows(&simplices, "simplices")?;
@@ -158,7 +196,9 @@ pub fn judge2<'py>(
     };
     let (points, simplices) = given().map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| judge(points, simplices, cos2, watch))?;
-    let all = [found.below, found.extremes, found.beyond];
-    let [below, extremes, beyond] = all.map(|triangles| numbers(py, triangles));
-    Ok((below, extremes, beyond))
+    Ok(JudgedTriangles {
+        below: numbers(py, found.below),
+        extremes: numbers(py, found.extremes),
+        beyond: numbers(py, found.beyond),
+    })
 }

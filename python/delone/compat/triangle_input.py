@@ -139,7 +139,7 @@ def _domain(
     _, first = np.unique(topology.edge_keys(ends[:, 0], ends[:, 1], n), return_index=True)
     first.sort()
     ends = ends[first]
-    found, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
+    made, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
@@ -162,13 +162,11 @@ def _domain(
         point_source=np.arange(n, dtype=np.int32),
         point_markers=of_points,
         on=np.full(n, -1, dtype=np.int32),
-        simplices=found["simplices"],
-        neighbors=found["neighbors"],
+        simplices=made.simplices,
+        neighbors=made.neighbors,
         labels=label,
         regions=np.zeros(1, dtype=np.int32),
-        sides=domains.sides_at(
-            found["simplices"], found["constrained"], (ends, np.arange(len(ends)))
-        ),
+        sides=domains.sides_at(made.simplices, made.constrained, (ends, np.arange(len(ends)))),
         lines=lines,
     )
 

@@ -9,16 +9,16 @@ closed.
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from delone.plane.topology import edge_keys
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from delone._core import ConstrainedTriangulation
 
     Bools = NDArray[np.bool_]
     Indices = NDArray[np.int32]
@@ -64,14 +64,23 @@ def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
     return closed
 
 
-def first_polygon(found: Mapping[str, NDArray[Any]], component: Indices, sides: Bools) -> Indices:
+def first_polygon(
+    made: ConstrainedTriangulation,
+    npoints: int,
+    geometries: Indices,
+    component: Indices,
+    sides: Bools,
+) -> Indices:
     """Return for each component the first polygon that has it inside.
 
     Parameters
     ----------
-    found : mapping of str to ndarray
-        What a constrained triangulation holds: triangles of the whole hull and subsegments with
-        their rows.
+    made : ConstrainedTriangulation
+        Triangles of the whole hull, and subsegments with their rows.
+    npoints : int
+        Number of points, added ones included.
+    geometries : ndarray of int32, shape (s,)
+        The geometry of each row of segments.
     component : ndarray of int32, shape (m,)
         Component of each triangle.
     sides : ndarray of bool, shape (s,)
@@ -88,8 +97,8 @@ def first_polygon(found: Mapping[str, NDArray[Any]], component: Indices, sides: 
     O(m log m), and for each component as much as polygons overlap in it.
     """
     count = int(component.max(initial=-1)) + 1
-    walls = _walls(found, component, count)
-    crossed = _polygons_of_subsegments(found, sides, walls[:, 2])
+    walls = _walls(made, npoints, component, count)
+    crossed = _polygons_of_subsegments(made, geometries, sides, walls[:, 2])
     beyond: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for one, other, subsegment in walls.tolist():
         beyond[one].append((other, subsegment))
@@ -108,10 +117,10 @@ def first_polygon(found: Mapping[str, NDArray[Any]], component: Indices, sides: 
 
 
 def _polygons_of_subsegments(
-    found: Mapping[str, NDArray[Any]], sides: Bools, wanted: Rows
+    made: ConstrainedTriangulation, geometries: Indices, sides: Bools, wanted: Rows
 ) -> dict[int, frozenset[int]]:
     """The polygons of which an odd number of sides covers some subsegments."""
-    source, geometries, start = found["source"], found["geometries"], found["source_start"]
+    source, start = made.source, made.source_start
     crossed = {}
     for at in wanted[wanted >= 0].tolist():
         rows = source[start[at] : start[at + 1]]
@@ -122,18 +131,15 @@ def _polygons_of_subsegments(
     return crossed
 
 
-def _walls(found: Mapping[str, NDArray[Any]], component: Indices, outside: int) -> Rows:
+def _walls(made: ConstrainedTriangulation, npoints: int, component: Indices, outside: int) -> Rows:
     """Return pairs of adjacent components, each once, and a subsegment between them."""
-    simplices, neighbors, constrained = (
-        found[name] for name in ("simplices", "neighbors", "constrained")
-    )
+    simplices, neighbors, constrained = made.simplices, made.neighbors, made.constrained
     triangle, corner = np.nonzero(constrained)
     # The rim of the hull is a wall to the outside, with or without a subsegment.
     rim = component[np.nonzero((neighbors < 0) & ~constrained)[0]]
     other = neighbors[triangle, corner]
     tail, head = (simplices[triangle, (corner + i) % 3] for i in (1, 2))
-    npoints = len(found["points"])
-    keys = edge_keys(found["segments"][:, 0], found["segments"][:, 1], npoints)
+    keys = edge_keys(made.segments[:, 0], made.segments[:, 1], npoints)
     order = np.argsort(keys)
     subsegment = order[np.searchsorted(keys[order], edge_keys(tail, head, npoints))]
     there = np.where(other < 0, outside, component[other])

@@ -23,7 +23,7 @@ from delone._arrays import (
     as_workers,
 )
 from delone.constrained import regions
-from delone.constrained.segmented import Options, Origin, Segmented
+from delone.constrained.segmented import Given, Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import counted
 from delone.errors import InputError, InternalError
@@ -168,7 +168,7 @@ class ConstrainedDelaunay(Segmented):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        if hasattr(self, "_found"):
+        if hasattr(self, "_made"):
             raise AttributeError("a ConstrainedDelaunay never changes: edit() makes another one")
         options = Options(
             boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
@@ -182,9 +182,8 @@ class ConstrainedDelaunay(Segmented):
         own = own_copy(points)
         warn_of_degrees(points, own, planar=planar)
         rows = _own(as_segments(segments, len(own)), segments)
-        found = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
-        options = options._replace(labelled=len(found["regions"]) > 0)
-        self._set(found, options, _compute(own, found, options))
+        given = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
+        self._compute(own, given, options._replace(labelled=len(given.regions) > 0))
 
     @classmethod
     def _of_geometries(
@@ -203,10 +202,28 @@ class ConstrainedDelaunay(Segmented):
         as_choice(choices["method"], tuple(_core.methods2()), name="method")
         choices["max_vertices"] = _budget(choices["max_vertices"])
         mesh = cls.__new__(cls)
-        found = _given(segments, origin, holes, regions)
-        options = Options(labelled=len(found["regions"]) > 0, **choices)
-        mesh._set(found, options, _compute(points, found, options))
+        given = _given(segments, origin, holes, regions)
+        mesh._compute(points, given, Options(labelled=len(given.regions) > 0, **choices))
         return mesh
+
+    def _compute(self, points: Floats, given: Given, options: Options) -> None:
+        """Let the core triangulate, and hold what it made beside what was given."""
+        try:
+            made, stages = _core.constrained2(
+                points,
+                given.segments,
+                options.crossing == "split",
+                options.conforming,
+                options.max_vertices,
+                options.method,
+                as_workers(options.workers),
+            )
+        except InternalError as error:
+            error.points = points
+            raise
+        if len(made.added):
+            points = np.concatenate((points, made.added))
+        self._set(points, given, made, options, dict(stages))
 
     def triangles_along(self, a: ArrayLike, b: ArrayLike) -> Indices:
         """Return the triangles that a straight way meets, in order.
@@ -321,9 +338,9 @@ class ConstrainedDelaunay(Segmented):
         """What the constructor was given besides points and segments."""
         arguments: dict[str, Any] = self._options._asdict()
         if arguments.pop("labelled"):
-            seeds, labels = self._found["regions"], self._found["labels"]
+            seeds, labels = self._given.regions, self._given.labels
             arguments["regions"] = np.column_stack((seeds, labels))
-        return arguments | {"holes": self._found["holes"]}
+        return arguments | {"holes": self._given.holes}
 
     def validate(self) -> ConstrainedReport:
         """Prove that this is the canonical constrained triangulation, or name the culprits.
@@ -346,7 +363,9 @@ class ConstrainedDelaunay(Segmented):
         >>> print(ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).validate())
         a canonical constrained Delaunay triangulation
         """
-        return validate(self._found, self.duplicate_of, conforming=self._options.conforming)
+        ends = self.duplicate_of[self._given.segments]
+        conforming = self._options.conforming
+        return validate(self._points, self._made, ends, conforming=conforming)
 
     @property
     def crs(self) -> str | None:
@@ -355,7 +374,8 @@ class ConstrainedDelaunay(Segmented):
 
     def _with_crs(self, crs: str | None) -> Self:
         """The same, said to be in another reference system."""
-        return self._restored(self._found, self._options._replace(crs=crs), self._stages)
+        options = self._options._replace(crs=crs)
+        return self._restored(self._points, self._given, self._made, options, self._stages)
 
     def to_geopandas(self, *, crs: Any = None) -> Any:
         """Return the triangles as a table of polygons (extra ``geo``).
@@ -427,8 +447,34 @@ class ConstrainedDelaunay(Segmented):
             options.conforming,
             options.max_vertices,
         )
-        arrays = self._found | {"options": np.array(choices, dtype=np.int64)}
+        arrays = self._columns() | {"options": np.array(choices, dtype=np.int64)}
         archive.write(path, arrays, archive.CONSTRAINED, crs=self.crs)
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        """What a file holds besides the options, by the names that it has there."""
+        made, given, origin = self._made, self._given, self._given.origin
+        return {
+            "points": self._points,
+            "simplices": made.simplices,
+            "neighbors": made.neighbors,
+            "duplicates": made.duplicates,
+            "constrained": made.constrained,
+            "added": made.added,
+            "segments": made.segments,
+            "source_start": made.source_start,
+            "source": made.source,
+            "forward": made.forward,
+            "zero": made.zero,
+            "through": made.through,
+            "crossings": made.crossings,
+            "input": given.segments,
+            "geometries": origin.geometries,
+            "rings": origin.rings,
+            "parts": origin.parts,
+            "holes": given.holes,
+            "regions": given.regions,
+            "labels": given.labels,
+        }
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> ConstrainedDelaunay:
@@ -478,12 +524,18 @@ class ConstrainedDelaunay(Segmented):
             labelled=bool(labelled),
             crs=None if crs is None else str(crs),
         )
-        return cls._restored(arrays, options, {})
+        points = arrays.pop("points")
+        origin = Origin(*(arrays.pop(name) for name in Origin._fields))
+        given = Given(
+            arrays.pop("input"), origin, *(arrays.pop(name) for name in Given._fields[2:])
+        )
+        made = _core.ConstrainedTriangulation(**arrays)
+        return cls._restored(points, given, made, options, {})
 
     def _parts(self) -> Parts:
         """What other libraries and files take."""
         values = {"region": self.region}
-        if self._found["rings"].any():
+        if self._given.origin.rings.any():
             values["polygon"] = self.polygon
         return Parts(
             self._points, self._simplices, of_simplices=values, segments=self.segments, crs=self.crs
@@ -505,40 +557,16 @@ def _given(
     origin: Origin,
     holes: ArrayLike | None,
     regions: ArrayLike | None,
-) -> dict[str, NDArray[Any]]:
-    """Return what the caller gave besides points, by name."""
+) -> Given:
+    """Return what the caller gave besides points."""
     seeds = as_seeds(regions, name="regions", columns=3)
-    return {
-        "input": segments,
-        "geometries": origin.geometries,
-        "rings": origin.rings,
-        "parts": origin.parts,
-        "holes": as_seeds(holes, name="holes").copy(),
-        "regions": seeds[:, :2].copy(),
-        "labels": _labels(seeds),
-    }
-
-
-def _compute(points: Floats, found: dict[str, NDArray[Any]], options: Options) -> dict[str, float]:
-    """Let the core triangulate, and put all that it found beside the input."""
-    try:
-        answer = _core.constrained2(
-            points,
-            found["input"],
-            options.crossing == "split",
-            options.conforming,
-            options.max_vertices,
-            options.method,
-            as_workers(options.workers),
-        )
-    except InternalError as error:
-        error.points = points
-        raise
-    stages = dict(answer.pop("stages"))
-    added = answer["added"]
-    found |= answer
-    found["points"] = np.concatenate((points, added)) if len(added) else points
-    return stages
+    return Given(
+        segments=segments,
+        origin=origin,
+        holes=as_seeds(holes, name="holes").copy(),
+        regions=seeds[:, :2].copy(),
+        labels=_labels(seeds),
+    )
 
 
 def _budget(max_vertices: int | None) -> int:

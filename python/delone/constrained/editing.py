@@ -348,9 +348,9 @@ class Editing:
 
     def _origins(self, count: int) -> Origin:
         """Return the origin of each segment; new ones have none."""
-        origin, old = Origin.of_arrays(count), self._mesh._found
-        for name, values in origin._asdict().items():
-            values[: len(old["input"])] = old[name]
+        origin, old = Origin.of_arrays(count), self._mesh._given
+        for values, known in zip(origin, old.origin, strict=True):
+            values[: len(old.segments)] = known
         return origin
 
     def _require_ends(

@@ -1,12 +1,13 @@
 """The state of a constrained triangulation, and what follows from segments and seeds.
 
-`_found` holds, by name, what was given and all that the core found: the triangles of the whole
-convex hull, subsegments with their rows, seeds. `simplices` and its like are the part of the
+`_given` holds what was given besides points, `_made` what the core made of it: the triangles of the
+whole convex hull, and subsegments with their rows. `simplices` and its like are the part of the
 triangles that is kept; `_number` leads from the whole to that part.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Options", "Origin", "Segmented"]
+__all__ = ["Given", "Options", "Origin", "Segmented"]
 
 
 class Options(NamedTuple):
@@ -61,24 +62,65 @@ class Origin(NamedTuple):
         return cls(none, np.zeros(count, dtype=bool), none.copy())
 
 
+class Given(NamedTuple):
+    """What a constrained triangulation was given besides points and options."""
+
+    # (s, 2): the segments.
+    segments: Indices
+    origin: Origin
+    # (h, 2): seeds of holes.
+    holes: Floats
+    # (r, 2): seeds of regions.
+    regions: Floats
+    # (r,): the label of each of these.
+    labels: Indices
+
+    def sealed(self) -> Given:
+        """Return the same with arrays that cannot be written to."""
+        return Given(
+            segments=sealed(self.segments),
+            origin=Origin(
+                geometries=sealed(self.origin.geometries),
+                rings=sealed(self.origin.rings),
+                parts=sealed(self.origin.parts),
+            ),
+            holes=sealed(self.holes),
+            regions=sealed(self.regions),
+            labels=sealed(self.labels),
+        )
+
+
 class Segmented(Triangulation):
     """A triangulation whose edges segments are, with areas between them."""
 
-    __slots__ = ("_constrained", "_found", "_number", "_options")
+    __slots__ = ("_constrained", "_given", "_made", "_number", "_options")
 
     _constrained: Bools
-    _found: dict[str, NDArray[Any]]
+    _given: Given
+    _made: _core.ConstrainedTriangulation
     _number: Indices | None
     _options: Options
 
     def _set(
-        self, found: dict[str, NDArray[Any]], options: Options, stages: dict[str, float]
+        self,
+        points: Floats,
+        given: Given,
+        made: _core.ConstrainedTriangulation,
+        options: Options,
+        stages: dict[str, float],
     ) -> None:
-        found = {name: sealed(array) for name, array in found.items()}
-        object.__setattr__(self, "_found", found)
+        points, given = sealed(points), given.sealed()
+        made = _core.ConstrainedTriangulation(*map(sealed, made.arrays()))
+        object.__setattr__(self, "_given", given)
+        object.__setattr__(self, "_made", made)
         object.__setattr__(self, "_options", options)
-        arrays = {name: found[name] for name in ("points", "duplicates")}
-        triangles = {name: found[name] for name in ("simplices", "neighbors", "constrained")}
+        object.__setattr__(self, "_points", points)
+        arrays: dict[str, NDArray[Any]] = {"points": points, "duplicates": made.duplicates}
+        triangles: dict[str, NDArray[Any]] = {
+            "simplices": made.simplices,
+            "neighbors": made.neighbors,
+            "constrained": made.constrained,
+        }
         removed = self._removed()
         number = None
         if removed is not None:
@@ -93,7 +135,7 @@ class Segmented(Triangulation):
 
     def _removed(self) -> Bools | None:
         """Tell which triangles of the hull are in holes or outside; None where all are kept."""
-        holes, boundary = self._found["holes"], self._options.boundary
+        holes, boundary = self._given.holes, self._options.boundary
         if boundary == "hull" and not len(holes):
             return None
         tiling, component = self._tiles(), self._component()
@@ -103,33 +145,31 @@ class Segmented(Triangulation):
         elif boundary == "polygons":
             gone |= self._polygons(component) < 0
         if len(holes):
-            triangle, on_segment = self._located("holes")
+            triangle, on_segment = self._located(holes)
             gone[component[triangle[(triangle >= 0) & ~on_segment]]] = True
         return gone[component] if gone.any() else None
 
     def _polygons(self, component: Indices) -> Indices:
         """Return the first polygon of each component."""
-        found = self._found
-        ends = _vertices(found["duplicates"], len(found["points"]))[found["input"]]
-        sides = coverage.closed_rings(ends, found["geometries"], found["rings"])
-        return coverage.first_polygon(found, component, sides)
+        origin, npoints = self._given.origin, len(self._points)
+        ends = _vertices(self._made.duplicates, npoints)[self._given.segments]
+        sides = coverage.closed_rings(ends, origin.geometries, origin.rings)
+        return coverage.first_polygon(self._made, npoints, origin.geometries, component, sides)
 
     def _tiles(self) -> regions.Tiling:
-        found = self._found
-        return regions.Tiling(
-            found["points"], found["simplices"], found["neighbors"], found["constrained"]
-        )
+        made = self._made
+        return regions.Tiling(self._points, made.simplices, made.neighbors, made.constrained)
 
     def _component(self) -> Indices:
-        return _core.components2(self._found["neighbors"], self._found["constrained"])
+        return _core.components2(self._made.neighbors, self._made.constrained)
 
-    def _located(self, name: str) -> tuple[Indices, Bools]:
+    def _located(self, seeds: Floats) -> tuple[Indices, Bools]:
         """Tell in which triangles of the hull seeds lie, and which lie on segments."""
-        found, workers = self._found, as_workers(self._options.workers)
-        return regions.located(self._tiles(), found[name], found["segments"], workers)
+        workers = as_workers(self._options.workers)
+        return regions.located(self._tiles(), seeds, self._made.segments, workers)
 
     def _tiling(self) -> tuple[Indices, Indices]:
-        return self._found["simplices"], self._found["neighbors"]
+        return self._made.simplices, self._made.neighbors
 
     @property
     def constrained(self) -> Bools:
@@ -139,12 +179,12 @@ class Segmented(Triangulation):
     @property
     def nadded(self) -> int:
         """Number of vertices that were added; they are the last rows of `points`."""
-        return len(self._found["added"])
+        return len(self._made.added)
 
     @property
     def input_segments(self) -> Indices:
         """The segments that were given, (s, 2)."""
-        return self._found["input"]
+        return self._given.segments
 
     @property
     def segments(self) -> Indices:
@@ -152,7 +192,7 @@ class Segmented(Triangulation):
 
         Each once, in the direction of that row, those in holes and outside of the outline included.
         """
-        return self._found["segments"]
+        return self._made.segments
 
     @property
     def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
@@ -161,7 +201,7 @@ class Segmented(Triangulation):
         Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
         ascending. There are several where rows repeat or overlap.
         """
-        return self._found["source_start"], self._found["source"]
+        return self._made.source_start, self._made.source
 
     @property
     def segment_forward(self) -> Bools:
@@ -170,12 +210,12 @@ class Segmented(Triangulation):
         It does where it meets ``segments[i, 0]`` before ``segments[i, 1]``; the first row of each
         subsegment always does.
         """
-        return self._found["forward"]
+        return self._made.forward
 
     @property
     def geometry_of_segment(self) -> Indices:
         """The geometry that each of `input_segments` came from, (s,); -1 for those from arrays."""
-        return self._found["geometries"]
+        return self._given.origin.geometries
 
     @property
     def part_of_segment(self) -> Indices:
@@ -184,7 +224,7 @@ class Segmented(Triangulation):
         Rings and lines are numbered from 0 over all geometries, in the order of their coordinates:
         the outer ring of a polygon first, then its holes.
         """
-        return self._found["parts"]
+        return self._given.origin.parts
 
     @property
     @kept
@@ -224,10 +264,10 @@ class Segmented(Triangulation):
         return values if self._number is None else values[self._number[:-1] >= 0]
 
     def _labelled(self, component: Indices) -> tuple[Indices, Indices]:
-        triangle, on_segment = self._located("regions")
+        triangle, on_segment = self._located(self._given.regions)
         valid = (triangle >= 0) & ~on_segment & ~self._is_gone(triangle)
         of_seed = np.where(valid, component[triangle], -1)
-        return regions.labels(component, of_seed, self._found["labels"])
+        return regions.labels(component, of_seed, self._given.labels)
 
     def _is_gone(self, triangle: Indices) -> Bools:
         if self._number is None:
@@ -239,46 +279,52 @@ class Segmented(Triangulation):
     @kept
     def report(self) -> SegmentReport:
         """What the input held besides plain segments, row by row; truthy when nothing."""
-        found = self._found
-        repeated = segments.repeated_rows(self.duplicate_of[found["input"]])
-        culprits = {name: found[name] for name in ("duplicates", "zero", "through", "crossings")}
-        culprits["repeated"] = repeated
-        culprits["overlaps"] = segments.overlapping_rows(
-            found["source_start"], found["source"], repeated
+        made, ends = self._made, self.duplicate_of[self._given.segments]
+        crossings = made.crossings
+        known = np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]], made.through))
+        repeated = segments.repeated_rows(ends)
+        hole, hole_on_segment = self._located(self._given.holes)
+        triangle, on_segment = self._located(self._given.regions)
+        outside = (triangle < 0) | (self._is_gone(triangle) & ~on_segment)
+        report = segments.SegmentReport(
+            duplicates=made.duplicates,
+            zero=made.zero,
+            through=made.through,
+            crossings=crossings,
+            repeated=repeated,
+            overlaps=segments.overlapping_rows(made.source_start, made.source, repeated),
+            steiner=segments.steiner_rows(
+                made.segments, made.source_start, made.source, known, ends
+            ),
+            holes_outside=_rows(hole < 0),
+            holes_on_segment=_rows(hole_on_segment),
+            regions_outside=_rows(outside),
+            regions_on_segment=_rows(on_segment),
         )
-        crossings = found["crossings"]
-        culprits["steiner"] = segments.steiner_rows(
-            found["segments"],
-            found["source_start"],
-            found["source"],
-            np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]], found["through"])),
-            self.duplicate_of[found["input"]],
-        )
-        return segments.SegmentReport(**culprits, **self._idle_seeds())
-
-    def _idle_seeds(self) -> dict[str, Indices]:
-        idle: dict[str, NDArray[Any]] = {}
-        for name in ("holes", "regions"):
-            triangle, on_segment = self._located(name)
-            outside = triangle < 0
-            if name == "regions":
-                outside |= self._is_gone(triangle) & ~on_segment
-            idle[f"{name}_outside"] = np.flatnonzero(outside)
-            idle[f"{name}_on_segment"] = np.flatnonzero(on_segment)
-        if len(self._found["regions"]):
-            idle["regions_repeated"] = self._labelled(self._component())[1]
-        return idle
+        if not len(self._given.regions):
+            return report
+        return replace(report, regions_repeated=self._labelled(self._component())[1])
 
     @classmethod
     def _restored(
-        cls, found: dict[str, NDArray[Any]], options: Options, stages: dict[str, float]
+        cls,
+        points: Floats,
+        given: Given,
+        made: _core.ConstrainedTriangulation,
+        options: Options,
+        stages: dict[str, float],
     ) -> Self:
         mesh = cls.__new__(cls)
-        mesh._set(found, options, stages)
+        mesh._set(points, given, made, options, stages)
         return mesh
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self)._restored, (self._found, self._options, self._stages)
+        whole = self._points, self._given, self._made
+        return type(self)._restored, (*whole, self._options, self._stages)
+
+
+def _rows(marked: Bools) -> Indices:
+    return np.flatnonzero(marked).astype(np.int32)
 
 
 def _vertices(duplicates: Indices, npoints: int) -> Indices:

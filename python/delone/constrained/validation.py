@@ -9,7 +9,7 @@ exact predicates.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["ConstrainedReport", "validate"]
@@ -89,16 +90,22 @@ class ConstrainedReport(ValidationReport):
 
 
 def validate(
-    found: Mapping[str, NDArray[Any]], duplicate_of: Indices, *, conforming: bool = False
+    points: Floats,
+    made: _core.ConstrainedTriangulation,
+    ends: Indices,
+    *,
+    conforming: bool = False,
 ) -> ConstrainedReport:
     """Check the arrays of a constrained triangulation.
 
     Parameters
     ----------
-    found : mapping of str to ndarray
-        What `ConstrainedDelaunay` holds: input, triangles of the whole hull, subsegments.
-    duplicate_of : ndarray of int32, shape (n,)
-        The vertex of each point.
+    points : ndarray of float64, shape (n, 2)
+        Coordinates of all points, added ones included.
+    made : ConstrainedTriangulation
+        Triangles of the whole hull, and subsegments.
+    ends : ndarray of int32, shape (s, 2)
+        The vertices of the segments that were given.
     conforming : bool, optional
         Whether rows were cut to be conforming: a cut may be rounded to a vertex beside the row.
 
@@ -107,12 +114,11 @@ def validate(
     ConstrainedReport
         The culprits.
     """
-    points, simplices, neighbors = found["points"], found["simplices"], found["neighbors"]
+    simplices, neighbors = made.simplices, made.neighbors
     faults = _core.validate2(points, simplices, neighbors)
     edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], len(points))
-    segments = edge_keys(found["segments"][:, 0], found["segments"][:, 1], len(points))
+    segments = edge_keys(made.segments[:, 0], made.segments[:, 1], len(points))
     wanted = among(edges, segments)
-    ends = duplicate_of[found["input"]]
     return ConstrainedReport(
         orientation=faults.orientation,
         edges=faults.edges,
@@ -123,10 +129,10 @@ def validate(
         delaunay=_not_across(faults.delaunay, neighbors, wanted),
         ties=_not_across(faults.ties, neighbors, wanted),
         count=faults.count,
-        flags=np.flatnonzero((wanted != found["constrained"]).any(axis=1)),
-        absent=found["segments"][~among(segments, edges.ravel())],
-        uncovered=_uncovered(found, ends, len(points)),
-        bent=_no_pairs() if conforming else _bent(found, ends),
+        flags=np.flatnonzero((wanted != made.constrained).any(axis=1)),
+        absent=made.segments[~among(segments, edges.ravel())],
+        uncovered=_uncovered(made, ends, len(points)),
+        bent=_no_pairs() if conforming else _bent(points, made, ends),
     )
 
 
@@ -137,22 +143,22 @@ def _not_across(pairs: Indices, neighbors: Indices, wanted: Bools) -> Indices:
     return left
 
 
-def _directed(found: Mapping[str, NDArray[Any]]) -> tuple[Indices, Indices, Indices]:
+def _directed(made: _core.ConstrainedTriangulation) -> tuple[Indices, Indices, Indices]:
     """Return row, tail and head of each subsegment in the direction of each of its rows."""
-    steps = np.repeat(found["segments"], np.diff(found["source_start"]), axis=0)
-    forward = found["forward"]
+    steps = np.repeat(made.segments, np.diff(made.source_start), axis=0)
+    forward = made.forward
     tail = np.where(forward, steps[:, 0], steps[:, 1])
     head = np.where(forward, steps[:, 1], steps[:, 0])
-    return found["source"], tail, head
+    return made.source, tail, head
 
 
-def _uncovered(found: Mapping[str, NDArray[Any]], ends: Indices, npoints: int) -> Indices:
+def _uncovered(made: _core.ConstrainedTriangulation, ends: Indices, npoints: int) -> Indices:
     """Rows whose subsegments are no simple way from end to end.
 
     Each vertex but the first must be the head of exactly one subsegment, each but the last the tail
     of one. Then the subsegments are one way and perhaps cycles; cycles would be bent.
     """
-    row, tail, head = _directed(found)
+    row, tail, head = _directed(made)
     rows = np.arange(len(ends))
     long = ends[:, 0] != ends[:, 1]
     into = np.concatenate((_pair(row, head, npoints), _pair(rows[long], ends[long, 0], npoints)))
@@ -169,14 +175,13 @@ def _pair(row: NDArray[np.integer], vertex: Indices, npoints: int) -> NDArray[np
     return row.astype(np.int64) * npoints + vertex
 
 
-def _bent(found: Mapping[str, NDArray[Any]], ends: Indices) -> Indices:
+def _bent(points: Floats, made: _core.ConstrainedTriangulation, ends: Indices) -> Indices:
     """Vertices off their row, of rows that have no reason to bend.
 
     Reasons are a crossing, an added vertex, and a row that has one and bends at the same vertex:
     bent pieces may cross rows which their segments do not meet.
     """
-    points = found["points"]
-    row, tail, head = _directed(found)
+    row, tail, head = _directed(made)
     first, last = ends[row, 0], ends[row, 1]
     off = _core.orient2d(points[first], points[last], points[head]) != 0
     # On the line, but not between the ends.
@@ -185,8 +190,8 @@ def _bent(found: Mapping[str, NDArray[Any]], ends: Indices) -> Indices:
     off |= ((points[head] < low) | (points[head] > high)).any(axis=1)
     may_bend = np.zeros(len(ends), dtype=bool)
     # A crossing may have been rounded to a vertex that was there.
-    may_bend[found["crossings"][:, :2]] = True
-    may_bend[row[np.maximum(tail, head) >= len(points) - len(found["added"])]] = True
+    may_bend[made.crossings[:, :2]] = True
+    may_bend[row[np.maximum(tail, head) >= len(points) - len(made.added)]] = True
     count = -1
     while count < (count := int(may_bend.sum())):
         met = np.zeros(len(points), dtype=bool)

@@ -162,8 +162,13 @@ def improve(
     if not len(held):
         held = np.zeros(len(points), dtype=bool)
     judged, after = report.report(before, made, held, goal)
-    arrays = {name: made[name] for name in ("points", "simplices", "neighbors")}
-    better = TetMesh._of(arrays | {"region": made["labels"]}, judged)
+    arrays: dict[str, NDArray[Any]] = {
+        "points": made.points,
+        "simplices": made.simplices,
+        "neighbors": made.neighbors,
+        "region": made.labels,
+    }
+    better = TetMesh._of(arrays, judged)
     better._cache["quality"] = after
     return better
 

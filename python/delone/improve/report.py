@@ -15,6 +15,8 @@ from delone.space.quality import EDGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._core import ImprovedMesh
+
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
@@ -176,7 +178,7 @@ _SENTENCES = {
 
 
 def report(
-    before: quality.TetQuality, made: dict[str, Any], fixed: NDArray[np.bool_], min_angle: float
+    before: quality.TetQuality, made: ImprovedMesh, fixed: NDArray[np.bool_], min_angle: float
 ) -> tuple[ImproveReport, quality.TetQuality]:
     """Judge improved tetrahedra.
 
@@ -184,9 +186,8 @@ def report(
     ----------
     before : TetQuality
         The measures of what there was.
-    made : dict
-        What the core has made of it: ``points``, ``simplices``, ``neighbors``, ``labels``, changes
-        by kind as ``counts``, and whether the limit on passes ended it as ``exhausted``.
+    made : ImprovedMesh
+        What the core has made of it.
     fixed : ndarray of bool, shape (n,)
         Points that may not move.
     min_angle : float
@@ -199,13 +200,13 @@ def report(
     after : TetQuality
         The measures now.
     """
-    points, simplices, counts = made["points"], made["simplices"], made["counts"]
-    exhausted = bool(made["exhausted"])
+    points, simplices, counts = made.points, made.simplices, made.counts
+    exhausted = made.exhausted
     after = quality.measured(points, simplices)
     was, bounds = before.histogram()
     now, _ = after.histogram()
     below = np.flatnonzero(after.smallest_dihedral < min_angle)
-    walls = _walls(made["neighbors"], made["labels"])
+    walls = _walls(made.neighbors, made.labels)
     cause = np.full(len(below), _BUDGET if exhausted else _OTHER)
     held = _on_walls(simplices, walls, len(points)) | fixed
     cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
@@ -219,14 +220,14 @@ def report(
         bounds=bounds,
         before=was,
         after=now,
-        edge_removals=counts["edges"] - counts["boundary"],
-        boundary_flips=counts["boundary"],
-        face_removals=counts["faces"],
-        moves=counts["moves"],
-        exudations=counts["weights"],
-        weights=made["weights"],
-        refused=counts["refused"],
-        passes=counts["passes"],
+        edge_removals=counts.edges - counts.boundary,
+        boundary_flips=counts.boundary,
+        face_removals=counts.faces,
+        moves=counts.moves,
+        exudations=counts.weights,
+        weights=made.weights,
+        refused=counts.refused,
+        passes=counts.passes,
         exhausted=exhausted,
         below=below,
         cause=np.array(CAUSES)[cause],

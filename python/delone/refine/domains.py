@@ -9,7 +9,7 @@ to the left of a subsegment keep their region.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -135,18 +135,18 @@ def of_constrained(
     Domain
         Edges of the hull that bound the domain are lines without a source.
     """
-    found = base._found
-    points, simplices = found["points"], found["simplices"]
+    made, points = base._made, base.points
+    simplices = made.simplices
     labels = np.full(len(simplices), -1, dtype=np.int32)
     inside = slice(None) if base._number is None else base._number[:-1] >= 0
     regions, labels[inside] = np.unique(region, return_inverse=True)
     given = len(points) - base.nadded
     source = np.arange(len(points), dtype=np.int32)
     source[given:] = -1
-    bare = (found["neighbors"] < 0) & ~found["constrained"] & (labels[:, None] >= 0)
+    bare = (made.neighbors < 0) & ~made.constrained & (labels[:, None] >= 0)
     hull = np.column_stack((simplices[:, _TAIL][bare], simplices[:, _HEAD][bare]))
-    start, rows = found["source_start"], found["source"]
-    ends = np.concatenate((found["segments"], hull))
+    start, rows = made.source_start, made.source
+    ends = np.concatenate((made.segments, hull))
     last = np.full(len(hull), start[-1], dtype=np.int64)
     owner = np.repeat(np.arange(len(start) - 1), np.diff(start))
     fixed = np.zeros(len(ends), dtype=bool)
@@ -158,7 +158,7 @@ def of_constrained(
     geometries = np.full(len(ends), -1, dtype=np.int32)
     geometries[: len(start) - 1] = base.geometry_of_segment[rows[start[:-1]]]
     lines = Lines(
-        ends, np.concatenate((start, last)), rows, found["forward"], fixed, markers, geometries
+        ends, np.concatenate((start, last)), rows, made.forward, fixed, markers, geometries
     )
     of_points = np.zeros(len(points), dtype=np.int32)
     of_points[:given] = point_markers
@@ -168,10 +168,10 @@ def of_constrained(
         point_markers=_passed_on(of_points, ends, markers),
         on=np.full(len(points), -1, dtype=np.int32),
         simplices=simplices,
-        neighbors=found["neighbors"],
+        neighbors=made.neighbors,
         labels=labels,
         regions=regions.astype(np.int32),
-        sides=sides_at(simplices, found["constrained"] | bare, (ends, np.arange(len(ends)))),
+        sides=sides_at(simplices, made.constrained | bare, (ends, np.arange(len(ends)))),
         lines=lines,
     )
 
@@ -225,20 +225,20 @@ def refined(
     lines = domain.lines
     kinds = circles, sizes_yield
     made = _made(domain, caps, (min_angle, max_points), kinds, progress)
-    added, on = made["added"], made["on"]
+    added, on = made.added, made.on
     markers = np.where(on >= 0, lines.markers[on] if len(lines.markers) else 0, 0)
     new = domain._replace(
         points=np.concatenate((domain.points, added)),
         point_source=np.concatenate((domain.point_source, np.full(len(added), -1, np.int32))),
         point_markers=np.concatenate((domain.point_markers, markers.astype(np.int32))),
         on=np.concatenate((domain.on, on)),
-        simplices=made["simplices"],
-        neighbors=made["neighbors"],
-        labels=made["labels"],
-        sides=made["sides"],
+        simplices=made.simplices,
+        neighbors=made.neighbors,
+        labels=made.labels,
+        sides=made.sides,
     )
-    segment, angle, size = made["counts"]
-    return new, Counts(segment, angle, size, exhausted=made["exhausted"])
+    counts = Counts(made.for_segments, made.for_angles, made.for_sizes, made.exhausted)
+    return new, counts
 
 
 def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
@@ -261,7 +261,7 @@ def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
     caps = np.full(len(domain.simplices), math.inf)
     # Where no point may be added, nothing is done but to look for them.
     made = _made(domain, caps, (min_angle, 0))
-    return made["simplices"], made["needles"]
+    return made.simplices, made.needles
 
 
 def _made(
@@ -270,7 +270,7 @@ def _made(
     bounds: tuple[float, int],
     kinds: tuple[bool, bool] = (False, False),
     progress: Progress | None = None,
-) -> dict[str, Any]:
+) -> _core.RefinedMesh:
     """Call the core.
 
     `bounds` are the smallest angle and the most points to be added, `kinds` whether circles over
@@ -278,7 +278,7 @@ def _made(
     """
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
-    made: dict[str, Any] = _core.refine2(
+    return _core.refine2(
         domain.points,
         domain.simplices,
         domain.labels,
@@ -290,7 +290,6 @@ def _made(
         *kinds,
         progress,
     )
-    return made
 
 
 def unit_of(points: Floats) -> float:
@@ -347,7 +346,7 @@ def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[In
 
 def triangulated(
     points: Floats, segments: Indices, edges: Indices, labels: Indices, workers: int | None
-) -> tuple[dict[str, NDArray[Any]], Indices]:
+) -> tuple[_core.ConstrainedTriangulation, Indices]:
     """Triangulate points and subsegments, and find the labels of the triangles again.
 
     Parameters
@@ -365,17 +364,17 @@ def triangulated(
 
     Returns
     -------
-    found : dict of ndarray
-        What the core found.
+    made : ConstrainedTriangulation
+        What the core made.
     label : ndarray of int32, shape (m,)
         The label of each triangle of the hull; -1 where there is no such edge.
     """
     count = as_workers(workers)
     # The order of the triangles, in which sums are taken, is then that of usual magnitudes.
     points = points / unit_of(points)
-    found = _core.constrained2(points, segments, False, False, 0, "auto", count)
-    simplices, constrained = found["simplices"], found["constrained"]
-    component = _core.components2(found["neighbors"], constrained)
+    made, _ = _core.constrained2(points, segments, False, False, 0, "auto", count)
+    simplices, constrained = made.simplices, made.constrained
+    component = _core.components2(made.neighbors, constrained)
     t, k = np.nonzero(constrained)
     n = np.int64(len(points))
     keys = simplices[t, np.take(_TAIL, k)] * n + simplices[t, np.take(_HEAD, k)]
@@ -386,7 +385,7 @@ def triangulated(
     same = known[partner] == keys
     of_component = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
     of_component[component[t[same]]] = labels[partner[same]]
-    return found, of_component[component]
+    return made, of_component[component]
 
 
 def sides_at(

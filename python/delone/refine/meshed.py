@@ -180,13 +180,13 @@ class Mesh(HandedOver, Triangulation):
     def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
         """Triangles of the whole hull: vertices, neighbours, regions by rows, lines."""
         edges, label = self._directed
-        found, labels = domains.triangulated(
+        made, labels = domains.triangulated(
             self._points, self.segments, edges, label, self._workers
         )
         sides = domains.sides_at(
-            found["simplices"], found["constrained"], (self.segments, self._segment_line)
+            made.simplices, made.constrained, (self.segments, self._segment_line)
         )
-        return found["simplices"], found["neighbors"], labels, sides
+        return made.simplices, made.neighbors, labels, sides
 
     @property
     def _directed(self) -> tuple[Indices, Indices]:

@@ -255,12 +255,12 @@ def judged(
     (array([0]), (45.0, 90.0))
     """
     cosine = quality.squared_cosine(min_angle)
-    below, extremes, beyond = _core.judge2(points, simplices, cosine)
-    rows = below.astype(np.int64)
+    judged = _core.judge2(points, simplices, cosine)
+    rows, beyond = judged.below.astype(np.int64), judged.beyond
     if len(beyond):
         more = beyond[quality.below(points, simplices[beyond], min_angle)]
         rows = np.union1d(rows, more.astype(np.int64))
-    measures = quality.measured(points, simplices[np.concatenate((extremes, beyond))])
+    measures = quality.measured(points, simplices[np.concatenate((judged.extremes, beyond))])
     smallest = float(measures.smallest_angle.min(initial=180.0))
     return rows, (smallest, float(measures.largest_angle.max(initial=0.0)))
 

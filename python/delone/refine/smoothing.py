@@ -149,25 +149,23 @@ def rebuilt(mesh: Mesh, points: Floats, row: Indices) -> tuple[Domain | None, ND
     """
     edges, label = mesh._directed
     segments = row[mesh.segments]
-    found, labels = domains.triangulated(points, segments, row[edges], label, mesh._workers)
-    if len(found["duplicates"]) or len(found["through"]):
-        pairs = found["duplicates"].ravel(), found["through"][:, 1]
+    made, labels = domains.triangulated(points, segments, row[edges], label, mesh._workers)
+    if len(made.duplicates) or len(made.through):
+        pairs = made.duplicates.ravel(), made.through[:, 1]
         return None, np.unique(np.concatenate(pairs)).astype(np.intp)
     kept = np.flatnonzero(row >= 0)
-    lost = _astray(mesh, found["simplices"], labels, row, kept)
+    lost = _astray(mesh, made.simplices, labels, row, kept)
     if len(lost):
         return None, lost
-    sides = domains.sides_at(
-        found["simplices"], found["constrained"], (segments, mesh._segment_line)
-    )
+    sides = domains.sides_at(made.simplices, made.constrained, (segments, mesh._segment_line))
     lines = mesh._lines._replace(ends=row[mesh._ends])
     return domains.Domain(
         points=points,
         point_source=mesh.point_source[kept],
         point_markers=mesh.point_markers[kept],
         on=mesh._on[kept],
-        simplices=found["simplices"],
-        neighbors=found["neighbors"],
+        simplices=made.simplices,
+        neighbors=made.neighbors,
         labels=labels,
         regions=mesh._regions,
         sides=sides,

@@ -71,7 +71,6 @@ impl Subsegments {
             (d.0, d.1, d.2).cmp(&(e.0, e.1, e.2))
         })?;
         entries.dedup_by_key(|e| (e.0, e.1));
-        out.start.push(0);
         for (i, &(at, row, forward)) in entries.iter().enumerate() {
             if at as usize == out.start.len() {
                 out.start.push(i as i64);

@@ -1,0 +1,68 @@
+//! Results that Python can make, too: from a file, a pickle, or by other means than the core.
+
+use delone_core::error::{Error, Result};
+use numpy::{Element, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table};
+use crate::given::unequal;
+
+/// Gives a class that has nothing but arrays a constructor, which checks them, and lets it be pickled.
+macro_rules! made_of_arrays {
+    ($name:ident { $($field:ident: $kind:ty),+ $(,)? }) => {
+        #[pymethods]
+        impl $name {
+            #[new]
+            #[expect(clippy::too_many_arguments, reason = "one array each")]
+            fn new(py: Python<'_>, $($field: $kind),+) -> PyResult<Self> {
+                let made = Self { $($field),+ };
+                made.check(py).map_err(|e| crate::errors::raise(py, &e))?;
+                Ok(made)
+            }
+
+            /// All arrays, in the order in which the constructor takes them.
+            fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
+                pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py).into_any()),+])
+            }
+
+            /// What a pickle holds.
+            fn __getnewargs__<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
+                self.arrays(py)
+            }
+        }
+    };
+}
+pub(crate) use made_of_arrays;
+
+/// Checks that a table has `columns` columns; gives the number of its rows.
+pub fn rows_of<T: Element>(
+    py: Python<'_>,
+    table: &Table<T>,
+    columns: usize,
+    name: &str,
+) -> Result<usize> {
+    let shape = table.bind(py).shape();
+    if shape[1] == columns {
+        return Ok(shape[0]);
+    }
+    let width = shape[1];
+    Err(Error::Shape(format!(
+        "{name} has {width} columns, not {columns}"
+    )))
+}
+
+/// The number of entries of a column.
+pub fn len_of<T: Element>(py: Python<'_>, column: &Column<T>) -> usize {
+    column.bind(py).len()
+}
+
+/// Checks that what belongs together is of the same length.
+pub fn require_equal(pairs: &[(usize, usize)]) -> Result<()> {
+    if pairs.iter().all(|(a, b)| a == b) {
+        return Ok(());
+    }
+    Err(unequal())
+}
