@@ -1,13 +1,20 @@
 """The compiled core. All arrays are C-contiguous; inputs must be of the dtypes given here."""
 
 from collections.abc import Callable
-from typing import Any, Final, final
+from typing import Final, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "CellMeasures2",
+    "CellMeasures3",
+    "CellPieces2",
+    "ClippedCells2",
+    "ClippedCells3",
     "ConstrainedTriangulation",
+    "Diagram2",
+    "Diagram3",
     "Faults2",
     "Faults3",
     "FlippedTriangulation",
@@ -404,6 +411,224 @@ class ImprovedMesh:
     def exhausted(self) -> bool:
         """Whether the limit on passes ended the work while it still gained."""
 
+@final
+class Diagram2:
+    """A Voronoi or power diagram of the plane."""
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices of cells, (k, 2)."""
+    @property
+    def simplex_vertex(self) -> NDArray[np.int32]:
+        """The vertex of each triangle, -1 beyond the range of doubles, (m,)."""
+    @property
+    def sites(self) -> NDArray[np.int32]:
+        """The two sites of each ridge, (r, 2)."""
+    @property
+    def ends(self) -> NDArray[np.int32]:
+        """The two ends of each ridge: a vertex, or ~i for ray i, (r, 2)."""
+    @property
+    def rays(self) -> NDArray[np.float64]:
+        """Directions of the rays, (q, 2)."""
+    @property
+    def beyond(self) -> NDArray[np.float64]:
+        """The vertex beyond the range to which each ray leads, NaN without, (q, 2)."""
+    @property
+    def region(self) -> NDArray[np.int32]:
+        """The cell of each point, -1 for none, (n,)."""
+    @property
+    def site(self) -> NDArray[np.int32]:
+        """The point of each cell, (c,)."""
+    @property
+    def region_starts(self) -> NDArray[np.int32]:
+        """Where the entries of each cell begin, and the end, (c + 1,)."""
+    @property
+    def region_vertices(self) -> NDArray[np.int32]:
+        """Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,)."""
+    @property
+    def region_ridges(self) -> NDArray[np.int32]:
+        """Entries: the ridge that leads on from each vertex, (e,)."""
+    def __new__(
+        cls,
+        vertices: NDArray[np.float64],
+        simplex_vertex: NDArray[np.int32],
+        sites: NDArray[np.int32],
+        ends: NDArray[np.int32],
+        rays: NDArray[np.float64],
+        beyond: NDArray[np.float64],
+        region: NDArray[np.int32],
+        site: NDArray[np.int32],
+        region_starts: NDArray[np.int32],
+        region_vertices: NDArray[np.int32],
+        region_ridges: NDArray[np.int32],
+    ) -> Diagram2:
+        """Check the shapes of the arrays."""
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order in which the constructor takes them."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """What a pickle holds."""
+
+@final
+class ClippedCells2:
+    """What a box leaves of cells: convex polygons."""
+
+    @property
+    def starts(self) -> NDArray[np.int32]:
+        """Where the corners of each cell begin, and the end, (c + 1,)."""
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """The corners, counter-clockwise, (p, 2)."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridge along the edge that leads on from each corner, or -1, (p,)."""
+
+@final
+class CellMeasures2:
+    """Measures of polygons."""
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas, (c,)."""
+    @property
+    def centroids(self) -> NDArray[np.float64]:
+        """Centers of gravity, (c, 2)."""
+    @property
+    def perimeters(self) -> NDArray[np.float64]:
+        """Perimeters, (c,)."""
+
+@final
+class CellPieces2:
+    """What an outline leaves of polygons."""
+
+    @property
+    def left(self) -> NDArray[np.int8]:
+        """For each polygon -1 (doubtful), 0 (nothing), 1 (all) or 2 (parts), (k,)."""
+    @property
+    def cells(self) -> NDArray[np.int64]:
+        """Where the parts of each polygon begin, and the end, (k + 1,)."""
+    @property
+    def parts(self) -> NDArray[np.int64]:
+        """Where the rings of each part begin, and the end."""
+    @property
+    def rings(self) -> NDArray[np.int64]:
+        """Where the corners of each ring begin, and the end."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners, (p, 2)."""
+    @property
+    def ridges(self) -> NDArray[np.int32]:
+        """The ridge along the edge from each corner, negative for none, (p,)."""
+    @property
+    def measures(self) -> CellMeasures2:
+        """Measures of what is left of each polygon."""
+
+@final
+class Diagram3:
+    """A Voronoi or power diagram of space."""
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices of cells, (k, 3)."""
+    @property
+    def simplex_vertex(self) -> NDArray[np.int32]:
+        """The vertex of each tetrahedron, -1 beyond the range of doubles, (m,)."""
+    @property
+    def sites(self) -> NDArray[np.int32]:
+        """The two sites of each ridge, (r, 2)."""
+    @property
+    def ridge_starts(self) -> NDArray[np.int32]:
+        """Where the entries of each ridge begin, and the end, (r + 1,)."""
+    @property
+    def ridge_entries(self) -> NDArray[np.int32]:
+        """A vertex, or ~i for ray i, with which an open ridge begins and ends."""
+    @property
+    def rays(self) -> NDArray[np.float64]:
+        """Directions of the rays, (q, 3)."""
+    @property
+    def region(self) -> NDArray[np.int32]:
+        """The cell of each point, -1 for none, (n,)."""
+    @property
+    def site(self) -> NDArray[np.int32]:
+        """The point of each cell, (c,)."""
+    @property
+    def region_starts(self) -> NDArray[np.int32]:
+        """Where the vertices of each cell begin, and the end, (c + 1,)."""
+    @property
+    def region_vertices(self) -> NDArray[np.int32]:
+        """Vertices of cells, ascending, -1 first where a cell is open."""
+    @property
+    def region_ridge_starts(self) -> NDArray[np.int32]:
+        """Where the ridges of each cell begin, and the end, (c + 1,)."""
+    @property
+    def region_ridges(self) -> NDArray[np.int32]:
+        """Ridges of cells, ascending."""
+    def __new__(
+        cls,
+        vertices: NDArray[np.float64],
+        simplex_vertex: NDArray[np.int32],
+        sites: NDArray[np.int32],
+        ridge_starts: NDArray[np.int32],
+        ridge_entries: NDArray[np.int32],
+        rays: NDArray[np.float64],
+        region: NDArray[np.int32],
+        site: NDArray[np.int32],
+        region_starts: NDArray[np.int32],
+        region_vertices: NDArray[np.int32],
+        region_ridge_starts: NDArray[np.int32],
+        region_ridges: NDArray[np.int32],
+    ) -> Diagram3:
+        """Check the shapes of the arrays."""
+    def arrays(self) -> tuple[NDArray[np.generic], ...]:
+        """All arrays, in the order in which the constructor takes them."""
+    def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
+        """What a pickle holds."""
+
+@final
+class CellMeasures3:
+    """Measures of cells, and of ridges."""
+
+    @property
+    def ridge_areas(self) -> NDArray[np.float64]:
+        """The area of each ridge, (r,)."""
+    @property
+    def volumes(self) -> NDArray[np.float64]:
+        """Volumes, (c,)."""
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas of surfaces, (c,)."""
+    @property
+    def centroids(self) -> NDArray[np.float64]:
+        """Centers of gravity, (c, 3)."""
+
+@final
+class ClippedCells3:
+    """What a convex polyhedron leaves of cells."""
+
+    @property
+    def measures(self) -> CellMeasures3:
+        """Measures of what is left of each cell and each ridge."""
+    @property
+    def cut(self) -> NDArray[np.int32]:
+        """The cells that have been cut, (b,)."""
+    @property
+    def point_starts(self) -> NDArray[np.int32]:
+        """Where the corners of each of these begin, and the end, (b + 1,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The corners, (p, 3)."""
+    @property
+    def face_starts(self) -> NDArray[np.int32]:
+        """Where the faces of each of these begin, and the end, (b + 1,)."""
+    @property
+    def corner_starts(self) -> NDArray[np.int32]:
+        """Where the corners of each face begin, and the end, (f + 1,)."""
+    @property
+    def corners(self) -> NDArray[np.int32]:
+        """Corners of faces, as rows of `points`, counter-clockwise from outside."""
+    @property
+    def labels(self) -> NDArray[np.int32]:
+        """The ridge of each face, negative for a face of the polyhedron, (f,)."""
+
 def methods2() -> list[str]: ...
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
 def validate2(
@@ -696,41 +921,41 @@ def voronoi2(
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     workers: int,
-) -> dict[str, NDArray[Any]]: ...
+) -> Diagram2: ...
 def voronoi_clip2(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
-    diagram: dict[str, NDArray[Any]],
+    diagram: Diagram2,
     bounds: tuple[float, float, float, float],
     workers: int,
-) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+) -> ClippedCells2: ...
 def voronoi3(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
     simplices: NDArray[np.int32],
     neighbors: NDArray[np.int32],
     workers: int,
-) -> dict[str, NDArray[Any]]: ...
+) -> Diagram3: ...
 def voronoi_clip3(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
-    diagram: dict[str, NDArray[Any]],
+    diagram: Diagram3,
     clip_points: NDArray[np.float64],
     clip_starts: NDArray[np.int32],
     clip_corners: NDArray[np.int32],
     clip_planes: NDArray[np.float64],
     workers: int,
-) -> dict[str, NDArray[Any]]: ...
+) -> ClippedCells3: ...
 def measures3(
     points: NDArray[np.float64],
     weights: NDArray[np.float64] | None,
-    diagram: dict[str, NDArray[Any]],
+    diagram: Diagram3,
     workers: int,
-) -> dict[str, NDArray[Any]]: ...
+) -> CellMeasures3: ...
 def regular3(points: NDArray[np.float64], weights: NDArray[np.float64]) -> RegularTriangulation: ...
 def measures2(
     starts: NDArray[np.int32], corners: NDArray[np.float64], workers: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+) -> CellMeasures2: ...
 def touched2(
     starts: NDArray[np.int32],
     corners: NDArray[np.float64],
@@ -746,7 +971,7 @@ def pieces2(
     rings: NDArray[np.int32],
     outline: NDArray[np.float64],
     workers: int,
-) -> dict[str, NDArray[Any]]: ...
+) -> CellPieces2: ...
 def regular2(points: NDArray[np.float64], weights: NDArray[np.float64]) -> RegularTriangulation: ...
 def periodic2(
     points: NDArray[np.float64],

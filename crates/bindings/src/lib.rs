@@ -45,6 +45,13 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<constrained::ConstrainedTriangulation>()?;
     m.add_class::<refine::RefinedMesh>()?;
     m.add_class::<refine::JudgedTriangles>()?;
+    m.add_class::<voronoi::Diagram2>()?;
+    m.add_class::<voronoi::ClippedCells2>()?;
+    m.add_class::<voronoi::CellMeasures2>()?;
+    m.add_class::<voronoi::CellPieces2>()?;
+    m.add_class::<voronoi3::Diagram3>()?;
+    m.add_class::<voronoi3::ClippedCells3>()?;
+    m.add_class::<voronoi3::CellMeasures3>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;

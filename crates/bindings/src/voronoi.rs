@@ -1,16 +1,17 @@
 //! Voronoi and power diagrams, and polygons cut from them, as arrays.
 
+use delone_core::Point2;
 use delone_core::error::{Error, Result};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::arrays::{
     Column, Table, are_starts, column, each_in_range, flat, in_range, rows, table,
 };
-use crate::errors::{attached, detached, raise};
+use crate::errors::{attached, detached};
 use crate::given::{checked, unequal, weights_of};
+use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
 
 /// A triangulation whose dual is wanted.
@@ -29,115 +30,213 @@ pub(crate) fn given<'a, const D: usize, const N: usize>(
     })
 }
 
+/// A Voronoi or power diagram of the plane.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Diagram2 {
+    /// Vertices of cells, (k, 2).
+    pub vertices: Table<f64>,
+    /// The vertex of each triangle, -1 beyond the range of doubles, (m,).
+    pub simplex_vertex: Column<i32>,
+    /// The two sites of each ridge, (r, 2).
+    pub sites: Table<i32>,
+    /// The two ends of each ridge: a vertex, or ~i for ray i, (r, 2).
+    pub ends: Table<i32>,
+    /// Directions of the rays, (q, 2).
+    pub rays: Table<f64>,
+    /// The vertex to which each ray leads beyond the range of doubles, NaN without, (q, 2).
+    pub beyond: Table<f64>,
+    /// The cell of each point, -1 for none, (n,).
+    pub region: Column<i32>,
+    /// The point of each cell, (c,).
+    pub site: Column<i32>,
+    /// Where the entries of each cell begin, and the end, (c + 1,).
+    pub region_starts: Column<i32>,
+    /// Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,).
+    pub region_vertices: Column<i32>,
+    /// Entries: the ridge that leads on from each vertex, (e,).
+    pub region_ridges: Column<i32>,
+}
+
+made_of_arrays!(Diagram2 {
+    vertices: Table<f64>,
+    simplex_vertex: Column<i32>,
+    sites: Table<i32>,
+    ends: Table<i32>,
+    rays: Table<f64>,
+    beyond: Table<f64>,
+    region: Column<i32>,
+    site: Column<i32>,
+    region_starts: Column<i32>,
+    region_vertices: Column<i32>,
+    region_ridges: Column<i32>,
+});
+
+impl Diagram2 {
+    fn check(&self, py: Python<'_>) -> Result<()> {
+        rows_of(py, &self.vertices, 2, "vertices")?;
+        require_equal(&[
+            (
+                rows_of(py, &self.sites, 2, "sites")?,
+                rows_of(py, &self.ends, 2, "ends")?,
+            ),
+            (
+                rows_of(py, &self.rays, 2, "rays")?,
+                rows_of(py, &self.beyond, 2, "beyond")?,
+            ),
+            (len_of(py, &self.site) + 1, len_of(py, &self.region_starts)),
+            (
+                len_of(py, &self.region_vertices),
+                len_of(py, &self.region_ridges),
+            ),
+        ])
+    }
+
+    fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent2<'py>> {
+        Ok(Lent2 {
+            vertices: self.vertices.bind(py).try_readonly()?,
+            sites: self.sites.bind(py).try_readonly()?,
+            ends: self.ends.bind(py).try_readonly()?,
+            rays: self.rays.bind(py).try_readonly()?,
+            beyond: self.beyond.bind(py).try_readonly()?,
+            site: self.site.bind(py).try_readonly()?,
+            starts: self.region_starts.bind(py).try_readonly()?,
+            entry_vertices: self.region_vertices.bind(py).try_readonly()?,
+            entry_ridges: self.region_ridges.bind(py).try_readonly()?,
+        })
+    }
+}
+
+/// The arrays of a diagram, borrowed from Python for one call.
+struct Lent2<'py> {
+    vertices: PyReadonlyArray2<'py, f64>,
+    sites: PyReadonlyArray2<'py, i32>,
+    ends: PyReadonlyArray2<'py, i32>,
+    rays: PyReadonlyArray2<'py, f64>,
+    beyond: PyReadonlyArray2<'py, f64>,
+    site: PyReadonlyArray1<'py, i32>,
+    starts: PyReadonlyArray1<'py, i32>,
+    entry_vertices: PyReadonlyArray1<'py, i32>,
+    entry_ridges: PyReadonlyArray1<'py, i32>,
+}
+
+impl Lent2<'_> {
+    /// The cells, whose indices have been checked.
+    fn cells<'a>(&'a self, points: &'a [Point2], weights: &'a [f64]) -> Result<Cells<'a>> {
+        let cells = Cells {
+            points,
+            weights,
+            vertices: rows(&self.vertices, "vertices")?,
+            sites: rows(&self.sites, "sites")?,
+            ends: rows(&self.ends, "ends")?,
+            rays: rows(&self.rays, "rays")?,
+            beyond: rows(&self.beyond, "beyond")?,
+            site: flat(&self.site, "site")?,
+            starts: flat(&self.starts, "region_starts")?,
+            entry_vertices: flat(&self.entry_vertices, "region_vertices")?,
+            entry_ridges: flat(&self.entry_ridges, "region_ridges")?,
+        };
+        let (vertices, ridges) = (cells.vertices.len(), cells.sites.len());
+        in_range(cells.sites, 0, cells.points.len(), "sites")?;
+        are_starts(cells.starts, cells.entry_vertices.len())?;
+        each_in_range(cells.entry_vertices, -1, vertices, "region_vertices")?;
+        each_in_range(cells.entry_ridges, 0, ridges, "region_ridges")?;
+        Ok(cells)
+    }
+}
+
 /// The diagram of a triangulation; of the regular one, where there are weights.
 #[pyfunction]
-pub fn voronoi2<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    weights: Option<PyReadonlyArray1<'py, f64>>,
-    simplices: PyReadonlyArray2<'py, i32>,
-    neighbors: PyReadonlyArray2<'py, i32>,
+pub fn voronoi2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Diagram2> {
     let given = attached(py, || {
         given(&points, weights.as_ref(), &simplices, &neighbors)
     })?;
     let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
-    let out = PyDict::new(py);
-    out.set_item("vertices", table(py, made.vertices)?)?;
-    out.set_item("triangle_vertex", column(py, made.triangle_vertex))?;
-    out.set_item("sites", table(py, made.ridges.sites)?)?;
-    out.set_item("ends", table(py, made.ridges.ends)?)?;
-    out.set_item("rays", table(py, made.ridges.rays)?)?;
-    out.set_item("beyond", table(py, made.ridges.beyond)?)?;
-    out.set_item("region", column(py, made.regions.of_point))?;
-    out.set_item("site", column(py, made.regions.site))?;
-    out.set_item("starts", column(py, made.regions.starts))?;
-    out.set_item("region_vertices", column(py, made.regions.vertices))?;
-    out.set_item("region_ridges", column(py, made.regions.ridges))?;
-    Ok(out)
+    Ok(Diagram2 {
+        vertices: table(py, made.vertices)?,
+        simplex_vertex: column(py, made.triangle_vertex),
+        sites: table(py, made.ridges.sites)?,
+        ends: table(py, made.ridges.ends)?,
+        rays: table(py, made.ridges.rays)?,
+        beyond: table(py, made.ridges.beyond)?,
+        region: column(py, made.regions.of_point),
+        site: column(py, made.regions.site),
+        region_starts: column(py, made.regions.starts),
+        region_vertices: column(py, made.regions.vertices),
+        region_ridges: column(py, made.regions.ridges),
+    })
 }
 
-/// Polygons as arrays: `(starts, corners, ridges)`.
-type Cut = (Column<i32>, Table<f64>, Column<i32>);
+/// What a box leaves of cells: convex polygons.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ClippedCells2 {
+    /// Where the corners of each cell begin, and the end, (c + 1,).
+    pub starts: Column<i32>,
+    /// The corners, counter-clockwise, (p, 2).
+    pub corners: Table<f64>,
+    /// The ridge along the edge that leads on from each corner, -1 for the box, (p,).
+    pub ridges: Column<i32>,
+}
 
-/// The cells of a diagram, as `voronoi2` gives it, cut to a box.
+/// The cells of a diagram cut to a box.
 #[pyfunction]
-pub fn voronoi_clip2<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    weights: Option<PyReadonlyArray1<'py, f64>>,
-    diagram: &Bound<'py, PyDict>,
+pub fn voronoi_clip2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    diagram: &Bound<'_, Diagram2>,
     bounds: [f64; 4],
     workers: usize,
-) -> PyResult<Cut> {
-    let pairs =
-        |name: &str| -> PyResult<PyReadonlyArray2<'py, f64>> { item(diagram, name)?.extract() };
-    let codes =
-        |name: &str| -> PyResult<PyReadonlyArray2<'py, i32>> { item(diagram, name)?.extract() };
-    let list =
-        |name: &str| -> PyResult<PyReadonlyArray1<'py, i32>> { item(diagram, name)?.extract() };
-    let (vertices, rays, beyond) = (pairs("vertices")?, pairs("rays")?, pairs("beyond")?);
-    let (sites, ends) = (codes("sites")?, codes("ends")?);
-    let (site, starts) = (list("site")?, list("starts")?);
-    let (region_vertices, region_ridges) = (list("region_vertices")?, list("region_ridges")?);
+) -> PyResult<ClippedCells2> {
+    let lent = diagram.get().lend(py)?;
     let cells = attached(py, || {
         let points = rows(&points, "points")?;
-        let cells = Cells {
-            points,
-            weights: weights_of(weights.as_ref(), points.len())?,
-            vertices: rows(&vertices, "vertices")?,
-            sites: rows(&sites, "sites")?,
-            ends: rows(&ends, "ends")?,
-            rays: rows(&rays, "rays")?,
-            beyond: rows(&beyond, "beyond")?,
-            site: flat(&site, "site")?,
-            starts: flat(&starts, "starts")?,
-            entry_vertices: flat(&region_vertices, "region_vertices")?,
-            entry_ridges: flat(&region_ridges, "region_ridges")?,
-        };
-        in_range(cells.sites, 0, cells.points.len(), "sites")?;
-        are_starts(cells.starts, cells.entry_vertices.len())?;
-        each_in_range(
-            cells.entry_vertices,
-            -1,
-            cells.vertices.len(),
-            "region_vertices",
-        )?;
-        each_in_range(cells.entry_ridges, 0, cells.sites.len(), "region_ridges")?;
-        if cells.ends.len() != cells.sites.len() || cells.starts.len() != cells.site.len() + 1 {
-            return Err(unequal());
-        }
-        Ok(cells)
+        lent.cells(points, weights_of(weights.as_ref(), points.len())?)
     })?;
     let [left, bottom, right, top] = bounds;
     let made = watched(py, |watch| {
         voronoi::clip(cells, [left, bottom], [right, top], workers, watch)
     })?;
-    Ok((
-        column(py, made.starts),
-        table(py, made.points)?,
-        column(py, made.ridges),
-    ))
-}
-
-pub(crate) fn item<'py>(diagram: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    diagram.get_item(name)?.ok_or_else(|| {
-        raise(
-            diagram.py(),
-            &Error::Shape(format!("the diagram has no {name}")),
-        )
+    Ok(ClippedCells2 {
+        starts: column(py, made.starts),
+        corners: table(py, made.points)?,
+        ridges: column(py, made.ridges),
     })
 }
 
-/// `(areas, centroids, perimeters)` of polygons.
+/// Measures of polygons.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CellMeasures2 {
+    /// Areas, (c,).
+    pub areas: Column<f64>,
+    /// Centers of gravity, (c, 2).
+    pub centroids: Table<f64>,
+    /// Perimeters, (c,).
+    pub perimeters: Column<f64>,
+}
+
+fn measured(py: Python<'_>, made: voronoi::Measures) -> PyResult<CellMeasures2> {
+    Ok(CellMeasures2 {
+        areas: column(py, made.areas),
+        centroids: table(py, made.centroids)?,
+        perimeters: column(py, made.perimeters),
+    })
+}
+
+/// The measures of polygons.
 #[pyfunction]
 pub fn measures2(
     py: Python<'_>,
     starts: PyReadonlyArray1<'_, i32>,
     corners: PyReadonlyArray2<'_, f64>,
     workers: usize,
-) -> PyResult<(Column<f64>, Table<f64>, Column<f64>)> {
+) -> PyResult<CellMeasures2> {
     let (starts, corners) = attached(py, || {
         let (starts, corners) = (flat(&starts, "starts")?, rows(&corners, "corners")?);
         are_starts(starts, corners.len())?;
@@ -146,11 +245,7 @@ pub fn measures2(
     let made = watched(py, |watch| {
         voronoi::measures(starts, corners, workers, watch)
     })?;
-    Ok((
-        column(py, made.areas),
-        table(py, made.centroids)?,
-        column(py, made.perimeters),
-    ))
+    measured(py, made)
 }
 
 /// For each polygon its group of those that no segment comes near, or -1; and the number of groups.
@@ -175,9 +270,27 @@ pub fn touched2(
     Ok((column(py, groups), count))
 }
 
-/// What an outline, rings with their inside to the left, leaves of some of the polygons: for each of `rows`,
-/// of whose first corner `inside` tells whether the outline has it, -1 (doubtful), 0 (nothing), 1 (all)
-/// or 2 (parts), and the parts as arrays.
+/// What an outline leaves of polygons.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CellPieces2 {
+    /// For each polygon -1 (doubtful), 0 (nothing), 1 (all) or 2 (parts), (k,).
+    pub left: Column<i8>,
+    /// Where the parts of each polygon begin, and the end, (k + 1,).
+    pub cells: Column<i64>,
+    /// Where the rings of each part begin, and the end.
+    pub parts: Column<i64>,
+    /// Where the corners of each ring begin, and the end.
+    pub rings: Column<i64>,
+    /// The corners, (p, 2).
+    pub points: Table<f64>,
+    /// The ridge along the edge that leads on from each corner, negative for none, (p,).
+    pub ridges: Column<i32>,
+    /// Measures of what is left of each polygon.
+    pub measures: Py<CellMeasures2>,
+}
+
+/// What an outline, rings with their inside to the left, leaves of some of the polygons: those of
+/// `rows`, of whose first corner `inside` tells whether the outline has it.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn pieces2<'py>(
@@ -190,7 +303,7 @@ pub fn pieces2<'py>(
     rings: PyReadonlyArray1<'py, i32>,
     outline: PyReadonlyArray2<'py, f64>,
     workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<CellPieces2> {
     let (cells, rows, inside, outline) = attached(py, || {
         let cells = Convex {
             starts: flat(&starts, "starts")?,
@@ -213,15 +326,13 @@ pub fn pieces2<'py>(
     let made = watched(py, |watch| {
         voronoi::pieces(cells, rows, inside, outline, workers, watch)
     })?;
-    let out = PyDict::new(py);
-    out.set_item("left", column(py, made.left))?;
-    out.set_item("cells", column(py, made.cells))?;
-    out.set_item("parts", column(py, made.parts))?;
-    out.set_item("rings", column(py, made.rings))?;
-    out.set_item("points", table(py, made.points)?)?;
-    out.set_item("ridges", column(py, made.ridges))?;
-    out.set_item("areas", column(py, made.measures.areas))?;
-    out.set_item("centroids", table(py, made.measures.centroids)?)?;
-    out.set_item("perimeters", column(py, made.measures.perimeters))?;
-    Ok(out)
+    Ok(CellPieces2 {
+        left: column(py, made.left),
+        cells: column(py, made.cells),
+        parts: column(py, made.parts),
+        rings: column(py, made.rings),
+        points: table(py, made.points)?,
+        ridges: column(py, made.ridges),
+        measures: Py::new(py, measured(py, made.measures)?)?,
+    })
 }

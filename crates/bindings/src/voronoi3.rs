@@ -1,129 +1,219 @@
 //! Voronoi and power diagrams of space, their measures, and cells cut to a polyhedron, as arrays.
 
+use delone_core::Point3;
 use delone_core::error::Result;
 use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::arrays::{are_starts, column, each_in_range, flat, in_range, rows, table};
-use crate::errors::{attached, raise};
+use crate::arrays::{
+    Column, Table, are_starts, column, each_in_range, flat, in_range, rows, table,
+};
+use crate::errors::attached;
 use crate::given::{unequal, weights_of};
+use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
-use crate::voronoi::{given, item};
+use crate::voronoi::given;
 
-/// The diagram of a triangulation; of the regular one, where there are weights.
-#[pyfunction]
-pub fn voronoi3<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    weights: Option<PyReadonlyArray1<'py, f64>>,
-    simplices: PyReadonlyArray2<'py, i32>,
-    neighbors: PyReadonlyArray2<'py, i32>,
-    workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let given = attached(py, || {
-        given(&points, weights.as_ref(), &simplices, &neighbors)
-    })?;
-    let made = watched(py, |watch| dual::diagram(given, workers, watch))?;
-    let out = PyDict::new(py);
-    out.set_item("vertices", table(py, made.vertices)?)?;
-    out.set_item("simplex_vertex", column(py, made.simplex_vertex))?;
-    out.set_item("sites", table(py, made.ridges.sites)?)?;
-    out.set_item("starts", column(py, made.ridges.starts))?;
-    out.set_item("entries", column(py, made.ridges.entries))?;
-    out.set_item("rays", table(py, made.ridges.rays)?)?;
-    out.set_item("region", column(py, made.regions.of_point))?;
-    out.set_item("site", column(py, made.regions.site))?;
-    out.set_item("region_starts", column(py, made.regions.starts))?;
-    out.set_item("region_vertices", column(py, made.regions.vertices))?;
-    out.set_item("region_ridge_starts", column(py, made.regions.ridge_starts))?;
-    out.set_item("region_ridges", column(py, made.regions.ridges))?;
-    Ok(out)
+/// A Voronoi or power diagram of space.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Diagram3 {
+    /// Vertices of cells, (k, 3).
+    pub vertices: Table<f64>,
+    /// The vertex of each tetrahedron, -1 beyond the range of doubles, (m,).
+    pub simplex_vertex: Column<i32>,
+    /// The two sites of each ridge, (r, 2).
+    pub sites: Table<i32>,
+    /// Where the entries of each ridge begin, and the end, (r + 1,).
+    pub ridge_starts: Column<i32>,
+    /// Entries: a vertex, or ~i for ray i, with which an open ridge begins and ends.
+    pub ridge_entries: Column<i32>,
+    /// Directions of the rays, (q, 3).
+    pub rays: Table<f64>,
+    /// The cell of each point, -1 for none, (n,).
+    pub region: Column<i32>,
+    /// The point of each cell, (c,).
+    pub site: Column<i32>,
+    /// Where the vertices of each cell begin, and the end, (c + 1,).
+    pub region_starts: Column<i32>,
+    /// Vertices of cells, ascending, -1 first where a cell is open.
+    pub region_vertices: Column<i32>,
+    /// Where the ridges of each cell begin, and the end, (c + 1,).
+    pub region_ridge_starts: Column<i32>,
+    /// Ridges of cells, ascending.
+    pub region_ridges: Column<i32>,
 }
 
-/// The arrays of a diagram, borrowed.
-struct Borrowed<'py> {
-    points: PyReadonlyArray2<'py, f64>,
-    weights: Option<PyReadonlyArray1<'py, f64>>,
+made_of_arrays!(Diagram3 {
+    vertices: Table<f64>,
+    simplex_vertex: Column<i32>,
+    sites: Table<i32>,
+    ridge_starts: Column<i32>,
+    ridge_entries: Column<i32>,
+    rays: Table<f64>,
+    region: Column<i32>,
+    site: Column<i32>,
+    region_starts: Column<i32>,
+    region_vertices: Column<i32>,
+    region_ridge_starts: Column<i32>,
+    region_ridges: Column<i32>,
+});
+
+impl Diagram3 {
+    fn check(&self, py: Python<'_>) -> Result<()> {
+        rows_of(py, &self.vertices, 3, "vertices")?;
+        rows_of(py, &self.rays, 3, "rays")?;
+        let ridges = rows_of(py, &self.sites, 2, "sites")?;
+        let cells = len_of(py, &self.site);
+        require_equal(&[
+            (ridges + 1, len_of(py, &self.ridge_starts)),
+            (cells + 1, len_of(py, &self.region_starts)),
+            (cells + 1, len_of(py, &self.region_ridge_starts)),
+        ])
+    }
+
+    fn lend<'py>(&self, py: Python<'py>) -> PyResult<Lent3<'py>> {
+        Ok(Lent3 {
+            vertices: self.vertices.bind(py).try_readonly()?,
+            sites: self.sites.bind(py).try_readonly()?,
+            starts: self.ridge_starts.bind(py).try_readonly()?,
+            entries: self.ridge_entries.bind(py).try_readonly()?,
+            site: self.site.bind(py).try_readonly()?,
+            region_ridge_starts: self.region_ridge_starts.bind(py).try_readonly()?,
+            region_ridges: self.region_ridges.bind(py).try_readonly()?,
+        })
+    }
+}
+
+/// The arrays of a diagram, borrowed from Python for one call.
+struct Lent3<'py> {
     vertices: PyReadonlyArray2<'py, f64>,
     sites: PyReadonlyArray2<'py, i32>,
     starts: PyReadonlyArray1<'py, i32>,
     entries: PyReadonlyArray1<'py, i32>,
     site: PyReadonlyArray1<'py, i32>,
-    ridge_starts: PyReadonlyArray1<'py, i32>,
-    ridges: PyReadonlyArray1<'py, i32>,
+    region_ridge_starts: PyReadonlyArray1<'py, i32>,
+    region_ridges: PyReadonlyArray1<'py, i32>,
 }
 
-impl<'py> Borrowed<'py> {
-    fn new(
-        points: PyReadonlyArray2<'py, f64>,
-        weights: Option<PyReadonlyArray1<'py, f64>>,
-        diagram: &Bound<'py, PyDict>,
-    ) -> PyResult<Self> {
-        Ok(Self {
-            points,
-            weights,
-            vertices: item(diagram, "vertices")?.extract()?,
-            sites: item(diagram, "sites")?.extract()?,
-            starts: item(diagram, "starts")?.extract()?,
-            entries: item(diagram, "entries")?.extract()?,
-            site: item(diagram, "site")?.extract()?,
-            ridge_starts: item(diagram, "region_ridge_starts")?.extract()?,
-            ridges: item(diagram, "region_ridges")?.extract()?,
-        })
-    }
-
-    fn cells(&self) -> Result<Cells<'_>> {
-        let points = rows(&self.points, "points")?;
+impl Lent3<'_> {
+    /// The cells, whose indices have been checked.
+    fn cells<'a>(&'a self, points: &'a [Point3], weights: &'a [f64]) -> Result<Cells<'a>> {
         let cells = Cells {
             points,
-            weights: weights_of(self.weights.as_ref(), points.len())?,
+            weights,
             vertices: rows(&self.vertices, "vertices")?,
             sites: rows(&self.sites, "sites")?,
-            starts: flat(&self.starts, "starts")?,
-            entries: flat(&self.entries, "entries")?,
+            starts: flat(&self.starts, "ridge_starts")?,
+            entries: flat(&self.entries, "ridge_entries")?,
             site: flat(&self.site, "site")?,
-            ridge_starts: flat(&self.ridge_starts, "region_ridge_starts")?,
-            ridges: flat(&self.ridges, "region_ridges")?,
+            ridge_starts: flat(&self.region_ridge_starts, "region_ridge_starts")?,
+            ridges: flat(&self.region_ridges, "region_ridges")?,
         };
         in_range(cells.sites, 0, cells.points.len(), "sites")?;
         are_starts(cells.starts, cells.entries.len())?;
         are_starts(cells.ridge_starts, cells.ridges.len())?;
-        each_in_range(cells.entries, i32::MIN, cells.vertices.len(), "entries")?;
+        each_in_range(
+            cells.entries,
+            i32::MIN,
+            cells.vertices.len(),
+            "ridge_entries",
+        )?;
         each_in_range(cells.site, 0, cells.points.len(), "site")?;
         each_in_range(cells.ridges, 0, cells.sites.len(), "region_ridges")?;
-        if cells.starts.len() == cells.sites.len() + 1
-            && cells.ridge_starts.len() == cells.site.len() + 1
-        {
-            return Ok(cells);
-        }
-        Err(unequal())
+        Ok(cells)
     }
 }
 
-fn measured<'py>(py: Python<'py>, made: Measures) -> PyResult<Bound<'py, PyDict>> {
-    let out = PyDict::new(py);
-    out.set_item("ridge_areas", column(py, made.ridge_areas))?;
-    out.set_item("volumes", column(py, made.volumes))?;
-    out.set_item("areas", column(py, made.areas))?;
-    out.set_item("centroids", table(py, made.centroids)?)?;
-    Ok(out)
+/// The diagram of a triangulation; of the regular one, where there are weights.
+#[pyfunction]
+pub fn voronoi3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Diagram3> {
+    let given = attached(py, || {
+        given(&points, weights.as_ref(), &simplices, &neighbors)
+    })?;
+    let made = watched(py, |watch| dual::diagram(given, workers, watch))?;
+    Ok(Diagram3 {
+        vertices: table(py, made.vertices)?,
+        simplex_vertex: column(py, made.simplex_vertex),
+        sites: table(py, made.ridges.sites)?,
+        ridge_starts: column(py, made.ridges.starts),
+        ridge_entries: column(py, made.ridges.entries),
+        rays: table(py, made.ridges.rays)?,
+        region: column(py, made.regions.of_point),
+        site: column(py, made.regions.site),
+        region_starts: column(py, made.regions.starts),
+        region_vertices: column(py, made.regions.vertices),
+        region_ridge_starts: column(py, made.regions.ridge_starts),
+        region_ridges: column(py, made.regions.ridges),
+    })
 }
 
-/// Measures of the cells of a diagram, as `voronoi3` gives it, and of its ridges.
+/// Measures of cells, and of ridges.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CellMeasures3 {
+    /// The area of each ridge, (r,).
+    pub ridge_areas: Column<f64>,
+    /// Volumes, (c,).
+    pub volumes: Column<f64>,
+    /// Areas of surfaces, (c,).
+    pub areas: Column<f64>,
+    /// Centers of gravity, (c, 3).
+    pub centroids: Table<f64>,
+}
+
+fn measured(py: Python<'_>, made: Measures) -> PyResult<CellMeasures3> {
+    Ok(CellMeasures3 {
+        ridge_areas: column(py, made.ridge_areas),
+        volumes: column(py, made.volumes),
+        areas: column(py, made.areas),
+        centroids: table(py, made.centroids)?,
+    })
+}
+
+/// The measures of the cells of a diagram and of its ridges.
 #[pyfunction]
-pub fn measures3<'py>(
-    py: Python<'py>,
-    points: PyReadonlyArray2<'py, f64>,
-    weights: Option<PyReadonlyArray1<'py, f64>>,
-    diagram: &Bound<'py, PyDict>,
+pub fn measures3(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    diagram: &Bound<'_, Diagram3>,
     workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let borrowed = Borrowed::new(points, weights, diagram)?;
-    let cells = borrowed.cells().map_err(|e| raise(py, &e))?;
+) -> PyResult<CellMeasures3> {
+    let lent = diagram.get().lend(py)?;
+    let cells = attached(py, || {
+        let points = rows(&points, "points")?;
+        lent.cells(points, weights_of(weights.as_ref(), points.len())?)
+    })?;
     let made = watched(py, |watch| dual::measures(cells, workers, watch))?;
     measured(py, made)
+}
+
+/// What a convex polyhedron leaves of cells.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ClippedCells3 {
+    /// Measures of what is left of each cell and each ridge.
+    pub measures: Py<CellMeasures3>,
+    /// The cells that have been cut, (b,).
+    pub cut: Column<i32>,
+    /// Where the corners of each of these begin, and the end, (b + 1,).
+    pub point_starts: Column<i32>,
+    /// The corners, (p, 3).
+    pub points: Table<f64>,
+    /// Where the faces of each of these begin, and the end, (b + 1,).
+    pub face_starts: Column<i32>,
+    /// Where the corners of each face begin, and the end, (f + 1,).
+    pub corner_starts: Column<i32>,
+    /// The corners of faces, as rows of `points`, counter-clockwise from outside.
+    pub corners: Column<i32>,
+    /// The ridge of each face, negative for a face of the polyhedron, (f,).
+    pub labels: Column<i32>,
 }
 
 /// The cells of a diagram cut to a convex polyhedron, given by corners, faces (counter-clockwise
@@ -134,14 +224,14 @@ pub fn voronoi_clip3<'py>(
     py: Python<'py>,
     points: PyReadonlyArray2<'py, f64>,
     weights: Option<PyReadonlyArray1<'py, f64>>,
-    diagram: &Bound<'py, PyDict>,
+    diagram: &Bound<'py, Diagram3>,
     clip_points: PyReadonlyArray2<'py, f64>,
     clip_starts: PyReadonlyArray1<'py, i32>,
     clip_corners: PyReadonlyArray1<'py, i32>,
     clip_planes: PyReadonlyArray2<'py, f64>,
     workers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let borrowed = Borrowed::new(points, weights, diagram)?;
+) -> PyResult<ClippedCells3> {
+    let lent = diagram.get().lend(py)?;
     let (cells, clip) = attached(py, || {
         let clip = Clip {
             points: rows(&clip_points, "clip_points")?,
@@ -153,18 +243,21 @@ pub fn voronoi_clip3<'py>(
         each_in_range(clip.corners, 0, clip.points.len(), "clip_corners")?;
         let full = clip.starts.windows(2).all(|w| w[1] - w[0] > 2);
         if full && clip.starts.len() == clip.planes.len() + 1 {
-            return Ok((borrowed.cells()?, clip));
+            let points = rows(&points, "points")?;
+            let heavy = weights_of(weights.as_ref(), points.len())?;
+            return Ok((lent.cells(points, heavy)?, clip));
         }
         Err(unequal())
     })?;
     let made = watched(py, |watch| dual::clip(cells, clip, workers, watch))?;
-    let out = measured(py, made.measures)?;
-    out.set_item("cut", column(py, made.cut))?;
-    out.set_item("point_starts", column(py, made.point_starts))?;
-    out.set_item("points", table(py, made.points)?)?;
-    out.set_item("face_starts", column(py, made.face_starts))?;
-    out.set_item("corner_starts", column(py, made.corner_starts))?;
-    out.set_item("corners", column(py, made.corners))?;
-    out.set_item("labels", column(py, made.labels))?;
-    Ok(out)
+    Ok(ClippedCells3 {
+        measures: Py::new(py, measured(py, made.measures)?)?,
+        cut: column(py, made.cut),
+        point_starts: column(py, made.point_starts),
+        points: table(py, made.points)?,
+        face_starts: column(py, made.face_starts),
+        corner_starts: column(py, made.corner_starts),
+        corners: column(py, made.corners),
+        labels: column(py, made.labels),
+    })
 }

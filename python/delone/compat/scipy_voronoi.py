@@ -118,30 +118,29 @@ class Voronoi(Incremental):
 
     def _set(self, points: Floats) -> None:
         mesh = triangulate(points, self.furthest_site, self._what)
-        dual = _core.voronoi2 if mesh.ndim == 2 else _core.voronoi3
-        arrays = dual(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None))
-        self._points, self._mesh, self._dual = points, mesh, arrays
+        given = mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(None)
+        self._points, self._mesh = points, mesh
+        self._dual: _core.Diagram2 | _core.Diagram3
+        self._dual = _core.voronoi2(*given) if mesh.ndim == 2 else _core.voronoi3(*given)
         self._forget()
         self.ndim, self.npoints = mesh.ndim, mesh.npoints
 
     @cached_property
     def vertices(self) -> Floats:
         """Vertices."""
-        found: Floats = self._dual["vertices"].copy()
-        return found
+        return self._dual.vertices.copy()
 
     @cached_property
     def ridge_points(self) -> Indices:
         """The two sites of each ridge."""
-        found: Indices = self._dual["sites"].copy()
-        return found
+        return self._dual.sites.copy()
 
     @cached_property
     def ridge_vertices(self) -> list[list[int]]:
         """The vertices of each ridge; -1, which comes first, where it is unbounded."""
-        if self.ndim == 3:
+        if isinstance(self._dual, _core.Diagram3):
             return ridge_lists(self._dual)
-        found: list[list[int]] = np.maximum(self._dual["ends"], -1).tolist()
+        found: list[list[int]] = np.maximum(self._dual.ends, -1).tolist()
         return found
 
     @cached_property
@@ -152,10 +151,10 @@ class Voronoi(Incremental):
 
     @cached_property
     def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
-        entries = self._dual["region_vertices"].tolist()
-        starts = self._dual["starts" if self.ndim == 2 else "region_starts"].tolist()
+        entries = self._dual.region_vertices.tolist()
+        starts = self._dual.region_starts.tolist()
         cells = [gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
-        of_point = self._dual["region"].astype(np.int64)
+        of_point = self._dual.region.astype(np.int64)
         infinite = self._options.infinite_point and not self.furthest_site
         lists: list[list[int]] = [[]] if infinite else []
         of_point[of_point >= 0] += len(lists)

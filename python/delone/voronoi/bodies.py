@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,11 +12,11 @@ from delone import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._core import ClippedCells3, Diagram3
     from delone.voronoi.polyhedra import Polyhedron
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
-    Dual = dict[str, NDArray[Any]]
 
 __all__ = ["Bodies", "SpaceCell", "SpaceNeighbors"]
 
@@ -104,8 +104,8 @@ class Bodies:
         The sites.
     weights : ndarray of float64, shape (n,), optional
         Their weights.
-    dual : dict of ndarray
-        The arrays of the diagram.
+    dual : Diagram3
+        The diagram.
     clip : Polyhedron, optional
         Where cells end.
     workers : int
@@ -125,26 +125,25 @@ class Bodies:
         self,
         points: Floats,
         weights: Floats | None,
-        dual: Dual,
+        dual: Diagram3,
         clip: Polyhedron | None,
         workers: int,
     ) -> None:
         self._dual = dual
+        self._cuts: ClippedCells3 | None = None
         if clip is None:
-            found = _core.measures3(points, weights, dual, workers)
-            found["cut"] = np.empty(0, dtype=np.int32)
+            measures = _core.measures3(points, weights, dual, workers)
         else:
-            found = _core.voronoi_clip3(
+            self._cuts = _core.voronoi_clip3(
                 points, weights, dual, clip.points, clip.starts, clip.corners, clip.planes, workers
             )
+            measures = self._cuts.measures
         self.clipped = clip is not None
-        self.volumes: Floats = found["volumes"]
-        self.areas: Floats = found["areas"]
-        self.centroids: Floats = found["centroids"]
-        self.ridge_areas: Floats = found["ridge_areas"]
-        self._bodies = found
+        self.volumes, self.areas = measures.volumes, measures.areas
+        self.centroids, self.ridge_areas = measures.centroids, measures.ridge_areas
         self._body = np.full(len(self.volumes), -1, dtype=np.int64)
-        self._body[found["cut"]] = np.arange(len(found["cut"]))
+        if self._cuts is not None:
+            self._body[self._cuts.cut] = np.arange(len(self._cuts.cut))
 
     def shape(self, cell: int) -> tuple[Floats, tuple[Indices, ...], Indices]:
         """Return corners, faces (rows of these) and the ridge of each face, negative for none.
@@ -164,30 +163,33 @@ class Bodies:
             Ridges of faces.
         """
         body = int(self._body[cell])
-        return self._whole(cell) if body < 0 else self._cut(body)
+        if self._cuts is None or body < 0:
+            return self._whole(cell)
+        return _cut(self._cuts, body)
 
     def _whole(self, cell: int) -> tuple[Floats, tuple[Indices, ...], Indices]:
         dual = self._dual
-        start, end = dual["region_ridge_starts"][cell : cell + 2]
-        ridges = dual["region_ridges"][start:end]
+        start, end = dual.region_ridge_starts[cell : cell + 2]
+        ridges = dual.region_ridges[start:end]
         faces = []
         for ridge in ridges.tolist():
-            first, last = dual["starts"][ridge : ridge + 2]
-            face = dual["entries"][first:last]
-            faces.append(face if dual["sites"][ridge, 0] == dual["site"][cell] else face[::-1])
+            first, last = dual.ridge_starts[ridge : ridge + 2]
+            face = dual.ridge_entries[first:last]
+            faces.append(face if dual.sites[ridge, 0] == dual.site[cell] else face[::-1])
         used = np.unique(np.concatenate([*faces, np.empty(0, dtype=np.int32)]))
         is_open = not faces or int(used[0]) < 0
         used = used[used >= 0].astype(np.int64)
         if is_open:
-            return dual["vertices"][used], (), np.empty(0, dtype=np.int32)
+            return dual.vertices[used], (), np.empty(0, dtype=np.int32)
         renamed = tuple(np.searchsorted(used, face).astype(np.int32) for face in faces)
-        return dual["vertices"][used], renamed, ridges
+        return dual.vertices[used], renamed, ridges
 
-    def _cut(self, body: int) -> tuple[Floats, tuple[Indices, ...], Indices]:
-        found = self._bodies
-        begin, end = found["point_starts"][body : body + 2]
-        first, last = found["face_starts"][body : body + 2]
-        bounds = found["corner_starts"][first : last + 1]
-        corners = found["corners"][bounds[0] : bounds[-1]] - begin
-        faces = np.split(corners, bounds[1:-1] - bounds[0]) if last > first else []
-        return found["points"][begin:end], tuple(faces), found["labels"][first:last]
+
+def _cut(cells: ClippedCells3, body: int) -> tuple[Floats, tuple[Indices, ...], Indices]:
+    """Corners, faces and ridges of one of the cells that the clip has cut."""
+    begin, end = cells.point_starts[body : body + 2]
+    first, last = cells.face_starts[body : body + 2]
+    bounds = cells.corner_starts[first : last + 1]
+    corners = cells.corners[bounds[0] : bounds[-1]] - begin
+    faces = np.split(corners, bounds[1:-1] - bounds[0]) if last > first else []
+    return cells.points[begin:end], tuple(faces), cells.labels[first:last]

@@ -352,7 +352,7 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
     a, b = begin - origin[cell], end - origin[cell]
     # Signed, so that rings around holes and notches take away what others have counted.
     size = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
-    site = diagram.points[diagram._dual["site"]]
+    site = diagram.points[diagram._dual.site]
     centers = site.copy()
     if density is None:
         mass = clipped.areas

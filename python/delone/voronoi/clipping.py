@@ -22,11 +22,12 @@ from delone.voronoi.overlay import as_polygons, intersections, with_shared_corne
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._core import Diagram2
     from delone.voronoi.outline import Clip
+    from delone.voronoi.torus import PeriodicDual
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
-    Dual = dict[str, NDArray[Any]]
 
 __all__ = ["Clipped", "cells"]
 
@@ -58,7 +59,9 @@ class Clipped:
     ) -> None:
         self.starts, self.corners, self.ridges = starts, corners, ridges
         self.ridge_count = ridge_count
-        self.areas, self.centroids, self.perimeters = _core.measures2(starts, corners, workers)
+        measures = _core.measures2(starts, corners, workers)
+        self.areas, self.centroids = measures.areas, measures.centroids
+        self.perimeters = measures.perimeters
 
     def _next(self) -> NDArray[np.int64]:
         """The corner after each corner."""
@@ -97,8 +100,8 @@ class Clipped:
 class _Bounded(Clipped):
     """The bounded cells, where nothing is clipped; the others are infinite."""
 
-    def __init__(self, dual: Dual, workers: int) -> None:
-        starts, vertices = dual["starts"], dual["region_vertices"]
+    def __init__(self, dual: Diagram2, workers: int) -> None:
+        starts, vertices = dual.region_starts, dual.region_vertices
         sizes = np.diff(starts)
         gaps = np.concatenate(([0], np.cumsum(vertices < 0)))
         self._open = (gaps[starts[1:]] > gaps[starts[:-1]]) | (sizes == 0)
@@ -107,9 +110,9 @@ class _Bounded(Clipped):
         bounded = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
         super().__init__(
             bounded,
-            dual["vertices"][vertices[kept]],
-            dual["region_ridges"][kept],
-            len(dual["sites"]),
+            dual.vertices[vertices[kept]],
+            dual.region_ridges[kept],
+            len(dual.sites),
             workers,
         )
         self._dual = dual
@@ -117,10 +120,10 @@ class _Bounded(Clipped):
         self.perimeters[self._open] = np.inf
 
     def ridge_lengths(self) -> Floats:
-        ends = self._dual["ends"]
+        ends = self._dual.ends
         lengths = np.full(len(ends), np.inf)
         finite = (ends >= 0).all(axis=1)
-        first, second = self._dual["vertices"][ends[finite]].swapaxes(0, 1)
+        first, second = self._dual.vertices[ends[finite]].swapaxes(0, 1)
         lengths[finite] = _distances(first, second)
         return lengths
 
@@ -268,7 +271,7 @@ class _InOutline(Clipped):
 def cells(
     points: Floats,
     weights: Floats | None,
-    dual: Dual,
+    dual: Diagram2 | PeriodicDual,
     clip: Clip | None,
     *,
     periods: tuple[float | None, float | None] | None = None,
@@ -282,8 +285,8 @@ def cells(
         The sites.
     weights : ndarray of float64, shape (n,), optional
         Their weights.
-    dual : dict of ndarray
-        The arrays of the diagram.
+    dual : Diagram2 or PeriodicDual
+        The diagram.
     clip : Clip, optional
         Where cells end.
     periods : tuple of two floats or None, optional
@@ -296,19 +299,21 @@ def cells(
     Clipped
         Polygons and their measures.
     """
+    cells_alone = dual.cells if isinstance(dual, torus.PeriodicDual) else dual
     if clip is None:
-        return _Bounded(dual, workers)
-    if periods is not None:
+        return _Bounded(cells_alone, workers)
+    if isinstance(dual, torus.PeriodicDual):
+        assert periods is not None
         return _in_strip(points, weights, dual, clip, periods=periods, workers=workers)
     cut = _core.voronoi_clip2(points, weights, dual, clip.bounds, workers)
-    whole = Clipped(*cut, len(dual["sites"]), workers)
+    whole = Clipped(cut.starts, cut.corners, cut.ridges, len(dual.sites), workers)
     return whole if clip.outline is None else _InOutline(whole, clip, workers)
 
 
 def _in_strip(
     points: Floats,
     weights: Floats | None,
-    dual: Dual,
+    dual: PeriodicDual,
     clip: Clip,
     *,
     periods: tuple[float | None, float | None],
@@ -317,18 +322,18 @@ def _in_strip(
     """Cells with one period, each around its site, cut in the other direction."""
     at, heavy, cells_alone = torus.unrolled(points, weights, dual, periods)
     # As wide as no cell is: none reaches further than its neighbours.
-    reach = np.concatenate((at, dual["vertices"]))
+    reach = np.concatenate((at, dual.cells.vertices))
     low, high = reach.min(axis=0), reach.max(axis=0)
     with np.errstate(over="ignore"):
         wide = np.concatenate((low - (high - low), high + (high - low)))
     bounds = np.where(np.isfinite(clip.bounds), clip.bounds, wide)
     largest = float(np.finfo(np.float64).max)
     left, bottom, right, top = np.clip(bounds, -largest, largest).tolist()
-    starts, corners, entries = _core.voronoi_clip2(
-        at, heavy, cells_alone, (left, bottom, right, top), workers
-    )
-    ridges = np.where(entries < 0, -1, np.append(dual["region_ridges"], -1)[entries])
-    return Clipped(starts, corners, ridges.astype(np.int32), len(dual["sites"]), workers)
+    cut = _core.voronoi_clip2(at, heavy, cells_alone, (left, bottom, right, top), workers)
+    # The ridges of the cells alone are their entries.
+    entries, of_entries = cut.ridges, np.append(dual.cells.region_ridges, -1)
+    ridges = np.where(entries < 0, -1, of_entries[entries]).astype(np.int32)
+    return Clipped(cut.starts, cut.corners, ridges, len(dual.cells.sites), workers)
 
 
 def _distances(a: Floats, b: Floats) -> Floats:

@@ -21,10 +21,12 @@ from delone.regular import as_weights
 from delone.voronoi import clipping, dual, outline, shapes, sites, thin
 from delone.voronoi.cells import Cell, Neighbors, Rays, as_site
 from delone.voronoi.lists import compressed, gaps_once
+from delone.voronoi.torus import PeriodicDual
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone._core import Diagram2, Diagram3
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation
@@ -172,15 +174,18 @@ class Voronoi(Immutable):
         "_mesh",
         "_periods",
         "_points",
+        "_repeated",
         "_weights",
         "_workers",
     )
 
     _clip: outline.Clip | None
-    _dual: dict[str, NDArray[Any]]
+    _dual: Diagram2
     _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
     _periods: tuple[float | None, float | None] | None
     _points: Floats
+    # The diagram and what belongs to it, where there are periods.
+    _repeated: PeriodicDual | None
     _weights: Floats | None
     _workers: int
 
@@ -212,6 +217,7 @@ class Voronoi(Immutable):
             warn_of_degrees(points, own, planar=planar)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
+        arrays: Diagram2 | PeriodicDual
         lengths = None
         if periodic is None:
             mesh, arrays = sites.in_plane(own, heavy, threads)
@@ -236,16 +242,23 @@ class Voronoi(Immutable):
     def _fill(
         self,
         *,
-        dual: dict[str, NDArray[Any]],
+        dual: Diagram2 | Diagram3 | PeriodicDual,
         points: Floats,
         weights: Floats | None,
         **rest: Any,
     ) -> None:
         """Set everything there is; afterwards nothing can be set."""
+        repeated = None
+        if isinstance(dual, PeriodicDual):
+            repeated = dual.sealed()
+            dual = repeated.cells
+        else:
+            dual = type(dual)(*map(sealed, dual.arrays()))
         self._hold(
             points=sealed(points),
             weights=None if weights is None else sealed(weights),
-            dual={name: sealed(array) for name, array in dual.items()},
+            dual=dual,
+            repeated=repeated,
             **rest,
         )
 
@@ -256,8 +269,9 @@ class Voronoi(Immutable):
         return diagram
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("points", "weights", "mesh", "dual", "clip", "periods", "workers")
-        return self._from_parts, ({name: getattr(self, f"_{name}") for name in names},)
+        names = ("points", "weights", "mesh", "clip", "periods", "workers")
+        parts = {name: getattr(self, f"_{name}") for name in names}
+        return self._from_parts, (parts | {"dual": self._repeated or self._dual},)
 
     @property
     def points(self) -> Floats:
@@ -304,7 +318,7 @@ class Voronoi(Immutable):
     @property
     def vertices(self) -> Floats:
         """The vertices of the whole diagram, (k, d)."""
-        return self._dual["vertices"]
+        return self._dual.vertices
 
     @property
     def ridge_points(self) -> Indices:
@@ -312,7 +326,7 @@ class Voronoi(Immutable):
 
         The first lies to the left of the way from the first of its `ridge_vertices` to the second.
         """
-        return self._dual["sites"]
+        return self._dual.sites
 
     @property
     @kept
@@ -321,16 +335,16 @@ class Voronoi(Immutable):
 
         Zeros without periods. The vertices of a ridge lie where its first site sees them.
         """
-        if "moved" in self._dual:
-            return self._dual["moved"]
+        if self._repeated is not None:
+            return self._repeated.moved
         return sealed(np.zeros((len(self.ridge_points), 2), dtype=np.int32))
 
     @property
     @kept
     def ridge_vertices(self) -> Indices:
         """The two vertices of each ridge, (r, 2); -1, which comes first, where it is open."""
-        ends = self._dual["ends"]
-        return ends if not len(self._dual["rays"]) else sealed(np.maximum(ends, -1))
+        ends = self._dual.ends
+        return ends if not len(self._dual.rays) else sealed(np.maximum(ends, -1))
 
     @property
     @kept
@@ -345,19 +359,19 @@ class Voronoi(Immutable):
         """For each cell its vertices, counter-clockwise, with -1 where it is open."""
         indptr, indices = (array.tolist() for array in self.region_vertices)
         lists = [indices[a:b] for a, b in itertools.pairwise(indptr)]
-        if len(self._dual["rays"]):
+        if len(self._dual.rays):
             return [gaps_once(region) for region in lists]
         return lists
 
     @property
     def region_vertices(self) -> tuple[Indices, Indices]:
         """`regions` as compressed rows (indptr, indices), a -1 for each open end of a ridge."""
-        return self._dual["starts"], self._dual["region_vertices"]
+        return self._dual.region_starts, self._dual.region_vertices
 
     @property
     def point_region(self) -> Indices:
         """The cell of each point, (n,), as an index of `regions`."""
-        return self._dual["region"]
+        return self._dual.region
 
     @property
     @kept
@@ -365,7 +379,7 @@ class Voronoi(Immutable):
         """The site of each row, (n,): the first row with the same coordinates (and weight)."""
         found = np.arange(self.npoints, dtype=np.int32)
         has_cell = self.point_region >= 0
-        found[has_cell] = self._dual["site"][self.point_region[has_cell]]
+        found[has_cell] = self._dual.site[self.point_region[has_cell]]
         return sealed(found)
 
     @property
@@ -377,7 +391,7 @@ class Voronoi(Immutable):
     @property
     def triangle_vertices(self) -> Indices:
         """The vertex of each triangle of `triangulation`, (m,); -1 beyond the range of doubles."""
-        return self._dual["triangle_vertex"]
+        return self._dual.simplex_vertex
 
     @property
     @kept
@@ -387,7 +401,7 @@ class Voronoi(Immutable):
         A ridge that lies beyond the range of doubles as a whole has no ray. Where only its ends do,
         it has two from one origin, like a line.
         """
-        ends, directions = self._dual["ends"], self._dual["rays"]
+        ends, directions = self._dual.ends, self._dual.rays
         ridge, which = np.nonzero(ends < 0)
         other = ends[ridge, 1 - which]
         line = np.flatnonzero(other < 0)
@@ -399,14 +413,14 @@ class Voronoi(Immutable):
         direction = directions[~ends[ridge, which]]
         there: NDArray[np.bool_] = np.all(np.isfinite(origin), axis=1)
         there[line] &= self._lies_between(origin[line], ends[ridge[line]])
-        found = ridge[there].astype(np.int32), origin[there], direction[there]
-        return Rays(*map(sealed, found))
+        rows = sealed(ridge[there].astype(np.int32))
+        return Rays(rows, sealed(origin[there]), sealed(direction[there]))
 
     def _lies_between(self, origin: Floats, ends: Indices) -> NDArray[np.bool_]:
         """Whether points of lines lie before the vertices beyond the range that end them."""
         found = np.ones(len(origin), dtype=bool)
         for end in ends.T:
-            direction, place = self._dual["rays"][~end], self._dual["beyond"][~end]
+            direction, place = self._dual.rays[~end], self._dual.beyond[~end]
             k = np.abs(direction).argmax(axis=1)[:, None]
             with np.errstate(over="ignore", invalid="ignore"):
                 way = np.take_along_axis(direction, k, 1) * np.take_along_axis(place - origin, k, 1)
@@ -428,7 +442,7 @@ class Voronoi(Immutable):
         found = clipping.cells(
             self._points,
             self._weights,
-            self._dual,
+            self._repeated or self._dual,
             self._clip,
             periods=self._periods,
             workers=self._workers,
@@ -443,7 +457,7 @@ class Voronoi(Immutable):
         if self._weights is not None:
             lost = lost[:0]
         elif self._clip is not None and len(lost):
-            lost = lost[self._clip.holds(self._points[self._dual["site"][lost]])]
+            lost = lost[self._clip.holds(self._points[self._dual.site[lost]])]
         found = thin.among(clipped.areas, clipped.perimeters, clipped.starts, clipped.corners)
         found[lost] = True
         return found
@@ -533,8 +547,8 @@ class Voronoi(Immutable):
         """
         row = as_site(i)
         region, site = int(self.point_region[row]), int(self.duplicate_of[row])
-        start, end = self._dual["starts"][region : region + 2] if region >= 0 else (0, 0)
-        entries = self._dual["region_vertices"][start:end]
+        start, end = self._dual.region_starts[region : region + 2] if region >= 0 else (0, 0)
+        entries = self._dual.region_vertices[start:end]
         bounded = region < 0 or (bool(len(entries)) and bool((entries >= 0).all()))
         if not bounded and len(entries):
             entries = np.roll(entries, -int(np.flatnonzero(entries < 0)[0]))

@@ -1,30 +1,31 @@
 """The arrays of a diagram: from the core, or from the order of sites that lie on one line.
 
-A `Dual` is what the core's `voronoi2` returns, and means the same in both cases:
+A `Diagram2` is what the core's `voronoi2` returns, and means the same in both cases:
 
 * ridge r has the sites ``sites[r]`` and the ends ``ends[r]``: vertex v, or ``~i`` for ray i with
   direction ``rays[i]``. The ray leads to the vertex ``beyond[i]``, outside the range of doubles and
   with infinite coordinates there, or on for ever where that is NaN. The first site of a ridge lies
   to the left of the way from its first end to its second.
-* cell c has the site ``site[c]`` and the entries ``starts[c]:starts[c + 1]``: counter-clockwise, a
-  vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that leads on from there
-  in ``region_ridges``.
+* cell c has the site ``site[c]`` and the entries ``region_starts[c]:region_starts[c + 1]``:
+  counter-clockwise, a vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that
+  leads on from there in ``region_ridges``.
 * ``region[p]`` is the cell of point p; -1 where it has none.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from delone._core import Diagram2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
-    Dual = dict[str, NDArray[Any]]
 
 __all__ = ["foot", "of_chain"]
 
@@ -32,7 +33,7 @@ __all__ = ["foot", "of_chain"]
 _SMALLEST, _LARGEST = 2.0**-900, 2.0**900
 
 
-def of_chain(points: Floats, chain: Indices) -> Dual:
+def of_chain(points: Floats, chain: Indices) -> Diagram2:
     """Return the diagram of distinct sites on one line: half-planes and strips.
 
     Parameters
@@ -44,7 +45,7 @@ def of_chain(points: Floats, chain: Indices) -> Dual:
 
     Returns
     -------
-    dict
+    Diagram2
         As from the core.
 
     Examples
@@ -52,7 +53,7 @@ def of_chain(points: Floats, chain: Indices) -> Dual:
     >>> import numpy as np
     >>> from delone.voronoi.dual import of_chain
     >>> dual = of_chain(np.array([(0.0, 0), (2, 0)]), np.array([0, 1]))
-    >>> dual["sites"].tolist(), dual["ends"].tolist(), dual["rays"].tolist()
+    >>> dual.sites.tolist(), dual.ends.tolist(), dual.rays.tolist()
     ([[0, 1]], [[-1, -2]], [[0.0, -1.0], [0.0, 1.0]])
     """
     k = len(chain)
@@ -65,19 +66,19 @@ def of_chain(points: Floats, chain: Indices) -> Dual:
     entries = np.repeat(np.arange(k, dtype=np.int32), 2) - np.tile([0, 1], k).astype(np.int32)
     kept = (entries >= 0) & (entries < k - 1)
     counts = kept.reshape(k, 2).sum(axis=1)
-    return {
-        "vertices": np.empty((0, 2)),
-        "triangle_vertex": np.empty(0, dtype=np.int32),
-        "sites": np.column_stack((chain[:-1], chain[1:])).astype(np.int32),
-        "ends": ~np.column_stack((2 * ridges, 2 * ridges + 1)),
-        "rays": np.stack((-up, up), axis=1).reshape(-1, 2) + 0.0,
-        "beyond": np.full((2 * (k - 1), 2), np.nan),
-        "region": region,
-        "site": chain.astype(np.int32),
-        "starts": np.concatenate(([0], np.cumsum(counts))).astype(np.int32),
-        "region_vertices": np.full(2 * (k - 1), -1, dtype=np.int32),
-        "region_ridges": entries[kept],
-    }
+    return Diagram2(
+        vertices=np.empty((0, 2)),
+        simplex_vertex=np.empty(0, dtype=np.int32),
+        sites=np.column_stack((chain[:-1], chain[1:])).astype(np.int32),
+        ends=~np.column_stack((2 * ridges, 2 * ridges + 1)),
+        rays=np.stack((-up, up), axis=1).reshape(-1, 2) + 0.0,
+        beyond=np.full((2 * (k - 1), 2), np.nan),
+        region=region,
+        site=chain.astype(np.int32),
+        region_starts=np.concatenate(([0], np.cumsum(counts))).astype(np.int32),
+        region_vertices=np.full(2 * (k - 1), -1, dtype=np.int32),
+        region_ridges=entries[kept],
+    )
 
 
 def _directions(a: Floats, b: Floats) -> Floats:

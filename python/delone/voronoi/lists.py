@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from delone._core import Diagram3
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -66,20 +68,20 @@ def gaps_once(region: list[int]) -> list[int]:
     return kept or region[:1]
 
 
-def ridge_lists(dual: dict[str, NDArray[Any]]) -> list[list[int]]:
+def ridge_lists(dual: Diagram3) -> list[list[int]]:
     """Return the vertices of each ridge in their order around it; -1, which comes first, if open.
 
     Parameters
     ----------
-    dual : dict of ndarray
-        The arrays of the core.
+    dual : Diagram3
+        The diagram.
 
     Returns
     -------
     list of list of int
         Vertices, ridge by ridge.
     """
-    starts, entries = dual["starts"].tolist(), dual["entries"].tolist()
+    starts, entries = dual.ridge_starts.tolist(), dual.ridge_entries.tolist()
     return [_from_the_gap(entries[a:b]) for a, b in itertools.pairwise(starts)]
 
 

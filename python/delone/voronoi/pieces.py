@@ -13,6 +13,7 @@ from delone.voronoi.outline import next_corner
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._core import CellPieces2
     from delone.voronoi.clipping import Clipped
     from delone.voronoi.outline import Clip
 
@@ -31,8 +32,8 @@ class Pieces:
     ----------
     rows : ndarray of int64, shape (k,)
         The cells, ascending.
-    found : dict of ndarray
-        The arrays of the core.
+    found : CellPieces2
+        What the core has left.
 
     Attributes
     ----------
@@ -46,14 +47,13 @@ class Pieces:
         Their centers of gravity.
     """
 
-    def __init__(self, rows: NDArray[np.int64], found: dict[str, NDArray[Any]]) -> None:
+    def __init__(self, rows: NDArray[np.int64], found: CellPieces2) -> None:
         self._rows, self._found = rows, found
-        self.doubtful = found["left"] == _DOUBTFUL
-        self.traced = found["left"] == _PARTS
-        self.corners: Floats = found["points"]
-        self.areas: Floats = found["areas"]
-        self.perimeters: Floats = found["perimeters"]
-        self.centroids: Floats = found["centroids"]
+        self.doubtful = found.left == _DOUBTFUL
+        self.traced = found.left == _PARTS
+        self.corners = found.points
+        self.areas, self.perimeters = found.measures.areas, found.measures.perimeters
+        self.centroids = found.measures.centroids
 
     def sides(self, outside: int, inside: int, cut: int) -> NDArray[np.int8]:
         """Return one of three numbers for each cell.
@@ -68,14 +68,14 @@ class Pieces:
         ndarray of int8, shape (k,)
             The numbers.
         """
-        left = self._found["left"]
+        left = self._found.left
         found = np.where(left == _NOTHING, outside, np.where(left == _WHOLE, inside, cut))
         return found.astype(np.int8)
 
     def _owner(self) -> NDArray[np.int64]:
         """The cell of each corner."""
-        cells, parts, rings = (self._found[name] for name in ("cells", "parts", "rings"))
-        return np.repeat(self._rows, np.diff(rings[parts[cells]]))
+        found = self._found
+        return np.repeat(self._rows, np.diff(found.rings[found.parts[found.cells]]))
 
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
         """Return all boundaries.
@@ -87,7 +87,7 @@ class Pieces:
         begin, end : ndarray of float64, shape (p, 2)
             Where it begins and ends.
         """
-        after = next_corner(self._found["rings"], len(self.corners))
+        after = next_corner(self._found.rings, len(self.corners))
         return self._owner(), self.corners, self.corners[after]
 
     def ridge_lengths(self, count: int) -> tuple[NDArray[np.int64], Floats]:
@@ -106,8 +106,8 @@ class Pieces:
             Their lengths.
         """
         owner, begin, end = self.edges()
-        along = self._found["ridges"] >= 0
-        ridges = self._found["ridges"][along]
+        along = self._found.ridges >= 0
+        ridges = self._found.ridges[along]
         one = np.full(count, -1, dtype=np.int64)
         one[ridges] = owner[along]
         chosen = np.where(one[ridges] == owner[along], np.hypot(*(end - begin)[along].T), 0.0)
@@ -128,12 +128,12 @@ class Pieces:
         """
         shapely = shapely_or_say()
 
-        rings, parts = self._found["rings"], self._found["parts"]
+        rings, parts = self._found.rings, self._found.parts
         # Rings repeat their first corner at the end.
         closed = np.insert(self.corners, rings[1:], self.corners[rings[:-1]], axis=0)
         turned = rings + np.arange(len(rings))
         polygons = shapely.from_ragged_array(shapely.GeometryType.POLYGON, closed, (turned, parts))
-        cells = self._found["cells"]
+        cells = self._found.cells
         sizes = np.diff(cells)[self.traced]
         found = polygons[cells[:-1][self.traced]]
         several = np.flatnonzero(sizes > 1)

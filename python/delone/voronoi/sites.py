@@ -17,8 +17,9 @@ from delone.voronoi import dual, torus
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from delone._core import Diagram2, Diagram3
+
     Floats = NDArray[np.float64]
-    Arrays = dict[str, NDArray[Any]]
 
 __all__ = ["in_plane", "in_space", "repeated"]
 
@@ -27,7 +28,7 @@ _NO_SITE = "there is no point; a diagram needs one"
 
 def in_plane(
     points: Floats, weights: Floats | None, workers: int
-) -> tuple[Delaunay | RegularTriangulation | None, Arrays]:
+) -> tuple[Delaunay | RegularTriangulation | None, Diagram2]:
     """Triangulate sites in the plane, and take the dual.
 
     Parameters
@@ -43,7 +44,7 @@ def in_plane(
     -------
     mesh : Delaunay, RegularTriangulation or None
         The triangulation; None where all sites lie on one line.
-    arrays : dict of ndarray
+    arrays : Diagram2
         As `dual` describes them.
 
     Raises
@@ -54,24 +55,24 @@ def in_plane(
     return _plain(points, workers) if weights is None else _power(points, weights, workers)
 
 
-def _plain(points: Floats, workers: int) -> tuple[Delaunay | None, Arrays]:
+def _plain(points: Floats, workers: int) -> tuple[Delaunay | None, Diagram2]:
     try:
         mesh = Delaunay(points, workers=workers)
     except DegenerateInputError as error:
         if not len(error.chain):
             raise DegenerateInputError(_NO_SITE, reason="too few points") from None
         arrays = dual.of_chain(points, error.chain.astype(np.int32))
-        arrays["region"] = arrays["region"][first_rows(points)]
+        arrays.region[:] = arrays.region[first_rows(points)]
         return None, arrays
     arrays = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, workers)
     duplicate, first = mesh._duplicates.T
-    arrays["region"][duplicate] = arrays["region"][first]
+    arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays
 
 
 def _power(
     points: Floats, weights: Floats, workers: int
-) -> tuple[RegularTriangulation | None, Arrays]:
+) -> tuple[RegularTriangulation | None, Diagram2]:
     found, chain = triangulated(points, weights)
     mesh = None
     if len(found["simplices"]):
@@ -82,13 +83,13 @@ def _power(
     else:
         raise DegenerateInputError(_NO_SITE, reason="too few points")
     duplicate, first = found["duplicates"].T
-    arrays["region"][duplicate] = arrays["region"][first]
+    arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays
 
 
 def repeated(
     points: Floats, weights: Floats | None, periods: Any, workers: int
-) -> tuple[PeriodicDelaunay | None, Arrays, tuple[float | None, float | None]]:
+) -> tuple[PeriodicDelaunay | None, torus.PeriodicDual, tuple[float | None, float | None]]:
     """Triangulate sites that come again at a period, and take the dual.
 
     Parameters
@@ -106,8 +107,8 @@ def repeated(
     -------
     mesh : PeriodicDelaunay or None
         The triangulation; None where all copies lie on one line.
-    arrays : dict of ndarray
-        As `dual` describes them.
+    arrays : PeriodicDual
+        As `torus` describes them.
     periods : tuple of two floats or None
         The same, checked.
     """
@@ -119,14 +120,15 @@ def repeated(
             raise
         lengths = as_periods(periods)
         arrays = torus.of_line(points, error.chain.astype(np.int32), lengths)
-        arrays["region"] = arrays["region"][vertex_of(points, weights)]
+        region = arrays.cells.region
+        region[:] = region[vertex_of(points, weights)]
         return None, arrays, lengths
     return mesh, torus.of_periodic(mesh, workers), mesh.periods
 
 
 def in_space(
     points: Floats, weights: Floats | None, workers: int
-) -> tuple[Delaunay | RegularTriangulation, Arrays]:
+) -> tuple[Delaunay | RegularTriangulation, Diagram3]:
     """Triangulate sites in space, and take the dual.
 
     Parameters
@@ -142,7 +144,7 @@ def in_space(
     -------
     mesh : Delaunay or RegularTriangulation
         The triangulation.
-    arrays : dict of ndarray
+    arrays : Diagram3
         As `delone.voronoi.space` describes them.
     """
     mesh: Delaunay | RegularTriangulation
@@ -153,5 +155,5 @@ def in_space(
         mesh = RegularTriangulation._from_arrays(found, {}, None)
     arrays = _core.voronoi3(points, weights, mesh.simplices, mesh.neighbors, workers)
     duplicate, first = mesh._duplicates.T
-    arrays["region"][duplicate] = arrays["region"][first]
+    arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays

@@ -5,10 +5,11 @@ whole diagram; what follows from them, and what a clip leaves of the cells (`bod
 on first use and kept.
 
 The arrays of the core: ridge r has the sites ``sites[r]`` and the entries
-``entries[starts[r]:starts[r + 1]]``, counter-clockwise as seen from the second: a vertex, or ``~i``
-for ray i with direction ``rays[i]``, with which an open ridge begins and ends. Cell c has the site
-``site[c]``, its vertices as rows of ``region_starts`` and ``region_vertices`` (ascending, -1 first
-where it is open), and its ridges as rows of ``region_ridge_starts`` and ``region_ridges``.
+``ridge_entries[ridge_starts[r]:ridge_starts[r + 1]]``, counter-clockwise as seen from the second: a
+vertex, or ``~i`` for ray i with direction ``rays[i]``, with which an open ridge begins and ends.
+Cell c has the site ``site[c]``, its vertices as rows of ``region_starts`` and ``region_vertices``
+(ascending, -1 first where it is open), and its ridges as rows of ``region_ridge_starts`` and
+``region_ridges``.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike, NDArray
+
+    from delone._core import Diagram3
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -142,6 +145,8 @@ class SpaceVoronoi(Voronoi):
 
     __slots__ = ()
 
+    _dual: Diagram3  # type: ignore[assignment]
+
     def __init__(
         self,
         points: ArrayLike,
@@ -214,12 +219,12 @@ class SpaceVoronoi(Voronoi):
     @property
     def region_vertices(self) -> tuple[Indices, Indices]:
         """`regions` as compressed rows (indptr, indices)."""
-        return self._dual["region_starts"], self._dual["region_vertices"]
+        return self._dual.region_starts, self._dual.region_vertices
 
     @property
     def triangle_vertices(self) -> Indices:
         """The vertex of each tetrahedron of `triangulation`, (m,); -1 beyond the range."""
-        return self._dual["simplex_vertex"]
+        return self._dual.simplex_vertex
 
     @property
     @kept
@@ -229,7 +234,7 @@ class SpaceVoronoi(Voronoi):
         In the row that comes first the boundary of the ridge comes in from infinity, in the other
         one it goes out; directions lead away.
         """
-        starts, entries = self._dual["starts"].astype(np.int64), self._dual["entries"]
+        starts, entries = self._dual.ridge_starts.astype(np.int64), self._dual.ridge_entries
         first, last = starts[:-1], starts[1:] - 1
         ridge = np.flatnonzero(entries[first] < 0)
         at = np.stack((first[ridge], last[ridge]), axis=1)
@@ -237,7 +242,7 @@ class SpaceVoronoi(Voronoi):
         there = (entries[at] < 0) & (entries[beside] >= 0)
         rows = np.broadcast_to(ridge[:, None], at.shape)[there].astype(np.int32)
         origin = self.vertices[entries[beside[there]]]
-        direction = self._dual["rays"][~entries[at[there]]]
+        direction = self._dual.rays[~entries[at[there]]]
         return Rays(sealed(rows), sealed(origin), sealed(direction))
 
     @property
@@ -257,7 +262,7 @@ class SpaceVoronoi(Voronoi):
         if self._weights is not None:
             lost = lost[:0]
         elif where is not None and len(lost):
-            lost = lost[where.holds(self._points[self._dual["site"][lost]])]
+            lost = lost[where.holds(self._points[self._dual.site[lost]])]
         found = np.zeros(len(bodies.volumes), dtype=bool)
         found[lost] = True
         return found
@@ -362,8 +367,8 @@ class SpaceVoronoi(Voronoi):
         bounded = True
         if region >= 0:
             corners, faces, ridges = self._bodies.shape(region)
-            start = self._dual["region_starts"][region]
-            bounded = bool(self._dual["region_vertices"][start] >= 0)
+            start = self._dual.region_starts[region]
+            bounded = bool(self._dual.region_vertices[start] >= 0)
         pairs = self.ridge_points[np.maximum(ridges, 0)].reshape(-1, 2)
         beyond = np.where(ridges >= 0, np.where(pairs[:, 0] == site, *pairs[:, ::-1].T), -1)
         indptr, indices, areas = self.neighbors

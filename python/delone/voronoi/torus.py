@@ -8,22 +8,19 @@ it is moved against that of the first of them.
 With one period the hull is a strip: its two borders are parallel to the period, and the ridges that
 cross them are rays at right angles to it. Sites on one line along the period have strips for cells.
 
-Besides what every `dual` has there are
-
-* ``moved``, (r, 2): by how many periods the second site of each ridge is moved, seen from the
-  first. The ends of a ridge lie where its first site sees them.
-* ``beside`` and ``beside_moved``, for each entry of a cell: the site across the ridge that leads on
-  from there, and by how many periods it is moved, seen from the cell.
+A `PeriodicDual` has the arrays that every `dual` has, and what the periods add to them.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from delone import _core
+from delone._core import Diagram2
 from delone.errors import LimitError, ShapeError
+from delone.immutable import sealed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,16 +30,37 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Longs = NDArray[np.int64]
-    Dual = dict[str, NDArray[Any]]
 
-__all__ = ["of_line", "of_periodic", "require_room", "unrolled"]
+__all__ = ["PeriodicDual", "of_line", "of_periodic", "require_room", "unrolled"]
 
 _AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
 # Of an entry that is an end at infinity.
 _GAP = -1
 
 
-def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
+class PeriodicDual(NamedTuple):
+    """The diagram of a periodic set."""
+
+    cells: Diagram2
+    # (r, 2): by how many periods the second site of each ridge is moved, seen from the first. The
+    # ends of a ridge lie where its first site sees them.
+    moved: Indices
+    # (e,): for each entry of a cell the site across the ridge that leads on from there.
+    beside: Indices
+    # (e, 2): by how many periods that site is moved, seen from the cell.
+    beside_moved: Indices
+
+    def sealed(self) -> PeriodicDual:
+        """Return the same with arrays that cannot be written to."""
+        return PeriodicDual(
+            cells=Diagram2(*map(sealed, self.cells.arrays())),
+            moved=sealed(self.moved),
+            beside=sealed(self.beside),
+            beside_moved=sealed(self.beside_moved),
+        )
+
+
+def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
     """Return the diagram of a set with a period in x, in y, or both.
 
     Parameters
@@ -54,8 +72,8 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
 
     Returns
     -------
-    dict of ndarray
-        As from the core, and what the head of this module names.
+    PeriodicDual
+        Its diagram.
 
     Raises
     ------
@@ -69,7 +87,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
     shared &= bounded
     first, shift = _shared_centers(triangle, tau, shared)
     ridge, edges = _ridges(partners, shared)
-    cells, codes, gaps = _cells(mesh.simplices, np.where(bounded, partners, -1), shared)
+    site, starts, codes, gaps = _cells(mesh.simplices, np.where(bounded, partners, -1), shared)
     t, k = np.divmod(codes, 3)
     entries = np.column_stack((first[t], shift[t] - mesh.offsets[t, k]))
     # An end at infinity leads on along the edge at which the way around its site begins.
@@ -93,7 +111,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
     a, b = mesh.simplices[left, (e + 1) % 3], mesh.simplices[left, (e + 2) % 3]
     moved = mesh.offsets[left, (e + 2) % 3] - seen_from
     region = np.full(mesh.npoints, -1, dtype=np.int32)
-    region[cells["site"]] = np.arange(len(cells["site"]))
+    region[site] = np.arange(len(site))
     leads = ridge[t, along]
     of_first = gaps | (partners.reshape(-1)[3 * t + along] == edges[leads])
     of_first &= gaps | (edges[leads] != 3 * t + along)
@@ -101,22 +119,25 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> Dual:
         places = centers[vertices[:, 0]] + vertices[:, 1:] * lengths
     if not np.isfinite(places).all():
         raise LimitError("a vertex lies beyond the range of doubles")
-    return {
-        "vertices": places,
-        "triangle_vertex": of_triangles,
-        "sites": np.column_stack((a, b)),
-        "ends": ends,
-        "rays": _outward(mesh, a[open_ridges]),
-        "beyond": np.full((len(open_ridges), 2), np.nan),
-        "moved": moved,
-        "region": region[mesh.duplicate_of],
-        "site": cells["site"],
-        "starts": cells["starts"],
-        "region_vertices": np.where(gaps, _GAP, of_cells).astype(np.int32),
-        "region_ridges": leads,
-        "beside": np.where(of_first, b[leads], a[leads]),
-        "beside_moved": np.where(of_first[:, None], moved[leads], -moved[leads]),
-    }
+    diagram = Diagram2(
+        vertices=places,
+        simplex_vertex=of_triangles,
+        sites=np.column_stack((a, b)),
+        ends=ends,
+        rays=_outward(mesh, a[open_ridges]),
+        beyond=np.full((len(open_ridges), 2), np.nan),
+        region=region[mesh.duplicate_of],
+        site=site,
+        region_starts=starts,
+        region_vertices=np.where(gaps, _GAP, of_cells).astype(np.int32),
+        region_ridges=leads,
+    )
+    return PeriodicDual(
+        diagram,
+        moved,
+        beside=np.where(of_first, b[leads], a[leads]),
+        beside_moved=np.where(of_first[:, None], moved[leads], -moved[leads]),
+    )
 
 
 def _across(mesh: PeriodicDelaunay) -> tuple[NDArray[Any], ...]:
@@ -191,7 +212,9 @@ def _outward(mesh: PeriodicDelaunay, sites: Indices) -> Floats:
     return found
 
 
-def of_line(points: Floats, chain: Indices, periods: tuple[float | None, float | None]) -> Dual:
+def of_line(
+    points: Floats, chain: Indices, periods: tuple[float | None, float | None]
+) -> PeriodicDual:
     """Return the diagram of sites on one line along their one period: strips.
 
     Parameters
@@ -205,7 +228,7 @@ def of_line(points: Floats, chain: Indices, periods: tuple[float | None, float |
 
     Returns
     -------
-    dict of ndarray
+    PeriodicDual
         As from `of_periodic`.
     """
     k = len(chain)
@@ -220,27 +243,33 @@ def of_line(points: Floats, chain: Indices, periods: tuple[float | None, float |
     # Each cell has the ridge to the site after it, then that to the site before it.
     before = np.roll(ridges, 1)
     after_site, before_site = np.roll(chain, -1), np.roll(chain, 1)
-    return {
-        "vertices": np.empty((0, 2)),
-        "triangle_vertex": np.empty(0, dtype=np.int32),
-        "sites": np.column_stack((chain, after_site)).astype(np.int32),
-        "ends": ~np.column_stack((2 * ridges, 2 * ridges + 1)),
-        "rays": np.tile([-way, way], (k, 1)) + 0.0,
-        "beyond": np.full((2 * k, 2), np.nan),
-        "moved": moved,
-        "region": region,
-        "site": chain.astype(np.int32),
-        "starts": np.arange(0, 2 * k + 1, 2, dtype=np.int32),
-        "region_vertices": np.full(2 * k, _GAP, dtype=np.int32),
-        "region_ridges": np.column_stack((ridges, before)).reshape(-1).astype(np.int32),
-        "beside": np.column_stack((after_site, before_site)).reshape(-1).astype(np.int32),
-        "beside_moved": np.stack((moved, -np.roll(moved, 1, axis=0)), axis=1).reshape(-1, 2),
-    }
+    diagram = Diagram2(
+        vertices=np.empty((0, 2)),
+        simplex_vertex=np.empty(0, dtype=np.int32),
+        sites=np.column_stack((chain, after_site)).astype(np.int32),
+        ends=~np.column_stack((2 * ridges, 2 * ridges + 1)),
+        rays=np.tile([-way, way], (k, 1)) + 0.0,
+        beyond=np.full((2 * k, 2), np.nan),
+        region=region,
+        site=chain.astype(np.int32),
+        region_starts=np.arange(0, 2 * k + 1, 2, dtype=np.int32),
+        region_vertices=np.full(2 * k, _GAP, dtype=np.int32),
+        region_ridges=np.column_stack((ridges, before)).reshape(-1).astype(np.int32),
+    )
+    return PeriodicDual(
+        diagram,
+        moved,
+        beside=np.column_stack((after_site, before_site)).reshape(-1).astype(np.int32),
+        beside_moved=np.stack((moved, -np.roll(moved, 1, axis=0)), axis=1).reshape(-1, 2),
+    )
 
 
 def unrolled(
-    points: Floats, weights: Floats | None, dual: Dual, periods: tuple[float | None, float | None]
-) -> tuple[Floats, Floats | None, Dual]:
+    points: Floats,
+    weights: Floats | None,
+    dual: PeriodicDual,
+    periods: tuple[float | None, float | None],
+) -> tuple[Floats, Floats | None, Diagram2]:
     """Return the cells of one period with ridges of their own, as parts of a diagram without one.
 
     Parameters
@@ -249,7 +278,7 @@ def unrolled(
         The sites.
     weights : ndarray of float64, shape (n,), optional
         Their weights.
-    dual : dict of ndarray
+    dual : PeriodicDual
         Their diagram, with one period.
     periods : tuple of two floats or None
         The periods.
@@ -259,41 +288,44 @@ def unrolled(
     points, weights : ndarray
         The sites, and behind them for each entry of a cell the one across its ridge, where the cell
         sees that.
-    dual : dict of ndarray
-        The cells. Their ridges are their entries.
+    cells : Diagram2
+        The cells alone. Their ridges are their entries.
     """
     lengths = np.array([length or 0.0 for length in periods])
-    starts, entries = dual["starts"], dual["region_vertices"]
+    cells = dual.cells
+    starts, entries = cells.region_starts, cells.region_vertices
     count, sizes = len(entries), np.diff(starts)
-    owner = np.repeat(dual["site"], sizes)
+    owner = np.repeat(cells.site, sizes)
     following = np.arange(1, count + 1)
     following[starts[1:] - 1] = starts[:-1]
-    at = points[dual["beside"]] + dual["beside_moved"] * lengths
+    at = points[dual.beside] + dual.beside_moved * lengths
     ends = np.column_stack((entries, entries[following]))
     opens = np.flatnonzero(ends < 0)
     # A ray leads up or down with the border beside its site; a line first down, then up.
     axis = 1 if periods[1] is None else 0
     rays = np.zeros((len(opens), 2))
-    turned = dual["region_ridges"][opens // 2]
-    of_first = (dual["sites"][turned, 0] == owner[opens // 2]) & (
-        dual["moved"][turned] == dual["beside_moved"][opens // 2]
+    turned = cells.region_ridges[opens // 2]
+    of_first = (cells.sites[turned, 0] == owner[opens // 2]) & (
+        dual.moved[turned] == dual.beside_moved[opens // 2]
     ).all(axis=1)
     which = np.where(of_first, opens % 2, 1 - opens % 2)
-    codes = dual["ends"][turned, which]
-    rays[:, axis] = dual["rays"][~codes, axis]
+    codes = cells.ends[turned, which]
+    rays[:, axis] = cells.rays[~codes, axis]
     ends.reshape(-1)[opens] = ~np.arange(len(opens))
-    unfolded = {
-        "vertices": dual["vertices"],
-        "sites": np.column_stack((owner, len(points) + np.arange(count))).astype(np.int32),
-        "ends": ends.astype(np.int32),
-        "rays": rays,
-        "beyond": np.full((len(opens), 2), np.nan),
-        "site": dual["site"],
-        "starts": starts,
-        "region_vertices": entries,
-        "region_ridges": np.arange(count, dtype=np.int32),
-    }
-    heavy = None if weights is None else np.concatenate((weights, weights[dual["beside"]]))
+    unfolded = Diagram2(
+        vertices=cells.vertices,
+        simplex_vertex=np.empty(0, dtype=np.int32),
+        sites=np.column_stack((owner, len(points) + np.arange(count))).astype(np.int32),
+        ends=ends.astype(np.int32),
+        rays=rays,
+        beyond=np.full((len(opens), 2), np.nan),
+        region=np.empty(0, dtype=np.int32),
+        site=cells.site,
+        region_starts=starts,
+        region_vertices=entries,
+        region_ridges=np.arange(count, dtype=np.int32),
+    )
+    heavy = None if weights is None else np.concatenate((weights, weights[dual.beside]))
     return np.concatenate((points, at)), heavy, unfolded
 
 
@@ -339,12 +371,12 @@ def _ridges(
 
 def _cells(
     simplices: Indices, partners: NDArray[Any], shared: NDArray[np.bool_]
-) -> tuple[dict[str, NDArray[np.int32]], Longs, NDArray[np.bool_]]:
+) -> tuple[Indices, Indices, Longs, NDArray[np.bool_]]:
     """Sites, where the entries of each begin, and the corner (3 t + k) of each entry.
 
     All sites are gone around at once, a triangle a step, so that there are as many steps as the
     largest number of triangles around one site. On a border the way begins there, with an entry
-    for the end at infinity; the third result tells which these are.
+    for the end at infinity; the last result tells which these are.
     """
     across = partners[:, _AFTER].astype(np.int64)
     after = np.where(across < 0, -1, across // 3 * 3 + (across % 3 + 1) % 3).reshape(-1)
@@ -370,4 +402,4 @@ def _cells(
     owner, code, gap = owner[kept], code[kept], gap[kept]
     starts = np.zeros(len(site) + 1, dtype=np.int32)
     np.cumsum(np.bincount(owner, minlength=len(site)), out=starts[1:])
-    return {"site": site.astype(np.int32), "starts": starts}, code, gap
+    return site.astype(np.int32), starts, code, gap
