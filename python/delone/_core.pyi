@@ -13,6 +13,8 @@ __all__ = [
     "ClippedCells2",
     "ClippedCells3",
     "ConstrainedTriangulation",
+    "CornerWeights",
+    "DeepestPoints",
     "Diagram2",
     "Diagram3",
     "Faults2",
@@ -22,12 +24,16 @@ __all__ = [
     "ImprovedMesh",
     "ImprovementCounts",
     "JudgedTriangles",
+    "Location2",
+    "Location3",
     "Locator2",
     "Locator3",
+    "NaturalWeights",
     "PeriodicTriangulation",
     "RefinedMesh",
     "RegularTriangulation",
     "Triangulation",
+    "WeightRows",
     "__version__",
     "areas2",
     "around",
@@ -629,6 +635,108 @@ class ClippedCells3:
     def labels(self) -> NDArray[np.int32]:
         """The ridge of each face, negative for a face of the polyhedron, (f,)."""
 
+@final
+class Location2:
+    """Where queries lie among triangles."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The triangle that holds each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of its corners, NaN outside, (q, 3)."""
+    @property
+    def beside(self) -> NDArray[np.int32]:
+        """Outside, the triangle at the nearest point of the boundary; else -1, (q,)."""
+    @property
+    def edge(self) -> NDArray[np.int32]:
+        """Outside, the boundary edge with that point; else -1, (q, 2)."""
+    @property
+    def along(self) -> NDArray[np.float64]:
+        """Outside, how far along that edge the point is; else NaN, (q,)."""
+
+@final
+class Location3:
+    """Where queries lie among tetrahedra."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The tetrahedron that holds each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of its corners, NaN outside, (q, 4)."""
+    @property
+    def beside(self) -> NDArray[np.int32]:
+        """Outside, the tetrahedron at the nearest boundary point; else -1, (q,)."""
+    @property
+    def face(self) -> NDArray[np.int32]:
+        """Outside, the boundary face with that point; else -1, (q, 3)."""
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """Outside, the weights of its corners; else NaN, (q, 3)."""
+
+@final
+class CornerWeights:
+    """Weights of Clough-Tocher interpolation."""
+
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The triangle that holds each query, -1 outside, (q,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of values at its corners, (q, 3)."""
+    @property
+    def slopes(self) -> NDArray[np.float64]:
+        """Weights of gradients at its corners, (q, 3, 2)."""
+
+@final
+class NaturalWeights:
+    """Weights of natural neighbors as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Where the neighbors of each query begin, and the end, (q + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """The neighbors, (k,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Their weights, (k,)."""
+    @property
+    def slopes(self) -> NDArray[np.float64] | None:
+        """Weights of their gradients, (k, 2); None where the kind has none."""
+    @property
+    def simplex(self) -> NDArray[np.int32]:
+        """The simplex that holds each query, -1 outside, (q,)."""
+
+@final
+class WeightRows:
+    """Weights as compressed rows."""
+
+    @property
+    def indptr(self) -> NDArray[np.int64]:
+        """Where the entries of each row begin, and the end, (n + 1,)."""
+    @property
+    def indices(self) -> NDArray[np.int32]:
+        """Vertices, (k,)."""
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Their weights, (k,)."""
+
+@final
+class DeepestPoints:
+    """Points in conflict with triangles, those deepest in circles first."""
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """Where the points of each triangle begin, and the end, (m + 1,)."""
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """Rows of points, (k,)."""
+    @property
+    def complete(self) -> NDArray[np.bool_]:
+        """Whether these are all in conflict with the triangle, (m,)."""
+
 def methods2() -> list[str]: ...
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
 def validate2(
@@ -729,7 +837,7 @@ def within2(
 ) -> NDArray[np.bool_]: ...
 def deepest2(
     points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
-) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.bool_]]: ...
+) -> DeepestPoints: ...
 
 @final
 class Locator2:
@@ -740,15 +848,7 @@ class Locator2:
         neighbors: NDArray[np.int32],
     ) -> Locator2: ...
     def find(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
-    def locate(
-        self, xi: NDArray[np.float64], workers: int
-    ) -> tuple[
-        NDArray[np.int32],
-        NDArray[np.float64],
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.float64],
-    ]: ...
+    def locate(self, xi: NDArray[np.float64], workers: int) -> Location2: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
     def along(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.int32]: ...
     def linear(
@@ -765,20 +865,14 @@ class Locator2:
     ) -> NDArray[np.float64]: ...
     def clough_tocher_weights(
         self, xi: NDArray[np.float64], barrier: NDArray[np.bool_] | None, workers: int
-    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]: ...
+    ) -> CornerWeights: ...
     def natural(
         self,
         kind: str,
         xi: NDArray[np.float64],
         barrier: NDArray[np.bool_] | None,
         workers: int,
-    ) -> tuple[
-        NDArray[np.int64],
-        NDArray[np.int32],
-        NDArray[np.float64],
-        NDArray[np.float64] | None,
-        NDArray[np.int32],
-    ]: ...
+    ) -> NaturalWeights: ...
     def natural_values(
         self,
         kind: str,
@@ -789,9 +883,7 @@ class Locator2:
         order: int,
         workers: int,
     ) -> NDArray[np.float64]: ...
-    def leave_one_out(
-        self, kind: str, workers: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]: ...
+    def leave_one_out(self, kind: str, workers: int) -> WeightRows: ...
 
 def hull2(points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
 def hull3(points: NDArray[np.float64]) -> Hull3 | None: ...
@@ -808,18 +900,8 @@ class Locator3:
     def within(
         self, xi: NDArray[np.float64], workers: int
     ) -> tuple[NDArray[np.int32], NDArray[np.float64]]: ...
-    def locate(
-        self, xi: NDArray[np.float64], workers: int
-    ) -> tuple[
-        NDArray[np.int32],
-        NDArray[np.float64],
-        NDArray[np.int32],
-        NDArray[np.int32],
-        NDArray[np.float64],
-    ]: ...
-    def laplace(
-        self, xi: NDArray[np.float64], workers: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64], NDArray[np.int32]]: ...
+    def locate(self, xi: NDArray[np.float64], workers: int) -> Location3: ...
+    def laplace(self, xi: NDArray[np.float64], workers: int) -> NaturalWeights: ...
     def nearest(self, xi: NDArray[np.float64], workers: int) -> NDArray[np.int32]: ...
 
 def refine2(

@@ -138,19 +138,19 @@ def locate(index: _core.Locator2, points: Floats, xi: ArrayLike, workers: int | 
     """
     queries = as_vectors(xi, 2, name="xi")
     flat, leading = queries.reshape(-1, 2), queries.shape[:-1]
-    simplex, barycentric, beside, edge, share = index.locate(flat, as_workers(workers))
+    found = index.locate(flat, as_workers(workers))
     nearest = np.empty_like(flat)
     for block in blocks(len(flat)):
-        nearest[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
-    rows = np.flatnonzero(beside >= 0)
-    nearest[rows] = on_edges(points, edge[rows], share[rows])
+        nearest[block] = np.where((found.simplex[block] >= 0)[:, None], flat[block], np.nan)
+    rows = np.flatnonzero(found.beside >= 0)
+    nearest[rows] = on_edges(points, found.edge[rows], found.along[rows])
     return Location(
-        simplex.reshape(leading),
-        barycentric.reshape((*leading, 3)),
+        found.simplex.reshape(leading),
+        found.weights.reshape((*leading, 3)),
         nearest.reshape((*leading, 2)),
-        beside.reshape(leading),
-        edge.reshape((*leading, 2)),
-        share.reshape(leading),
+        found.beside.reshape(leading),
+        found.edge.reshape((*leading, 2)),
+        found.along.reshape(leading),
     )
 
 

@@ -54,7 +54,8 @@ def test_the_flag_tells_exactly_whether_there_are_more(name: str) -> None:
         ]
         distances = sorted(depth(corners, points[row]) for row in right)
         for most in {0, 1, len(right) // 2, max(0, len(right) - 1), len(right), len(right) + 1}:
-            starts, rows, is_all = _core.deepest2(points, corners.reshape(1, 6), most, 1)
+            deepest = _core.deepest2(points, corners.reshape(1, 6), most, 1)
+            starts, rows, is_all = deepest.starts, deepest.rows, deepest.complete
             found = rows.tolist()
             assert starts.tolist() == [0, len(found)]
             assert len(set(found)) == len(found) == min(most, len(right))
@@ -69,12 +70,13 @@ def test_queries_of_several_tasks() -> None:
     points = datasets.uniform(2000, seed=3)
     corners = triangles(points, 900).reshape(-1, 6)
     for workers in (1, 3):
-        starts, rows, is_all = _core.deepest2(points, corners, 4, workers)
+        deepest = _core.deepest2(points, corners, 4, workers)
+        starts, rows, is_all = deepest.starts, deepest.rows, deepest.complete
         assert len(starts) == len(corners) + 1
         for i in [*range(0, len(corners), 97), 255, 256, 257, 511, 512, len(corners) - 1]:
-            _, mine, flag = _core.deepest2(points, corners[i : i + 1], 4, 1)
-            assert rows[starts[i] : starts[i + 1]].tolist() == mine.tolist()
-            assert is_all[i] == flag[0]
+            alone = _core.deepest2(points, corners[i : i + 1], 4, 1)
+            assert rows[starts[i] : starts[i + 1]].tolist() == alone.rows.tolist()
+            assert is_all[i] == alone.complete[0]
 
 
 def test_many_triangles_within_a_box() -> None:

@@ -133,7 +133,8 @@ def test_answers_are_exact() -> None:
     asked = asked[turns != 0]
     asked[turns[turns != 0] < 0] = asked[turns[turns != 0] < 0][:, ::-1]
     corners = np.ascontiguousarray(asked.reshape(-1, 6))
-    starts, rows, is_all = _core.deepest2(points, corners, 4, 2)
+    deepest = _core.deepest2(points, corners, 4, 2)
+    starts, rows, is_all = deepest.starts, deepest.rows, deepest.complete
     for i, (a, b, c) in enumerate(asked):
         signs = incircle(a, b, c, points, ties="canonical")
         mine = rows[starts[i] : starts[i + 1]]

@@ -194,7 +194,9 @@ def test_the_nearest_vertex_beside_hubs(kind: str, calls: str) -> None:
 def test_weights_and_nearest_points(seed: int) -> None:
     for points, triangles, queries in cases(seed, 5_000_000):
         index = locator(points, triangles)
-        triangle, weights, beside, edge, along = index.locate(queries, 2)
+        place = index.locate(queries, 2)
+        triangle, weights, beside = place.simplex, place.weights, place.beside
+        edge, along = place.edge, place.along
         assert np.array_equal(triangle, index.find(queries, 1))
         held = triangle >= 0
         corners = points[triangles[triangle[held]]]
@@ -228,9 +230,10 @@ def test_what_is_not_finite_is_nowhere() -> None:
     index = locator(mesh.points, mesh.simplices)
     bad = np.array([(np.nan, 0), (0, np.inf)])
     assert index.find(bad, 1).tolist() == index.nearest(bad, 1).tolist() == [-1, -1]
-    triangle, weights, beside, edge, along = index.locate(bad, 1)
-    assert triangle.tolist() == beside.tolist() == [-1, -1]
-    assert np.isnan(weights).all() and (edge == -1).all() and np.isnan(along).all()
+    place = index.locate(bad, 1)
+    assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
+    assert np.isnan(place.weights).all() and np.isnan(place.along).all()
+    assert (place.edge == -1).all()
     with pytest.raises(ShapeError, match="not finite"):
         index.along(bad[0], bad[1])
 

@@ -83,8 +83,9 @@ def test_sibson_weights_are_areas(name: str) -> None:
     inner = mesh.edges[~np.isin(mesh.edges, mesh.hull).all(axis=1)][:6]
     middles = points[inner].sum(axis=1) / 2
     queries = np.concatenate(((corners * shares[..., None]).sum(axis=1), middles))
-    indptr, indices, weights, slopes, triangle = index.natural("sibson", queries, None, 1)
-    assert slopes is None
+    table = index.natural("sibson", queries, None, 1)
+    indptr, indices, weights, triangle = table.indptr, table.indices, table.weights, table.simplex
+    assert table.slopes is None
     for i in np.flatnonzero(triangle >= 0):
         row = slice(indptr[i], indptr[i + 1])
         assert (weights[row] >= 0).all()
@@ -101,7 +102,9 @@ def test_weights_on_the_hull_and_at_sites(kind: str) -> None:
     points = np.concatenate(([(0, 0), (8, 0), (8, 8), (0, 8), (3, 0)], rng.random((20, 2)) * 8))
     _, index = locator(points)
     queries = np.array([(1, 0), (7, 0), (8, 2), (3, 0), (-1, 3), (np.nan, 3)], dtype=float)
-    indptr, indices, weights, slopes, triangle = index.natural(kind, queries, None, 1)
+    table = index.natural(kind, queries, None, 1)
+    indptr, indices, weights = table.indptr, table.indices, table.weights
+    slopes, triangle = table.slopes, table.simplex
     ranges = [slice(start, end) for start, end in pairwise(indptr)]
     rows = [dict(zip(indices[r], weights[r], strict=True)) for r in ranges]
     assert (triangle[:4] >= 0).all() and triangle[4:].tolist() == [-1, -1]
@@ -190,16 +193,17 @@ def test_weights_and_values_agree() -> None:
     values, gradients = rng.random((200, 3)), rng.random((200, 3, 2))
     queries = np.concatenate((rng.random((500, 2)) * 1.2, points[:20]))
     for kind in KINDS:
-        indptr, indices, weights, slopes, _ = index.natural(kind, queries, None, 1)
-        used = None if slopes is None else gradients
-        combined = _core.combine2(indptr, indices, weights, values, slopes, used, 2)
+        table = index.natural(kind, queries, None, 1)
+        used = None if table.slopes is None else gradients
+        rows = table.indptr, table.indices, table.weights
+        combined = _core.combine2(*rows, values, table.slopes, used, 2)
         direct = index.natural_values(kind, values, used, queries, None, 0, 2)
         assert combined == pytest.approx(direct, abs=1e-13, nan_ok=True)
         assert np.array_equal(combined[-20:], values[:20])
-    triangle, weights, slopes = index.clough_tocher_weights(queries, None, 2)
-    rows = mesh.simplices[triangle]
-    combined = (weights[..., None] * values[rows]).sum(axis=1)
-    combined += (slopes[:, :, None] * gradients[rows]).sum(axis=(1, 3))
+    found = index.clough_tocher_weights(queries, None, 2)
+    corners = mesh.simplices[found.simplex]
+    combined = (found.weights[..., None] * values[corners]).sum(axis=1)
+    combined += (found.slopes[:, :, None] * gradients[corners]).sum(axis=(1, 3))
     direct = index.clough_tocher(values, gradients, queries, None, 0, 1)
     assert combined == pytest.approx(direct, abs=1e-13, nan_ok=True)
 
@@ -238,8 +242,9 @@ def test_leaving_one_out(kind: str) -> None:
     points = np.concatenate((points, rng.random((60, 2)) / 8 + 0.2))
     _, index = locator(points)
     values = rng.random((len(points), 1))
-    indptr, indices, weights = index.leave_one_out(kind, 2)
-    found = _core.combine2(indptr, indices, weights, values, None, None, 1)
+    table = index.leave_one_out(kind, 2)
+    rows = table.indptr, table.indices, table.weights
+    found = _core.combine2(*rows, values, None, None, 1)
     for i in range(len(points)):
         others = np.delete(points, i, axis=0)
         _, rest = locator(others)

@@ -54,8 +54,16 @@ pub fn within2(
     Ok(column(py, found))
 }
 
-/// `(starts, rows, all)`.
-type Found = (Column<i64>, Column<i32>, Column<bool>);
+/// Points in conflict with triangles, those deepest in circles first.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct DeepestPoints {
+    /// Where the points of each triangle begin, and the end, (m + 1,).
+    pub starts: Column<i64>,
+    /// Rows of points, (k,).
+    pub rows: Column<i32>,
+    /// Whether these are all in conflict with the triangle, (m,).
+    pub complete: Column<bool>,
+}
 
 /// For each triangle, six coordinates a row, up to `most` points in conflict, and whether that is all.
 #[pyfunction]
@@ -65,7 +73,7 @@ pub fn deepest2(
     corners: PyReadonlyArray2<'_, f64>,
     most: usize,
     workers: usize,
-) -> PyResult<Found> {
+) -> PyResult<DeepestPoints> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let corners: &[[f64; 6]] = rows(&corners, "corners").map_err(|e| raise(py, &e))?;
     let finite = points.as_flattened().iter().all(|x| x.is_finite())
@@ -83,9 +91,9 @@ pub fn deepest2(
         );
         deepest(points, &triangles, most, workers, watch)
     })?;
-    Ok((
-        column(py, found.starts),
-        column(py, found.rows),
-        column(py, found.all),
-    ))
+    Ok(DeepestPoints {
+        starts: column(py, found.starts),
+        rows: column(py, found.rows),
+        complete: column(py, found.all),
+    })
 }

@@ -131,32 +131,49 @@ pub fn smooth_of(
     table_of(py, found, n, columns, order)
 }
 
-/// `(triangle, weights, slopes)` of Clough-Tocher interpolation.
+/// Weights of Clough-Tocher interpolation.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct CornerWeights {
+    /// The triangle that holds each query, -1 outside, (q,).
+    pub simplex: Column<i32>,
+    /// Weights of values at its corners, (q, 3).
+    pub weights: Table<f64>,
+    /// Weights of gradients at its corners, (q, 3, 2).
+    pub slopes: Py<PyArray3<f64>>,
+}
+
+/// The weights of Clough-Tocher interpolation.
 pub fn corner_weights_of(
     py: Python<'_>,
     locator: &Plane,
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
-) -> PyResult<(Column<i32>, Table<f64>, Py<PyArray3<f64>>)> {
+) -> PyResult<CornerWeights> {
     let fail = |e: Error| raise(py, &e);
     let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
     let (found, n) = locator.batch(xi, workers, |batch| clough_tocher_weights(batch, barrier))?;
-    Ok((
-        column(py, found.triangle),
-        shaped(py, found.weights, [n, 3])?,
-        shaped(py, found.slopes, [n, 3, 2])?,
-    ))
+    Ok(CornerWeights {
+        simplex: column(py, found.triangle),
+        weights: shaped(py, found.weights, [n, 3])?,
+        slopes: shaped(py, found.slopes, [n, 3, 2])?,
+    })
 }
 
-/// `(indptr, indices, weights, slopes, triangle)` of natural neighbours.
-pub type Neighbours = (
-    Column<i64>,
-    Column<i32>,
-    Column<f64>,
-    Option<Table<f64>>,
-    Column<i32>,
-);
+/// Weights of natural neighbors as compressed rows.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct NaturalWeights {
+    /// Where the neighbors of each query begin, and the end, (q + 1,).
+    pub indptr: Column<i64>,
+    /// The neighbors, (k,).
+    pub indices: Column<i32>,
+    /// Their weights, (k,).
+    pub weights: Column<f64>,
+    /// Weights of their gradients, (k, 2); None where the kind has none.
+    pub slopes: Option<Table<f64>>,
+    /// The simplex that holds each query, -1 outside, (q,).
+    pub simplex: Column<i32>,
+}
 
 /// The weights of natural neighbours.
 pub fn natural_of(
@@ -166,7 +183,7 @@ pub fn natural_of(
     xi: &Points<'_>,
     barrier: Option<&Closed<'_>>,
     workers: usize,
-) -> PyResult<Neighbours> {
+) -> PyResult<NaturalWeights> {
     let kind = kind_of(kind)?;
     let fail = |e: Error| raise(py, &e);
     let barrier = barrier_of(barrier, locator.held.count(py)).map_err(fail)?;
@@ -178,22 +195,33 @@ pub fn natural_of(
     } else {
         None
     };
-    Ok((
-        column(py, found.indptr),
-        column(py, found.indices),
-        column(py, found.weights),
+    Ok(NaturalWeights {
+        indptr: column(py, found.indptr),
+        indices: column(py, found.indices),
+        weights: column(py, found.weights),
         slopes,
-        column(py, triangle),
-    ))
+        simplex: column(py, triangle),
+    })
 }
 
-/// `(indptr, indices, weights)` of all other vertices, for each.
+/// Weights as compressed rows.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct WeightRows {
+    /// Where the entries of each row begin, and the end, (n + 1,).
+    pub indptr: Column<i64>,
+    /// Vertices, (k,).
+    pub indices: Column<i32>,
+    /// Their weights, (k,).
+    pub weights: Column<f64>,
+}
+
+/// The weights of all other vertices, for each.
 pub fn leave_one_out_of(
     py: Python<'_>,
     locator: &Plane,
     kind: &str,
     workers: usize,
-) -> PyResult<(Column<i64>, Column<i32>, Column<f64>)> {
+) -> PyResult<WeightRows> {
     let method = Method::named(kind)
         .ok_or_else(|| PyValueError::new_err(format!("nothing to leave out for {kind:?}")))?;
     let Rows {
@@ -204,7 +232,11 @@ pub fn leave_one_out_of(
     } = locator.run(py, usize::MAX, |at, watch| {
         leave_one_out(at.given, method, workers, watch)
     })?;
-    Ok((column(py, indptr), column(py, indices), column(py, weights)))
+    Ok(WeightRows {
+        indptr: column(py, indptr),
+        indices: column(py, indices),
+        weights: column(py, weights),
+    })
 }
 
 /// Sums of weights times values, row by row.

@@ -52,6 +52,12 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<voronoi3::Diagram3>()?;
     m.add_class::<voronoi3::ClippedCells3>()?;
     m.add_class::<voronoi3::CellMeasures3>()?;
+    m.add_class::<locate::Location2>()?;
+    m.add_class::<locate3::Location3>()?;
+    m.add_class::<interpolate::CornerWeights>()?;
+    m.add_class::<interpolate::NaturalWeights>()?;
+    m.add_class::<interpolate::WeightRows>()?;
+    m.add_class::<distributed::DeepestPoints>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;

@@ -2,27 +2,33 @@
 
 use delone_core::error::Error;
 use delone_core::locate::{Batch, Kept, Locator, along, coordinates, find, nearest};
-use numpy::{PyArray3, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, rows, shaped};
 use crate::errors::raise;
 use crate::given::checked;
 use crate::interpolate::{
-    Closed, Gradients, Neighbours, Points, Smooth, Values, corner_weights_of, leave_one_out_of,
-    linear_of, natural_of, smooth_of,
+    Closed, CornerWeights, Gradients, NaturalWeights, Points, Smooth, Values, WeightRows,
+    corner_weights_of, leave_one_out_of, linear_of, natural_of, smooth_of,
 };
 use crate::locator::Plane;
 use crate::signals::watched;
 
-/// `(triangle, weights, beside, edge, along)`.
-type Places = (
-    Column<i32>,
-    Table<f64>,
-    Column<i32>,
-    Table<i32>,
-    Column<f64>,
-);
+/// Where queries lie among triangles.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Location2 {
+    /// The triangle that holds each query, -1 outside, (q,).
+    pub simplex: Column<i32>,
+    /// Weights of its corners, NaN outside, (q, 3).
+    pub weights: Table<f64>,
+    /// Outside, the triangle at the nearest point of the boundary; else -1, (q,).
+    pub beside: Column<i32>,
+    /// Outside, the boundary edge with that point; else -1, (q, 2).
+    pub edge: Table<i32>,
+    /// Outside, how far along that edge the point is; else NaN, (q,).
+    pub along: Column<f64>,
+}
 
 /// A triangulation for many calls.
 #[pyclass(frozen, module = "delone._core")]
@@ -45,15 +51,15 @@ impl Locator2 {
     }
 
     /// Triangles with barycentric coordinates, and outside the nearest boundary point.
-    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Places> {
+    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Location2> {
         let (found, n) = self.0.batch(&xi, workers, coordinates)?;
-        Ok((
-            column(py, found.triangle),
-            shaped(py, found.weights, [n, 3])?,
-            column(py, found.beside),
-            shaped(py, found.edge, [n, 2])?,
-            column(py, found.along),
-        ))
+        Ok(Location2 {
+            simplex: column(py, found.triangle),
+            weights: shaped(py, found.weights, [n, 3])?,
+            beside: column(py, found.beside),
+            edge: shaped(py, found.edge, [n, 2])?,
+            along: column(py, found.along),
+        })
     }
 
     /// The nearest vertex to each query; of a Delaunay triangulation.
@@ -124,7 +130,7 @@ impl Locator2 {
         xi: Points<'_>,
         barrier: Option<Closed<'_>>,
         workers: usize,
-    ) -> PyResult<(Column<i32>, Table<f64>, Py<PyArray3<f64>>)> {
+    ) -> PyResult<CornerWeights> {
         corner_weights_of(py, &self.0, &xi, barrier.as_ref(), workers)
     }
 
@@ -136,7 +142,7 @@ impl Locator2 {
         xi: Points<'_>,
         barrier: Option<Closed<'_>>,
         workers: usize,
-    ) -> PyResult<Neighbours> {
+    ) -> PyResult<NaturalWeights> {
         natural_of(py, &self.0, kind, &xi, barrier.as_ref(), workers)
     }
 
@@ -168,12 +174,7 @@ impl Locator2 {
     }
 
     /// The weights of all other vertices, for each.
-    fn leave_one_out(
-        &self,
-        py: Python<'_>,
-        kind: &str,
-        workers: usize,
-    ) -> PyResult<(Column<i64>, Column<i32>, Column<f64>)> {
+    fn leave_one_out(&self, py: Python<'_>, kind: &str, workers: usize) -> PyResult<WeightRows> {
         leave_one_out_of(py, &self.0, kind, workers)
     }
 }

@@ -6,14 +6,23 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Column, Table, column, shaped};
-use crate::interpolate::Points;
+use crate::interpolate::{NaturalWeights, Points};
 use crate::locator::Space;
 
-/// `(simplex, weights, beside, face, shares)`.
-type Places = (Column<i32>, Table<f64>, Column<i32>, Table<i32>, Table<f64>);
-
-/// `(indptr, indices, weights, simplex)`.
-type Neighbours3 = (Column<i64>, Column<i32>, Column<f64>, Column<i32>);
+/// Where queries lie among tetrahedra.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct Location3 {
+    /// The tetrahedron that holds each query, -1 outside, (q,).
+    pub simplex: Column<i32>,
+    /// Weights of its corners, NaN outside, (q, 4).
+    pub weights: Table<f64>,
+    /// Outside, the tetrahedron at the nearest point of the boundary; else -1, (q,).
+    pub beside: Column<i32>,
+    /// Outside, the boundary face with that point; else -1, (q, 3).
+    pub face: Table<i32>,
+    /// Outside, the weights of its corners; else NaN, (q, 3).
+    pub shares: Table<f64>,
+}
 
 /// A triangulation in space for many calls.
 #[pyclass(frozen, module = "delone._core")]
@@ -48,26 +57,27 @@ impl Locator3 {
     }
 
     /// Tetrahedra with barycentric coordinates, and outside the nearest boundary point.
-    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Places> {
+    fn locate(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Location3> {
         let (found, n) = self.0.batch(&xi, workers, coordinates)?;
-        Ok((
-            column(py, found.simplex),
-            shaped(py, found.weights, [n, 4])?,
-            column(py, found.beside),
-            shaped(py, found.face, [n, 3])?,
-            shaped(py, found.shares, [n, 3])?,
-        ))
+        Ok(Location3 {
+            simplex: column(py, found.simplex),
+            weights: shaped(py, found.weights, [n, 4])?,
+            beside: column(py, found.beside),
+            face: shaped(py, found.face, [n, 3])?,
+            shares: shaped(py, found.shares, [n, 3])?,
+        })
     }
 
     /// Laplace weights of natural neighbours, as compressed rows, and the tetrahedra of queries.
-    fn laplace(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<Neighbours3> {
+    fn laplace(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<NaturalWeights> {
         let ((found, simplex), _) = self.0.batch(&xi, workers, natural)?;
-        Ok((
-            column(py, found.indptr),
-            column(py, found.indices),
-            column(py, found.weights),
-            column(py, simplex),
-        ))
+        Ok(NaturalWeights {
+            indptr: column(py, found.indptr),
+            indices: column(py, found.indices),
+            weights: column(py, found.weights),
+            slopes: None,
+            simplex: column(py, simplex),
+        })
     }
 
     /// The nearest vertex to each query; of a Delaunay triangulation.

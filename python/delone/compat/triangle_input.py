@@ -242,8 +242,8 @@ def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches)
 
 def _homes(places: Floats, index: Any) -> Indices:
     """The given triangle of each place, or the nearest one."""
-    simplex, _, beside, _, _ = index.locate(np.ascontiguousarray(places), 1)
-    homes: Indices = np.where(simplex >= 0, simplex, beside)
+    place = index.locate(np.ascontiguousarray(places), 1)
+    homes: Indices = np.where(place.simplex >= 0, place.simplex, place.beside)
     return homes
 
 
@@ -273,14 +273,14 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
     simplices, index = (base[0], base[2]) if isinstance(base, tuple) else (
         base.simplices, base._locator
     )  # fmt: skip
-    simplex, weights, _, edge, share = index.locate(places, 1)
-    inside = simplex >= 0
+    place = index.locate(places, 1)
+    inside = place.simplex >= 0
     full = _with_crossings(values, base, simplices)
     new = np.empty((len(places), values.shape[1]))
-    corners = full[simplices[simplex[inside]]]
-    new[inside] = (corners * weights[inside][..., None]).sum(axis=1)
-    a, b = full[edge[~inside]].transpose(1, 0, 2)
-    t = share[~inside][:, None]
+    corners = full[simplices[place.simplex[inside]]]
+    new[inside] = (corners * place.weights[inside][..., None]).sum(axis=1)
+    a, b = full[place.edge[~inside]].transpose(1, 0, 2)
+    t = place.along[~inside][:, None]
     new[~inside] = a * (1 - t) + b * t
     out[~old] = new
     return out

@@ -140,9 +140,10 @@ class CloughTocher(Smooth):
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         sheet = self._sheet
-        triangle, weights, slopes = sheet.locator.clough_tocher_weights(
+        found = sheet.locator.clough_tocher_weights(
             queries, sheet.barrier, as_workers(self._workers)
         )
+        triangle, weights, slopes = found.simplex, found.weights, found.slopes
         counts = (triangle >= 0)[:, None] & ((weights != 0) | (slopes != 0).any(axis=2))
         indptr = np.concatenate(([0], np.cumsum(counts.sum(axis=1))))
         query, corner = np.nonzero(counts)

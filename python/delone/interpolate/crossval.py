@@ -277,9 +277,9 @@ class _Task:
         """Each vertex predicted by the others, as columns."""
         if self.method in _FROM_STARS and not self.options:
             threads = as_workers(self.workers)
-            table = self.mesh._locator.leave_one_out(self.method, threads)
-            found: Floats = _core.combine2(*table, self.field.columns, None, None, threads)
-            return found
+            found = self.mesh._locator.leave_one_out(self.method, threads)
+            table = found.indptr, found.indices, found.weights
+            return _core.combine2(*table, self.field.columns, None, None, threads)
         if isinstance(self.method, str) and self.method in METHODS:
             return self._by_batches(self._far_apart(self._reach()))
         return self._by_batches(iter(self._vertices()[:, None]))

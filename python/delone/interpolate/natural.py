@@ -189,8 +189,9 @@ class NaturalNeighbor(Smooth):
         if order:
             refuse("the gradient of kind='laplace'", "Linear has one")
         threads = as_workers(self._workers)
-        indptr, rows, weights, _ = self._sheet.locator.laplace(queries, threads)
-        return _core.combine2(indptr, rows, weights, columns, None, None, threads)
+        found = self._sheet.locator.laplace(queries, threads)
+        table = found.indptr, found.indices, found.weights
+        return _core.combine2(*table, columns, None, None, threads)
 
     def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
         if self._ndim == SPACE:
@@ -200,13 +201,10 @@ class NaturalNeighbor(Smooth):
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         sheet, threads = self._sheet, as_workers(self._workers)
-        slopes: Floats | None = None
         if self._ndim == SPACE:
-            indptr, rows, weights, triangle = sheet.locator.laplace(queries, threads)
+            found = sheet.locator.laplace(queries, threads)
         else:
-            indptr, rows, weights, slopes, triangle = sheet.locator.natural(
-                self._kind, queries, sheet.barrier, threads
-            )
-        inner = (indptr, rows, weights, slopes)
-        known = np.where(triangle >= 0, 0.0, np.nan)[:, None]
+            found = sheet.locator.natural(self._kind, queries, sheet.barrier, threads)
+        inner = (found.indptr, found.indices, found.weights, found.slopes)
+        known = np.where(found.simplex >= 0, 0.0, np.nan)[:, None]
         return Weights(*self._completed(inner, queries, known), shape, self)

@@ -130,9 +130,8 @@ class Nearest(Interpolator):
         """The nearest of the neighbours that queries would have in the constrained mesh."""
         mesh = self._mesh
         barrier = mesh.constrained  # type: ignore[attr-defined]
-        indptr, rows, _, _, _ = mesh._locator.natural(
-            "laplace", queries, barrier, as_workers(self._workers)
-        )
+        natural = mesh._locator.natural("laplace", queries, barrier, as_workers(self._workers))
+        indptr, rows = natural.indptr, natural.indices
         found = np.full(len(queries), -1, dtype=np.int32)
         count = np.diff(indptr)
         some = np.flatnonzero(count)

@@ -95,19 +95,19 @@ def locate(
     """
     queries = as_vectors(xi, 3, name="xi")
     flat, leading = queries.reshape(-1, 3), queries.shape[:-1]
-    simplex, barycentric, beside, face, shares = index.locate(flat, as_workers(workers))
+    found = index.locate(flat, as_workers(workers))
     close = np.empty_like(flat)
     for block in blocks(len(flat)):
-        close[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
-    rows = np.flatnonzero(beside >= 0)
-    close[rows] = on_faces(points, face[rows], shares[rows])
+        close[block] = np.where((found.simplex[block] >= 0)[:, None], flat[block], np.nan)
+    rows = np.flatnonzero(found.beside >= 0)
+    close[rows] = on_faces(points, found.face[rows], found.shares[rows])
     return SpaceLocation(
-        simplex.reshape(leading),
-        barycentric.reshape((*leading, 4)),
+        found.simplex.reshape(leading),
+        found.weights.reshape((*leading, 4)),
         close.reshape((*leading, 3)),
-        beside.reshape(leading),
-        face.reshape((*leading, 3)),
-        shares.reshape((*leading, 3)),
+        found.beside.reshape(leading),
+        found.face.reshape((*leading, 3)),
+        found.shares.reshape((*leading, 3)),
     )
 
 

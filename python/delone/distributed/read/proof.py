@@ -13,7 +13,7 @@ What the manifest says is compared with what the files hold: hashes, counts, box
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["TiledReport", "prove"]
 
-# An edge of a tile that has no other side in it: ends and apex, as rows and as points.
-_EDGE = np.dtype([("ends", "<i8", 2), ("apex", "<i8"), ("tile", "<i8"), ("points", "<f8", (3, 2))])
-_VERTEX = np.dtype([("id", "<i8"), ("point", "<f8", 2), ("tile", "<i8"), ("owner", "<i8")])
 # Rows that are looked at together for points that two tiles own: 256 MB.
 _WINDOW = 1 << 28
 
@@ -71,10 +68,44 @@ class TiledReport:
         return "\n".join(self.faults) or "right"
 
 
+class _Edges(NamedTuple):
+    """Edges of tiles that have no other side in them."""
+
+    # (k, 2): the rows of the source at both ends.
+    ends: Numbers
+    # (k,): the tile.
+    tile: Numbers
+    # (k, 3, 2): where the ends and the apex of the triangle are.
+    points: Floats
+
+    def at(self, rows: NDArray[Any]) -> _Edges:
+        """Return some of them."""
+        return _Edges(self.ends[rows], self.tile[rows], self.points[rows])
+
+
+class _Vertices(NamedTuple):
+    """Vertices of tiles that other tiles own."""
+
+    # (k,): the row of the source.
+    id: Numbers
+    # (k, 2): where it is.
+    point: Floats
+    # (k,): the tile that has it.
+    tile: Numbers
+    # (k,): the tile that owns it.
+    owner: Numbers
+
+    def at(self, rows: NDArray[Any]) -> _Vertices:
+        """Return some of them."""
+        return _Vertices(self.id[rows], self.point[rows], self.tile[rows], self.owner[rows])
+
+
 def prove(tin: TileFolder) -> TiledReport:
     """Check a triangulation; see `TiledDelaunay.validate`."""
     faults: list[str] = []
-    edges, foreign = [np.empty(0, _EDGE)], [np.empty(0, _VERTEX)]
+    none, nowhere = np.empty(0, dtype=np.int64), np.empty((0, 2))
+    edges = [_Edges(none.reshape(0, 2), none, nowhere.reshape(0, 3, 2))]
+    foreign = [_Vertices(none, nowhere, none, none)]
     tree = tin.tree()
     sums = _Sums(points=0, triangles=0, distinct=0)
     spans: dict[int, tuple[int, int]] = {}
@@ -97,9 +128,9 @@ def prove(tin: TileFolder) -> TiledReport:
         sums.distinct += len(np.unique(tile.points[tile.owned] + 0.0, axis=0))
         if own:
             spans[number] = int(tile.ids[tile.owned].min()), int(tile.ids[tile.owned].max())
-    boundary = _between(np.concatenate(edges), faults)
+    boundary = _between(_Edges(*map(np.concatenate, zip(*edges, strict=True))), faults)
     faults += _owned_twice(tin, spans)
-    faults += _copies(tin, np.concatenate(foreign))
+    faults += _copies(tin, _Vertices(*map(np.concatenate, zip(*foreign, strict=True))))
     if not all_read:
         # Nothing follows from what the others sum up to.
         return TiledReport(tuple(faults))
@@ -225,48 +256,47 @@ def _neighbors(tile: Tile, found: list[str]) -> NDArray[np.int32]:
         return np.full(tile.simplices.shape, -1, dtype=np.int32)
 
 
-def _open_edges(tile: Tile) -> NDArray[np.void]:
+def _open_edges(tile: Tile) -> _Edges:
     """The edges of a tile that have no other side in it."""
     simplices = tile.simplices
     t, k = np.nonzero(_neighbors(tile, []) < 0)
     rows = np.stack([simplices[t, (k + j) % 3] for j in (1, 2, 0)], axis=1)
-    found = np.empty(len(t), _EDGE)
-    found["ends"], found["apex"] = tile.ids[rows[:, :2]], tile.ids[rows[:, 2]]
-    found["tile"], found["points"] = tile.number, tile.points[rows]
-    return found
+    ends = tile.ids[rows[:, :2]].astype(np.int64)
+    return _Edges(ends, np.full(len(t), tile.number), tile.points[rows])
 
 
-def _between(edges: NDArray[np.void], faults: list[str]) -> NDArray[np.void]:
+def _between(edges: _Edges, faults: list[str]) -> _Edges:
     """Match edges across tiles, check those that meet, and return the boundary."""
-    ends = np.sort(edges["ends"], axis=1)
+    ends = np.sort(edges.ends, axis=1)
     order = np.lexsort((ends[:, 1], ends[:, 0]))
-    edges, ends = edges[order], ends[order]
+    edges, ends = edges.at(order), ends[order]
     same = (ends[1:] == ends[:-1]).all(axis=1)
     first = np.flatnonzero(same)
     if (same[1:] & same[:-1]).any():
         faults.append("an edge has more than two triangles")
-    one, two = edges[first], edges[first + 1]
-    folded = np.flatnonzero((one["ends"] != two["ends"][:, ::-1]).any(axis=1))
+    one, two = edges.at(first), edges.at(first + 1)
+    folded = np.flatnonzero((one.ends != two.ends[:, ::-1]).any(axis=1))
     if len(folded):
-        tiles = one["tile"][folded[0]], two["tile"][folded[0]]
+        tiles = one.tile[folded[0]], two.tile[folded[0]]
         faults.append(f"triangles of tiles {tiles[0]} and {tiles[1]} overlap")
-    u, v, p = (np.ascontiguousarray(one["points"][:, k]) for k in range(3))
-    wrong = np.flatnonzero(_core.incircle(u, v, p, two["points"][:, 2].copy(), True) > 0)
+    u, v, p = (np.ascontiguousarray(one.points[:, k]) for k in range(3))
+    wrong = np.flatnonzero(_core.incircle(u, v, p, two.points[:, 2].copy(), True) > 0)
     if len(wrong):
-        tiles = one["tile"][wrong[0]], two["tile"][wrong[0]]
+        tiles = one.tile[wrong[0]], two.tile[wrong[0]]
         faults.append(f"an edge between tiles {tiles[0]} and {tiles[1]} is not Delaunay")
-    alone = np.ones(len(edges), dtype=bool)
+    alone = np.ones(len(ends), dtype=bool)
     alone[first] = alone[first + 1] = False
-    return edges[alone]
+    return edges.at(alone)
 
 
-def _around(boundary: NDArray[np.void], faults: list[str]) -> tuple[int, int]:
+def _around(boundary: _Edges, faults: list[str]) -> tuple[int, int]:
     """Check that the boundary is one convex cycle; return how many points and corners it has."""
-    after = dict(boundary["ends"].tolist())
-    at = dict(zip(boundary["ends"][:, 0].tolist(), boundary["points"][:, 0], strict=True))
-    if len(after) != len(boundary) or not len(boundary):
+    count = len(boundary.ends)
+    after = dict(boundary.ends.tolist())
+    at = dict(zip(boundary.ends[:, 0].tolist(), boundary.points[:, 0], strict=True))
+    if len(after) != count or not count:
         faults.append("the boundary meets itself")
-        return len(boundary), 0
+        return count, 0
     start = min(after, key=lambda v: tuple(at[v]))
     cycle, v = [start], after[start]
     while v != start and v in after and len(cycle) <= len(after):
@@ -274,7 +304,7 @@ def _around(boundary: NDArray[np.void], faults: list[str]) -> tuple[int, int]:
         v = after[v]
     if v != start or len(cycle) != len(after):
         faults.append("the boundary is no single cycle: there is a hole")
-        return len(boundary), 0
+        return count, 0
     points = np.array([at[v] for v in cycle])
     ahead, beyond = np.roll(points, -1, axis=0), np.roll(points, -2, axis=0)
     # One turn in all: x rises once and falls once.
@@ -289,33 +319,31 @@ def _around(boundary: NDArray[np.void], faults: list[str]) -> tuple[int, int]:
     return len(points), int((turns > 0).sum())
 
 
-def _foreign(tile: Tile, owner: Numbers) -> NDArray[np.void]:
+def _foreign(tile: Tile, owner: Numbers) -> _Vertices:
     beside = np.flatnonzero(~tile.owned)
-    found = np.empty(len(beside), _VERTEX)
-    found["id"], found["point"] = tile.ids[beside], tile.points[beside]
-    found["tile"], found["owner"] = tile.number, owner[beside]
-    return found
+    ids, here = tile.ids[beside].astype(np.int64), np.full(len(beside), tile.number)
+    return _Vertices(ids, tile.points[beside], here, owner[beside])
 
 
-def _copies(tin: TileFolder, foreign: NDArray[np.void]) -> list[str]:
+def _copies(tin: TileFolder, foreign: _Vertices) -> list[str]:
     """Check that vertices of other tiles are what their owners say."""
     faults = []
-    for number in np.unique(foreign["owner"]).tolist():
+    for number in np.unique(foreign.owner).tolist():
         try:
             tile = read_tile(tin.store, tin.manifest, number)
         except FileFormatError:
             # That has been said.
             continue
-        copies = foreign[foreign["owner"] == number]
+        copies = foreign.at(foreign.owner == number)
         ids, points = tile.ids[tile.owned], tile.points[tile.owned]
         if not len(ids):
             continue
         order = np.argsort(ids)
-        at = order[np.minimum(np.searchsorted(ids, copies["id"], sorter=order), len(ids) - 1)]
-        wrong = (ids[at] != copies["id"]) | (points[at] != copies["point"]).any(axis=1)
+        at = order[np.minimum(np.searchsorted(ids, copies.id, sorter=order), len(ids) - 1)]
+        wrong = (ids[at] != copies.id) | (points[at] != copies.point).any(axis=1)
         if wrong.any():
-            copy = copies[np.flatnonzero(wrong)[0]]
+            k = np.flatnonzero(wrong)[0]
             faults.append(
-                f"vertex {copy['id']} of tile {copy['tile']} is not that of tile {number}"
+                f"vertex {copies.id[k]} of tile {copies.tile[k]} is not that of tile {number}"
             )
     return faults

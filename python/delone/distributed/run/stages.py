@@ -143,9 +143,9 @@ def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
     for asker in askers:
         asked = store.load_all(f"work/border/{turn:04}/{asker:06}.npz", "corners", "tile")
         corners = asked["corners"][asked["tile"] == key]
-        _, rows, whole = _core.deepest2(points, corners, MOST, 1)
-        numbers.append(np.unique(rows))
-        is_all.append(whole.all())
+        found = _core.deepest2(points, corners, MOST, 1)
+        numbers.append(np.unique(found.rows))
+        is_all.append(found.complete.all())
     arrays = {
         "askers": np.array(askers, dtype=np.int64),
         "ends": np.cumsum([0, *map(len, numbers)]),
