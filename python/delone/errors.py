@@ -391,7 +391,7 @@ class LimitError(InputError):
     --------
     >>> import delone
     >>> try:
-    ...     delone.Voronoi([(1e308, 0), (1.1e308, 1)], periodic=(1e308, None))
+    ...     delone.Voronoi([(1e308, 0), (1.1e308, 1)], periods=(1e308, None))
     ... except delone.LimitError as error:
     ...     print(error)
     the next copy of a site lies beyond the range of doubles

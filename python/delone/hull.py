@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from delone import _core, predicates
-from delone._arrays import require_finite
+from delone._arrays import as_workers, require_finite
+from delone.complex import Complex
 from delone.counting import counted
 from delone.delaunay import Delaunay
 from delone.errors import InternalError
-from delone.exchange.parts import Parts
-from delone.immutable import Immutable, kept, own_copy, sealed
+from delone.immutable import kept, own_copy, sealed
 from delone.plane import geometry as plane
 from delone.space import geometry as space
+from delone.validation import ValidationReport
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import Parts
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -26,14 +32,48 @@ if TYPE_CHECKING:
 __all__ = ["ConvexHull"]
 
 
-class ConvexHull(Immutable):
-    """The convex hull of points in the plane or in space.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HullReport(ValidationReport):
+    """The result of ``ConvexHull.validate()``: truthy if the hull is right.
+
+    Parameters
+    ----------
+    neighbors : ndarray of int, shape (k,)
+        Simplices whose neighbors are not mutual.
+    concave : ndarray of int, shape (k, 2)
+        Adjacent simplices that do not meet at a convex angle, or not flat within one facet.
+    outside : ndarray of int, shape (k,)
+        Rows of points outside.
+
+    Examples
+    --------
+    >>> from delone import ConvexHull
+    >>> bool(ConvexHull([(0, 0), (2, 0), (0, 2), (1, 1)]).validate())
+    True
+    """
+
+    concave: NDArray[np.integer] = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    outside: NDArray[np.integer] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+
+    _SUBJECT: ClassVar[str] = "a convex hull"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors"),
+        "concave": ("pair of simplices is not convex", "pairs of simplices are not convex"),
+        "outside": ("point is outside", "points are outside"),
+    }
+
+
+class ConvexHull(Complex):
+    """The convex hull of 2-D or 3-D points.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
-        copied and taken as the exact numbers which they denote.
+        copied, and results are exact for them.
+    workers : int, optional
+        How many threads may work on measures; by default one per core. The hull itself is made on
+        one thread.
 
     Attributes
     ----------
@@ -41,15 +81,15 @@ class ConvexHull(Immutable):
         The coordinates.
     simplices : ndarray of int32, shape (h, d)
         Edges or triangles, as rows of `points`: with the hull to the left of edges, triangles
-        counter-clockwise as seen from outside. In space each begins with its lexicographically
-        smallest point; in the plane they follow each other counter-clockwise.
+        counter-clockwise as seen from outside. In 3-D each begins with its lexicographically
+        smallest point; in 2-D they follow each other counter-clockwise.
     neighbors : ndarray of int32, shape (h, d)
         ``neighbors[i, k]`` is the simplex that shares all vertices of simplex i but vertex k.
     vertices : ndarray of int32, shape (v,)
-        The extreme points: counter-clockwise from the lexicographically smallest on in the plane,
-        ascending in space.
+        The extreme points: in 2-D counter-clockwise from the lexicographically smallest on,
+        ascending in 3-D.
     facets : tuple of ndarray of int32
-        The sides of the hull: in the plane its edges, in space polygons of their extreme points,
+        The sides of the hull: in 2-D its edges, in 3-D polygons of their extreme points,
         counter-clockwise as seen from outside, from the lexicographically smallest on.
     facet_of : ndarray of int32, shape (h,)
         The facet of each simplex.
@@ -57,11 +97,11 @@ class ConvexHull(Immutable):
     Raises
     ------
     DegenerateInputError
-        The points span no area, or no volume, as `Delaunay` says it.
+        The points span no area, or no volume; the error is that of `Delaunay`.
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        `points` is no array of real points in the plane or in space.
+        `points` is not a real array of shape (n, 2) or (n, 3).
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -73,16 +113,16 @@ class ConvexHull(Immutable):
 
     Notes
     -----
-    The answer is exact. A vertex is an extreme point, so points in the middle of an edge or a facet
-    are none; of rows with the same coordinates the first is the vertex. A facet with more than
-    three vertices is triangulated by the Delaunay rule in its plane, and ties by coordinates, so
-    that one set of points has one hull, in one order of its arrays, however its rows are ordered;
-    it is the boundary of ``Delaunay(points[hull.vertices])``.
+    The result is exact. A vertex is an extreme point, so points in the middle of an edge or a facet
+    are not vertices; of rows with the same coordinates the first is the vertex. A facet with more
+    than three vertices is triangulated by the Delaunay rule in its plane, and ties by coordinates,
+    so that a set of points has one hull, in one order of its arrays, independent of the order of
+    its rows; it is the boundary of ``Delaunay(points[hull.vertices])``.
 
-    In the plane O(n log n) time (A. M. Andrew, 1979), in space O(n log n) expected (K. L. Clarkson
-    and P. W. Shor, 1989); points that are well inside cost a few comparisons. Names, dtypes and
-    meanings are those of ``scipy.spatial.ConvexHull``. All arrays are read-only; whatever is not
-    listed above is computed on first use and kept.
+    In 2-D O(n log n) time (A. M. Andrew, 1979), in 3-D O(n log n) expected (K. L. Clarkson and
+    P. W. Shor, 1989); points that are well inside cost a few comparisons. Names, dtypes and
+    meanings are those of ``scipy.spatial.ConvexHull``. All arrays are read-only; attributes that
+    are not listed above are computed on first use and kept.
 
     Examples
     --------
@@ -96,46 +136,84 @@ class ConvexHull(Immutable):
     [[0.0, 0.0, 0.0], [0.0, 0.0, 2.0], [0.0, 2.0, 2.0], [0.0, 2.0, 0.0]]
     """
 
-    __slots__ = (
-        "_duplicates",
-        "_facet_of",
-        "_neighbors",
-        "_points",
-        "_polygons",
-        "_simplices",
-        "_starts",
-        "_vertices",
+    __slots__ = ("_duplicates", "_facet_of", "_polygons", "_starts", "_vertices")
+
+    _ARRAYS = (
+        "points",
+        "simplices",
+        "neighbors",
+        "vertices",
+        "facet_of",
+        "polygons",
+        "starts",
+        "duplicates",
     )
 
     _duplicates: Indices
     _facet_of: Indices
-    _neighbors: Indices
-    _points: Floats
     _polygons: Indices
-    _simplices: Indices
     _starts: Indices
     _vertices: Indices
 
-    def __init__(self, points: ArrayLike) -> None:
-        if hasattr(self, "_points"):
-            raise AttributeError("a ConvexHull never changes: make another one")
+    def __init__(self, points: ArrayLike, *, workers: int | None = None) -> None:
         own = own_copy(points, ndim=None)
         require_finite(own)
+        if workers is not None:
+            as_workers(workers)
         arrays = _in_plane(own) if own.shape[1] == 2 else _in_space(own)
         if arrays is None:
             Delaunay(own)  # which says what the points span instead
             error = InternalError("the hull of points that span a simplex is flat")
             error.points = own
             raise error
-        self._fill(arrays | {"points": own})
+        self._fill(arrays | {"points": own}, {}, workers)
 
-    def _fill(self, arrays: dict[str, NDArray[Any]]) -> None:
-        self._hold(**{name: sealed(array) for name, array in arrays.items()})
+    def validate(self) -> HullReport:
+        """Prove that this is the convex hull of the points, or name what is wrong.
 
-    @property
-    def points(self) -> Floats:
-        """The coordinates, (n, d)."""
-        return self._points
+        Returns
+        -------
+        HullReport
+            Truthy if all is right: neighbors are mutual, adjacent simplices meet at a convex angle
+            or lie in one facet, and no point is outside.
+
+        Notes
+        -----
+        Exact, in the time of a point location of all points.
+
+        Examples
+        --------
+        >>> from delone import ConvexHull
+        >>> print(ConvexHull([(0, 0), (2, 0), (0, 2), (1, 1)]).validate())
+        a convex hull
+        """
+        mutual = (self._neighbors[self._neighbors] == np.arange(self.nsimplex)[:, None, None]).any(
+            axis=2
+        )
+        row, k = np.nonzero(np.ones_like(self._neighbors, dtype=bool))
+        beside = self._neighbors[row, k]
+        others = self._simplices[beside]
+        apart = (others[:, :, None] != self._simplices[row][:, None, :]).all(axis=2)
+        apex = others[np.arange(len(others)), apart.argmax(axis=1)]
+        corners = [self._points[self._simplices[row, j]] for j in range(self.ndim)]
+        orient: Any = predicates.orient2d if self.ndim == 2 else predicates.orient3d
+        signs = orient(*corners, self._points[apex])
+        inner = 1 if self.ndim == 2 else -1
+        same = self._facet_of[row] == self._facet_of[beside]
+        wrong = (signs != np.where(same, 0, inner)) | (apart.sum(axis=1) != 1)
+        tiling = Delaunay(self._points[self._vertices], workers=self._workers)
+        return HullReport(
+            neighbors=np.flatnonzero(~mutual.all(axis=1)),
+            concave=np.column_stack((row[wrong], beside[wrong])),
+            outside=np.flatnonzero(tiling.find_simplex(self._points) < 0),
+        )
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return {"points": self._points}
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls(arrays["points"])
 
     @property
     def simplices(self) -> Indices:
@@ -165,31 +243,13 @@ class ConvexHull(Immutable):
         return tuple(self._polygons[start:end] for start, end in pairwise(ends))
 
     @property
-    def ndim(self) -> int:
-        """Number of coordinates, 2 or 3."""
-        return int(self._points.shape[1])
-
-    @property
-    def npoints(self) -> int:
-        """Number of points."""
-        return len(self._points)
-
-    @property
-    def nsimplex(self) -> int:
-        """Number of edges or triangles."""
-        return len(self._simplices)
-
-    @property
     @kept
-    def min_bound(self) -> Floats:
-        """The least coordinates, (d,)."""
-        return sealed(self._points.min(axis=0))
-
-    @property
-    @kept
-    def max_bound(self) -> Floats:
-        """The greatest coordinates, (d,)."""
-        return sealed(self._points.max(axis=0))
+    def edges(self) -> Indices:
+        """Every edge of `simplices` once, (k, 2): the smaller vertex first, rows ascending."""
+        if self.ndim == 3:
+            topology = self._simplices, self._neighbors, self.npoints, as_workers(self._workers)
+            return sealed(_core.edges2(*topology))
+        return sealed(np.unique(np.sort(self._simplices, axis=1), axis=0))
 
     @property
     @kept
@@ -214,7 +274,7 @@ class ConvexHull(Immutable):
         if self.ndim == 2:
             normals = plane.edge_normals(self._points, corners)
         else:
-            normals = space.face_normals(self._points, corners)
+            normals = space.face_normals(self._points, corners, self._workers)
         with np.errstate(all="ignore"):
             offsets = -(normals * self._points[corners[:, 0]]).sum(axis=1)
             # Partial sums may leave the range where the offset does not.
@@ -227,7 +287,7 @@ class ConvexHull(Immutable):
     @property
     @kept
     def volume(self) -> float:
-        """The volume; in the plane, as in SciPy, the area.
+        """The volume; in 2-D, as in SciPy, the area.
 
         With a relative error below 1e-13; inf, or rounded among the subnormal numbers, where it is
         beyond the range of doubles.
@@ -236,54 +296,32 @@ class ConvexHull(Immutable):
         if self.ndim == 2:
             fan = np.column_stack((np.full(self.nsimplex, base), self._simplices))
             fan = fan[(self._simplices != base).all(axis=1)]
-            return plane.total(plane.areas(self._points, fan))
+            return plane.total(plane.areas(self._points, fan, self._workers))
         a, b, c = self._simplices.T
         cones = np.column_stack((a, c, b, np.full(self.nsimplex, base)))
         above = predicates.orient3d(*(self._points[cones[:, k]] for k in range(4))) > 0
-        return plane.total(space.volumes(self._points, cones[above]))
+        return plane.total(space.volumes(self._points, cones[above], self._workers))
 
     @property
     @kept
     def area(self) -> float:
-        """The area of the surface; in the plane, as in SciPy, the perimeter; inf beyond doubles."""
+        """The area of the surface; in 2-D, as in SciPy, the perimeter; inf beyond doubles."""
         if self.ndim == 2:
             with np.errstate(over="ignore"):
                 along = np.subtract(*self._points[self._simplices.T])
                 return plane.total(np.hypot(*along.T))
-        return plane.total(space.face_areas(self._points, self._simplices))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        names = ("points", *_ARRAYS)
-        return _restored, (type(self), {name: getattr(self, f"_{name}") for name in names})
+        return plane.total(space.face_areas(self._points, self._simplices, self._workers))
 
     def _parts(self) -> Parts:
-        """What other libraries and files take."""
+        from delone.exchange.parts import Parts
+
         return Parts(self._points, self._simplices, of_simplices={"facet_of": self._facet_of})
 
-    def __repr__(self) -> str:
-        if not hasattr(self, "_points"):  # the constructor failed, or has not run
-            return "<ConvexHull of nothing yet>"
+    def _described(self) -> str:
         vertices = f"{len(self._vertices)} vertices"
         if self.ndim == 3:
             vertices += f", {len(self._starts) - 1} facets"
-        return f"<ConvexHull of {counted(self.npoints, 'point')}: {vertices}>"
-
-
-_ARRAYS = (
-    "simplices",
-    "neighbors",
-    "vertices",
-    "facet_of",
-    "polygons",
-    "starts",
-    "duplicates",
-)
-
-
-def _restored(cls: type[ConvexHull], arrays: dict[str, NDArray[Any]]) -> ConvexHull:
-    hull = cls.__new__(cls)
-    hull._fill(arrays)
-    return hull
+        return f"{counted(self.npoints, 'point')}: {vertices}"
 
 
 def _in_plane(points: Floats) -> dict[str, NDArray[Any]] | None:

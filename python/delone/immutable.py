@@ -32,7 +32,10 @@ class Immutable:
     _lock: threading.RLock
 
     def _hold(self, **values: Any) -> None:
-        """Set all there is, each under its name and an underscore; afterwards nothing can be."""
+        """Set everything, each value under its name and an underscore, once."""
+        if hasattr(self, "_cache"):
+            name = type(self).__name__
+            raise AttributeError(f"a {name} never changes: make another one")
         put = object.__setattr__
         put(self, "_cache", {})
         put(self, "_lock", threading.RLock())

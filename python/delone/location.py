@@ -1,8 +1,7 @@
-"""Results of point location: triangle, barycentric weights, nearest point of the boundary.
+"""Results of point location, in any dimension.
 
-The core keeps an index of starts for the walks (`Locator2`); a triangulation makes it on the first
-query and holds it. Decisions are exact; weights and the nearest points of the boundary are rounded
-results of them.
+Decisions are exact: the simplex that holds a point, and the facet of the boundary that is nearest
+to a point outside. Weights and points of the boundary are rounded.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from delone import _core
 from delone._arrays import as_vectors, as_workers, require_finite
 from delone.blocks import blocks
 from delone.errors import ShapeError
@@ -20,61 +18,38 @@ from delone.errors import ShapeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from delone.dimension import Dimension, Locator
+
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = [
-    "Location",
-    "Places",
-    "across_line",
-    "along",
-    "locate",
-    "locator",
-    "nearest",
-    "segment_ends",
-]
-
-
-class Places:
-    """Rows of arrays, one for each point; the base of `Location` and of its like in space."""
-
-    def at(self, rows: NDArray[np.integer]) -> Self:
-        """Return some of the places.
-
-        Parameters
-        ----------
-        rows : ndarray of int
-            Which, along the first axis.
-
-        Returns
-        -------
-        Self
-            Those.
-        """
-        own: Any = self
-        return type(self)(*(getattr(self, each.name)[rows] for each in fields(own)))
+__all__ = ["Location", "find", "locate", "nearest", "segment_ends"]
 
 
 @dataclass(frozen=True, eq=False)
-class Location(Places):
+class Location:
     """Where points lie.
 
     Parameters
     ----------
     simplex : ndarray of int32, shape (...)
-        The triangle that holds the point, the first one where there are several; -1 outside.
-    barycentric : ndarray of float64, shape (..., 3)
-        Weights of the corners of that triangle: none below 0, of sum 1 up to rounding, exactly 1 at
+        The simplex that holds the point inside or on its boundary, the first one where there are
+        several; -1 outside.
+    barycentric : ndarray of float64, shape (..., d + 1)
+        Weights of the corners of that simplex: none below 0, of sum 1 up to rounding, exactly 1 at
         a corner. NaN outside.
-    nearest : ndarray of float64, shape (..., 2)
-        The point itself inside; outside the nearest point of the boundary, rounded. NaN where the
+    nearest : ndarray of float64, shape (..., d)
+        The point itself inside; outside, the nearest point of the boundary, rounded. NaN where the
         query is not finite.
     beside : ndarray of int32, shape (...)
-        Outside, the triangle at that point of the boundary; else -1.
-    edge : ndarray of int32, shape (..., 2)
-        Outside, the boundary edge with that point, the triangle to its left; else -1.
-    along : ndarray of float64, shape (...)
-        Outside, how far along that edge the point is, from 0 to 1; else NaN.
+        Outside, the simplex at that point of the boundary; else -1.
+    facet : ndarray of int32, shape (..., d)
+        Outside, the corners of the facet of the boundary with that point, the nearest by exact
+        distances: an edge with the triangle to its left, or a face, counter-clockwise seen from
+        outside; else -1.
+    weights : ndarray of float64, shape (..., d)
+        Outside, the weights of these corners in that point: none below 0, of sum 1 up to rounding;
+        else NaN.
 
     Examples
     --------
@@ -82,204 +57,152 @@ class Location(Places):
     >>> place = Delaunay([(0, 0), (4, 0), (0, 4)]).locate([(1, 2), (3, 3)])
     >>> place.simplex.tolist(), sorted(place.barycentric[0].tolist())
     ([0, -1], [0.25, 0.25, 0.5])
-    >>> place.edge[1].tolist(), float(place.along[1]), place.nearest[1].tolist()
-    ([1, 2], 0.5, [2.0, 2.0])
+    >>> place.facet[1].tolist(), place.weights[1].tolist(), place.nearest[1].tolist()
+    ([1, 2], [0.5, 0.5], [2.0, 2.0])
+    >>> place = Delaunay([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]).locate((1, 1, -3))
+    >>> int(place.simplex), place.nearest.tolist(), sorted(place.facet.tolist())
+    (-1, [1.0, 1.0, 0.0], [0, 1, 2])
     """
 
     simplex: Indices
     barycentric: Floats
     nearest: Floats
     beside: Indices
-    edge: Indices
-    along: Floats
+    facet: Indices
+    weights: Floats
+
+    def at(self, rows: NDArray[np.integer]) -> Self:
+        """Return some of the places.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Rows along the first axis.
+
+        Returns
+        -------
+        Location
+            The places of these rows.
+        """
+        return type(self)(*(getattr(self, each.name)[rows] for each in fields(self)))
 
 
-def locator(points: Floats, simplices: Indices, neighbors: Indices) -> _core.Locator2:
-    """Return the core's index over triangles, for any number of queries by any number of threads.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles, and the ones across their edges.
-
-    Returns
-    -------
-    Locator2
-        Its methods are those of the core.
-    """
-    return _core.Locator2(points, simplices, neighbors)
-
-
-def locate(index: _core.Locator2, points: Floats, xi: ArrayLike, workers: int | None) -> Location:
-    """Tell where queries lie.
+def find(dimension: Dimension, index: Locator, xi: ArrayLike, workers: int | None) -> Indices:
+    """Return the simplices that hold points.
 
     Parameters
     ----------
-    index : Locator2
-        The index over the triangles.
-    points : ndarray of float64, shape (n, 2)
-        Coordinates of the vertices.
-    xi : array_like, shape (..., 2)
-        Queries.
-    workers : int or None
-        Number of threads.
-
-    Returns
-    -------
-    Location
-        In the shape of the queries.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        `xi` is no array of real points in the plane.
-    """
-    queries = as_vectors(xi, 2, name="xi")
-    flat, leading = queries.reshape(-1, 2), queries.shape[:-1]
-    found = index.locate(flat, as_workers(workers))
-    nearest = np.empty_like(flat)
-    for block in blocks(len(flat)):
-        nearest[block] = np.where((found.simplex[block] >= 0)[:, None], flat[block], np.nan)
-    rows = np.flatnonzero(found.beside >= 0)
-    nearest[rows] = on_edges(points, found.edge[rows], found.along[rows])
-    return Location(
-        found.simplex.reshape(leading),
-        found.weights.reshape((*leading, 3)),
-        nearest.reshape((*leading, 2)),
-        found.beside.reshape(leading),
-        found.edge.reshape((*leading, 2)),
-        found.along.reshape(leading),
-    )
-
-
-def on_edges(points: Floats, edge: Indices, share: Floats) -> Floats:
-    """Return points of edges, exactly the ends where the share is 0 or 1.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    edge : ndarray of int32, shape (k, 2)
-        Ends of the edges.
-    share : ndarray of float64, shape (k,)
-        From 0 to 1.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, 2)
+    dimension : Dimension
+        The functions of the dimension.
+    index : Locator
+        The index over the simplices.
+    xi : array_like, shape (..., d)
         The points.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.location import on_edges
-    >>> on_edges(np.array([(0.0, 0), (4, 2)]), np.array([(0, 1)]), np.array([0.25]))
-    array([[1. , 0.5]])
-    """
-    weight = share[:, None]
-    start, end = points[edge[:, 0]], points[edge[:, 1]]
-    return (1.0 - weight) * start + weight * end
-
-
-def nearest(
-    sites: tuple[_core.Locator2 | None, Indices | None], xi: ArrayLike, workers: int | None
-) -> Indices:
-    """Return the sites that are nearest to queries.
-
-    Parameters
-    ----------
-    sites : tuple
-        The index over a Delaunay triangulation, None without triangles, and the row of each of its
-        points; None where that is the same.
-    xi : array_like, shape (..., 2)
-        Queries.
     workers : int or None
-        Number of threads.
+        Number of threads; None for all cores.
 
     Returns
     -------
     ndarray of int32, shape (...)
-        Rows; -1 for what is not finite.
+        The first simplex that holds each point, -1 where there is none.
 
     Raises
     ------
     ShapeError, DtypeError
-        `xi` is no array of real points in the plane.
+        `xi` is not a real array of shape (..., d).
     """
-    queries = as_vectors(xi, 2, name="xi")
+    queries = as_vectors(xi, dimension.ndim, name="xi")
+    flat = queries.reshape(-1, dimension.ndim)
+    return index.find(flat, as_workers(workers)).reshape(queries.shape[:-1])
+
+
+def nearest(
+    dimension: Dimension,
+    sites: tuple[Locator | None, Indices | None],
+    xi: ArrayLike,
+    workers: int | None,
+) -> Indices:
+    """Return the sites that are nearest to points.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        The functions of the dimension.
+    sites : tuple
+        The index over a Delaunay triangulation, None if it has no simplex, and the row of each of
+        its points; None if these are all points in order.
+    xi : array_like, shape (..., d)
+        The points.
+    workers : int or None
+        Number of threads; None for all cores.
+
+    Returns
+    -------
+    ndarray of int32, shape (...)
+        Rows; -1 for points that are not finite.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `xi` is not a real array of shape (..., d).
+    """
+    queries = as_vectors(xi, dimension.ndim, name="xi")
     index, rows = sites
     if index is None:
         return np.full(queries.shape[:-1], -1, dtype=np.int32)
-    found = index.nearest(queries.reshape(-1, 2), as_workers(workers))
+    found = index.nearest(queries.reshape(-1, dimension.ndim), as_workers(workers))
     if rows is not None:
         found = np.where(found >= 0, rows[found], np.int32(-1))
     return found.reshape(queries.shape[:-1])
 
 
-def along(
-    index: _core.Locator2,
-    tiling: tuple[Floats, Indices, Indices],
-    number: Indices | None,
-    a: Floats,
-    b: Floats,
-) -> Indices:
-    """Return the triangles along a segment.
+def locate(
+    dimension: Dimension, index: Any, points: Floats, xi: ArrayLike, workers: int | None
+) -> Location:
+    """Locate points.
 
     Parameters
     ----------
-    index : Locator2
-        The index over all triangles of the convex hull.
-    tiling : tuple
-        Their points, simplices and neighbours.
-    number : ndarray of int32, shape (m + 1,), or None
-        What each triangle is among those that count, -1 where it is none; the last entry is -1.
-        None where all count.
-    a, b : ndarray of float64, shape (2,)
-        Ends of the segment, finite; they differ where there are numbers.
+    dimension : Dimension
+        The functions of the dimension.
+    index : Locator
+        The index over the simplices.
+    points : ndarray of float64, shape (n, d)
+        Coordinates of the vertices.
+    xi : array_like, shape (..., d)
+        The points to locate.
+    workers : int or None
+        Number of threads; None for all cores.
 
     Returns
     -------
-    ndarray of int32, shape (k,)
-        Triangles from a to b.
+    Location
+        In the shape of `xi`.
+
+    Raises
+    ------
+    ShapeError, DtypeError
+        `xi` is not a real array of shape (..., d).
     """
-    met = index.along(a, b)
-    if number is None:
-        return met
-    found = number[met]
-    gone = found < 0
-    found[gone] = number[across_line(*tiling, met[gone], a, b)]
-    kept: Indices = found[found >= 0]
-    return kept
-
-
-def across_line(  # noqa: PLR0917 (a tiling is three arrays)
-    points: Floats, simplices: Indices, neighbors: Indices, triangle: Indices, a: Floats, b: Floats
-) -> Indices:
-    """Return the neighbours of triangles across their edges on the line through two points.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles, and those across their edges.
-    triangle : ndarray of int32, shape (k,)
-        Some of them.
-    a, b : ndarray of float64, shape (2,)
-        The points, which differ.
-
-    Returns
-    -------
-    ndarray of int32, shape (k,)
-        Triangles, -1 where there is no such edge or nothing beyond it.
-    """
-    corners = points[simplices[triangle]].reshape(-1, 2)
-    start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()
-    off = (_core.orient2d(start, end, corners) != 0).reshape(-1, 3)
-    found = neighbors[triangle, off.argmax(axis=1)]
-    return np.where(off.sum(axis=1) == 1, found, np.int32(-1))
+    d = dimension.ndim
+    queries = as_vectors(xi, d, name="xi")
+    flat, leading = queries.reshape(-1, d), queries.shape[:-1]
+    simplex, barycentric, beside, facet, weights = dimension.located(
+        index, flat, as_workers(workers)
+    )
+    close = np.empty_like(flat)
+    for block in blocks(len(flat)):
+        close[block] = np.where((simplex[block] >= 0)[:, None], flat[block], np.nan)
+    rows = np.flatnonzero(beside >= 0)
+    close[rows] = dimension.on_facets(points, facet[rows], weights[rows])
+    return Location(
+        simplex.reshape(leading),
+        barycentric.reshape((*leading, d + 1)),
+        close.reshape((*leading, d)),
+        beside.reshape(leading),
+        facet.reshape((*leading, d)),
+        weights.reshape((*leading, d)),
+    )
 
 
 def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:

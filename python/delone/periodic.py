@@ -2,30 +2,34 @@
 
 The core triangulates the points and copies of them around, with predicates that are exact on the
 sums of coordinates and periods; here one triangle of each class of translates is kept, and
-neighbours are found among them by their common edges.
+neighbors are found among them by their common edges.
 """
 
 from __future__ import annotations
 
 import sys
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_number, require_finite
+from delone._arrays import as_number, as_workers, require_finite
+from delone.complex import Complex
 from delone.counting import counted
+from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError, InputError, InternalError, ShapeError
-from delone.exchange.parts import Parts
-from delone.immutable import Immutable, kept, own_copy, sealed
-from delone.plane.triangulation import first_rows
+from delone.immutable import kept, own_copy, sealed
+from delone.plane.dimension import PLANE
 from delone.regular import as_weights
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import Parts
+    from delone.plane.quality import Quality
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -39,11 +43,8 @@ _HALO = 8.0
 _FEW = 64
 
 
-class PeriodicDelaunay(Immutable):
-    """The Delaunay triangulation of a periodic set of points in the plane.
-
-    With weights it is the regular triangulation. ``Delaunay(points, periodic=periods)`` is one of
-    these, too.
+class PeriodicDelaunay(Complex):
+    """The Delaunay triangulation of a periodic set of 2-D points; with weights, the regular one.
 
     Parameters
     ----------
@@ -51,11 +52,14 @@ class PeriodicDelaunay(Immutable):
         The points of one period. In each periodic direction they must lie less than one period
         apart; where the period begins does not matter.
     periods : tuple of two floats or None
-        ``(Lx, Ly)``: after which distance the points come again in x and in y. None for a direction
-        without a period.
+        ``(Lx, Ly)``: the distances after which the points repeat in x and in y. None for a
+        direction without a period.
     weights : array_like, shape (n,), optional
         Weights, in the square of the unit of the points, as for `RegularTriangulation`. All copies
         of a point have its weight.
+    workers : int, optional
+        How many threads may work on measures; by default one per core. The triangulation itself is
+        made on one thread.
 
     Attributes
     ----------
@@ -67,11 +71,11 @@ class PeriodicDelaunay(Immutable):
         The weights.
     simplices : ndarray of int32, shape (m, 3)
         One triangle of each class of translates, as rows of `points`, counter-clockwise. A row may
-        come twice or three times in one triangle, where points are few.
+        occur two or three times in one triangle, where points are few.
     offsets : ndarray of int32, shape (m, 3, 2)
         By how many periods each corner is moved in x and y; the first corner is not.
     neighbors : ndarray of int32, shape (m, 3)
-        The triangle opposite each corner (a translate of it); -1 outside, in a direction without
+        The triangle opposite each corner (a translate of it); -1 outside, in a direction without a
         period.
 
     Raises
@@ -88,13 +92,13 @@ class PeriodicDelaunay(Immutable):
     Notes
     -----
     Exact, as `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general is
-    no double, and nothing is rounded before a decision. Ties are broken in the same way, so that
-    the set of triangles is one, and the same in all periods. With two periods there are 2 n
+    not a double, and nothing is rounded before a decision. Ties are broken in the same way, so that
+    the set of triangles is unique, and the same in all periods. With two periods there are 2 n
     triangles and 3 n edges for n distinct points (with weights, for n that are not hidden).
 
-    Copies one period away on all sides are enough, however the points lie. Of many points only
-    those copies are taken at first that lie near; circles tell if that was too few. Time is that of
-    an insertion of all these, O(n log n) on usual inputs, on one thread.
+    Copies one period away on all sides are enough, however the points lie. Of many points only the
+    copies nearby are used at first; circles tell if these were too few. Time is that of an
+    insertion of all of them, O(n log n) on usual inputs.
 
     References
     ----------
@@ -111,10 +115,16 @@ class PeriodicDelaunay(Immutable):
     ([[0, 0], [0, 0], [0, 0]], [[0, 1], [1, 0], [1, 1]])
     """
 
-    __slots__ = ("_arrays", "_periods")
+    __slots__ = ("_lengths", "_offsets", "_partners", "_weights")
 
-    _arrays: dict[str, NDArray[Any]]
-    _periods: tuple[float | None, float | None]
+    _ARRAYS = ("points", "simplices", "neighbors", "offsets", "partners", "weights", "lengths")
+
+    # NaN for a direction without a period.
+    _lengths: Floats
+    _offsets: Indices
+    _partners: Indices
+    # Empty without weights.
+    _weights: Floats
 
     def __init__(
         self,
@@ -122,66 +132,46 @@ class PeriodicDelaunay(Immutable):
         periods: Sequence[float | None],
         *,
         weights: ArrayLike | None = None,
+        workers: int | None = None,
     ) -> None:
-        if hasattr(self, "_arrays"):
-            raise AttributeError("a PeriodicDelaunay never changes: make another one")
         own = own_copy(points)
         require_finite(own)
-        heavy = None if weights is None else as_weights(weights, len(own))
+        own_weights = None if weights is None else as_weights(weights, len(own))
+        if workers is not None:
+            as_workers(workers)
         lengths = as_periods(periods)
         _require_one_period(own, lengths)
-        self._fill(_triangulated(own, heavy, lengths), lengths)
+        self._fill(_triangulated(own, own_weights, lengths), {}, workers)
 
-    def _fill(
-        self, arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
-    ) -> None:
-        """Set everything there is; afterwards nothing can be set."""
-        self._hold(arrays={name: sealed(array) for name, array in arrays.items()}, periods=periods)
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return {"points": self._points, "weights": self._weights, "periods": self._lengths}
 
-    @property
-    def points(self) -> Floats:
-        """The coordinates, (n, 2)."""
-        return self._arrays["points"]
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        lengths = [None if np.isnan(length) else length for length in arrays["periods"].tolist()]
+        weights = arrays["weights"] if len(arrays["weights"]) else None
+        return cls(arrays["points"], lengths, weights=weights)
 
     @property
     def periods(self) -> tuple[float | None, float | None]:
         """The periods in x and y; None for none."""
-        return self._periods
+        x, y = (None if np.isnan(length) else length for length in self._lengths.tolist())
+        return x, y
 
     @property
     def weights(self) -> Floats | None:
         """The weights, (n,); None without."""
-        return self._arrays.get("weights")
-
-    @property
-    def simplices(self) -> Indices:
-        """One triangle of each class as rows of `points`, (m, 3), counter-clockwise."""
-        return self._arrays["simplices"]
+        return self._weights if len(self._weights) else None
 
     @property
     def offsets(self) -> Indices:
         """By how many periods each corner is moved, (m, 3, 2)."""
-        return self._arrays["offsets"]
-
-    @property
-    def neighbors(self) -> Indices:
-        """The triangle opposite each corner, (m, 3); -1 outside."""
-        return self._arrays["neighbors"]
+        return self._offsets
 
     @property
     def partners(self) -> Indices:
         """The same edge across it, (m, 3): 3 t + k for that opposite corner k of triangle t."""
-        return self._arrays["partners"]
-
-    @property
-    def npoints(self) -> int:
-        """Number of points, duplicates included."""
-        return len(self.points)
-
-    @property
-    def nsimplex(self) -> int:
-        """Number of triangles in one period."""
-        return len(self.simplices)
+        return self._partners
 
     @property
     @kept
@@ -205,7 +195,9 @@ class PeriodicDelaunay(Immutable):
         Infinite where a copy lies beyond the range of doubles.
         """
         with np.errstate(over="ignore"):
-            found: Floats = self.points[self.simplices] + self.offsets * _lengths(self._periods)
+            found: Floats = self.points[self.simplices] + self.offsets * np.nan_to_num(
+                self._lengths
+            )
         return sealed(found)
 
     @property
@@ -230,30 +222,49 @@ class PeriodicDelaunay(Immutable):
         rows = np.unique(np.column_stack((first, second, moved)), axis=0).astype(np.int32)
         return sealed(rows[:, :2].copy()), sealed(rows[:, 2:].copy())
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self._arrays, self._periods)
+    @property
+    @kept
+    def boundary(self) -> Indices:
+        """The edges with a triangle on one side only, (h, 2); none with two periods."""
+        return sealed(PLANE.boundary(self.simplices, self.neighbors))
+
+    @property
+    @kept
+    def areas(self) -> Floats:
+        """Areas of the triangles, (m,), in the square of the unit of the points."""
+        return sealed(PLANE.sizes(*self._separate, self._workers))
+
+    @kept
+    def quality(self) -> Quality:
+        """Measure the shapes of the triangles.
+
+        Returns
+        -------
+        Quality
+            Angles, areas and ratios of radii and edges.
+
+        Examples
+        --------
+        >>> from delone import PeriodicDelaunay
+        >>> PeriodicDelaunay([(0.25, 0.5)], (1, 1)).quality().largest_angle
+        array([90., 90.])
+        """
+        found: Any = PLANE.quality(*self._separate, self._workers)
+        return found  # type: ignore[no-any-return]
+
+    @property
+    def _separate(self) -> tuple[Floats, Indices]:
+        """The triangles at their places, with three points each."""
+        return self.corners.reshape(-1, 2), _numbered(self.nsimplex)
 
     def _parts(self) -> Parts:
-        """What other libraries and files take: each triangle has three points of its own."""
-        return Parts(
-            self.corners.reshape(-1, 2),
-            _numbered(self.nsimplex),
-            of_points={"row": self.simplices.ravel()},
-        )
+        from delone.exchange.parts import Parts
 
-    def __repr__(self) -> str:
-        if not hasattr(self, "_arrays"):  # the constructor failed, or has not run
-            return "<PeriodicDelaunay of nothing yet>"
-        numbers = counted(self.npoints, "point"), counted(self.nsimplex, "triangle")
-        return f"<PeriodicDelaunay of {numbers[0]}: {numbers[1]}>"
+        points, simplices = self._separate
+        return Parts(points, simplices, of_points={"row": self.simplices.ravel()})
 
-
-def _rebuilt(
-    arrays: dict[str, NDArray[Any]], periods: tuple[float | None, float | None]
-) -> PeriodicDelaunay:
-    mesh = PeriodicDelaunay.__new__(PeriodicDelaunay)
-    mesh._fill({name: array.copy() for name, array in arrays.items()}, periods)
-    return mesh
+    def _described(self) -> str:
+        return f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'triangle')}"
 
 
 def as_periods(periods: Any) -> tuple[float | None, float | None]:
@@ -361,14 +372,14 @@ def _triangulated(
             chain=chain,
         )
     partners = _partners(simplices, offsets, len(points), whole=None not in periods)
-    heavy = {} if weights is None else {"weights": weights}
     return {
         "points": points,
-        **heavy,
         "simplices": simplices,
+        "neighbors": np.where(partners < 0, -1, partners // 3).astype(np.int32),
         "offsets": offsets,
         "partners": partners,
-        "neighbors": np.where(partners < 0, -1, partners // 3).astype(np.int32),
+        "weights": np.empty(0) if weights is None else weights,
+        "lengths": np.array([np.nan if length is None else length for length in periods]),
     }
 
 

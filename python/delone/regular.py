@@ -1,23 +1,23 @@
 """The class RegularTriangulation: triangulations of weighted points, dual to power diagrams.
 
-Sites are lifted by their weights, and the core takes the lower side of their hull. What follows
-from triangles or tetrahedra is in `triangulation` and `space`, as for all such classes.
+Sites are lifted by their weights, and the core takes the lower side of their convex hull. What
+follows from the simplices is in `triangulation`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_plain_array, as_vectors
+from delone._arrays import as_plain_array, as_vectors, as_workers
 from delone.counting import agreed, counted
 from delone.errors import DegenerateInputError, InternalError, NonFiniteError, ShapeError
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.space.plane import plane_of, twins
-from delone.space.spatial import Spatial
+from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -30,18 +30,21 @@ __all__ = ["RegularTriangulation", "as_weights", "triangulated"]
 _SPACE = 3
 
 
-class RegularTriangulation(Spatial):
-    """The regular (weighted Delaunay) triangulation of points in the plane or in space.
+class RegularTriangulation(PointTriangulation):
+    """The regular (weighted Delaunay) triangulation of 2-D or 3-D points.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
-        Finite coordinates, taken as the exact numbers which they denote.
+        Finite coordinates; results are exact for the given doubles.
     weights : array_like, shape (n,)
         Finite weights, in the square of the unit of the points: the square of a radius, if points
-        are thought of as circles. Adding one number to all of them changes nothing.
+        stand for circles or spheres. Adding one number to all of them changes nothing.
+    workers : int, optional
+        How many threads may work on queries and measures; by default one per core. The
+        triangulation itself is made on one thread.
     planar : bool, optional
-        As for `Delaunay`: longitudes and latitudes are meant as coordinates of a plane.
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
     Attributes
     ----------
@@ -57,13 +60,15 @@ class RegularTriangulation(Spatial):
     Raises
     ------
     DegenerateInputError
-        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has those in
-        the plane that are not hidden, in order, in space all. Or points in space lie in one plane;
-        ``error.plane`` is its regular triangulation.
+        Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
+        order, in 2-D without the hidden ones. Or 3-D points lie in one plane; ``error.plane`` is
+        its regular triangulation.
     NonFiniteError
         A coordinate or weight is NaN or infinite; ``error.rows`` tells where.
     ShapeError
         There are not as many weights as points.
+    InputError
+        `workers` is not a positive integer.
     MemoryError
         There is not enough memory.
     KeyboardInterrupt
@@ -71,18 +76,18 @@ class RegularTriangulation(Spatial):
 
     Notes
     -----
-    The simplices are the lower side of the hull of the points lifted to ``x**2 + y**2 - w``, in
-    space to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is *hidden*: no place has
-    its least power there, and it is no vertex. With equal weights this is the Delaunay
-    triangulation.
+    The simplices are the lower side of the convex hull of the points lifted to
+    ``x**2 + y**2 - w``, in 3-D to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is
+    *hidden*: no place has its least power there, and it is not a vertex. With equal weights this is
+    the Delaunay triangulation.
 
-    The answer is exact, and unique: ties are broken as in `delone.Delaunay`, so that a point whose
+    The result is exact and unique: ties are broken as in `delone.Delaunay`, so that a point whose
     lift lies on the hull without being a corner of it is hidden. Of points with the same
-    coordinates the heaviest counts, the others are hidden; of equally heavy ones the first row is
-    the vertex, and the others are its duplicates.
+    coordinates the one with the greatest weight counts, and the others are hidden; of equal weights
+    the first row is the vertex, and the others are its duplicates.
 
     The method is insertion by cavities along a Hilbert curve (Bowyer; Watson, both 1981), in
-    O(n log n) on usual inputs, on one thread.
+    O(n log n) on usual inputs.
 
     References
     ----------
@@ -104,18 +109,27 @@ class RegularTriangulation(Spatial):
 
     __slots__ = ("_weights",)
 
+    _ARRAYS = ("points", "weights", "simplices", "neighbors", "duplicates")
+
     _weights: Floats
 
-    def __init__(self, points: ArrayLike, weights: ArrayLike, *, planar: bool = False) -> None:
-        if hasattr(self, "_points"):
-            raise AttributeError("a RegularTriangulation never changes: make another one")
+    def __init__(
+        self,
+        points: ArrayLike,
+        weights: ArrayLike,
+        *,
+        workers: int | None = None,
+        planar: bool = False,
+    ) -> None:
         own = own_copy(points, ndim=None)
         warn_of_degrees(points, own, planar=planar)
         own_weights = as_weights(weights, len(own))
+        if workers is not None:
+            as_workers(workers)
         arrays, chain = triangulated(own, own_weights)
         if not len(arrays["simplices"]):
             raise _degenerate(own, chain)
-        self._fill(arrays, {}, None)
+        self._fill(arrays, {}, workers)
 
     @property
     def weights(self) -> Floats:
@@ -130,22 +144,22 @@ class RegularTriangulation(Spatial):
         seen[self._simplices] = True
         return sealed(np.flatnonzero(~seen[self.duplicate_of]).astype(np.int32))
 
-    def _arrays(self) -> dict[str, NDArray[Any]]:
-        names = ("points", "weights", "simplices", "neighbors", "duplicates")
-        return {name: getattr(self, f"_{name}") for name in names}
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return {"points": self._points, "weights": self._weights}
 
-    def __repr__(self) -> str:
-        if not hasattr(self, "_points"):  # the constructor failed, or has not run
-            return "<RegularTriangulation of nothing yet>"
-        points = counted(self.npoints, "point")
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls(arrays["points"], arrays["weights"], planar=True)
+
+    def _described(self) -> str:
         notes = []
         if duplicates := len(self._duplicates):
             notes.append(counted(duplicates, "duplicate"))
         if hidden := len(self.hidden):
             notes.append(f"{hidden} hidden")
         noted = f" ({', '.join(notes)})" if notes else ""
-        simplex = "tetrahedron" if self.ndim == _SPACE else "triangle"
-        return f"<RegularTriangulation of {points}{noted}: {counted(self.nsimplex, simplex)}>"
+        simplices = counted(self.nsimplex, self._dimension.simplex)
+        return f"{counted(self.npoints, 'point')}{noted}: {simplices}"
 
 
 def as_weights(weights: ArrayLike, npoints: int) -> Floats:

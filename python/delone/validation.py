@@ -26,6 +26,7 @@ __all__ = [
     "SENTENCES",
     "SpaceReport",
     "ValidationReport",
+    "not_across",
     "of_tetrahedra",
     "of_triangles",
     "validate",
@@ -316,6 +317,30 @@ def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
         delaunay=faults.delaunay,
         ties=faults.ties,
     )
+
+
+def not_across(
+    pairs: NDArray[np.integer], neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
+) -> NDArray[np.integer]:
+    """Leave out pairs of triangles that a segment separates.
+
+    Parameters
+    ----------
+    pairs : ndarray of int, shape (k, 2)
+        Adjacent triangles.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle opposite each vertex.
+    constrained : ndarray of bool, shape (m, 3)
+        Whether the edge opposite each vertex is part of a segment.
+
+    Returns
+    -------
+    ndarray of int, shape (j, 2)
+        The other pairs.
+    """
+    across = neighbors[pairs[:, 0]] == pairs[:, 1:]
+    found: NDArray[np.integer] = pairs[~(across & constrained[pairs[:, 0]]).any(axis=1)]
+    return found
 
 
 def _list(culprits: NDArray[np.integer]) -> str:

@@ -31,8 +31,6 @@ WORDS: Any = np.ones(3)
 def test_a_choice_is_a_word(points: Any) -> None:
     with pytest.raises(InputError, match="method must be one of"):
         Delaunay(points, method=WORDS)
-    with pytest.raises(InputError, match="periodic goes with"):
-        Delaunay(FLAT, method=WORDS, periodic=(2, 2))
     for name in ("extrapolate", "duplicates", "nan"):
         with pytest.raises(InputError, match=f"{name} must be one of"):
             interpolate.Linear(points, points[:, 0], **{name: WORDS})

@@ -108,7 +108,7 @@ class TestHolesAndOutline:
     def test_a_hole_is_removed_up_to_its_segments(self, frame: ConstrainedDelaunay) -> None:
         assert frame.areas.sum() == 32
         assert frame.neighbors.shape == frame.simplices.shape
-        assert len(frame.boundary_edges) == 8
+        assert len(frame.boundary) == 8
         assert len(frame.convex_hull) == 4
         assert frame.hull.tolist() == [0, 1, 2, 3]
 
@@ -123,7 +123,7 @@ class TestHolesAndOutline:
         assert hull.areas.sum() == 16
         assert outline.areas.sum() == 10
         assert outline.validate()
-        assert sorted(map(sorted, outline.boundary_edges.tolist())) == sorted(map(sorted, ring))
+        assert sorted(map(sorted, outline.boundary.tolist())) == sorted(map(sorted, ring))
 
     def test_an_open_line_has_no_inside(self) -> None:
         mesh = ConstrainedDelaunay(OUTER, [(0, 1), (1, 2)], boundary="outline")
@@ -384,7 +384,7 @@ class TestObject:
     def test_arrays_are_read_only_and_kept(self, frame: ConstrainedDelaunay) -> None:
         names = (
             *("points", "simplices", "neighbors", "constrained", "segments", "input_segments"),
-            *("region", "boundary_edges", "edges", "areas", "circumcenters", "transform"),
+            *("region", "boundary", "edges", "areas", "circumcenters", "transform"),
             *("segment_forward", "geometry_of_segment", "vertex_to_simplex", "duplicate_of"),
         )
         for name in names:
@@ -440,7 +440,7 @@ class TestObject:
         ("name", "change", "match"),
         [
             ("constrained", lambda a: ~a, "flags of edges"),
-            ("segments", lambda a: a[[0] * len(a)], "twice"),
+            ("segments", lambda a: a[[0] * len(a)], "repeated"),
             ("source", lambda a: a + 100, "index outside"),
             ("source_start", lambda a: a[:-1], "sources of segments"),
             ("forward", lambda a: a[:-1], "directions"),

@@ -208,7 +208,7 @@ def test_segments_in_a_hole_are_no_facets() -> None:
     pairs, rows = facet_segments(parts)
     assert pairs.tolist() == [list(pair) for pair in around[:-1]]
     assert np.array_equal(parts.segments[rows], pairs)
-    assert len(boundary_segments(parts)[0]) == len(mesh.boundary_edges) == 8
+    assert len(boundary_segments(parts)[0]) == len(mesh.boundary) == 8
     assert len(to_dolfinx_arrays(mesh)["facets"]) == 8
 
 

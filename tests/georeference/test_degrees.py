@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import delone
-from delone import Delaunay, GeographicWarning, datasets
+from delone import Delaunay, GeographicWarning, PeriodicDelaunay, datasets
 from delone.compat import scipy as like_scipy
 from delone.compat import triangle as like_triangle
 from delone.errors import DtypeError
@@ -84,9 +84,9 @@ def test_tables_by_the_names_of_their_columns() -> None:
 def test_a_period_says_that_degrees_are_meant() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        mesh = Delaunay(survey(crs="EPSG:4326"), periodic=(360, None))
+        mesh = PeriodicDelaunay(survey(crs="EPSG:4326"), periods=(360, None))
         Linear(mesh, VALUES)
-        delone.Voronoi(survey(crs="EPSG:4326"), periodic=(360, None))
+        delone.Voronoi(survey(crs="EPSG:4326"), periods=(360, None))
 
 
 def test_the_drop_ins_say_nothing() -> None:

@@ -30,7 +30,7 @@ def test_weights_are_those_of_a_mean(name: str) -> None:
     size = np.abs(mesh.points).max()
     np.testing.assert_allclose(means, queries[inside], rtol=0, atol=1e-13 * size)
     assert np.array_equal(place.nearest[inside], queries[inside])
-    assert (place.beside[inside] == -1).all() and np.isnan(place.along[inside]).all()
+    assert (place.beside[inside] == -1).all() and np.isnan(place.weights[inside]).all()
 
 
 def test_weights_at_sites_are_exactly_one() -> None:
@@ -53,10 +53,10 @@ def test_outside_the_nearest_point_of_the_hull() -> None:
         best = min(squared_distance(queries[i], u, v) for u, v in edges)
         gap = queries[i] - place.nearest[i]
         assert float(gap @ gap) == pytest.approx(float(best), rel=1e-12)
-        u, v = place.edge[i]
+        u, v = place.facet[i]
         assert {u, v} <= set(mesh.simplices[place.beside[i]].tolist())
         assert orient2d(mesh.points[u], mesh.points[v], queries[i]) < 0
-        assert 0 <= place.along[i] <= 1
+        assert 0 <= place.weights[i, 1] <= 1
 
 
 def squared_distance(q: Any, u: Any, v: Any) -> Fraction:
@@ -80,9 +80,9 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
     mesh = Delaunay(datasets.uniform(50))
     queries = np.random.default_rng(0).random(shape)
     place = mesh.locate(queries)
-    assert place.simplex.shape == place.along.shape == shape[:-1]
+    assert place.simplex.shape == place.beside.shape == shape[:-1]
     assert place.barycentric.shape == (*shape[:-1], 3)
-    assert place.nearest.shape == place.edge.shape == shape
+    assert place.nearest.shape == place.facet.shape == shape
     assert mesh.nearest(queries).shape == shape[:-1]
 
 
@@ -166,7 +166,7 @@ def test_location_with_holes(kind: str) -> None:
         assert nearest == min(v for v in used if distance[v] == distance[nearest])
     # Beside: the nearest of all boundary edges.
     outside = np.flatnonzero(found < 0)
-    tail, head = mesh.points[mesh.boundary_edges].swapaxes(0, 1)
+    tail, head = mesh.points[mesh.boundary].swapaxes(0, 1)
     way = head - tail
     for row in outside:
         share = ((queries[row] - tail) * way).sum(axis=1) / (way * way).sum(axis=1)

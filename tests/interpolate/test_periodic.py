@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import Delaunay, PeriodicDelaunay
+from delone import PeriodicDelaunay
 from delone.errors import ConflictingValuesError, InputError, LimitError, NonFiniteError
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor, Nearest, grid
 
@@ -51,7 +51,7 @@ def test_what_copies_that_are_spelled_out_say(
 ) -> None:
     points, values = sites(n)
     given, same = queries(periods)
-    made = kind(Delaunay(points, periodic=periods), values, extrapolate="nearest", **options)
+    made = kind(PeriodicDelaunay(points, periods=periods), values, extrapolate="nearest", **options)
     reach = 6 if n == 90 or None not in periods else 40
     plain = kind(*spelled_out(points, values, periods, reach), extrapolate="nearest", **options)
     np.testing.assert_allclose(made(given), plain(given), rtol=0, atol=1e-9)
@@ -81,7 +81,7 @@ def test_natural_neighbors_many_periods_away() -> None:
     low = rng.random((6, 2)) * [0.9, 0.1]
     points = np.concatenate((low, low + np.array([0.05, 9.0])))
     values = rng.random(12)
-    made = NaturalNeighbor(Delaunay(points, periodic=(1, None)), values)
+    made = NaturalNeighbor(PeriodicDelaunay(points, periods=(1, None)), values)
     plain = NaturalNeighbor(*spelled_out(points, values, (1, None), 60))
     middle = np.column_stack((np.linspace(0.1, 0.9, 50), np.full(50, 4.6)))
     np.testing.assert_allclose(made(middle), plain(middle), rtol=0, atol=1e-12)
@@ -91,7 +91,7 @@ def test_natural_neighbors_many_periods_away() -> None:
 
 def test_both_sides_of_the_antimeridian() -> None:
     points = [(179.9, 0.0), (-179.9, 0.0), (179.8, 1.0), (-179.8, 1.0), (0.0, 0.5)]
-    height = Linear(Delaunay(points, periodic=(360, None)), [1.0, 3.0, 1.0, 3.0, 50.0])
+    height = Linear(PeriodicDelaunay(points, periods=(360, None)), [1.0, 3.0, 1.0, 3.0, 50.0])
     np.testing.assert_allclose(height([(180, 0), (-180, 0), (540, 0)]), 2.0, atol=1e-9)
     assert height((180, 1)) == pytest.approx(2.0)
 
@@ -99,7 +99,7 @@ def test_both_sides_of_the_antimeridian() -> None:
 def test_beyond_the_strip() -> None:
     points, values = sites(60)
     made = {
-        how: Linear(Delaunay(points, periodic=(360, None)), values, extrapolate=how)
+        how: Linear(PeriodicDelaunay(points, periods=(360, None)), values, extrapolate=how)
         for how in ("nan", "nearest", "linear", "error")
     }
     copies = spelled_out(points, values, (360, None))
@@ -118,7 +118,7 @@ def test_beyond_the_strip() -> None:
 
 def test_weights_name_the_sites() -> None:
     points, values = sites(40)
-    periodic = Delaunay(points, periodic=(360, 40))
+    periodic = PeriodicDelaunay(points, periods=(360, 40))
     _, where = queries((360, 40))
     for kind, options in METHODS:
         made = kind(periodic, values, **options)
@@ -132,7 +132,7 @@ def test_of_equally_near_copies_that_of_the_smaller_row_counts() -> None:
     points = [(0.0, 0.0), (3.0, 0.0), (1.5, 1.0)]
     for order in ([0, 1, 2], [1, 0, 2]):
         there = np.array(points)[order]
-        near = Nearest(Delaunay(there, periodic=(4, None)), [10.0, 20.0, 30.0])
+        near = Nearest(PeriodicDelaunay(there, periods=(4, None)), [10.0, 20.0, 30.0])
         assert near((3.5, 0)) == 10
 
 
@@ -140,21 +140,21 @@ def test_policies_for_values() -> None:
     points, values = sites(50)
     twice, more = np.concatenate((points, points[:3])), np.append(values, [5.0, 6.0, 7.0])
     given, _ = queries((360, None))
-    mesh = Delaunay(twice, periodic=(360, None))
+    mesh = PeriodicDelaunay(twice, periods=(360, None))
     with pytest.raises(ConflictingValuesError) as raised:
         Linear(mesh, more)
     assert raised.value.rows.tolist() == [[50, 0], [51, 1], [52, 2]]
     means = np.append((values[:3] + more[50:]) / 2, values[3:])
-    plain = Linear(Delaunay(points, periodic=(360, None)), means)
+    plain = Linear(PeriodicDelaunay(points, periods=(360, None)), means)
     made = Linear(mesh, more, duplicates="mean")
     np.testing.assert_allclose(made(given), plain(given), atol=1e-12)
     np.testing.assert_allclose(made.weights(given) @ more, plain(given), atol=1e-12)
     gaps = np.where(np.arange(50) % 7 == 0, np.nan, values)
-    periodic = Delaunay(points, periodic=(360, None))
+    periodic = PeriodicDelaunay(points, periods=(360, None))
     with pytest.raises(NonFiniteError):
         Linear(periodic, gaps)
     kept = np.isfinite(gaps)
-    rest = NaturalNeighbor(Delaunay(points[kept], periodic=(360, None)), values[kept])
+    rest = NaturalNeighbor(PeriodicDelaunay(points[kept], periods=(360, None)), values[kept])
     dropped = NaturalNeighbor(periodic, gaps, nan="drop")
     np.testing.assert_array_equal(dropped(given), rest(given))
     np.testing.assert_array_equal(dropped(given, values=gaps * 1), rest(given))
@@ -166,18 +166,20 @@ def test_policies_for_values() -> None:
 
 def test_copies_that_rounding_makes_one_keep_their_values() -> None:
     points = np.array([(0.0, 0.0), (1e-17, 0.0), (100.0, 5.0), (200.0, -5.0)])
-    made = Linear(Delaunay(points, periodic=(360, None)), [1.0, 2.0, 3.0, 4.0])
+    made = Linear(PeriodicDelaunay(points, periods=(360, None)), [1.0, 2.0, 3.0, 4.0])
     assert made(points).tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
 def test_rasters_are_a_period_wide() -> None:
     points, values = sites(50)
-    found = grid(Delaunay(points, periodic=(360, None)), values, shape=(36, 4), method="sibson")
+    found = grid(
+        PeriodicDelaunay(points, periods=(360, None)), values, shape=(36, 4), method="sibson"
+    )
     low = points[:, 0].min()
     assert found.extent[:2] == pytest.approx((low, low + 360))
     assert found.extent[2:] == pytest.approx((points[:, 1].min(), points[:, 1].max()))
     wide = grid(
-        Delaunay(points, periodic=(360, None)),
+        PeriodicDelaunay(points, periods=(360, None)),
         values,
         shape=(72, 4),
         method="sibson",

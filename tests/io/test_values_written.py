@@ -209,7 +209,7 @@ def test_su2_by_its_text(name: str, tmp_path: Path) -> None:
     assert list(lines) == []
     if isinstance(mesh, delone.Mesh):
         every = by_edge(mesh.segments, mesh.segment_markers)
-        rim = {frozenset(pair) for pair in mesh.boundary_edges.tolist()}
+        rim = {frozenset(pair) for pair in mesh.boundary.tolist()}
         assert found == {edge: marker for edge, marker in every.items() if edge in rim}
         assert set(found.values()) == set(MARKERS) - {17}
     else:
@@ -224,7 +224,7 @@ def test_su2_leaves_out_segments_that_are_not_of_the_boundary(tmp_path: Path) ->
     start = lines.index("MARKER_TAG= 7") + 1
     count = int(lines[start].removeprefix("MARKER_ELEMS= "))
     pairs = [line.split()[1:] for line in lines[start + 1 : start + 1 + count]]
-    rim = {frozenset(pair) for pair in mesh.boundary_edges.tolist()}
+    rim = {frozenset(pair) for pair in mesh.boundary.tolist()}
     marked = by_edge(mesh.segments, mesh.segment_markers)
     wanted = {edge for edge, marker in marked.items() if marker == 7 and edge in rim}
     assert {frozenset(map(int, pair)) for pair in pairs} == wanted

@@ -107,7 +107,7 @@ def test_many_ties() -> None:
 def test_many_sites_on_a_torus() -> None:
     """As in the middle of nine copies."""
     points = datasets.uniform(1500, seed=4)
-    diagram = Voronoi(points, periodic=(1.0, 1.0), workers=3)
+    diagram = Voronoi(points, periods=(1.0, 1.0), workers=3)
     assert isinstance(diagram.triangulation, PeriodicDelaunay)
     assert diagram.triangulation.nsimplex > 2 * (1 << 10)
     copies = np.concatenate([points + np.array((x, y)) for x in (0, -1, 1) for y in (0, -1, 1)])

@@ -48,7 +48,7 @@ def periods(ax: Any) -> list[Any]:
         (ConstrainedDelaunay(POINTS, [(0, 1)]), PolyCollection, lambda mesh: mesh.nsimplex),
         (delone.mesh(SQUARE, max_area=0.1), PolyCollection, lambda mesh: mesh.nsimplex),
         (PeriodicDelaunay(POINTS, (1, 1)), PolyCollection, lambda mesh: mesh.nsimplex),
-        (Delaunay(POINTS, periodic=(1, None)), PolyCollection, lambda mesh: mesh.nsimplex),
+        (PeriodicDelaunay(POINTS, periods=(1, None)), PolyCollection, lambda mesh: mesh.nsimplex),
         (Voronoi(POINTS), PathCollection, lambda mesh: mesh.npoints),
         (Voronoi(POINTS, weights=np.zeros(30)), PathCollection, lambda mesh: mesh.npoints),
     ],

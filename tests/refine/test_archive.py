@@ -36,7 +36,7 @@ def test_what_is_saved_is_loaded(mesh: delone.Mesh, path: Path) -> None:
         assert np.array_equal(found._arrays()[name], array), name
         assert found._arrays()[name].dtype == array.dtype, name
     assert str(found.report) == str(mesh.report)
-    for name in ("segments", "segment_markers", "point_source", "region", "boundary_edges"):
+    for name in ("segments", "segment_markers", "point_source", "region", "boundary"):
         assert np.array_equal(getattr(found, name), getattr(mesh, name)), name
     with pytest.raises(ValueError, match="read-only"):
         found.points[0] = 1
@@ -105,8 +105,8 @@ WRONG: list[tuple[str, Any, str]] = [
     ("line_geometries", lambda f: f[1:].copy(), "line_geometries"),
     ("point_source", put(0, value=-7), "point_source"),
     ("point_markers", lambda f: f[1:].copy(), "point_markers"),
-    ("bound", put(0, value=60.0), "bound"),
-    ("bound", put(0, value=np.nan), "bound"),
+    ("bound", put(0, value=60.0), "angle"),
+    ("bound", put(0, value=np.nan), "angle"),
     ("counts", put(0, value=-1), "counts"),
     ("duplicates", lambda d: np.zeros((1, 2), dtype=d.dtype), "duplicates"),
 ]

@@ -23,7 +23,7 @@ from delone import (
     DtypeError,
     InputError,
 )
-from delone.refine.refine import MOST_ADDED
+from delone.refine.rounds import MOST_ADDED
 from delone.testing import assert_mesh
 
 SQUARE = np.array([(0.0, 0), (1, 0), (1, 1), (0, 1)])
@@ -277,7 +277,7 @@ def test_delaunay_across_segments() -> None:
 def test_frozen_segments_are_not_split() -> None:
     points, segments = loops(wavy(60, 5), wavy(30, 3, 0.4))
     mesh = delone.mesh((points, segments), frozen="boundary", max_area=0.002)
-    boundary = mesh.point_source[mesh.boundary_edges]
+    boundary = mesh.point_source[mesh.boundary]
     assert len(boundary) == 60
     assert (boundary >= 0).all()
     assert len(mesh.segments) > 90
@@ -364,7 +364,7 @@ def test_meshes_are_immutable_and_travel() -> None:
     for name in ("points", "simplices", "segments", "segment_markers", "region", "point_markers"):
         assert np.array_equal(getattr(mesh, name), getattr(other, name))
     assert str(other.report) == str(mesh.report)
-    assert len(mesh.convex_hull) >= 4
+    assert len(mesh.boundary) >= 4
 
 
 def test_progress_is_told() -> None:

@@ -22,7 +22,7 @@ def check(points: Any, queries: NDArray[np.float64]) -> None:
     """The nearest point to a rounding of the hull's size; the same face in any order of queries."""
     mesh = Delaunay(points)
     place = mesh.locate(queries)
-    assert (mesh.locate(queries[::-1]).face[::-1] == place.face).all()
+    assert (mesh.locate(queries[::-1]).facet[::-1] == place.facet).all()
     sites = exact(mesh.points)
     size = max(abs(x) for p in sites for x in p)
     for row in np.flatnonzero(place.simplex < 0):
@@ -54,7 +54,7 @@ def check_part(points: Any, kept: Any, queries: NDArray[np.float64]) -> None:
     rows = np.flatnonzero(np.resize(np.array(kept), whole.nsimplex))
     mesh = improve((whole.points, whole.simplices[rows]), max_passes=0)
     place = mesh.locate(queries)
-    assert (mesh.locate(queries[::-1]).face[::-1] == place.face).all()
+    assert (mesh.locate(queries[::-1]).facet[::-1] == place.facet).all()
     assert (place.simplex == mesh.find_simplex(queries)).all()
     sites = exact(mesh.points)
     used = [sites[v] for v in np.unique(mesh.simplices)]
@@ -64,7 +64,7 @@ def check_part(points: Any, kept: Any, queries: NDArray[np.float64]) -> None:
         faces = mesh.boundary.tolist()
         feet = [from_triangle(q, [sites[v] for v in face]) for face in faces]
         first = min(range(len(faces)), key=lambda i: feet[i][0])
-        assert place.face[row].tolist() == faces[first]
+        assert place.facet[row].tolist() == faces[first]
         off = max(map(abs, minus(found, feet[first][1])))
         assert off <= size * Fraction(1, 2**51) + Fraction(5e-324)
 

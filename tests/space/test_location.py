@@ -33,16 +33,16 @@ def check_outside(mesh: Any, queries: Any) -> int:
         size = max(map(abs, [*query, *nearest]))
         slack = size / 2**46 + Fraction(5e-324) * 8
         assert abs(dot(away, away) - least) <= slack * (slack + 2 * max(map(abs, away)))
-        assert set(place.face[i].tolist()) <= set(mesh.simplices[place.beside[i]].tolist())
-        assert sorted(place.face[i].tolist()) in [sorted(face) for face in corners]
-        inner = np.setdiff1d(mesh.simplices[place.beside[i]], place.face[i])[0]
-        assert orient3d(*mesh.points[place.face[i]], mesh.points[inner]) < 0
-        assert (place.shares[i] >= 0).all()
-        assert place.shares[i].sum() == pytest.approx(1, rel=1e-15)
+        assert set(place.facet[i].tolist()) <= set(mesh.simplices[place.beside[i]].tolist())
+        assert sorted(place.facet[i].tolist()) in [sorted(face) for face in corners]
+        inner = np.setdiff1d(mesh.simplices[place.beside[i]], place.facet[i])[0]
+        assert orient3d(*mesh.points[place.facet[i]], mesh.points[inner]) < 0
+        assert (place.weights[i] >= 0).all()
+        assert place.weights[i].sum() == pytest.approx(1, rel=1e-15)
     inside = place.simplex >= 0
     assert np.array_equal(place.nearest[inside], queries[inside])
-    assert (place.beside[inside] == -1).all() and (place.face[inside] == -1).all()
-    assert np.isnan(place.shares[inside]).all()
+    assert (place.beside[inside] == -1).all() and (place.facet[inside] == -1).all()
+    assert np.isnan(place.weights[inside]).all()
     return len(rows)
 
 
@@ -91,7 +91,7 @@ def test_what_is_no_number_is_nowhere() -> None:
     for mesh in (Delaunay(datasets.uniform(50, ndim=3)), with_a_hole(0)):
         place = mesh.locate([(np.nan, 0.5, 0.5), (0.5, np.inf, 0.5)])
         assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
-        assert np.isnan(place.nearest).all() and np.isnan(place.shares).all()
+        assert np.isnan(place.nearest).all() and np.isnan(place.weights).all()
 
 
 @pytest.mark.parametrize("shape", [(3,), (0, 3), (3, 4, 3), (2, 0, 3)])
@@ -101,8 +101,8 @@ def test_any_leading_shape(shape: tuple[int, ...]) -> None:
         place = mesh.locate(queries)
         assert place.simplex.shape == place.beside.shape == shape[:-1]
         assert place.barycentric.shape == (*shape[:-1], 4)
-        assert place.nearest.shape == place.face.shape == place.shares.shape == shape
-        assert place.at(np.array([], dtype=int)).face.size == 0 if shape[:-1] else True
+        assert place.nearest.shape == place.facet.shape == place.weights.shape == shape
+        assert place.at(np.array([], dtype=int)).facet.size == 0 if shape[:-1] else True
 
 
 def brute(mesh: Any, queries: Any) -> Any:

@@ -162,7 +162,7 @@ def test_another_diagonal_is_not_canonical() -> None:
 def test_what_is_refused() -> None:
     with pytest.raises(ShapeError, match=r"\(n, 2\) or \(n, 3\), got \(5, 4\)"):
         Delaunay(np.zeros((5, 4)))
-    with pytest.raises(InputError, match="in space"):
+    with pytest.raises(InputError, match="in 3-D"):
         Delaunay(lattice(2), method="sweep")
     with pytest.raises(NonFiniteError) as caught:
         Delaunay([(0, 0, 0), (1, 0, np.nan), (0, 1, 0), (0, 0, 1)])

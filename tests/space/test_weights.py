@@ -96,8 +96,8 @@ def test_each_weight_has_its_digits(name: str, seed: int, scale: int) -> None:
             corners = [sites[v] for v in mesh.simplices[place.simplex[row]]]
             found, wanted = place.barycentric[row], weights(q, corners)
         else:
-            corners = [sites[v] for v in place.face[row]]
-            found, wanted = place.shares[row], shares(q, corners)
+            corners = [sites[v] for v in place.facet[row]]
+            found, wanted = place.weights[row], shares(q, corners)
         for one, other in zip(found.tolist(), wanted, strict=True):
             lost = abs(Fraction(one) - other)
             small = place.simplex[row] < 0 and lost <= Fraction(1, 2**53)

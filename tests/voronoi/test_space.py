@@ -366,8 +366,8 @@ def test_bad_input_gets_what_it_gets_in_the_plane() -> None:
         Voronoi([(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1)])
     with pytest.raises(NonFiniteError):
         Voronoi([(0, 0, float("nan")), (1, 0, 1), (0, 1, 1), (1, 1, 1)])
-    with pytest.raises(InputError, match="in the plane"):
-        Voronoi(uniform(10, 0), periodic=(1, 1))
+    with pytest.raises(InputError, match="2-D"):
+        Voronoi(uniform(10, 0), periods=(1, 1))
     with pytest.raises(InputError, match="no polygons"):
         Voronoi(uniform(10, 0)).polygons()
 

@@ -33,7 +33,7 @@ def test_cells_are_those_of_copies(
     sites: list[tuple[int, int]], periods: tuple[float, float]
 ) -> None:
     points = np.array(sites, dtype=float)
-    diagram = Voronoi(points, periodic=periods)
+    diagram = Voronoi(points, periods=periods)
     plain = Voronoi(copies(points, periods))
     for row in range(len(points)):
         assert corners(diagram, row) == corners(plain, row)
@@ -53,7 +53,7 @@ def test_cells_are_those_of_copies(
 
 def test_periods_that_no_double_holds() -> None:
     points = np.random.default_rng(1).random((300, 2)) * [0.3, 1.1]
-    diagram = Voronoi(points, periodic=(0.3, 1.1))
+    diagram = Voronoi(points, periods=(0.3, 1.1))
     assert diagram.cell_areas.sum() == pytest.approx(0.33)
     indptr, indices, lengths = diagram.neighbors
     assert len(indices) == 2 * len(diagram.ridge_points) == 6 * 300
@@ -66,7 +66,7 @@ def test_periods_that_no_double_holds() -> None:
 
 def test_a_grid_has_squares_for_cells() -> None:
     grid = np.stack(np.meshgrid(np.arange(6.0), np.arange(5.0)), axis=-1).reshape(-1, 2)
-    diagram = Voronoi(grid, periodic=(6, 5))
+    diagram = Voronoi(grid, periods=(6, 5))
     assert diagram.cell_areas.tolist() == [1.0] * 30
     assert len(diagram.ridge_points) == 60
     assert [len(region) for region in diagram.regions] == [4] * 30
@@ -74,7 +74,7 @@ def test_a_grid_has_squares_for_cells() -> None:
 
 
 def test_duplicates_share_their_cell() -> None:
-    diagram = Voronoi([(0, 0), (0.5, 0.5), (0, 0)], periodic=(1, 1))
+    diagram = Voronoi([(0, 0), (0.5, 0.5), (0, 0)], periods=(1, 1))
     assert diagram.cell_areas.tolist() == [0.5] * 3
     assert diagram.duplicate_of.tolist() == [0, 1, 0]
     assert len(diagram.rays.ridge) == 0
@@ -84,9 +84,9 @@ def test_it_can_be_drawn_and_tabled() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     shapely = pytest.importorskip("shapely")
-    diagram = Voronoi(np.random.default_rng(2).random((50, 2)), periodic=(1, 1))
+    diagram = Voronoi(np.random.default_rng(2).random((50, 2)), periods=(1, 1))
     assert len(diagram.plot().collections[0].get_paths()) == 50
-    strip = Voronoi(diagram.points, periodic=(None, 1))
+    strip = Voronoi(diagram.points, periods=(None, 1))
     assert len(strip.plot().collections[0].get_paths()) == 50
     assert shapely.is_valid(diagram.polygons()).all()
 
@@ -101,7 +101,7 @@ def in_strip(points: Any, weights: Any, periods: Any, box: Any) -> tuple[Any, An
     everyone = np.concatenate([points, *(points + step * lengths for step in steps)])
     heavy = None if weights is None else np.tile(weights, 5)
     wide = np.where(np.isfinite(box), box, [-500, -500, 500, 500])
-    diagram = Voronoi(points, weights=weights, periodic=periods, clip=box)
+    diagram = Voronoi(points, weights=weights, periods=periods, clip=box)
     return diagram, Voronoi(everyone, weights=heavy, clip=wide), lengths.max()
 
 
@@ -149,7 +149,7 @@ def test_one_period_makes_strips(
 @pytest.mark.parametrize("periods", STRIPS)
 def test_open_cells_of_a_strip_have_rays_across_it(periods: Any) -> None:
     points = np.random.default_rng(3).integers(0, 6, (12, 2)).astype(float)
-    diagram = Voronoi(points, periodic=periods)
+    diagram = Voronoi(points, periods=periods)
     ridge, origin, direction = diagram.rays
     axis = 1 if periods[1] is None else 0
     assert len(ridge) > 0 and (np.abs(direction[:, axis]) == 1).all()
@@ -165,15 +165,15 @@ def test_open_cells_of_a_strip_have_rays_across_it(periods: Any) -> None:
 
 
 def test_sites_on_a_line_along_the_period_have_strips() -> None:
-    diagram = Voronoi([(4, 0), (1, 0), (4, 0)], periodic=(8, None), clip=(-np.inf, -1, np.inf, 1))
+    diagram = Voronoi([(4, 0), (1, 0), (4, 0)], periods=(8, None), clip=(-np.inf, -1, np.inf, 1))
     assert diagram.triangulation is None
     assert diagram.cell_areas.tolist() == [8.0, 8.0, 8.0]
     assert diagram.duplicate_of.tolist() == [0, 1, 0]
     assert diagram.ridge_points.tolist() == [[1, 0], [0, 1]]
     assert diagram.ridge_offsets.tolist() == [[0, 0], [1, 0]]
-    one = Voronoi([(3, 5)], periodic=(None, 2), clip=(0, -np.inf, 10, np.inf))
+    one = Voronoi([(3, 5)], periods=(None, 2), clip=(0, -np.inf, 10, np.inf))
     assert sorted(one.cell(0).parts[0][0].tolist()) == [[0, 4], [0, 6], [10, 4], [10, 6]]
-    heavy = Voronoi([(0, 0), (1, 0), (4, 0)], weights=[9, 0, 0], periodic=(8, None))
+    heavy = Voronoi([(0, 0), (1, 0), (4, 0)], weights=[9, 0, 0], periods=(8, None))
     assert heavy.hidden.tolist() == [1]
     assert heavy.periods == (8.0, None)
 
@@ -191,7 +191,7 @@ def test_sites_on_a_line_along_the_period_have_strips() -> None:
 def test_weights_go_with_periods(sites: list[tuple[int, int, int]], periods: Any) -> None:
     table = np.array(sites, dtype=float)
     points, weights = table[:, :2], table[:, 2]
-    diagram = Voronoi(points, weights=weights, periodic=periods)
+    diagram = Voronoi(points, weights=weights, periods=periods)
     plain = Voronoi(copies(points, periods), weights=np.tile(weights, 25))
     assert diagram.hidden.tolist() == [row for row in plain.hidden if row < len(points)]
     assert diagram.cell_areas == pytest.approx(plain.cell_areas[: len(points)])
@@ -203,9 +203,9 @@ def test_weights_go_with_periods(sites: list[tuple[int, int, int]], periods: Any
 def test_near_copies_are_enough_with_weights(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(seed)
     points, weights = rng.random((500, 2)), rng.random(500) * [1e-5, 1e-3, 0.02][seed]
-    near = Voronoi(points, weights=weights, periodic=(1, 1))
+    near = Voronoi(points, weights=weights, periods=(1, 1))
     monkeypatch.setattr(periodic, "_FEW", 10**9)
-    every = Voronoi(points, weights=weights, periodic=(1, 1))
+    every = Voronoi(points, weights=weights, periods=(1, 1))
     assert near.hidden.tolist() == every.hidden.tolist()
     assert near.cell_areas == pytest.approx(every.cell_areas, rel=1e-12)
     assert near.cell_areas.sum() == pytest.approx(1)
@@ -214,8 +214,8 @@ def test_near_copies_are_enough_with_weights(seed: int, monkeypatch: pytest.Monk
 def test_equal_weights_change_no_periodic_diagram() -> None:
     points = np.random.default_rng(6).random((200, 2))
     plain, heavy = (
-        Voronoi(points, periodic=(1, 1)),
-        Voronoi(points, periodic=(1, 1), weights=np.full(200, 3.5)),
+        Voronoi(points, periods=(1, 1)),
+        Voronoi(points, periods=(1, 1), weights=np.full(200, 3.5)),
     )
     assert np.array_equal(plain.vertices, heavy.vertices)
     assert np.array_equal(plain.ridge_points, heavy.ridge_points)
@@ -223,12 +223,12 @@ def test_equal_weights_change_no_periodic_diagram() -> None:
 
 def test_of_equal_sites_the_heaviest_has_the_cell() -> None:
     points = [(0, 0), (0.5, 0.5), (0, 0), (0, 0)]
-    diagram = Voronoi(points, weights=[0, 0, 0.1, 0.1], periodic=(1, 1))
+    diagram = Voronoi(points, weights=[0, 0, 0.1, 0.1], periods=(1, 1))
     assert diagram.hidden.tolist() == [0]
     assert diagram.duplicate_of.tolist() == [0, 1, 2, 2]
     assert diagram.cell_areas[2] == diagram.cell_areas[3] > diagram.cell_areas[1] > 0
     with pytest.raises(NonFiniteError):
-        Voronoi(points, weights=[0, 0, 0, np.nan], periodic=(1, 1))
+        Voronoi(points, weights=[0, 0, 0, np.nan], periods=(1, 1))
 
 
 def test_periods_as_long_as_the_range() -> None:
@@ -236,31 +236,31 @@ def test_periods_as_long_as_the_range() -> None:
     places = [(0.0, 0.0), (period / 2, 0.0), (0.0, period / 2), (period / 4, period / 4)]
     with np.errstate(all="raise"):
         assert PeriodicDelaunay(places, (period, period)).nsimplex == 8
-        assert np.isfinite(Voronoi(places, periodic=(period, period)).vertices).all()
+        assert np.isfinite(Voronoi(places, periods=(period, period)).vertices).all()
         for periods in ((period, None), (None, period)):
             with pytest.raises(LimitError, match="beyond the range"):
-                Voronoi(places, periodic=periods)
-        areas = Voronoi(np.array(places) / 8, periodic=(period / 8, None)).cell_areas
+                Voronoi(places, periods=periods)
+        areas = Voronoi(np.array(places) / 8, periods=(period / 8, None)).cell_areas
         assert np.isinf(areas[[0, 1, 2]]).all()
-        assert np.isfinite(Voronoi(np.array(places) / 8, periodic=(period / 8,) * 2).vertices).all()
+        assert np.isfinite(Voronoi(np.array(places) / 8, periods=(period / 8,) * 2).vertices).all()
 
 
 def test_vertices_beyond_the_range_are_refused() -> None:
     flat = [(0.0, 0.0), (0.5, 5e-324)]
     with pytest.raises(LimitError, match="beyond the range"):
-        Voronoi(flat, periodic=(1, None))
+        Voronoi(flat, periods=(1, None))
 
 
 def test_what_does_not_go_together_is_refused() -> None:
     points = [(0, 0), (0.5, 0.25)]
     for clip in ("box", (0, 0, 1, 1), object()):
         with pytest.raises(InputError, match="no border"):
-            Voronoi(points, periodic=(1, 1), clip=clip)
+            Voronoi(points, periods=(1, 1), clip=clip)
     shapely = pytest.importorskip("shapely")
     for clip in ("hull", (0, 0, 1, 1), (-np.inf, 0, np.inf), shapely.box(0, 0, 1, 1), 5):
         with pytest.raises(InputError, match=r"'box' or four numbers \(-inf, ymin, inf, ymax\)"):
-            Voronoi(points, periodic=(1, None), clip=clip)
+            Voronoi(points, periods=(1, None), clip=clip)
     with pytest.raises(InputError, match="no area"):
-        Voronoi(points, periodic=(None, 1), clip=(2, -np.inf, 2, np.inf))
+        Voronoi(points, periods=(None, 1), clip=(2, -np.inf, 2, np.inf))
     with pytest.raises(InputError, match="apart in x"):
-        Voronoi(points, periodic=(0.5, 1))
+        Voronoi(points, periods=(0.5, 1))

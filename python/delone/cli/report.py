@@ -179,7 +179,7 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
 def _is_whole(triangulation: Mesh) -> bool:
     """Tell whether no triangle of the convex hull has been removed."""
     if isinstance(triangulation, ConstrainedDelaunay | QualityMesh):
-        return np.array_equal(triangulation.boundary_edges, triangulation.convex_hull)
+        return np.array_equal(triangulation.boundary, triangulation.convex_hull)
     return True
 
 

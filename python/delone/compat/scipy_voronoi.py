@@ -22,8 +22,8 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.compat.qhull import Incremental, triangulate
 from delone.compat.qhull_options import VORONOI
+from delone.duplicates import first_rows
 from delone.errors import ShapeError
-from delone.plane.triangulation import first_rows
 from delone.voronoi.lists import gaps_once, ridge_lists
 
 if TYPE_CHECKING:

@@ -21,7 +21,8 @@ from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
 from delone.plane import topology
 from delone.refine.meshed import Mesh
-from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, as_rows, filled
+from delone.refine.refine import as_rows, filled
+from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -235,7 +236,7 @@ def _output(
     number, vertices = _rows(found, points, jettison="j" in switches.on)
     out: dict[str, Any] = {"vertices": vertices}
     n = len(vertices)
-    boundary = number[found.boundary_edges]
+    boundary = number[found.boundary]
     markers = np.zeros(n, dtype=np.int32)
     if tri.get("vertex_markers") is not None:
         given = as_rows(tri["vertex_markers"], len(points), "vertex_markers")
@@ -286,9 +287,7 @@ def _segment_markers(found: Mesh) -> Indices:
     marks = found.segment_markers.copy()
     n = found.npoints
     keys = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
-    rim = topology.among(
-        keys, topology.edge_keys(found.boundary_edges[:, 0], found.boundary_edges[:, 1], n)
-    )
+    rim = topology.among(keys, topology.edge_keys(found.boundary[:, 0], found.boundary[:, 1], n))
     marks[rim & (marks == 0)] = 1
     return marks
 

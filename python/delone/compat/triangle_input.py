@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone import location
+from delone import _core
 from delone._arrays import as_segments, as_simplices
 from delone.counting import counted
 from delone.errors import InputError, ShapeError
@@ -15,7 +15,8 @@ from delone.plane import topology
 from delone.refine import domains
 from delone.refine.domains import Domain, Lines
 from delone.refine.meshed import Mesh
-from delone.refine.refine import MOST_ADDED, as_min_angle, as_rows
+from delone.refine.refine import as_rows
+from delone.refine.rounds import MOST_ADDED, as_min_angle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -103,7 +104,7 @@ def again(
     turned = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] < 0
     simplices = np.where(turned[:, None], simplices[:, [0, 2, 1]], simplices).astype(np.int32)
     neighbors = topology.neighbors(simplices, len(points))
-    index = location.locator(points, simplices, neighbors)
+    index = _core.Locator2(points, simplices, neighbors)
     domain = _domain(tri, points, simplices, neighbors, switches)
     caps = _caps(tri, domain, index, switches)
     most = MOST_ADDED if switches.steiner is None else switches.steiner

@@ -23,21 +23,19 @@ from delone._arrays import (
     as_workers,
 )
 from delone.constrained import regions
+from delone.constrained.editing import Editing
 from delone.constrained.segmented import Given, Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
 from delone.counting import counted
 from delone.errors import InputError, InternalError
-from delone.exchange.parts import Parts
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy
 from delone.plane import topology
 
 if TYPE_CHECKING:
-    import os
-
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.constrained.editing import Editing
+    from delone.exchange.parts import Parts
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -168,8 +166,6 @@ class ConstrainedDelaunay(Segmented):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        if hasattr(self, "_made"):
-            raise AttributeError("a ConstrainedDelaunay never changes: edit() makes another one")
         options = Options(
             boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
             crossing=as_choice(crossing, _CROSSINGS, name="crossing"),
@@ -307,7 +303,7 @@ class ConstrainedDelaunay(Segmented):
         order = np.argsort(keys)
         return keys[order], order.astype(np.int32)
 
-    def edit(self) -> Editing:
+    def edit(self) -> Editing[Self]:
         """Return a context that collects changes and makes another triangulation of them.
 
         Returns
@@ -330,8 +326,6 @@ class ConstrainedDelaunay(Segmented):
         >>> edit.result.segments
         array([[1, 3]], dtype=int32)
         """
-        from delone.constrained.editing import Editing
-
         return Editing(self)
 
     def _arguments(self) -> dict[str, Any]:
@@ -377,68 +371,21 @@ class ConstrainedDelaunay(Segmented):
         options = self._options._replace(crs=crs)
         return self._restored(self._points, self._given, self._made, options, self._stages)
 
-    def to_geopandas(self, *, crs: Any = None) -> Any:
-        """Return the triangles as a table of polygons (extra ``geo``).
+    def _parts(self) -> Parts:
+        from delone.exchange.parts import Parts
 
-        Parameters
-        ----------
-        crs : optional
-            Reference system of the coordinates, anything that geopandas takes; by default `crs`,
-            that of the geometries.
+        values = {"region": self.region}
+        if self._given.origin.rings.any():
+            values["polygon"] = self.polygon
+        return Parts(
+            self._points,
+            self._simplices,
+            of_simplices=values,
+            segments=self.segments,
+            crs=self.crs,
+        )
 
-        Returns
-        -------
-        geopandas.GeoDataFrame
-            One row for each triangle: its vertices ``v0``, ``v1`` and ``v2``, its ``region``, with
-            polygons in the input its ``polygon``, and its geometry.
-
-        Raises
-        ------
-        MissingExtraError
-            geopandas or shapely is not installed.
-
-        Examples
-        --------
-        >>> from delone import ConstrainedDelaunay
-        >>> frame = ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).to_geopandas()
-        >>> frame.region.tolist(), frame.area.tolist()
-        ([0], [0.5])
-        """
-        from delone.exchange.geopandas import to_geopandas
-
-        return to_geopandas(self._parts(), crs)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the triangulation to an .npz file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file. No suffix is added.
-
-        Raises
-        ------
-        OSError
-            The file cannot be written, or is no regular file; what was there before is as it was.
-        TypeError
-            `path` is no path. File objects are refused.
-
-        See Also
-        --------
-        load : The way back.
-
-        Examples
-        --------
-        >>> import os, tempfile
-        >>> from delone import ConstrainedDelaunay
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     path = os.path.join(folder, "mesh.npz")
-        ...     ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], [(0, 1)]).save(path)
-        ...     ConstrainedDelaunay.load(path)
-        <ConstrainedDelaunay of 3 points and 1 segment: 1 triangle>
-        """
-        from delone import archive
-
+    def _saved(self) -> dict[str, NDArray[Any]]:
         options = self._options
         choices = (
             _BOUNDARIES.index(options.boundary),
@@ -447,8 +394,8 @@ class ConstrainedDelaunay(Segmented):
             options.conforming,
             options.max_vertices,
         )
-        arrays = self._columns() | {"options": np.array(choices, dtype=np.int64)}
-        archive.write(path, arrays, archive.CONSTRAINED, crs=self.crs)
+        crs = {} if self.crs is None else {"crs": np.array(self.crs)}
+        return self._columns() | {"options": np.array(choices, dtype=np.int64)} | crs
 
     def _columns(self) -> dict[str, NDArray[Any]]:
         """What a file holds besides the options, by the names that it has there."""
@@ -477,41 +424,7 @@ class ConstrainedDelaunay(Segmented):
         }
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> ConstrainedDelaunay:
-        """Read a triangulation that `save` wrote.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-
-        Returns
-        -------
-        ConstrainedDelaunay
-            The triangulation, not computed again.
-
-        Raises
-        ------
-        FileFormatError
-            The file is torn or of another kind, or its arrays contradict each other.
-        OSError
-            The file cannot be read, or is no regular file.
-        TypeError
-            `path` is no path. File objects are refused.
-
-        Notes
-        -----
-        Checked in linear time are shapes, dtypes, ranges, duplicates, mutual neighbours,
-        orientations, the boundary, and that the flags of edges are those of the subsegments.
-        `validate` proves the rest.
-
-        Examples
-        --------
-        See `save`.
-        """
-        from delone import archive
-
-        arrays = archive.read(path, archive.CONSTRAINED)
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         boundary, crossing, labelled, conforming, most = arrays.pop("options").tolist()
         crs = arrays.pop("crs", None)
         options = Options(
@@ -532,24 +445,12 @@ class ConstrainedDelaunay(Segmented):
         made = _core.ConstrainedTriangulation(**arrays)
         return cls._restored(points, given, made, options, {})
 
-    def _parts(self) -> Parts:
-        """What other libraries and files take."""
-        values = {"region": self.region}
-        if self._given.origin.rings.any():
-            values["polygon"] = self.polygon
-        return Parts(
-            self._points, self._simplices, of_simplices=values, segments=self.segments, crs=self.crs
-        )
-
-    def __repr__(self) -> str:
-        if not hasattr(self, "_points"):  # the constructor failed, or has not run
-            return "<ConstrainedDelaunay of nothing yet>"
+    def _described(self) -> str:
         points = counted(self.npoints, "point")
         if self.nadded:
             points += f" ({self.nadded} added)"
         given = counted(len(self.input_segments), "segment")
-        triangles = counted(self.nsimplex, "triangle")
-        return f"<ConstrainedDelaunay of {points} and {given}: {triangles}>"
+        return f"{points} and {given}: {counted(self.nsimplex, 'triangle')}"
 
 
 def _given(

@@ -8,28 +8,28 @@ to copy them costs time in proportion to the whole, as triangulating does.
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
 from delone._arrays import as_points, as_segments, require_finite
-from delone.constrained.segmented import Origin
+from delone.constrained.segmented import Origin, Segmented
 from delone.counting import agreed, counted
+from delone.duplicates import first_rows
 from delone.errors import DeloneError, DtypeError, InputError, ShapeError
 from delone.plane.topology import among, edge_keys
-from delone.plane.triangulation import first_rows
 
 if TYPE_CHECKING:
     from types import TracebackType
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.constrained.delaunay import ConstrainedDelaunay
-
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["EditRows", "Editing"]
+
+M = TypeVar("M", bound=Segmented)
 
 
 class EditRows(NamedTuple):
@@ -49,7 +49,7 @@ class EditRows(NamedTuple):
     segments: Indices
 
 
-class Editing:
+class Editing(Generic[M]):
     """Changes to a `ConstrainedDelaunay`, which `edit` makes; used by ``with``.
 
     Parameters
@@ -92,7 +92,7 @@ class Editing:
     [-1, 0]
     """
 
-    def __init__(self, mesh: ConstrainedDelaunay) -> None:
+    def __init__(self, mesh: M) -> None:
         self._mesh = mesh
         self._ninput = mesh.npoints - mesh.nadded
         self._points: list[Floats] = [mesh.points]
@@ -101,7 +101,7 @@ class Editing:
         self._nsegments = len(mesh.input_segments)
         self._gone_points: list[NDArray[np.int64]] = []
         self._gone_segments: list[NDArray[np.int64]] = []
-        self._result: ConstrainedDelaunay | None = None
+        self._result: M | None = None
         self._rows: EditRows | None = None
         self._ended = False
 
@@ -121,7 +121,7 @@ class Editing:
             self._apply()
 
     @property
-    def result(self) -> ConstrainedDelaunay:
+    def result(self) -> M:
         """The new triangulation, once the block has ended."""
         if self._result is None:
             raise DeloneError("there is no result: the edit has not ended, or ended by an error")

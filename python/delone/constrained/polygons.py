@@ -17,10 +17,10 @@ from delone.constrained import geodata
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.segmented import Origin
 from delone.counting import agreed
+from delone.duplicates import first_rows
 from delone.errors import InputError, NonFiniteError
 from delone.exchange.parts import Parts
 from delone.georeference import as_crs, common_crs, is_geographic, warn_of_degrees
-from delone.plane.triangulation import first_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -16,11 +16,10 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.constrained import coverage, regions, segments
 from delone.immutable import kept, sealed
-from delone.plane import topology
-from delone.plane.triangulation import Triangulation
+from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from delone.constrained.segments import SegmentReport
 
@@ -90,7 +89,7 @@ class Given(NamedTuple):
         )
 
 
-class Segmented(Triangulation):
+class Segmented(PointTriangulation):
     """A triangulation whose edges segments are, with areas between them."""
 
     __slots__ = ("_constrained", "_given", "_made", "_number", "_options")
@@ -240,12 +239,6 @@ class Segmented(Triangulation):
 
     @property
     @kept
-    def boundary_edges(self) -> Indices:
-        """The edges with a triangle on one side only, (k, 2), the triangle to the left."""
-        return sealed(topology.boundary_edges(self._simplices, self._neighbors))
-
-    @property
-    @kept
     def region(self) -> Indices:
         """The area of each triangle, (m,): triangles that no segment separates have one number.
 
@@ -304,6 +297,24 @@ class Segmented(Triangulation):
         if not len(self._given.regions):
             return report
         return replace(report, regions_repeated=self._labelled(self._component())[1])
+
+    def _arguments(self) -> dict[str, Any]:
+        """Return what the constructor was given besides points and segments."""
+        raise NotImplementedError
+
+    @classmethod
+    def _of_geometries(
+        cls,
+        points: Floats,
+        segments: Indices,
+        origin: Origin,
+        *,
+        holes: ArrayLike | None,
+        regions: ArrayLike | None = None,
+        **choices: Any,
+    ) -> Self:
+        """Triangulate arrays of our own, with the origin of each segment."""
+        raise NotImplementedError
 
     @classmethod
     def _restored(

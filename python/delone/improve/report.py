@@ -20,10 +20,21 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["CAUSES", "ImproveReport", "report"]
+__all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
 
 CAUSES = ("angle", "boundary", "budget", "other")
 _ANGLE, _BOUNDARY, _BUDGET, _OTHER = range(4)
+# The fields of a report that count.
+COUNTS = (
+    "edge_removals",
+    "boundary_flips",
+    "face_removals",
+    "moves",
+    "exudations",
+    "refused",
+    "passes",
+    "exhausted",
+)
 _SHOWN = 5
 _BAR = 40
 

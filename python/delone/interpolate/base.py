@@ -36,8 +36,7 @@ from delone.interpolate.values import (
 )
 from delone.interpolate.weights import joined
 from delone.periodic import PeriodicDelaunay
-from delone.plane.triangulation import Triangulation
-from delone.space import location as places
+from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from delone.interpolate.hull import Terms
     from delone.interpolate.repeated import Repeated
     from delone.interpolate.weights import Table, Weights
+    from delone.location import Location
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.int64]
@@ -230,11 +230,7 @@ class Interpolator:
 
     def _distance(self, flat: Floats) -> Floats:
         mesh = self._mesh
-        rows: NDArray[np.int32]
-        if self._ndim == SPACE:
-            rows = mesh._locator.nearest(flat, as_workers(self._workers))
-        else:
-            rows = location.nearest(mesh._sites, flat, self._workers)
+        rows = location.nearest(mesh._dimension, mesh._sites, flat, self._workers)
         with np.errstate(over="ignore", invalid="ignore"):
             step = flat - mesh.points[rows]
             found = functools.reduce(np.hypot, step.T)
@@ -495,11 +491,11 @@ class Interpolator:
             f"choose extrapolate={', '.join(most)} or {last}"
         )
 
-    def _located(self, queries: Floats) -> Any:
-        """Where queries lie: a `Location`, in space a `SpaceLocation`."""
-        mesh: Any = self._mesh
-        locate: Any = places.locate if self._ndim == SPACE else location.locate
-        return locate(mesh._locator, mesh.points, queries, self._workers)
+    def _located(self, queries: Floats) -> Location:
+        """Locate queries."""
+        mesh = self._mesh
+        index = mesh._locator
+        return location.locate(mesh._dimension, index, mesh.points, queries, self._workers)
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
         """The interpolator, the field, its settled columns; those of the constructor for None."""

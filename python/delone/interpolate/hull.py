@@ -72,19 +72,19 @@ def edge_terms(
     continuous, at corners of the hull as well. The triangle at the boundary is not asked: those are
     often so thin that their planes say nothing.
     """
-    s = place.along
-    shares = np.stack((1 - s, s), axis=1)
+    s = place.weights[:, 1]
+    shares = place.weights
     slopes = shares[..., None] * step[:, None]
     weights = np.zeros_like(shares)
     if base and cubic:
         weights = np.stack(((1 - s) ** 2 * (1 + 2 * s), s**2 * (3 - 2 * s)), axis=1)
         tangents = np.stack((s * (1 - s) ** 2, -(s**2) * (1 - s)), axis=1)
         # By halves, as an edge may be longer than any double; a tangent is a seventh at most.
-        half = points[place.edge[:, 1]] / 2 - points[place.edge[:, 0]] / 2
+        half = points[place.facet[:, 1]] / 2 - points[place.facet[:, 0]] / 2
         slopes += 2 * (tangents[..., None] * half[:, None])
     elif base:
         weights = shares
-    return Terms(place.edge, weights, slopes if cubic or step.any() else None)
+    return Terms(place.facet, weights, slopes if cubic or step.any() else None)
 
 
 def plane_gradients(

@@ -27,7 +27,7 @@ class Linear(Interpolator):
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Sites. A triangulation of delone is used as it is, constrained ones included. A periodic
-        one, ``Delaunay(points, periodic=(360, None))``, makes the interpolant periodic as well.
+        one, ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. They may be left out where calls bring theirs.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional

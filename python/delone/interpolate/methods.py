@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from delone.interpolate.base import Interpolator
     from delone.periodic import PeriodicDelaunay
-    from delone.plane.triangulation import Triangulation
+    from delone.triangulation import Triangulation
 
 __all__ = ["METHODS", "interpolator"]
 

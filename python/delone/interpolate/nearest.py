@@ -9,14 +9,13 @@ import numpy as np
 from delone import location
 from delone._arrays import as_workers
 from delone.interpolate.base import Interpolator
-from delone.interpolate.space import SPACE
 from delone.interpolate.weights import Weights, rectangular
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.periodic import PeriodicDelaunay
-    from delone.plane.triangulation import Triangulation
+    from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -115,10 +114,8 @@ class Nearest(Interpolator):
         """The site of each query, -1 where there is none."""
         if self._respect_constraints and self._constrained:
             return self._seen(queries)
-        if self._ndim == SPACE:
-            rows: Indices = self._mesh._locator.nearest(queries, as_workers(self._workers))
-        else:
-            rows = location.nearest(self._mesh._sites, queries, self._workers)
+        mesh = self._mesh
+        rows = location.nearest(mesh._dimension, mesh._sites, queries, self._workers)
         if self._extrapolate == "nearest":
             return rows
         place = self._located(queries)
@@ -142,6 +139,6 @@ class Nearest(Interpolator):
             found[some] = rows[order[indptr[some]]]
         if self._extrapolate != "nan":
             outside, place = self._outside(queries, None)
-            end = np.where(place.along <= 0.5, place.edge[:, 0], place.edge[:, 1])
+            end = np.where(place.weights[:, 1] <= 0.5, *place.facet.T)
             found[outside] = end
         return found

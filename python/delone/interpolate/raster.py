@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.periodic import PeriodicDelaunay
-    from delone.plane.triangulation import Triangulation
+    from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
 

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.interpolate.values import Field
+    from delone.location import Location
     from delone.periodic import PeriodicDelaunay
-    from delone.plane.triangulation import Triangulation
+    from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -218,7 +219,7 @@ class Smooth(Interpolator):
         barrier: Bools = np.ascontiguousarray(mesh.constrained)  # type: ignore[attr-defined]
         simplices, source = cut(mesh.simplices, mesh.neighbors, barrier, mesh.npoints)
         points = mesh.points[source]
-        index = location.locator(points, simplices, mesh.neighbors)
+        index = mesh._dimension.locator(points, simplices, mesh.neighbors)
         return Sheet(points, simplices, index, barrier, source)
 
     def _around(self) -> tuple[Indices, Indices]:
@@ -233,10 +234,11 @@ class Smooth(Interpolator):
         around: tuple[Indices, Indices] = self._cache["around"]
         return around
 
-    def _located(self, queries: Floats) -> Any:
+    def _located(self, queries: Floats) -> Location:
         if self._ndim == SPACE:
             return super()._located(queries)
-        return location.locate(self._sheet.locator, self._sheet.points, queries, self._workers)
+        sheet, dimension = self._sheet, self._mesh._dimension
+        return location.locate(dimension, sheet.locator, sheet.points, queries, self._workers)
 
     def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
         return edge_terms(self._sheet.points, place, step, cubic=True, base=base)

@@ -19,8 +19,8 @@ from delone.space import geometry
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.plane.triangulation import Triangulation
-    from delone.space.location import SpaceLocation
+    from delone.location import Location
+    from delone.triangulation import Triangulation
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -48,12 +48,12 @@ def refuse(what: str, instead: str) -> None:
     raise InputError(f"{what} is for points in the plane; in space {instead}")
 
 
-def face_terms(place: SpaceLocation, step: Floats, *, base: bool = True) -> Terms:
+def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
     """Return the terms of a linear interpolant on the hull, and of how it goes on from there.
 
     Parameters
     ----------
-    place : SpaceLocation
+    place : Location
         Queries outside.
     step : ndarray of float64, shape (k, 3)
         How far to go from the nearest points of the hull.
@@ -65,9 +65,9 @@ def face_terms(place: SpaceLocation, step: Floats, *, base: bool = True) -> Term
     Terms
         For the corners of the faces; without slopes where nothing goes by gradients.
     """
-    weights = place.shares if base else np.zeros_like(place.shares)
-    slopes = place.shares[..., None] * step[:, None]
-    return Terms(place.face, weights, slopes if step.any() else None)
+    weights = place.weights if base else np.zeros_like(place.weights)
+    slopes = place.weights[..., None] * step[:, None]
+    return Terms(place.facet, weights, slopes if step.any() else None)
 
 
 def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
@@ -126,7 +126,7 @@ def hull_gradients(mesh: Triangulation, columns: Floats, workers: int) -> Floats
     as well; where these lie in one plane, too, the slope across it is 0.
     """
     found = np.zeros((mesh.npoints, columns.shape[1], SPACE))
-    rows = np.unique(mesh.convex_hull)
+    rows = np.unique(mesh.boundary)
     around = mesh.vertex_neighbor_vertices
     found[rows] = _core.gradients_local3(mesh.points, *around, columns, rows, workers)
     return found

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.exchange.parts import Parts, parts_of, with_third
 from delone._values import as_values
+from delone.exchange.parts import Parts, parts_of, with_third
 from delone.io.heights import split_attributes
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from delone._values import as_values
 from delone.errors import FileFormatError
 from delone.exchange.meshio import TAGS, to_meshio
 from delone.exchange.parts import boundary, boundary_segments, kind_of

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._values import as_values
 from delone.errors import DeloneError, FileFormatError
 from delone.exchange.geopandas import to_geopandas
 from delone.extras import require

@@ -14,7 +14,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_mesh, as_workers
-from delone.plane.measures import Measures
+from delone.measures import Measures
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

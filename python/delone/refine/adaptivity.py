@@ -8,7 +8,7 @@ would leave an angle below the bound comes back.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -17,16 +17,15 @@ from delone.errors import DtypeError, InputError, InternalError, ShapeError
 from delone.plane import geometry, topology
 from delone.refine import domains
 from delone.refine.domains import Counts
-from delone.refine.refine import MOST_ADDED, Limits, as_min_angle, rounds
+from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
 from delone.refine.sizing import EQUILATERAL
 from delone.refine.smoothing import rebuilt, worse
+from delone.refine.state import MeshState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
-
-    from delone.refine.meshed import Mesh
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -34,9 +33,11 @@ if TYPE_CHECKING:
 
 __all__ = ["coarsened", "finer"]
 
+M = TypeVar("M", bound=MeshState)
+
 
 def finer(
-    mesh: Mesh,
+    mesh: M,
     marked: ArrayLike | None,
     *,
     ratio: float,
@@ -45,7 +46,7 @@ def finer(
     size: Any,
     max_points: int | None,
     progress: Any,
-) -> Mesh:
+) -> M:
     """Return a finer mesh; see ``Mesh.refine``."""
     ratio = as_number(ratio, name="ratio")
     if not 0 < ratio <= 1:
@@ -83,7 +84,9 @@ def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
     return np.unique(array).astype(np.intp)
 
 
-def _by_place(mesh: Mesh, chosen: NDArray[np.intp], ratio: float) -> Callable[[Floats], Floats]:
+def _by_place(
+    mesh: MeshState, chosen: NDArray[np.intp], ratio: float
+) -> Callable[[Floats], Floats]:
     """Return the sizes that make chosen triangles smaller, by the triangle that has a place."""
     sizes = np.full(mesh.nsimplex, math.inf)
     unit = domains.unit_of(mesh.points)
@@ -98,7 +101,7 @@ def _by_place(mesh: Mesh, chosen: NDArray[np.intp], ratio: float) -> Callable[[F
     return size
 
 
-def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
+def coarsened(mesh: M, marked: ArrayLike | None) -> M:
     """Return a coarser mesh; see ``Mesh.coarsen``."""
     chosen = slice(None) if marked is None else _chosen(marked, mesh.nsimplex)
     free = np.zeros(mesh.npoints, dtype=bool)
@@ -126,7 +129,7 @@ def coarsened(mesh: Mesh, marked: ArrayLike | None) -> Mesh:
     return mesh
 
 
-def _without(mesh: Mesh, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
+def _without(mesh: MeshState, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
     """Triangulate without some points; what is left, and which points these are."""
     kept = np.flatnonzero(~gone)
     row = np.full(mesh.npoints, -1, dtype=np.int32)
@@ -137,7 +140,7 @@ def _without(mesh: Mesh, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]
     return domain, kept
 
 
-def _beside(mesh: Mesh, points: NDArray[np.intp], gone: Bools) -> Bools:
+def _beside(mesh: MeshState, points: NDArray[np.intp], gone: Bools) -> Bools:
     """Return the points beside others, or all where none of those that are gone is there."""
     near = np.zeros(mesh.npoints, dtype=bool)
     near[points] = True
@@ -146,7 +149,7 @@ def _beside(mesh: Mesh, points: NDArray[np.intp], gone: Bools) -> Bools:
     return back if (back & gone).any() else np.ones(mesh.npoints, dtype=bool)
 
 
-def _independent(mesh: Mesh, free: Bools) -> Bools:
+def _independent(mesh: MeshState, free: Bools) -> Bools:
     """Choose free points, no two of them neighbours, as many as fit: the lower row goes first."""
     indptr, indices = topology.vertex_neighbor_vertices(mesh.edges, mesh.npoints)
     chosen, barred = np.zeros_like(free), ~free

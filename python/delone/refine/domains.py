@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.constrained.delaunay import ConstrainedDelaunay
+    from delone.constrained.segmented import Segmented
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -108,7 +108,7 @@ class Counts(NamedTuple):
 
 
 def of_constrained(
-    base: ConstrainedDelaunay,
+    base: Segmented,
     *,
     region: Indices,
     segment_markers: Indices,

@@ -7,8 +7,7 @@ the markers that go along, and the rounds in which sizes that vary are asked for
 from __future__ import annotations
 
 import time
-import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from delone._arrays import (
     as_choice,
     as_count,
     as_flag,
-    as_number,
     as_plain_array,
     as_workers,
 )
@@ -25,45 +23,23 @@ from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.refine import domains
-from delone.refine.domains import Counts, Domain
+from delone.refine.domains import Domain
 from delone.refine.meshed import Mesh
-from delone.refine.sizing import Sizing
+from delone.refine.rounds import MOST_ADDED, Limits, as_min_angle, rounds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.refine.domains import Progress
-
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["MOST_ADDED", "Limits", "as_min_angle", "as_rows", "filled", "mesh", "rounds"]
+__all__ = ["as_rows", "filled", "mesh"]
 
-# Ten million triangles, in about 4 GB.
-MOST_ADDED = 5_000_000
-# Above this nobody has seen refinement end on most inputs.
-_DARING = 33.0
-# Each round that asks for sizes makes triangles smaller by up to four; 80 span what doubles hold.
-_MOST_ROUNDS = 80
 _FIRST = 10
 _DOMAINS = "a ConstrainedDelaunay, (points, segments) or geometries"
-
-
-class Limits(NamedTuple):
-    """How far a refinement goes."""
-
-    min_angle: float
-    max_points: int
-    circles: bool
-    progress: Callable[[int, float], object] | None
-    workers: int | None
-    # Whether sizes that need more points are an error before the work starts.
-    refuse: bool = True
-    # Whether sizes yield to lines that may not be split.
-    sizes_yield: bool = False
 
 
 def mesh(
@@ -274,104 +250,6 @@ def filled(
     return Mesh._of(made, counts, limits.min_angle, stages, limits.workers)
 
 
-def rounds(domain: Domain, sizes: tuple[Any, Any], limits: Limits) -> tuple[Domain, Counts]:
-    """Refine a domain until no triangle is too large for where it is.
-
-    Parameters
-    ----------
-    domain : Domain
-        What is refined.
-    sizes : tuple
-        How large triangles may be: `max_area` and `size` of `mesh`.
-    limits : Limits
-        The bound of angles and the limit on points.
-
-    Returns
-    -------
-    domain : Domain
-        The refined one.
-    counts : Counts
-        The points added.
-    """
-    unit = domains.unit_of(domain.points)
-    if unit != 1:
-        # Areas are compared where they are doubles, whatever the lengths are.
-        scaled = domain._replace(points=domain.points / unit)
-        found, counts = _rounds(scaled, Sizing(*sizes, domain.regions, unit), limits)
-        points = found.points * unit
-        if np.array_equal(points / unit, found.points):
-            return found._replace(points=points), counts
-    return _rounds(domain, Sizing(*sizes, domain.regions), limits)
-
-
-def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Counts]:
-    samples = sizing.samples(domain, limits.workers)
-    if limits.refuse:
-        sizing.require_within(domain, samples, limits.max_points)
-    counts = Counts()
-    for turn in range(_MOST_ROUNDS):
-        caps, done = sizing.caps(domain, samples)
-        if turn and done:
-            break
-        before = counts.total
-        tell = limits.progress
-        domain, more = domains.refined(
-            domain,
-            caps,
-            limits.min_angle,
-            limits.max_points - before,
-            circles=limits.circles,
-            sizes_yield=limits.sizes_yield,
-            progress=None if tell is None else _after(before, tell),
-        )
-        counts = counts.plus(more)
-        if counts.exhausted or not sizing.varies:
-            break
-    return domain, counts
-
-
-def as_min_angle(min_angle: float) -> float:
-    """Return an angle that meshes can be asked for.
-
-    Parameters
-    ----------
-    min_angle : float
-        In degrees.
-
-    Returns
-    -------
-    float
-        The angle.
-
-    Raises
-    ------
-    InputError
-        It is not in [0, 60).
-
-    Warns
-    -----
-    UserWarning
-        It is above 33.
-
-    Examples
-    --------
-    >>> from delone.refine.refine import as_min_angle
-    >>> as_min_angle(20)
-    20.0
-    """
-    angle = as_number(min_angle, name="min_angle")
-    if not 0 <= angle < 60:
-        raise InputError(f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r}")
-    if angle > _DARING:
-        warnings.warn(
-            f"refinement to {angle:g} degrees is not proven to end: above {_DARING:g} degrees "
-            "max_points may end it",
-            UserWarning,
-            stacklevel=3,
-        )
-    return angle
-
-
 def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
     """Return a number for each row; 0 where nothing is given.
 
@@ -514,12 +392,3 @@ def _why_empty(base: ConstrainedDelaunay) -> str:
     rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
     places = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
     return f"the outline is open; only one segment ends at points {rows}, the first at {places}"
-
-
-def _after(before: int, tell: Progress) -> Progress:
-    """Return a progress that counts from what was added before."""
-
-    def told(added: int, angle: float) -> None:
-        tell(before + added, angle)
-
-    return told

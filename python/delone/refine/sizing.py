@@ -19,7 +19,7 @@ from delone import _core
 from delone._arrays import as_number, as_workers
 from delone.errors import BudgetExceededError, DtypeError, InputError, LimitError
 from delone.plane import geometry
-from delone.plane.triangulation import Triangulation
+from delone.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -342,8 +342,8 @@ def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Float
         found: Floats = (lengths[corners] * place.barycentric).sum(axis=-1)
         outside = np.flatnonzero(place.simplex < 0)
         if outside.size:
-            a, b = place.edge[outside].T
-            share = place.along[outside]
+            a, b = place.facet[outside].T
+            share = place.weights[outside, 1]
             found[outside] = lengths[a] * (1 - share) + lengths[b] * share
         return found
 

@@ -11,7 +11,7 @@ mesh optimization schemes based on optimal Delaunay triangulations".
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -19,12 +19,12 @@ from delone._arrays import as_choice, as_count
 from delone.plane import geometry, quality
 from delone.refine import domains
 from delone.refine.domains import Counts
+from delone.refine.state import MeshState
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone.refine.domains import Domain
-    from delone.refine.meshed import Mesh
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -32,12 +32,14 @@ if TYPE_CHECKING:
 
 __all__ = ["METHODS", "rebuilt", "smoothed", "worse"]
 
+M = TypeVar("M", bound=MeshState)
+
 METHODS = ("lloyd", "odt", "laplace")
 # How often a step is halved before it is given up.
 _HALVINGS = 3
 
 
-def smoothed(mesh: Mesh, iterations: int, method: str) -> Mesh:
+def smoothed(mesh: M, iterations: int, method: str) -> M:
     """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
     as_choice(method, METHODS, name="method")
     for _ in range(as_count(iterations, name="iterations")):
@@ -51,14 +53,14 @@ def smoothed(mesh: Mesh, iterations: int, method: str) -> Mesh:
     return mesh
 
 
-def _free(mesh: Mesh) -> Bools:
+def _free(mesh: MeshState) -> Bools:
     """Points that were added and lie on no segment, except those of triangles that are spoilt."""
     free = mesh._inner.copy()
     free[mesh.simplices[mesh._below]] = False
     return free
 
 
-def _targets(mesh: Mesh, points: Floats, method: str) -> Floats:
+def _targets(mesh: MeshState, points: Floats, method: str) -> Floats:
     """Return where each point would be best, for its triangles as they are."""
     simplices, n = mesh.simplices, mesh.npoints
     if method == "laplace":
@@ -95,7 +97,7 @@ def _means(owner: Indices, places: Floats, weight: Floats, count: int) -> Floats
     return mean
 
 
-def _tried(mesh: Mesh, free: Bools, method: str) -> Mesh | None:
+def _tried(mesh: M, free: Bools, method: str) -> M | None:
     """Move free points as far as nothing becomes worse; None where nothing moves."""
     # In a unit in which areas and squares of lengths are doubles.
     unit = domains.unit_of(mesh.points)
@@ -128,12 +130,14 @@ def _tried(mesh: Mesh, free: Bools, method: str) -> Mesh | None:
         step[back] = np.where(halved < 0.5**_HALVINGS, 0.0, halved)[back]
 
 
-def rebuilt(mesh: Mesh, points: Floats, row: Indices) -> tuple[Domain | None, NDArray[np.intp]]:
+def rebuilt(
+    mesh: MeshState, points: Floats, row: Indices
+) -> tuple[Domain | None, NDArray[np.intp]]:
     """Triangulate points of a mesh anew, with its subsegments and regions.
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : MeshState
         The mesh.
     points : ndarray of float64, shape (k, 2)
         Where points are now.
@@ -174,7 +178,7 @@ def rebuilt(mesh: Mesh, points: Floats, row: Indices) -> tuple[Domain | None, ND
 
 
 def _astray(
-    mesh: Mesh, simplices: Indices, labels: Indices, row: Indices, kept: NDArray[np.intp]
+    mesh: MeshState, simplices: Indices, labels: Indices, row: Indices, kept: NDArray[np.intp]
 ) -> NDArray[np.intp]:
     """Return the free points that a triangle outside of their region has for a corner."""
     own = np.full(len(kept), -2, dtype=np.int32)
@@ -186,12 +190,12 @@ def _astray(
     return np.unique(simplices[wrong]).astype(np.intp)
 
 
-def worse(mesh: Mesh, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
+def worse(mesh: MeshState, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return the points of triangles below the bound that a mesh did not have.
 
     Parameters
     ----------
-    mesh : Mesh
+    mesh : MeshState
         What there was.
     domain : Domain
         What has become of it.

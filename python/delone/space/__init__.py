@@ -1,11 +1,9 @@
 """3-D triangulations: topology, geometry and quality of tetrahedra.
 
-`topology` needs no coordinates, `geometry` measures, `quality` judges, `location` finds points,
-`plane` triangulates points of one plane in space, and `spatial` is the base of `delone.Delaunay`
-that puts them to use.
+`topology` needs no coordinates, `geometry` measures, `quality` judges, `location` locates points,
+and `dimension` is the table of these functions. `plane` triangulates 3-D points of one plane.
 """
 
-from delone.space.location import SpaceLocation
 from delone.space.plane import PlaneTriangulation
 
-__all__ = ["PlaneTriangulation", "SpaceLocation"]
+__all__ = ["PlaneTriangulation"]

@@ -18,7 +18,7 @@ from delone.exchange.geopandas import by_region, cells_to_geopandas
 from delone.georeference import warn_of_degrees
 from delone.immutable import Immutable, kept, own_copy, sealed
 from delone.regular import as_weights
-from delone.voronoi import clipping, dual, outline, shapes, sites, thin
+from delone.voronoi import clipping, dual, outline, sites, thin
 from delone.voronoi.cells import Cell, Neighbors, Rays, as_site
 from delone.voronoi.lists import compressed, gaps_once
 from delone.voronoi.torus import PeriodicDual
@@ -60,7 +60,7 @@ class Voronoi(Immutable):
     weights : array_like, shape (n,), optional
         Weights of the sites, in the square of the unit of the points: then this is the power
         diagram, in which a place belongs to the site with the least ``|x - p|**2 - w``.
-    periodic : tuple of two floats or None, optional
+    periods : tuple of two floats or None, optional
         ``(Lx, Ly)``: the sites come again after these distances in x and in y, as for
         `PeriodicDelaunay`; None for a direction in which they do not. With two periods there is
         nothing to clip. With one, `clip` is ``"box"`` or a box that is infinite in the direction
@@ -204,7 +204,7 @@ class Voronoi(Immutable):
         clip: Any = None,
         fix: bool = False,
         weights: ArrayLike | None = None,
-        periodic: tuple[float | None, float | None] | None = None,
+        periods: tuple[float | None, float | None] | None = None,
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
@@ -213,16 +213,16 @@ class Voronoi(Immutable):
         threads = as_workers(workers)
         repair = as_flag(fix, name="fix")
         own = own_copy(points)
-        if periodic is None:
+        if periods is None:
             warn_of_degrees(points, own, planar=planar)
         heavy = None if weights is None else as_weights(weights, len(own))
         mesh: Any
         arrays: Diagram2 | PeriodicDual
         lengths = None
-        if periodic is None:
+        if periods is None:
             mesh, arrays = sites.in_plane(own, heavy, threads)
         else:
-            mesh, arrays, lengths = sites.repeated(own, heavy, periodic, threads)
+            mesh, arrays, lengths = sites.repeated(own, heavy, periods, threads)
         where = outline.as_clip(clip, own, fix=repair, periods=lengths)
         self._fill(
             points=own,

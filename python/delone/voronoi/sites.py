@@ -8,9 +8,9 @@ import numpy as np
 
 from delone import _core
 from delone.delaunay import Delaunay
+from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError
 from delone.periodic import PeriodicDelaunay, as_periods, vertex_of
-from delone.plane.triangulation import first_rows
 from delone.regular import RegularTriangulation, triangulated
 from delone.voronoi import dual, torus
 
@@ -76,7 +76,7 @@ def _power(
     found, chain = triangulated(points, weights)
     mesh = None
     if len(found["simplices"]):
-        mesh = RegularTriangulation._from_arrays(found, {}, None)
+        mesh = RegularTriangulation._from_arrays(found, {}, workers)
         arrays = _core.voronoi2(points, weights, mesh.simplices, mesh.neighbors, workers)
     elif len(chain):
         arrays = dual.of_chain(points, chain)
@@ -114,7 +114,7 @@ def repeated(
     """
     torus.require_room(points, as_periods(periods))
     try:
-        mesh = PeriodicDelaunay(points, periods, weights=weights)
+        mesh = PeriodicDelaunay(points, periods, weights=weights, workers=workers)
     except DegenerateInputError as error:
         if not len(error.chain):
             raise
@@ -152,7 +152,7 @@ def in_space(
         mesh = Delaunay(points, workers=workers)
     else:
         found, _ = triangulated(points, weights)
-        mesh = RegularTriangulation._from_arrays(found, {}, None)
+        mesh = RegularTriangulation._from_arrays(found, {}, workers)
     arrays = _core.voronoi3(points, weights, mesh.simplices, mesh.neighbors, workers)
     duplicate, first = mesh._duplicates.T
     arrays.region[duplicate] = arrays.region[first]

@@ -67,7 +67,7 @@ class SpaceVoronoi(Voronoi):
         Accepted as in the plane; a convex polyhedron is never invalid.
     weights : array_like, shape (n,), optional
         Weights of the sites: then this is the power diagram.
-    periodic : None
+    periods : None
         Periods are for the plane.
     workers : int, optional
         How many threads may work; by default one for each core. The answer is the same.
@@ -154,14 +154,14 @@ class SpaceVoronoi(Voronoi):
         clip: Any = None,
         fix: bool = False,
         weights: ArrayLike | None = None,
-        periodic: None = None,
+        periods: None = None,
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
         if hasattr(self, "_points"):
             raise AttributeError("a Voronoi never changes: make another one")
-        if periodic is not None:
-            raise InputError("periodic is for points in the plane")
+        if periods is not None:
+            raise InputError("periods are only available in 2-D")
         threads = as_workers(workers)
         as_flag(fix, name="fix")
         own = own_copy(points, ndim=3)

@@ -1,4 +1,4 @@
-"""What measures of simplices have in common, in the plane and in space: summaries and tables."""
+"""What measures of simplices have in common, in 2-D and 3-D: summaries and tables."""
 
 from __future__ import annotations
 

@@ -1,0 +1,258 @@
+"""Checks of the arrays of a file, in linear time: whatever methods rely upon.
+
+Reading takes nothing on trust: every index is compared with what it counts, and simplices with each
+other, so that walks in the core end and stay inside. Whether simplices are Delaunay is not checked:
+``validate()`` proves it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_workers
+from delone.plane.topology import among, boundary_edges, boundary_next, edge_keys
+from delone.space.topology import boundary_faces
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "ContradictionError",
+    "check_constrained",
+    "check_delaunay",
+    "check_input",
+    "check_mesh",
+    "check_tetrahedra",
+    "require",
+]
+
+
+class ContradictionError(Exception):
+    """The arrays of a file contradict each other."""
+
+
+def require(condition: bool | np.bool_, message: str) -> None:
+    """Raise a ContradictionError where a condition does not hold."""
+    if not condition:
+        raise ContradictionError(message)
+
+
+def check_delaunay(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+) -> None:
+    """Check triangles or tetrahedra that tile a convex hull."""
+    n, m = len(points), len(simplices)
+    _check_simplices(points, simplices, neighbors)
+    _check_range("duplicates", duplicates, 0, n)
+    _check_duplicates(points, simplices, duplicates)
+    if points.shape[1] == 3:
+        _check_closed(boundary_faces(simplices, neighbors), n, convex=True)
+        return
+    boundary = boundary_edges(simplices, neighbors)
+    require(len(boundary) > 0, "it has no boundary")
+    cycle = boundary_next(boundary, int(boundary[0, 0]))
+    require(len(cycle) == len(boundary), "the boundary is not one cycle")
+    expected = 2 * (n - len(duplicates)) - len(boundary) - 2
+    require(m == expected, f"it has {m} triangles, {expected} are expected")
+
+
+def check_tetrahedra(**arrays: NDArray[Any]) -> None:
+    """Check tetrahedra with any boundary, their regions, and the report of their improvement."""
+    points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
+    _check_simplices(points, simplices, neighbors)
+    _check_closed(boundary_faces(simplices, neighbors), len(points))
+    require(len(arrays["region"]) == len(simplices), "regions and tetrahedra do not match")
+    classes = len(arrays["bounds"]) - 1
+    require(len(arrays["before"]) == len(arrays["after"]) == classes, "histograms do not match")
+    require(len(arrays["weights"]) == len(points), "weights and points do not match")
+    require(len(arrays["below"]) == len(arrays["cause"]), "rows and causes do not match")
+    require(len(arrays["angles"]) == 5 and len(arrays["counts"]) == 8, "the report is incomplete")
+    _check_range("below", arrays["below"], 0, len(simplices))
+    _check_range("cause", arrays["cause"], 0, 4)
+
+
+def check_input(**arrays: NDArray[Any]) -> None:
+    """Check input that is computed again."""
+    require(len(arrays["points"]) > 0, "it has no points")
+    require(np.isfinite(arrays["points"]).all(), "a coordinate is not finite")
+
+
+def _check_simplices(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> None:
+    """Check ranges, then that neighbors are mutual and simplices positively oriented."""
+    require(np.isfinite(points).all(), "a coordinate is not finite")
+    require(len(simplices) > 0, "it has no simplices")
+    require(neighbors.shape == simplices.shape, "it has no neighbors of simplices")
+    _check_range("simplices", simplices, 0, len(points))
+    _check_range("neighbors", neighbors, -1, len(simplices))
+    _check_sound(points, simplices, neighbors)
+
+
+def _check_closed(boundary: NDArray[np.int32], npoints: int, *, convex: bool = False) -> None:
+    """Check that each edge of a surface is there as often in one direction as in the other.
+
+    On a convex surface it is there once.
+    """
+    require(len(boundary) > 3, "it has no boundary")
+    tail, head = boundary.ravel().astype(np.int64), boundary[:, [1, 2, 0]].ravel().astype(np.int64)
+    keys, reverse = np.sort(tail * npoints + head), np.sort(head * npoints + tail)
+    closed = (keys == reverse).all() and (not convex or (keys[1:] > keys[:-1]).all())
+    require(closed, "the boundary is not one closed surface")
+
+
+def _check_sound(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
+) -> None:
+    """Check that neighbors are mutual and simplices positively oriented; their range is known."""
+    flat = points.shape[1] == 2
+    check = _core.fault2 if flat else _core.fault3
+    fault = check(points, simplices, neighbors, as_workers(None))
+    if fault is None:
+        return
+    kind, row = fault
+    turn = "is not counter-clockwise" if flat else "is not positively oriented"
+    wrong = "has neighbors that are not mutual" if kind == "neighbors" else turn
+    raise ContradictionError(f"{'triangle' if flat else 'tetrahedron'} {row} {wrong}")
+
+
+def _check_range(name: str, indices: NDArray[np.int32], lowest: int, end: int) -> None:
+    inside = indices.size == 0 or (indices.min() >= lowest and indices.max() < end)
+    require(inside, f"{name} has an index outside {lowest} to {end - 1}")
+
+
+def _check_duplicates(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], duplicates: NDArray[np.int32]
+) -> None:
+    row, first = duplicates.T
+    require((row[1:] > row[:-1]).all() and (first < row).all(), "duplicates are out of order")
+    require((points[row] == points[first]).all(), "a duplicate lies elsewhere")
+    vertex = np.zeros(len(points), dtype=bool)
+    vertex[simplices] = True
+    other = np.ones(len(points), dtype=bool)
+    other[row] = False
+    require((vertex == other).all(), "vertices and duplicates are not all the points")
+
+
+def check_constrained(**arrays: NDArray[Any]) -> None:
+    """Check the triangles as those of `Delaunay`, and that segments fit them."""
+    names = ("points", "simplices", "neighbors", "duplicates")
+    check_delaunay(**{name: arrays[name] for name in names})
+    _check_options(arrays["options"])
+    points, constrained = arrays["points"], arrays["constrained"]
+    n, m = len(points), len(arrays["simplices"])
+    require(constrained.shape == (m, 3), "it has no flags of edges")
+    ninput = n - len(arrays["added"])
+    require(ninput > 0 and (arrays["added"] == points[ninput:]).all(), "added points lie elsewhere")
+    _check_range("input", arrays["input"], 0, ninput)
+    _check_range("segments", arrays["segments"], 0, n)
+    _check_flags(arrays)
+    _check_sources(arrays)
+    rows = len(arrays["input"])
+    for name, indices, end in (
+        ("zero", arrays["zero"], rows),
+        ("through", arrays["through"][:, 0], rows),
+        ("through", arrays["through"][:, 1], n),
+        ("crossings", arrays["crossings"][:, :2], rows),
+        ("crossings", arrays["crossings"][:, 2], n),
+    ):
+        _check_range(name, indices, 0, end)
+    seeds = np.concatenate((arrays["holes"], arrays["regions"]))
+    require(np.isfinite(seeds).all(), "a seed is not finite")
+    geometries, rings, parts = (arrays[name] for name in ("geometries", "rings", "parts"))
+    matched = len(geometries) == len(rings) == len(parts) == rows
+    require(matched, "geometries and segments do not match")
+    require((geometries[rings] >= 0).all(), "the side of a ring has no geometry")
+    _check_range("parts", parts, -1, 2**31 - 1)
+    require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
+
+
+def _check_options(options: NDArray[np.int64]) -> None:
+    require(
+        len(options) == 5 and (options[:4] >= 0).all() and (options[:4] <= (2, 1, 1, 1)).all(),
+        "its options are invalid",
+    )
+    require(0 <= options[4] < 2**31, "its options are invalid")
+
+
+def _check_flags(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Check that the flagged edges are the subsegments, each once."""
+    simplices, segments, n = arrays["simplices"], arrays["segments"], len(arrays["points"])
+    edges = edge_keys(simplices[:, [1, 2, 0]], simplices[:, [2, 0, 1]], n)
+    keys = np.sort(edge_keys(segments[:, 0], segments[:, 1], n))
+    require((keys[1:] > keys[:-1]).all(), "a subsegment is repeated")
+    require((among(edges, keys) == arrays["constrained"]).all(), "flags of edges are wrong")
+    require(among(keys, edges.ravel()).all(), "a subsegment is not an edge")
+
+
+def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
+    start, source = arrays["source_start"], arrays["source"]
+    require(
+        len(start) == len(arrays["segments"]) + 1 and start[0] == 0 and start[-1] == len(source),
+        "sources of segments are out of range",
+    )
+    require((np.diff(start) > 0).all(), "a segment has no source")
+    require(len(arrays["forward"]) == len(source), "directions of segments are out of range")
+    _check_range("source", source, 0, len(arrays["input"]))
+
+
+def check_mesh(**arrays: NDArray[Any]) -> None:
+    """Check triangles that need not fill a hull, and lines under their edges."""
+    points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
+    n, m, lines = len(points), len(simplices), len(arrays["ends"])
+    _check_simplices(points, simplices, neighbors)
+    require(arrays["sides"].shape == simplices.shape, "it has no sides of triangles")
+    for name, indices, least, end in (
+        ("sides", arrays["sides"], -1, lines),
+        ("on", arrays["on"], -1, lines),
+        ("ends", arrays["ends"], 0, n),
+        ("point_source", arrays["point_source"], -1, 2**31),
+        ("source", arrays["source"], 0, 2**31),
+        ("counts", arrays["counts"], 0, 2**63),
+    ):
+        _check_range(name, indices, least, end)
+    for wanted, names in (
+        (m, ("region",)),
+        (n, ("on", "point_source", "point_markers")),
+        (lines, ("frozen", "line_markers", "line_geometries")),
+        (len(arrays["source"]), ("forward",)),
+        (lines + 1, ("start",)),
+        (4, ("counts",)),
+        (1, ("bound",)),
+        (0, ("duplicates",)),
+    ):
+        for name in names:
+            require(len(arrays[name]) == wanted, f"{name} does not have {wanted} entries")
+    start = arrays["start"]
+    require(start[0] == 0 and start[-1] == len(arrays["source"]), "sources are out of range")
+    require((np.diff(start) >= 0).all(), "sources are out of order")
+    require((arrays["bound"] >= 0).all() and (arrays["bound"] < 60).all(), "its angle is invalid")
+    vertex = np.zeros(n, dtype=bool)
+    vertex[simplices] = True
+    require(vertex.all(), "a point is not a vertex")
+    _check_sides(arrays)
+
+
+def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Check that triangles are mutual and agree on the lines and regions between them."""
+    simplices, neighbors = arrays["simplices"], arrays["neighbors"]
+    sides, region = arrays["sides"], arrays["region"]
+    inner = neighbors >= 0
+    require((sides[~inner] >= 0).all(), "the boundary has an edge on no line")
+    t, k = np.nonzero(inner)
+    across = neighbors[t, k]
+    back = (neighbors[across] == t[:, None]) & (
+        simplices[across] != simplices[t, (k + 1) % 3][:, None]
+    ) & (simplices[across] != simplices[t, (k + 2) % 3][:, None])  # fmt: skip
+    other = sides[across, back.argmax(axis=1)]
+    require((other == sides[t, k]).all(), "two triangles disagree about the line between them")
+    same = (region[across] == region[t]) | (other >= 0)
+    require(same.all(), "a region ends where there is no line")

@@ -1,0 +1,130 @@
+"""The layouts of files: for each class the arrays, and the check of their content."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from delone.archive import checks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["KINDS", "Kind"]
+
+
+class Kind(NamedTuple):
+    """A layout of arrays."""
+
+    format: str
+    # Names of the arrays, their dtypes and numbers of columns; 0 for arrays of one axis.
+    layout: Mapping[str, tuple[str, int]]
+    check: Callable[..., None]
+    # Names of texts, which may be missing.
+    texts: tuple[str, ...] = ()
+
+    def fits(self, points: NDArray[np.float64]) -> bool:
+        """Tell whether points have the columns of this layout."""
+        return self.layout["points"][1] == int(points.shape[1])
+
+
+def _simplices(ndim: int) -> dict[str, tuple[str, int]]:
+    return {
+        "points": ("<f8", ndim),
+        "simplices": ("<i4", ndim + 1),
+        "neighbors": ("<i4", ndim + 1),
+    }
+
+
+def _delaunay(ndim: int) -> dict[str, tuple[str, int]]:
+    return _simplices(ndim) | {"duplicates": ("<i4", 2)}
+
+
+_CONSTRAINED = Kind(
+    "delone.ConstrainedDelaunay",
+    _delaunay(2)
+    | {
+        "constrained": ("|b1", 3),
+        "added": ("<f8", 2),
+        "segments": ("<i4", 2),
+        "source_start": ("<i8", 0),
+        "source": ("<i4", 0),
+        "forward": ("|b1", 0),
+        "zero": ("<i4", 0),
+        "through": ("<i4", 2),
+        "crossings": ("<i4", 3),
+        "input": ("<i4", 2),
+        "geometries": ("<i4", 0),
+        "rings": ("|b1", 0),
+        "parts": ("<i4", 0),
+        "holes": ("<f8", 2),
+        "regions": ("<f8", 2),
+        "labels": ("<i4", 0),
+        "options": ("<i8", 0),
+    },
+    checks.check_constrained,
+    ("crs",),
+)
+_MESH = Kind(
+    "delone.Mesh",
+    _delaunay(2)
+    | {
+        "region": ("<i4", 0),
+        "sides": ("<i4", 3),
+        "on": ("<i4", 0),
+        "point_source": ("<i4", 0),
+        "point_markers": ("<i4", 0),
+        "ends": ("<i4", 2),
+        "start": ("<i8", 0),
+        "source": ("<i4", 0),
+        "forward": ("|b1", 0),
+        "frozen": ("|b1", 0),
+        "line_markers": ("<i4", 0),
+        "line_geometries": ("<i4", 0),
+        "bound": ("<f8", 0),
+        "counts": ("<i8", 0),
+    },
+    checks.check_mesh,
+)
+_TET_MESH = Kind(
+    "delone.TetMesh",
+    _simplices(3)
+    | {
+        "region": ("<i4", 0),
+        # The report of the improvement.
+        "angles": ("<f8", 0),
+        "counts": ("<i8", 0),
+        "bounds": ("<f8", 0),
+        "before": ("<i8", 0),
+        "after": ("<i8", 0),
+        "weights": ("<f8", 0),
+        "below": ("<i8", 0),
+        "cause": ("<i8", 0),
+    },
+    checks.check_tetrahedra,
+)
+
+
+def _input(name: str, ndim: int, **further: tuple[str, int]) -> Kind:
+    """Return the layout of a class that is computed again from its input."""
+    layout = {"points": ("<f8", ndim)} | further
+    return Kind(f"delone.{name} {ndim}-D", layout, checks.check_input)
+
+
+_WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)
+KINDS: Mapping[str, tuple[Kind, ...]] = {
+    "Delaunay": (
+        Kind("delone.Delaunay", _delaunay(2), checks.check_delaunay),
+        Kind("delone.Delaunay of space", _delaunay(3), checks.check_delaunay),
+    ),
+    "ConstrainedDelaunay": (_CONSTRAINED,),
+    "Mesh": (_MESH,),
+    "TetMesh": (_TET_MESH,),
+    "RegularTriangulation": tuple(
+        _input("RegularTriangulation", ndim, weights=_WEIGHTS) for ndim in (2, 3)
+    ),
+    "PeriodicDelaunay": (_input("PeriodicDelaunay", 2, weights=_WEIGHTS, periods=_PERIODS),),
+    "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
+}

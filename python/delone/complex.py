@@ -1,0 +1,322 @@
+"""The base class of everything that consists of points and simplices: arrays, files, exchange.
+
+An object is filled once from its arrays and never changes. Pickles, `save` and `load`, and the
+methods that draw and convert are the same for all; a class names its arrays in `_ARRAYS` and gives
+their meaning.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from delone.immutable import Immutable, kept, sealed
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from delone.exchange.parts import Parts
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Arrays = Mapping[str, NDArray[Any]]
+
+__all__ = ["Complex", "Stored"]
+
+
+class Stored(Immutable):
+    """An immutable object that can be saved, loaded and pickled."""
+
+    __slots__ = ("_workers",)
+
+    _workers: int | None
+
+    @property
+    def workers(self) -> int | None:
+        """How many threads may work; None for one per core. Results do not depend on it."""
+        return self._workers
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays of a file."""
+        raise NotImplementedError
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        """Return the object of the arrays of a file, which have been checked."""
+        raise NotImplementedError
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write to an .npz file, atomically.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file. No suffix is added.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written, or is not a regular file; a file that exists stays as it
+            is.
+        TypeError
+            `path` is not a path. File objects are refused.
+
+        See Also
+        --------
+        load : The inverse.
+
+        Notes
+        -----
+        A symbolic link is followed. An existing file keeps its permissions. The file holds what
+        `load` needs for the same object, bit for bit, and no code.
+
+        Examples
+        --------
+        >>> import os, tempfile
+        >>> from delone import Delaunay
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "mesh.npz")
+        ...     Delaunay([(0, 0), (1, 0), (0, 1)]).save(path)
+        ...     Delaunay.load(path)
+        <Delaunay of 3 points: 1 triangle>
+        """
+        from delone import archive
+
+        archive.write(path, self._saved(), self._stored_as())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a file that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+
+        Returns
+        -------
+        Self
+            The object. `stages` is empty, and `workers` is None.
+
+        Raises
+        ------
+        FileFormatError
+            The file is truncated or of another class, or its arrays contradict each other.
+        OSError
+            The file cannot be read, or is not a regular file.
+        TypeError
+            `path` is not a path. File objects are refused.
+
+        Notes
+        -----
+        Shapes, dtypes, ranges, duplicates, mutual neighbors and orientations are checked in linear
+        time; `validate` proves the rest. A `ConvexHull`, `RegularTriangulation`,
+        `PeriodicDelaunay` and `Voronoi` are computed again from their input, which takes no longer
+        than to prove them.
+
+        Examples
+        --------
+        See `save`.
+        """
+        from delone import archive
+
+        return cls._loaded(archive.read(path, cls._stored_as()))
+
+    @classmethod
+    def _stored_as(cls) -> str:
+        """Return the name of the class, or of the public class that it extends."""
+        from delone.archive.kinds import KINDS
+
+        return next(each.__name__ for each in cls.__mro__ if each.__name__ in KINDS)
+
+    def _described(self) -> str:
+        """Return what `repr` says after "of"."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        if not hasattr(self, "_cache"):  # the constructor failed, or has not run
+            return f"<{type(self).__name__} of nothing yet>"
+        return f"<{type(self).__name__} of {self._described()}>"
+
+
+class Complex(Stored):
+    """Points and simplices as read-only arrays."""
+
+    __slots__ = ("_neighbors", "_points", "_simplices", "_stages")
+
+    # What the object consists of, by names; each has a slot with an underscore.
+    _ARRAYS: ClassVar[tuple[str, ...]] = ("points", "simplices", "neighbors")
+
+    _neighbors: Indices
+    _points: Floats
+    _simplices: Indices
+    _stages: dict[str, float]
+
+    def _fill(self, arrays: Arrays, stages: dict[str, float], workers: int | None) -> None:
+        """Set everything; afterwards nothing can be set."""
+        self._hold(
+            stages=stages,
+            workers=workers,
+            **{name: sealed(array) for name, array in arrays.items()},
+        )
+
+    @classmethod
+    def _from_arrays(
+        cls,
+        arrays: Arrays,
+        stages: dict[str, float] | None = None,
+        workers: int | None = None,
+    ) -> Self:
+        made = cls.__new__(cls)
+        made._fill(arrays, stages or {}, workers)
+        return made
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        return {name: getattr(self, f"_{name}") for name in self._ARRAYS}
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        return self._arrays()
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        return cls._from_arrays(arrays)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._from_arrays, (self._arrays(), self._stages, self._workers)
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, d), where d is `ndim`."""
+        return self._points
+
+    @property
+    def simplices(self) -> Indices:
+        """The simplices as rows of `points`."""
+        return self._simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The simplex opposite each vertex, in the shape of `simplices`; -1 outside."""
+        return self._neighbors
+
+    @property
+    def ndim(self) -> int:
+        """Number of coordinates, 2 or 3."""
+        return int(self._points.shape[1])
+
+    @property
+    def npoints(self) -> int:
+        """Number of points, duplicates and points without a simplex included."""
+        return len(self._points)
+
+    @property
+    def nsimplex(self) -> int:
+        """Number of simplices."""
+        return len(self._simplices)
+
+    @property
+    def stages(self) -> dict[str, float]:
+        """Seconds of each part of the construction; empty after loading from a file."""
+        return dict(self._stages)
+
+    @property
+    @kept
+    def min_bound(self) -> Floats:
+        """The least coordinates, (d,)."""
+        return sealed(self._points.min(axis=0))
+
+    @property
+    @kept
+    def max_bound(self) -> Floats:
+        """The greatest coordinates, (d,)."""
+        return sealed(self._points.max(axis=0))
+
+    def _parts(self) -> Parts:
+        """Return what other libraries take."""
+        from delone.exchange.parts import Parts
+
+        return Parts(self._points, self._simplices)
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or pyvista Plotter, optional
+            Where to draw; by default on a new one.
+        **options
+            As for `delone.plot.plot`.
+
+        Returns
+        -------
+        matplotlib Axes or pyvista Plotter
+            Where it is drawn.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed.
+        InputError
+            An option does not exist for this kind of object, or there is nothing to draw.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> ax = Delaunay([(0, 0), (1, 0), (0, 1)]).plot()
+        >>> ax.get_aspect()
+        1.0
+        """
+        from delone.plot import plot
+
+        return plot(self, ax, **options)
+
+    def to_meshio(self) -> Any:
+        """Convert to a mesh of meshio (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            The simplices, and segments as lines, with regions and markers as values, and again as
+            tags of Gmsh: regions from 1 on, markers as they are. 2-D points get z = 0.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_meshio().cells_dict["triangle"].shape
+        (1, 3)
+        """
+        from delone.exchange.meshio import to_meshio
+
+        return to_meshio(self._parts())
+
+    def to_pyvista(self) -> Any:
+        """Convert to a mesh of PyVista (extra ``pyvista``).
+
+        Returns
+        -------
+        pyvista.PolyData or pyvista.UnstructuredGrid
+            Edges and triangles as a surface, 2-D points at z = 0; tetrahedra as a grid. Values of
+            simplices and points, such as regions, are its data.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_pyvista().n_cells
+        1
+        """
+        from delone.exchange.pyvista import to_pyvista
+
+        return to_pyvista(self._parts())

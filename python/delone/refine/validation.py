@@ -1,0 +1,78 @@
+"""Validation of meshes: triangles that fit each other and are Delaunay except across segments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from delone import _core
+from delone.plane.topology import boundary_edges
+from delone.validation import SENTENCES, ValidationReport, not_across
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["MeshValidation", "validate"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshValidation(ValidationReport):
+    """The result of ``Mesh.validate()``: truthy if the mesh is right.
+
+    The fields are those of `ValidationReport`, but `hull` has the edges of the boundary that are no
+    part of a segment, `delaunay` and `ties` leave out pairs of triangles with a segment between
+    them, and `count` is always empty.
+
+    Examples
+    --------
+    >>> import delone
+    >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    >>> print(delone.mesh(square, max_area=0.1).validate())
+    a constrained Delaunay mesh
+    """
+
+    _SUBJECT: ClassVar[str] = "a constrained Delaunay mesh"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | {
+        "hull": ("boundary edge is not on a segment", "boundary edges are not on a segment")
+    }
+
+
+def validate(
+    points: Floats, simplices: Indices, neighbors: Indices, constrained: Bools
+) -> MeshValidation:
+    """Check the triangles of a mesh.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    simplices, neighbors : ndarray of int32, shape (m, 3)
+        Triangles, and those opposite their vertices.
+    constrained : ndarray of bool, shape (m, 3)
+        Whether the edge opposite each vertex is part of a segment.
+
+    Returns
+    -------
+    MeshValidation
+        What is wrong.
+    """
+    found = _core.validate2(points, simplices, neighbors)
+    used = np.zeros(len(points), dtype=bool)
+    used[simplices] = True
+    return MeshValidation(
+        orientation=found.orientation,
+        edges=found.edges,
+        neighbors=found.neighbors,
+        hull=boundary_edges(simplices, np.where(constrained, 0, neighbors)),
+        missing=np.flatnonzero(~used),
+        delaunay=not_across(found.delaunay, neighbors, constrained),
+        ties=not_across(found.ties, neighbors, constrained),
+    )

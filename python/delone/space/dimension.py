@@ -1,0 +1,51 @@
+"""The table of functions for tetrahedra in 3-D."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone.dimension import Dimension
+from delone.space import geometry, location, quality, topology
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["SPACE"]
+
+
+def _hull(_: Floats, boundary: Indices) -> NDArray[np.int64]:
+    """Return the vertices of a boundary, ascending."""
+    return np.unique(boundary).astype(np.int64)
+
+
+def _edges(simplices: Indices, _: Indices, npoints: int, workers: int | None) -> Indices:
+    return topology.edges(simplices, npoints, workers)
+
+
+def _delaunay(points: Floats, workers: int) -> tuple[Indices, Indices]:
+    made = _core.triangulate3(points, workers)
+    return made.simplices, made.neighbors
+
+
+SPACE = Dimension(
+    ndim=3,
+    simplex="tetrahedron",
+    boundary=topology.boundary_faces,
+    hull=_hull,
+    edges=_edges,
+    faces=topology.faces,
+    sizes=geometry.volumes,
+    circumcenters=geometry.circumcenters,
+    transform=geometry.transform,
+    quality=quality.measured,
+    locator=_core.Locator3,
+    located=location.located,
+    on_facets=location.on_faces,
+    delaunay=_delaunay,
+)

@@ -1,0 +1,522 @@
+"""The base classes of triangulations in any dimension: what follows from points and simplices.
+
+A class holds arrays and the table of functions of its dimension (`delone.dimension`). Everything
+here follows from these on first use and is kept. Objects never change, so any number of threads may
+share one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from delone import location
+from delone._arrays import as_workers
+from delone.complex import Complex
+from delone.dimension import only
+from delone.immutable import kept, sealed
+from delone.plane.dimension import PLANE
+from delone.plane.location import along
+from delone.plane.topology import vertex_neighbor_vertices, vertex_to_simplex
+from delone.space.dimension import SPACE
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.dimension import Dimension
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["HullTiling", "PointTriangulation", "Triangulation"]
+
+# By the number of coordinates.
+_DIMENSIONS = {2: PLANE, 3: SPACE}
+
+
+class Triangulation(Complex):
+    """Triangles in 2-D or tetrahedra in 3-D, and what follows from them."""
+
+    __slots__ = ()
+
+    @property
+    def _dimension(self) -> Dimension:
+        """The functions of this dimension."""
+        return _DIMENSIONS[self._points.shape[1]]
+
+    def _tiling(self) -> tuple[Indices, Indices]:
+        """Return simplices and neighbors of a tiling of the convex hull that holds these."""
+        return self._simplices, self._neighbors
+
+    @property
+    def _number(self) -> Indices | None:
+        """What each simplex of `_tiling` is here, -1 and for the last entry; None for itself."""
+        return None
+
+    @property
+    def simplices(self) -> Indices:
+        """The simplices as rows of `points`, (m, d + 1).
+
+        Triangles are counter-clockwise, tetrahedra positively oriented.
+        """
+        return self._simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The simplex opposite each vertex, (m, d + 1); -1 outside."""
+        return self._neighbors
+
+    @property
+    @kept
+    def boundary(self) -> Indices:
+        """The facets with a simplex on one side only, (h, d), in the order of the simplices.
+
+        In 2-D edges, each with the triangulation to its left; in 3-D triangles, counter-clockwise
+        as seen from outside.
+        """
+        return sealed(self._dimension.boundary(self._simplices, self._neighbors))
+
+    @property
+    @kept
+    def edges(self) -> Indices:
+        """Every edge once, (k, 2): the smaller vertex first, rows ascending."""
+        topology = self._simplices, self._neighbors, self.npoints, self._workers
+        return sealed(self._dimension.edges(*topology))
+
+    @property
+    @kept
+    def faces(self) -> Indices:
+        """Every triangle once, (k, 3): vertices and rows ascending.
+
+        In 2-D the simplices, in 3-D their faces.
+        """
+        topology = self._simplices, self._neighbors, self.npoints, self._workers
+        return sealed(self._dimension.faces(*topology))
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The vertex of each row, (n,): the first row with the same coordinates."""
+        return sealed(np.arange(self.npoints, dtype=np.int32))
+
+    @property
+    @kept
+    def vertex_to_simplex(self) -> Indices:
+        """The first simplex of each point, or of the point that it repeats, (n,); -1 if none."""
+        first = vertex_to_simplex(self._simplices, self.npoints)
+        return sealed(first[self.duplicate_of])
+
+    @property
+    @kept
+    def coplanar(self) -> Indices:
+        """The duplicates, (k, 3): row, a simplex of its vertex (-1 if it has none), its vertex."""
+        row = np.flatnonzero(self.duplicate_of != np.arange(self.npoints)).astype(np.int32)
+        first = self.duplicate_of[row]
+        return sealed(np.column_stack((row, self.vertex_to_simplex[first], first)))
+
+    @property
+    @kept
+    def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
+        """Neighbors of vertices as compressed rows (indptr, indices).
+
+        Those of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, ascending. A duplicate has none.
+        """
+        indptr, indices = vertex_neighbor_vertices(self.edges, self.npoints)
+        return sealed(indptr), sealed(indices)
+
+    @property
+    @kept
+    def transform(self) -> Floats:
+        """Affine maps to barycentric coordinates, (m, d + 1, d).
+
+        With ``inverse, r = transform[t, :d], transform[t, d]``, where r is the last vertex of
+        simplex t, ``c = inverse @ (x - r)`` are the first d barycentric coordinates of x, and
+        ``1 - c.sum()`` is the last. No simplex is flat, so no row is NaN, however thin the simplex.
+        In 2-D entries have a relative error below 1e-13, in 3-D rows have one below 1e-13 of their
+        length. Values beyond the range of doubles are infinite.
+        """
+        return sealed(self._dimension.transform(self._points, self._simplices, self._workers))
+
+    @property
+    @kept
+    def circumcenters(self) -> Floats:
+        """Centers of the circles or spheres through the corners of simplices, (m, d).
+
+        Each coordinate within 4 units in the last place. Those of thin simplices are far away, and
+        infinite beyond the range of doubles.
+        """
+        return sealed(self._dimension.circumcenters(self._points, self._simplices, self._workers))
+
+    @kept
+    def _sizes(self) -> Floats:
+        return sealed(self._dimension.sizes(self._points, self._simplices, self._workers))
+
+    @property
+    @only(2, "tetrahedra have `volumes`")
+    def areas(self) -> Floats:
+        """Areas of the triangles, (m,), in the square of the unit of the points; 2-D only.
+
+        All positive, with a relative error below 1e-13, except beyond the range of doubles.
+        """
+        return self._sizes()
+
+    @property
+    @only(3, "triangles have `areas`")
+    def volumes(self) -> Floats:
+        """Volumes of the tetrahedra, (m,), in the cube of the unit of the points; 3-D only.
+
+        All positive, with a relative error below 1e-13, except beyond the range of doubles.
+        """
+        return self._sizes()
+
+    @kept
+    def quality(self) -> Any:
+        """Measure the shapes of the simplices.
+
+        Returns
+        -------
+        Quality or TetQuality
+            In 2-D angles, areas and ratios of radii and edges; in 3-D dihedral angles, volumes and
+            the same ratios.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).quality().largest_angle
+        array([90.])
+        >>> Delaunay([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]).quality().largest_dihedral
+        array([90.])
+        """
+        return self._dimension.quality(self._points, self._simplices, self._workers)
+
+    @property
+    @kept
+    def _locator(self) -> Any:
+        """The index over the simplices."""
+        return self._dimension.locator(self._points, self._simplices, self._neighbors)
+
+    @property
+    @kept
+    def _whole_locator(self) -> Any:
+        """The index over the simplices of the whole convex hull."""
+        if self._number is None:
+            return self._locator
+        return self._dimension.locator(self._points, *self._tiling())
+
+    @property
+    @kept
+    def _sites(self) -> tuple[Any, Indices | None]:
+        """An index over a Delaunay triangulation of the vertices, and which rows these are."""
+        rows = np.unique(self._simplices)
+        if not len(rows):
+            return None, rows
+        sites = self._points[rows]
+        delaunay = self._dimension.delaunay(sites, as_workers(self._workers))
+        return self._dimension.locator(sites, *delaunay), rows
+
+    def find_simplex(
+        self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
+    ) -> Indices:
+        """Find the simplices that hold points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points to locate. NaN and infinity are outside.
+        bruteforce : bool, optional
+            Accepted as in SciPy, without effect: the walk cannot fail.
+        tol : float, optional
+            Accepted as in SciPy, without effect: the answer is exact.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The simplex that has the point inside or on its boundary, the first one where there are
+            several, or -1 where there is none: outside, or in a hole. The shape is () for a single
+            point.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., d).
+
+        Notes
+        -----
+        Points are taken along a space-filling curve, and each is reached by a visibility walk from
+        the one before; for k points that takes O(k log k + walks) time, whatever their order. A
+        visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On sorting
+        triangles in a Delaunay tessellation", 1991); a straight walk helps where triangles are
+        constrained, and a tree of boxes where there are holes.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay, Delaunay
+        >>> mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
+        >>> mesh.find_simplex([(0.25, 0.25), (0.5, 0.5), (0.75, 0.75)])
+        array([ 0,  0, -1], dtype=int32)
+        >>> points = [(0, 0), (6, 0), (0, 6), (1, 1), (2, 1), (1, 2)]
+        >>> mesh = ConstrainedDelaunay(points, [(3, 4), (4, 5), (5, 3)], holes=[(1.2, 1.2)])
+        >>> (mesh.find_simplex([(1.2, 1.2), (1, 1), (0.5, 0.5)]) >= 0).tolist()
+        [False, True, True]
+        """
+        return location.find(self._dimension, self._locator, xi, self._workers)
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """Find the vertices that are nearest to points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points, inside or outside.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The nearest vertex of a simplex, the one of the smallest row where there are several; -1
+            where a coordinate is NaN or infinite.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., d).
+
+        Notes
+        -----
+        Exact: distances are compared by predicates, from vertex to vertex: in a Delaunay
+        triangulation, a neighbor of each vertex is nearer until the nearest one is reached. The
+        vertices of any other triangulation get a Delaunay triangulation of their own in the first
+        call.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (5, 6), (0.5, 0.5)])
+        array([1, 2, 0], dtype=int32)
+        """
+        return location.nearest(self._dimension, self._sites, xi, self._workers)
+
+    def locate(self, xi: ArrayLike) -> location.Location:
+        """Locate points: simplices, barycentric weights, nearest points of the boundary.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points to locate.
+
+        Returns
+        -------
+        Location
+            With fields `simplex`, `barycentric`, `nearest`, `beside`, `facet` and `weights`.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., d).
+
+        Notes
+        -----
+        Which simplex, and inside or outside, is exact. Weights are rounded, but none is negative,
+        and at a vertex they are exactly 1 and 0. The first call makes an index, in a small part of
+        the time of the triangulation itself; points are taken along a space-filling curve, each
+        from the simplex of the one before. Where the boundary is not convex, a tree of boxes
+        finds what a walk cannot reach, and the nearest facet.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> mesh = Delaunay([(0, 0), (4, 0), (0, 4)])
+        >>> place = mesh.locate([(1, 2), (3, 3)])
+        >>> place.simplex
+        array([ 0, -1], dtype=int32)
+        >>> place.barycentric[0] @ mesh.points[mesh.simplices[0]]
+        array([1., 2.])
+        >>> place.nearest
+        array([[1., 2.],
+               [2., 2.]])
+        """
+        return location.locate(self._dimension, self._locator, self._points, xi, self._workers)
+
+    @only(2, "locate points of the segment with `find_simplex`")
+    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """Return the triangles along a segment; 2-D only.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            Ends of the segment, inside or outside.
+
+        Returns
+        -------
+        ndarray of int32, shape (k,)
+            The triangles that have more than one point of the segment, in order from a to b. Where
+            it runs along an edge, the triangle to the left of it, or the only one there is. Parts
+            outside and in holes are skipped; a segment of length zero is located as a point.
+
+        Raises
+        ------
+        ShapeError, DtypeError, NonFiniteError
+            An end is not a finite 2-D point.
+        AttributeError
+            The points are 3-D.
+
+        Notes
+        -----
+        Exact. Linear in the number of triangles met, after a walk to the first.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> mesh = Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
+        >>> len(mesh.walk((-1, 0.5), (5, 1)))
+        3
+        """
+        start, end = location.segment_ends(a, b)
+        if (start == end).all():
+            holder = np.atleast_1d(self.find_simplex(start))
+            return holder[holder >= 0]
+        tiling = (self._points, *self._tiling())
+        return along(self._whole_locator, tiling, self._number, start, end)
+
+    @only(2, "geopandas has no polyhedra")
+    def to_geopandas(self, *, crs: Any = None) -> Any:
+        """Convert to a table of polygons (extra ``geo``); 2-D only.
+
+        Parameters
+        ----------
+        crs : optional
+            Reference system of the coordinates, anything that geopandas takes; by default that of
+            the geometries that were triangulated, if any.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each triangle: its vertices ``v0``, ``v1`` and ``v2``, values such as
+            ``region``, and its geometry.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas or shapely is not installed.
+
+        Examples
+        --------
+        >>> from delone import ConstrainedDelaunay
+        >>> frame = ConstrainedDelaunay([(0, 0), (1, 0), (0, 1)], []).to_geopandas()
+        >>> frame.region.tolist(), frame.area.tolist()
+        ([0], [0.5])
+        """
+        from delone.exchange.geopandas import to_geopandas
+
+        return to_geopandas(self._parts(), crs)
+
+    @only(2, "matplotlib draws triangles of the plane")
+    def to_matplotlib(self) -> Any:
+        """Convert to a triangulation of matplotlib (extra ``plot``); 2-D only.
+
+        Returns
+        -------
+        matplotlib.tri.Triangulation
+            For ``tripcolor``, ``tricontour`` and similar functions.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone import Delaunay
+        >>> Delaunay([(0, 0), (1, 0), (0, 1)]).to_matplotlib().triangles.shape
+        (1, 3)
+        """
+        from delone.exchange.matplotlib import to_matplotlib
+
+        return to_matplotlib(self._parts())
+
+    def to_skfem(self) -> Any:
+        """Convert to a mesh of scikit-fem (extra ``fem``).
+
+        Returns
+        -------
+        skfem.MeshTri or skfem.MeshTet
+            With subdomains ``"region 0"`` and so on where there are regions, and boundaries
+            ``"marker 0"`` and so on for segments by their markers.
+
+        Raises
+        ------
+        MissingExtraError
+            scikit-fem is not installed.
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> delone.mesh(square).to_skfem().nelements
+        2
+        """
+        from delone.exchange.skfem import to_skfem
+
+        return to_skfem(self._parts())
+
+    def to_dolfinx_arrays(self) -> dict[str, NDArray[Any]]:
+        """Convert to the arrays from which DOLFINx makes a mesh.
+
+        Returns
+        -------
+        dict of ndarray
+            ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``; with regions ``cell_tags``, and
+            with segments ``facets`` (pairs of points) and ``facet_tags`` (markers).
+
+        Examples
+        --------
+        >>> import delone
+        >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+        >>> sorted(delone.mesh(square).to_dolfinx_arrays())
+        ['cell_tags', 'cells', 'facet_tags', 'facets', 'x']
+        """
+        from delone.exchange.dolfinx import to_dolfinx_arrays
+
+        return to_dolfinx_arrays(self._parts())
+
+
+class HullTiling(Triangulation):
+    """A triangulation that is part of a tiling of the convex hull of its points."""
+
+    __slots__ = ()
+
+    @property
+    @kept
+    def convex_hull(self) -> Indices:
+        """The facets of the convex hull, (h, d), as in SciPy: `boundary` without holes and bays.
+
+        `hull` has the vertices.
+        """
+        return sealed(self._dimension.boundary(*self._tiling()))
+
+    @property
+    @kept
+    def hull(self) -> NDArray[np.int64]:
+        """The vertices on the convex hull, (h,), those inside its sides included.
+
+        In 2-D counter-clockwise from the lexicographically smallest point on, in 3-D ascending.
+        """
+        return sealed(self._dimension.hull(self._points, self.convex_hull))
+
+
+class PointTriangulation(HullTiling):
+    """A triangulation of given points, of which some may be equal."""
+
+    __slots__ = ("_duplicates",)
+
+    _ARRAYS: ClassVar[tuple[str, ...]] = ("points", "simplices", "neighbors", "duplicates")
+
+    _duplicates: Indices
+
+    @property
+    @kept
+    def duplicate_of(self) -> Indices:
+        """The vertex of each row, (n,): the first row with the same coordinates."""
+        first = np.arange(self.npoints, dtype=np.int32)
+        first[self._duplicates[:, 0]] = self._duplicates[:, 1]
+        return sealed(first)
