@@ -16,7 +16,7 @@ DEFAULT = (
     "uniform:10000",
     "uniform:100000",
     "uniform:1000000",
-    "utm_millimetres:1000000",
+    "utm_millimeters:1000000",
     "grid:1000000",
     "circle:100000",
     "kuzmin:1000000",

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import Delaunay as SciPyDelaunay
 
 from delone import Delaunay
-from delone.datasets import utm_millimetres
+from delone.datasets import utm_millimeters
 from delone.testing import assert_delaunay
 
 POINTS = 20_000
@@ -18,7 +18,7 @@ POINTS = 20_000
 
 def main() -> None:
     """Triangulate the same points twice and count which of them are vertices."""
-    points = utm_millimetres(POINTS, seed=1)
+    points = utm_millimeters(POINTS, seed=1)
     distinct = len(np.unique(points, axis=0))
     for library in (SciPyDelaunay, Delaunay):
         start = time.perf_counter()

@@ -1,11 +1,12 @@
-"""The one place that converts what callers pass, and rejects what has no exact meaning.
+"""Conversion of the arguments of callers; values without an exact meaning are rejected.
 
-After `as_points`, every other module may assume a float64, native, aligned, C-contiguous array of
-shape (n, 2) or (n, 3) whose values are exactly the ones that the caller wrote. Whatever float64
-cannot hold exactly is refused by name: an exact answer to rounded input is a wrong answer.
+After `as_points`, every other module may assume a native, aligned, C-contiguous float64 array of
+shape (n, 2) or (n, 3) with exactly the values that the caller wrote. Anything that float64 cannot
+represent exactly raises an error that names it: an exact result for rounded input is a wrong
+result.
 
-Finiteness is not checked here, because the core reads every coordinate once anyway;
-`require_finite` is for callers that do not go through the core.
+Finiteness is not checked here, because the core reads every coordinate anyway; `require_finite` is
+for callers that do not use the core.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _FLOAT64 = np.dtype(np.float64)
 # Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
 _LARGEST_EXACT_INTEGER = 2**53
 _LARGEST_INDEX = 2**31 - 1
-# More threads than this only cost stacks: the answer does not depend on their number.
+# More threads only cost memory for stacks: the result does not depend on their number.
 _MOST_WORKERS = 256
 _REFUSED_KINDS = {
     "b": "booleans",
@@ -56,15 +57,15 @@ def as_points(
         Floats of up to 64 bits, integers up to 2**53 in magnitude, in any memory layout or byte
         order, or anything that converts to such an array.
     ndim : {2, 3}, optional
-        The number of coordinates wanted. By default both are welcome.
+        Required number of coordinates. By default both are accepted.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     ndarray of float64, shape (n, 2) or (n, 3)
-        Aligned, native, C-contiguous. The input itself where it is so already, which includes
-        read-only arrays; never modify it.
+        Aligned, native, C-contiguous. This is the input itself if possible, including read-only
+        arrays; never modify it.
 
     Raises
     ------
@@ -72,11 +73,11 @@ def as_points(
         Wrong number of axes or coordinates, or rows of unequal length.
     DtypeError
         Booleans, complex numbers, objects, strings, dates, records or masked arrays; integers
-        beyond 2**53, extended precision that float64 does not hold.
+        beyond 2**53; extended precision that float64 cannot represent.
 
     Notes
     -----
-    NaN and infinity pass. O(n) time; no copy where none is needed.
+    NaN and infinity are accepted. O(n) time; no copy if none is needed.
 
     Examples
     --------
@@ -98,21 +99,21 @@ def as_points(
         _refuse_lossy_longdouble(array, name)
     elif isinstance(points, list | tuple):
         _refuse_rounded_integers(points, array, name)
-    # The core reads the memory directly, so that alignment matters as much as contiguity.
+    # The core reads the memory directly, so alignment matters as much as contiguity.
     return np.require(array, dtype=np.float64, requirements=["C", "A"])
 
 
 def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np.float64]:
-    """Return points under any leading axes, with exactly the values given.
+    """Return points with any leading axes, with exactly the values given.
 
     Parameters
     ----------
     values : array_like, shape (..., d)
-        What `as_points` takes, and single points, grids of points and so on.
+        Anything that `as_points` accepts, and single points, grids of points and so on.
     d : {2, 3}
         Number of coordinates.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -122,7 +123,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
     Raises
     ------
     ShapeError
-        The last axis has not d entries, or rows are of unequal length.
+        The last axis does not have d entries, or rows have unequal lengths.
     DtypeError
         As in `as_points`.
 
@@ -142,7 +143,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
         return values
     array = as_plain_array(values, name)
     if array.shape == (0,):
-        # An empty list says of nothing how many numbers it would have.
+        # An empty list does not determine the length of the last axis.
         return np.empty((0, d))
     if array.ndim == 0 or array.shape[-1] != d:
         _refuse_kind(array, name)
@@ -156,7 +157,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
 
 
 def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None:
-    """Refuse points of which a coordinate is NaN or infinite.
+    """Reject points with a NaN or infinite coordinate.
 
     Parameters
     ----------
@@ -205,23 +206,23 @@ def as_simplices(
     d : {2, 3}
         Dimension of the points.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     ndarray of int32, shape (m, d + 1)
-        The input itself where it is right already.
+        The input itself if no conversion is needed.
 
     Raises
     ------
     ShapeError
-        Not of shape (m, d + 1).
+        The shape is not (m, d + 1).
     DtypeError
-        Not integers.
+        The values are not integers.
     InputError
         An index below 0 or beyond the last point; the first such row is named.
     LimitError
-        More points than int32 can number.
+        There are more points than int32 can number.
 
     Examples
     --------
@@ -230,7 +231,9 @@ def as_simplices(
     array([[0, 1, 2]], dtype=int32)
     """
     if npoints > _LARGEST_INDEX:
-        raise LimitError(f"{npoints} points are more than the {_LARGEST_INDEX} an int32 can number")
+        raise LimitError(
+            f"{npoints} points exceed {_LARGEST_INDEX}, the largest number of an int32"
+        )
     return _as_indices(simplices, d + 1, 0, npoints, name)
 
 
@@ -240,23 +243,23 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
     Parameters
     ----------
     segments : array_like of int, shape (s, 2)
-        Vertex indices; an empty sequence is no segments.
+        Vertex indices; an empty sequence means no segments.
     npoints : int
         Number of points that the indices refer to.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     ndarray of int32, shape (s, 2)
-        The input itself where it is right already.
+        The input itself if no conversion is needed.
 
     Raises
     ------
     ShapeError
-        Not of shape (s, 2).
+        The shape is not (s, 2).
     DtypeError
-        Not integers.
+        The values are not integers.
     InputError
         Indices below 0 or beyond the last point; the first ten such rows are named.
 
@@ -266,7 +269,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
     >>> as_segments([(0, 1), (1, 3), (2, -1)], 3)
     Traceback (most recent call last):
     ...
-    delone.errors.InputError: segments: 2 of 3 rows leave the range 0 to 2 of points; first: 1, 2
+    delone.errors.InputError: segments: 2 of 3 rows have indices outside 0 to 2; first: 1, 2
     """
     array = as_plain_array(segments, name)
     if array.shape in ((0,), (0, 2)):
@@ -280,28 +283,28 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
         first = ", ".join(map(str, rows[:10].tolist()))
         raise InputError(
             f"{name}: {len(rows)} of {counted(len(array), 'row')} "
-            f"{agreed(len(rows), 'leaves', 'leave')} the range 0 to {npoints - 1} of points; "
+            f"{agreed(len(rows), 'has', 'have')} indices outside 0 to {npoints - 1}; "
             f"first: {first}"
         )
     return np.require(array, dtype=np.int32, requirements=["C", "A"])
 
 
 def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray[np.float64]:
-    """Return points that stand for the areas around them.
+    """Return seed points of areas.
 
     Parameters
     ----------
     seeds : array_like, shape (k, 2) or (k, columns), or None
-        Finite points, further columns behind their coordinates; None or empty is no seeds.
+        Finite points, with further columns after their coordinates; None or empty means no seeds.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
     columns : {2, 3}, optional
-        The largest number of columns.
+        The maximum number of columns.
 
     Returns
     -------
     ndarray of float64, shape (k, 2) or (k, columns)
-        The input itself where it is right already.
+        The input itself if no conversion is needed.
 
     Raises
     ------
@@ -329,26 +332,26 @@ def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray
 
 
 def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
-    """Return a word if it is one of those that an option may have.
+    """Validate a string argument with given choices.
 
     Parameters
     ----------
     value : str
-        What the caller passed.
+        The argument.
     choices : tuple of str
-        What there is to choose from.
+        The valid choices.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     str
-        The word.
+        The argument.
 
     Raises
     ------
     InputError
-        It is none of them.
+        It is not one of the choices.
 
     Examples
     --------
@@ -364,7 +367,7 @@ def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
 def as_neighbors(
     neighbors: ArrayLike, nsimplex: int, d: int, *, name: str = "neighbors"
 ) -> NDArray[np.int32]:
-    """Return neighbours as an int32 C-contiguous array of simplex numbers or -1.
+    """Return neighbors as an int32 C-contiguous array of simplex numbers or -1.
 
     Parameters
     ----------
@@ -375,19 +378,19 @@ def as_neighbors(
     d : {2, 3}
         Dimension of the points.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     ndarray of int32, shape (nsimplex, d + 1)
-        The input itself where it is right already.
+        The input itself if no conversion is needed.
 
     Raises
     ------
     ShapeError
-        Not of shape (nsimplex, d + 1).
+        The shape is not (nsimplex, d + 1).
     DtypeError
-        Not integers.
+        The values are not integers.
     InputError
         A number below -1 or beyond the last simplex; the first such row is named.
 
@@ -404,14 +407,14 @@ def as_neighbors(
 
 
 def as_count(n: int, *, name: str = "n") -> int:
-    """Return a number of things as a Python integer.
+    """Return a count as a Python integer.
 
     Parameters
     ----------
     n : int
         At least 0.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -421,7 +424,7 @@ def as_count(n: int, *, name: str = "n") -> int:
     Raises
     ------
     InputError
-        A ValueError: negative, or not an integer (then a TypeError, too).
+        The number is negative (a ValueError), or not an integer (also a TypeError).
 
     Examples
     --------
@@ -447,9 +450,9 @@ def as_number(value: float, *, name: str) -> float:
     Parameters
     ----------
     value : float
-        A number of Python or NumPy, NaN and infinity included; no truth value, no text.
+        A Python or NumPy number, including NaN and infinity; not a boolean or string.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -459,7 +462,7 @@ def as_number(value: float, *, name: str) -> float:
     Raises
     ------
     DtypeError
-        It is none, or beyond the range of doubles.
+        It is not a real number, or is beyond the range of doubles.
 
     Examples
     --------
@@ -484,14 +487,14 @@ def as_number(value: float, *, name: str) -> float:
 
 
 def as_flag(flag: bool, *, name: str) -> bool:
-    """Return a truth value as that of Python.
+    """Return a boolean as a Python bool.
 
     Parameters
     ----------
     flag : bool
-        True or False, of Python or NumPy; nothing else that counts as one of them.
+        A Python or NumPy boolean; no other truthy or falsy object.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -501,7 +504,7 @@ def as_flag(flag: bool, *, name: str) -> bool:
     Raises
     ------
     DtypeError
-        It is none.
+        It is not a boolean.
 
     Examples
     --------
@@ -519,14 +522,14 @@ def as_flag(flag: bool, *, name: str) -> bool:
 
 
 def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
-    """Return a truth value as that of Python, and None where the choice is left open.
+    """Return a boolean as a Python bool, or None.
 
     Parameters
     ----------
     flag : bool or None
         As for `as_flag`, or None.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -536,7 +539,7 @@ def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
     Raises
     ------
     DtypeError
-        It is none.
+        It is neither a boolean nor None.
 
     Examples
     --------
@@ -558,18 +561,18 @@ def as_workers(workers: int | None) -> int:
     Parameters
     ----------
     workers : int or None
-        None means one for each core that this process may use.
+        None means one per core that this process may use.
 
     Returns
     -------
     int
-        At least 1. What is asked for in excess of 256 is ignored: the answer is the same for every
-        number of threads, and each costs memory.
+        At least 1 and at most 256, to which larger numbers are reduced: the result does not depend
+        on the number of threads, and each costs memory.
 
     Raises
     ------
     InputError
-        A ValueError: below 1, or not an integer (then a TypeError, too).
+        The number is below 1 (a ValueError), or not an integer (also a TypeError).
 
     Examples
     --------
@@ -596,7 +599,7 @@ def as_workers(workers: int | None) -> int:
 
 
 def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return a read-only view of an array; the array itself stays as it is.
+    """Return a read-only view of an array; the array itself is unchanged.
 
     Parameters
     ----------
@@ -621,7 +624,7 @@ def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
 
 
 def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
-    """Tell at a glance what needs no conversion: who triangulates in a loop waits for this."""
+    """Return whether no conversion is needed; this is on the hot path of small inputs."""
     return (
         type(points) is np.ndarray
         and points.dtype is _FLOAT64
@@ -632,19 +635,19 @@ def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
 
 
 def as_plain_array(points: Any, name: str) -> NDArray[Any]:
-    """Return an array of the base class, of any kind and shape.
+    """Return a plain ndarray, of any dtype and shape.
 
     Parameters
     ----------
     points : array_like
-        What the caller passed.
+        The argument.
     name : str
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     ndarray
-        Masks are refused before they are dropped silently.
+        The array. Masked arrays are rejected, because masks would be silently dropped.
 
     Raises
     ------
@@ -673,9 +676,9 @@ def as_plain_array(points: Any, name: str) -> NDArray[Any]:
 def _refuse_geometries(array: NDArray[Any], name: str) -> None:
     if array.dtype.kind == "O" and any(hasattr(each, "geom_type") for each in array.ravel()[:8]):
         raise DtypeError(
-            f"{name} holds geometries, not numbers: of points pass their coordinates, "
+            f"{name} contains geometries, not numbers: for points pass their coordinates, "
             f"shapely.get_coordinates({name}) or {name}.get_coordinates().to_numpy(); "
-            "delone.from_geometry takes geometries of every kind"
+            "delone.from_geometry accepts all kinds of geometries"
         )
 
 
@@ -684,12 +687,12 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
     if kind in "fiu":
         return
     what = _REFUSED_KINDS.get(kind, f"dtype {array.dtype}")
-    hint = "convert them to numbers that float64 holds exactly"
+    hint = "convert them to numbers that float64 can represent exactly"
     if kind == "V" and array.dtype.names:
         hint = "for example np.column_stack((a['x'], a['y']))"
     elif kind == "c":
         hint = "for example np.column_stack((z.real, z.imag))"
-    raise DtypeError(f"{name} holds {what} (dtype {array.dtype}), not real numbers; {hint}")
+    raise DtypeError(f"{name} contains {what} (dtype {array.dtype}), not real numbers; {hint}")
 
 
 def _refuse_shape(array: NDArray[Any], ndim: int | None, name: str) -> None:
@@ -709,7 +712,7 @@ def _refuse_large_integers(array: NDArray[Any], name: str) -> None:
     limit = _LARGEST_EXACT_INTEGER
     if int(array.max()) <= limit and int(array.min()) >= -limit:
         return
-    # Not abs(): the magnitude of the smallest int64 is no int64.
+    # Not abs(): the magnitude of the smallest int64 is not an int64.
     outside = array > limit
     if array.dtype.kind == "i":
         outside |= array < -limit
@@ -718,7 +721,7 @@ def _refuse_large_integers(array: NDArray[Any], name: str) -> None:
 
 
 def _refuse_rounded_integers(points: Any, array: NDArray[Any], name: str) -> None:
-    """Refuse Python integers that NumPy rounded because floats stand beside them."""
+    """Reject Python integers that NumPy rounded because the list also contains floats."""
     large = np.abs(array) >= _LARGEST_EXACT_INTEGER
     for row in np.flatnonzero(large.any(axis=1)).tolist():
         for value in points[row]:
@@ -728,7 +731,7 @@ def _refuse_rounded_integers(points: Any, array: NDArray[Any], name: str) -> Non
 
 def _raise_large_integer(row: int, values: list[Any], name: str) -> None:
     raise DtypeError(
-        f"{name}: row {row} is {values}, beyond the 2**53 up to which float64 holds every "
+        f"{name}: row {row} is {values}, beyond the 2**53 up to which float64 represents every "
         "integer; subtract an offset first"
     )
 
@@ -742,7 +745,7 @@ def _refuse_lossy_longdouble(array: NDArray[Any], name: str) -> None:
     row = int(np.flatnonzero(~same.all(axis=1))[0])
     raise DtypeError(
         f"{name}: row {row} has more precision or range than float64 ({array.dtype}); "
-        "round it with .astype(np.float64) if that is what you want"
+        "round it with .astype(np.float64) if that is intended"
     )
 
 
@@ -776,7 +779,7 @@ def _usable_cores() -> int:
 def as_mesh(
     points: NDArray[np.float64], simplices: NDArray[np.integer[Any]]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return points and simplices as the core takes them: contiguous, with 32-bit indices.
+    """Return points and simplices as the core requires them: contiguous, with 32-bit indices.
 
     Parameters
     ----------
@@ -788,8 +791,8 @@ def as_mesh(
     Returns
     -------
     points : ndarray of float64, shape (n, d)
-        The same, copied only where they are not contiguous.
+        The points, copied only if they are not contiguous.
     simplices : ndarray of int32, shape (m, k)
-        The same.
+        The simplices.
     """
     return np.ascontiguousarray(points), np.ascontiguousarray(simplices, dtype=np.int32)

@@ -1,4 +1,4 @@
-"""Masked arrays, which every other function takes for plain ones."""
+"""Rejection of masked arrays, which other functions would treat as plain arrays."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ __all__ = ["refuse_masks"]
 
 
 def refuse_masks(given: Any, name: str) -> None:
-    """Refuse a masked array, or a list of such, before the mask is dropped silently.
+    """Reject a masked array, or a list of them, before the mask is silently dropped.
 
     Parameters
     ----------
     given : object
-        What the caller passed.
+        The argument.
     name : str
-        What the argument is called in the error message.
+        Name of the argument in the error message.
 
     Raises
     ------
     DtypeError
-        There is a mask.
+        The argument has a mask.
 
     Examples
     --------
@@ -40,6 +40,6 @@ def refuse_masks(given: Any, name: str) -> None:
         isinstance(row, np.ma.MaskedArray) for row in rows
     ):
         raise DtypeError(
-            f"{name} is a masked array; pass only the rows that count, "
+            f"{name} is a masked array; pass only the valid rows, "
             "for example np.ma.compress_rows(points), or points.data if none is masked"
         )

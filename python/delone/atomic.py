@@ -1,6 +1,6 @@
-"""Atomic writing: files appear complete or not at all.
+"""Atomic writing of files.
 
-Whatever keeps a file from being written ends as one kind of error here, which names the file.
+All failures to write a file are converted to one type of error, which names the file.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
 
 __all__ = ["FULL", "check_target", "replacing"]
 
-# What to do about a disk that takes no more.
+# Advice for errors that mean that the disk is full.
 FULL = {
     errno.ENOSPC: "free some space or write to another disk",
     errno.EDQUOT: "your quota on this disk is used up",
-    errno.EFBIG: "the file system, or the limit of ulimit -f, allows no larger file",
+    errno.EFBIG: "the file system, or the limit of ulimit -f, does not allow a larger file",
 }
-# Characters of the name of the target in the temporary name: file systems allow 255 bytes in all.
+# Characters of the target's name in the temporary name: file systems allow 255 bytes.
 _RECOGNIZABLE = 100
-# Bytes written to learn whether the disk is full.
+# Bytes written to find out whether the disk is full.
 _PROBE = 1 << 20
 
 
 def check_target(path: str | os.PathLike[str]) -> Path:
-    """Refuse a target that cannot be written, before any work is spent on it.
+    """Reject a target that cannot be written, before any work is done.
 
     Parameters
     ----------
@@ -44,12 +44,12 @@ def check_target(path: str | os.PathLike[str]) -> Path:
     Returns
     -------
     Path
-        The file itself where `path` is a symbolic link to it.
+        The target; if `path` is a symbolic link, the file that it points to.
 
     Raises
     ------
     OSError
-        The folder is missing or read-only, or the target is there and is no regular file.
+        The folder is missing or read-only, or the target exists and is not a regular file.
 
     Examples
     --------
@@ -57,27 +57,27 @@ def check_target(path: str | os.PathLike[str]) -> Path:
     >>> check_target("mesh.vtu").name
     'mesh.vtu'
     """
-    # A rename would replace the link, not the file that it stands for.
+    # A rename would replace the link, not the file that it points to.
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: the folder {target.parent} does not exist")
     if target.is_dir():
-        raise IsADirectoryError(f"{path} is a folder; give the name of a file")
+        raise IsADirectoryError(f"{path} is a folder, not a file")
     if target.exists() and not target.is_file():
         raise OSError(f"{path} is not a regular file")
     if not os.access(target.parent, os.W_OK | os.X_OK):
-        raise PermissionError(f"{path}: the folder {target.parent} cannot be written to")
+        raise PermissionError(f"{path}: the folder {target.parent} is not writable")
     return target
 
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary name beside the target, which becomes the target at the end.
+    """Yield a temporary name next to the target, and rename it to the target at the end.
 
     Parameters
     ----------
     path : str or path-like
-        The file to be written. What it held before stays until the new file is whole.
+        The file to be written. An existing file is kept until the new one is complete.
 
     Yields
     ------
@@ -90,12 +90,12 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         The disk is full, or the system or a library cannot write the file. The error names the
         target, not the temporary file.
     OSError
-        The target cannot be written to, as `check_target` says.
+        The target cannot be written, as for `check_target`.
 
     Notes
     -----
     A rename within one folder is atomic, so a reader sees the old file or the new one. Other
-    exceptions of the caller pass through. In either case, no file is left that begins with the
+    exceptions of the caller propagate. In either case, no file is left whose name begins with the
     temporary name.
 
     Examples
@@ -104,80 +104,80 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     >>> from pathlib import Path
     >>> from delone.atomic import replacing
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with replacing(Path(folder) / "a.txt") as beside:
-    ...         _ = beside.write_text("whole")
+    ...     with replacing(Path(folder) / "a.txt") as temporary:
+    ...         _ = temporary.write_text("whole")
     ...     (Path(folder) / "a.txt").read_text()
     'whole'
     """
     target = check_target(path)
-    # Plain characters alone: some libraries cut a name at ";" or take it for a pattern.
+    # Only plain characters: some libraries cut a name at ";" or treat it as a pattern.
     start = re.sub(r"[^A-Za-z0-9_-]", "_", target.stem[:_RECOGNIZABLE])
     stem = f".{start}-{secrets.token_hex(6)}"
-    beside = target.with_name(stem + target.suffix)
+    temporary = target.with_name(stem + target.suffix)
     try:
-        yield beside
-        if not beside.exists():
+        yield temporary
+        if not temporary.exists():
             raise OutputError(f"{path}: nothing was written")
         if target.exists():
-            # A private file stays private.
-            beside.chmod(stat.S_IMODE(target.stat().st_mode))
-        # Windows refuses to rename over a file that is open elsewhere; that error says so.
-        os.replace(beside, target)
+            # A private file remains private.
+            temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+        # Windows cannot replace a file that is open elsewhere; its error says so.
+        os.replace(temporary, target)
     except MemoryError:
         raise
     except Exception as error:
-        refusal = _refusal(error, beside, str(path))
+        refusal = _refusal(error, temporary, str(path))
         if refusal is None:
             raise
         raise refusal from error
     finally:
-        # Libraries may leave companions (journals, indices) under the same stem.
+        # Libraries may leave companion files (journals, indices) with the same stem.
         for left in target.parent.iterdir():
             if left.name.startswith(stem):
                 left.unlink(missing_ok=True)
 
 
-def _refusal(error: Exception, beside: Path, path: str) -> OutputError | None:
-    """Turn what was raised while a file was written into an error that names the file.
+def _refusal(error: Exception, temporary: Path, path: str) -> OutputError | None:
+    """Convert an exception during writing to an error that names the file.
 
-    Libraries hide the number of the error, or raise another error while they close the file. So
-    the errors before it are looked at, and then the disk is asked.
+    Libraries hide the error number, or raise another error while they close the file. Therefore the
+    preceding exceptions in the chain are examined, and then the disk is tested.
     """
     if isinstance(error, DeloneError) and not isinstance(error, OutputError):
         return None
     if isinstance(error, OutputError) and error.errno is None:
-        message = str(error).replace(str(beside), path)
+        message = str(error).replace(str(temporary), path)
         return None if message == str(error) else OutputError(message)
-    number = _number_of_full(error, beside)
+    number = _number_of_full(error, temporary)
     if number is not None:
         return OutputError(number, f"{os.strerror(number)}: {FULL[number]}", path)
     if isinstance(error, OSError):
         if error.errno is not None:
-            ours = error.filename is None or _is_beside(error.filename, beside)
+            ours = error.filename is None or _is_temporary(error.filename, temporary)
             return OutputError(error.errno, error.strerror, path) if ours else None
     elif type(error).__module__.partition(".")[0] in {"builtins", "numpy", "delone"}:
         return None
     reason = str(error).partition("\n")[0] or type(error).__name__
-    return OutputError(f"{path} cannot be written: {reason.replace(str(beside), path)}")
+    return OutputError(f"{path} cannot be written: {reason.replace(str(temporary), path)}")
 
 
-def _number_of_full(error: BaseException, beside: Path) -> int | None:
-    """Return the number of the error where the cause is a full disk, None otherwise."""
+def _number_of_full(error: BaseException, temporary: Path) -> int | None:
+    """Return the number of the error if the cause is a full disk, otherwise None."""
     each: BaseException | None = error
     while each is not None:
         if isinstance(each, OSError) and each.errno in FULL:
-            return each.errno if _is_beside(each.filename or beside, beside) else None
+            return each.errno if _is_temporary(each.filename or temporary, temporary) else None
         each = each.__cause__ or each.__context__
     try:
-        # What is torn is removed anyway.
-        with beside.open("ab") as file:
+        # An incomplete file is removed anyway.
+        with temporary.open("ab") as file:
             file.write(bytes(_PROBE))
     except OSError as full:
         return full.errno if full.errno in FULL else None
     return None
 
 
-def _is_beside(name: object, beside: Path) -> bool:
-    """Tell whether a name is that of the temporary file or of a companion of it."""
+def _is_temporary(name: object, temporary: Path) -> bool:
+    """Return whether a name is that of the temporary file or of a companion file."""
     found = os.fsdecode(name) if isinstance(name, str | bytes | os.PathLike) else ""
-    return Path(found).name.startswith(beside.stem)
+    return Path(found).name.startswith(temporary.stem)

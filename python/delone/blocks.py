@@ -1,6 +1,6 @@
-"""Work on long arrays block by block.
+"""Processing of long arrays in blocks.
 
-Between two blocks Python hears Ctrl-C, and temporary arrays are as small as a block.
+Python can handle Ctrl-C between blocks, and temporary arrays are as small as a block.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ __all__ = ["ROWS", "blocks", "copied"]
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
-# Rows of a block. What is computed from so many fits the caches, and takes milliseconds.
+# Rows of a block. Results for so many rows fit into the caches and take milliseconds.
 ROWS = 1 << 16
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Return the blocks of so many rows.
+    """Split a number of rows into blocks.
 
     Parameters
     ----------
     count : int
-        How many rows there are.
+        Number of rows.
 
     Yields
     ------
     slice
-        Rows that follow each other.
+        Consecutive rows.
 
     Examples
     --------
@@ -45,17 +45,17 @@ def blocks(count: int) -> Iterator[slice]:
 
 
 def copied(array: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return a copy of an array in rows.
+    """Return a C-contiguous copy of an array.
 
     Parameters
     ----------
     array : ndarray
-        Of one dimension or more.
+        An array of at least one dimension.
 
     Returns
     -------
     ndarray
-        C-contiguous.
+        The copy.
 
     Examples
     --------

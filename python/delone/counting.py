@@ -6,7 +6,7 @@ from decimal import Decimal
 
 __all__ = ["agreed", "counted", "gigabytes", "grouped"]
 
-# From here on, numbers are shown by their magnitude.
+# Larger numbers are shown in scientific notation.
 _HUGE = 10**15
 # Nouns that do not take an s.
 _MANY = {"tetrahedron": "tetrahedra", "vertex": "vertices", "pass": "passes"}
@@ -18,14 +18,14 @@ def counted(count: int, noun: str) -> str:
     Parameters
     ----------
     count : int
-        How many there are.
+        The number.
     noun : str
-        The noun for one.
+        The singular noun.
 
     Returns
     -------
     str
-        Both, the noun in the plural unless there is one.
+        The number and the noun, which is in the plural unless the number is 1.
 
     Examples
     --------
@@ -37,19 +37,19 @@ def counted(count: int, noun: str) -> str:
 
 
 def agreed(count: int, one: str, many: str) -> str:
-    """Return the words that go with a number.
+    """Return the words that agree with a number.
 
     Parameters
     ----------
     count : int
-        How many there are.
+        The number.
     one, many : str
-        What is said of one, and of any other number.
+        The words for 1, and for any other number.
 
     Returns
     -------
     str
-        One of both.
+        One of the two.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def grouped(count: int) -> str:
     Parameters
     ----------
     count : int
-        Of any size.
+        A number of any size.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def gigabytes(size: int) -> str:
     Parameters
     ----------
     size : int
-        Of any size.
+        A number of any size.
 
     Returns
     -------

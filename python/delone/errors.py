@@ -1,9 +1,9 @@
-"""Every exception that delone raises on purpose.
+"""All exceptions that delone raises deliberately.
 
-One root, `DeloneError`, so that one ``except`` clause catches whatever the package refuses. Each
-class also derives from the built-in exception that a NumPy or SciPy user expects in its place, and
-each carries the evidence (rows, reason, chain, extra) as attributes, because a message alone cannot
-be acted upon by a program. All of them pickle, so that they cross process boundaries.
+All derive from `DeloneError`, so that one ``except`` clause catches everything that the package
+raises. Each class also derives from the built-in exception that users of NumPy or SciPy expect, and
+has the evidence (rows, reason, chain, extra) as attributes, because a program cannot use a message.
+All of them can be pickled, so they cross process boundaries.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _row_numbers(rows: Iterable[int] | NDArray[np.integer]) -> NDArray[np.int64]
 
 
 class DeloneError(Exception):
-    """Root of all exceptions that delone raises on purpose.
+    """Base class of all exceptions that delone raises deliberately.
 
     Examples
     --------
@@ -57,14 +57,14 @@ class DeloneError(Exception):
 
     def __setstate__(self, state: dict[str, Any] | None) -> None:
         super().__setstate__(state)
-        # NumPy does not pickle whether an array may be written to.
+        # NumPy does not pickle the writeable flag of arrays.
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
 
 
 class InputError(DeloneError, ValueError):
-    """An argument has a value that cannot be used; a ValueError as well.
+    """An argument has an invalid value; also a ValueError.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class InputError(DeloneError, ValueError):
 
 
 class ShapeError(InputError):
-    """An array has the wrong number of axes, or an axis the wrong length.
+    """An array has the wrong number of axes, or an axis has the wrong length.
 
     Examples
     --------
@@ -92,9 +92,9 @@ class ShapeError(InputError):
 
 
 class DtypeError(InputError, TypeError):
-    """An array or argument is of a kind that has no exact float64 (or index) meaning.
+    """An array or argument cannot be converted exactly to float64 (or to indices).
 
-    A TypeError as well.
+    Also a TypeError.
 
     Examples
     --------
@@ -113,18 +113,18 @@ class NonFiniteError(InputError):
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     rows : iterable of int, optional
-        Row numbers of the first bad points, ten at most.
+        Row numbers of the first bad points, at most ten.
     count : int, optional
-        How many rows are bad in all. By default the length of `rows`.
+        Total number of bad rows. By default the length of `rows`.
 
     Attributes
     ----------
     rows : ndarray of int64
         Row numbers of the first bad points.
     count : int
-        How many rows are bad in all.
+        Total number of bad rows.
 
     Examples
     --------
@@ -152,29 +152,29 @@ class NonFiniteError(InputError):
 
 
 class DegenerateInputError(InputError):
-    """The points span no area, or no volume: too few are distinct, or they lie on a line or plane.
+    """The points span no area or volume: too few are distinct, or all are on a line or plane.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     reason : str, optional
-        ``"too few points"``, ``"collinear"`` or, in space, ``"coplanar"``.
+        ``"too few points"``, ``"collinear"`` or, in 3-D, ``"coplanar"``.
     chain : iterable of int, optional
         Row numbers of the distinct points, in their order along the line.
     plane : PlaneTriangulation, optional
-        The triangulation of the plane.
+        The 2-D triangulation of coplanar points.
 
     Attributes
     ----------
     reason : str
-        ``"too few points"``, ``"collinear"`` or ``"coplanar"``; empty where it is not known.
+        ``"too few points"``, ``"collinear"`` or ``"coplanar"``; empty if unknown.
     chain : ndarray of int64
-        Row numbers of the distinct points, in their order along the line; lexicographic where they
-        are on none.
+        Row numbers of the distinct points, in their order along the line; in lexicographic order if
+        they are not on a line.
     plane : PlaneTriangulation or None
-        Of points in space that lie in one plane and not on one line, three points among them, the
-        Delaunay triangulation of that plane; with weights, the regular one.
+        For 3-D points that lie in one plane but not on one line, at least three of them, the
+        Delaunay triangulation in that plane; with weights, the regular triangulation.
 
     Examples
     --------
@@ -205,23 +205,23 @@ class DegenerateInputError(InputError):
 
 
 class CrossingSegmentsError(InputError):
-    """Segments cross, and crossings were to be refused.
+    """Segments cross, and crossings were requested to be errors.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     pairs : array_like of int, shape (c, 2), optional
-        Rows of the segments that cross.
+        Rows of the crossing segments.
     points : array_like of float, shape (c, 2), optional
-        Where they cross.
+        The crossing points.
 
     Attributes
     ----------
     pairs : ndarray of int64, shape (c, 2)
-        Rows of the segments that cross, every pair once.
+        Rows of the crossing segments, each pair once.
     points : ndarray of float64, shape (c, 2)
-        Where they cross, each coordinate rounded once.
+        The crossing points, each coordinate rounded once.
 
     Examples
     --------
@@ -252,12 +252,12 @@ class CrossingSegmentsError(InputError):
 
 
 class ConflictingValuesError(InputError):
-    """Points that coincide have different values, and no policy says which one counts.
+    """Points that coincide have different values, and no policy selects one.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     rows : array_like of int, shape (k, 2), optional
         Rows of points, each with the first row of the same coordinates.
 
@@ -287,33 +287,33 @@ class ConflictingValuesError(InputError):
 
 
 class BudgetExceededError(DeloneError, RuntimeError):
-    """The answer needs more than the caller allowed, or more than the default allows.
+    """The result needs more vertices than the limit given, or than the default limit.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     limit : int, optional
-        How many added vertices were allowed.
+        The limit on added vertices.
     found : int, optional
-        How many were found when the work was given up; there may be more.
+        The number found when the computation stopped; there may be more.
     segments : iterable of int, optional
-        The rows of up to five segments that take most of them, the first one the most.
+        The rows of up to five segments that need the most of them, in descending order.
     place : tuple of float, optional
-        Where: the point where the first two of these segments meet, or else where the last vertex
-        was to be added.
+        Location: the point where the first two of these segments meet, or else where the last
+        vertex would have been added.
 
     Attributes
     ----------
     limit : int
-        How many added vertices were allowed.
+        The limit on added vertices.
     found : int
-        How many were found when the work was given up; there may be more.
+        The number found when the computation stopped; there may be more.
     segments : tuple of int
-        The rows of up to five segments that take most of them; empty where none are known.
+        The rows of up to five segments that need the most of them; empty if unknown.
     place : tuple of float, or None
-        Where: the point where the first two of these segments meet, or else where the last vertex
-        was to be added.
+        Location: the point where the first two of these segments meet, or else where the last
+        vertex would have been added.
 
     Examples
     --------
@@ -348,23 +348,23 @@ class BudgetExceededError(DeloneError, RuntimeError):
 
 
 class BusyError(DeloneError, RuntimeError):
-    """Another process is writing there: `delone.distributed.triangulate` has one run in a folder.
+    """Another process is writing there: `delone.distributed` allows one run per folder.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     pid : int, optional
-        The number of the process, 0 where it has not said.
+        The process id, 0 if unknown.
     host : str, optional
-        The name of its machine.
+        The name of the machine.
 
     Attributes
     ----------
     pid : int
-        The number of the process, 0 where it has not said.
+        The process id, 0 if unknown.
     host : str
-        The name of its machine.
+        The name of the machine.
 
     Examples
     --------
@@ -385,7 +385,7 @@ class BusyError(DeloneError, RuntimeError):
 
 
 class LimitError(InputError):
-    """The input is larger than an index or a buffer of this build can hold.
+    """The input is too large for an index or a buffer of this build.
 
     Examples
     --------
@@ -399,19 +399,19 @@ class LimitError(InputError):
 
 
 class InternalError(DeloneError, RuntimeError):
-    """Delone contradicted itself: a bug in delone, never the caller's fault.
+    """An internal check failed: a bug in delone, never the caller's fault.
 
-    The message that the user reads ends with a request to report it.
+    The message ends with a request to report it.
 
     Parameters
     ----------
     message : str
-        What went wrong.
+        Description of the failure.
 
     Attributes
     ----------
     points : ndarray of float64 or None
-        The points with which it went wrong, to be sent along: ``np.save("report.npy", e.points)``.
+        The points that caused it, to include in a report: ``np.save("report.npy", e.points)``.
 
     Examples
     --------
@@ -424,12 +424,12 @@ class InternalError(DeloneError, RuntimeError):
     REQUEST = "This is a bug in delone; please report it together with the input."
 
     def __init__(self, message: str = "an internal check failed") -> None:
-        # Unpickling calls the constructor with the finished text, so it must not grow again.
+        # Unpickling calls the constructor with the complete text, which must not grow again.
         super().__init__(message if self.REQUEST in message else f"{message}. {self.REQUEST}")
 
 
 class FileFormatError(DeloneError, ValueError):
-    """A file is torn, or is not in the format that its name or header claims.
+    """A file is truncated, corrupt, or not in the format that its name or header says.
 
     Examples
     --------
@@ -448,19 +448,19 @@ class FileFormatError(DeloneError, ValueError):
 
 
 class OutputError(DeloneError, OSError):
-    """A file cannot be written: the disk is full, a quota or a limit is reached, or it fails.
+    """A file cannot be written: a full disk, a quota, a limit, or another failure.
 
-    An OSError as well, with its attributes. Nothing is left of the new file, and what was there
-    before is unchanged.
+    Also an OSError, with its attributes. Nothing is left of the new file, and an existing file is
+    unchanged.
 
     Attributes
     ----------
     errno : int or None
-        The number of the error; None where a library does not tell it.
+        The error number; None if a library does not report it.
     strerror : str or None
-        What the system says.
+        The system's message.
     filename : str or None
-        The file that was to be written.
+        The file to be written.
 
     Examples
     --------
@@ -473,14 +473,14 @@ class OutputError(DeloneError, OSError):
 
 
 class MissingExtraError(DeloneError, ImportError):
-    """An optional library is needed that is not installed.
+    """A required optional library is not installed.
 
     Parameters
     ----------
     message : str
-        What the user reads.
+        The message.
     extra : str, optional
-        The extra of the delone package that brings the library.
+        The extra of delone that installs the library.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Optional libraries: imported when they are needed, asked for by the name of the extra."""
+"""Lazy imports of optional libraries; errors name the extra to install."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ def require(module: str, *, extra: str, what: str) -> Any:
     module : str
         Dotted name of the module.
     extra : str
-        The extra of delone that brings it.
+        The extra of delone that installs it.
     what : str
-        What needs it, as the beginning of a sentence: ``"reading LAZ"``.
+        What needs it, to begin a sentence: ``"reading LAZ"``.
 
     Returns
     -------
@@ -30,7 +30,7 @@ def require(module: str, *, extra: str, what: str) -> Any:
     Raises
     ------
     MissingExtraError
-        The library, or one that it needs itself, is not installed or cannot be imported.
+        The library, or one that it requires, is not installed or cannot be imported.
 
     Examples
     --------
@@ -45,5 +45,5 @@ def require(module: str, *, extra: str, what: str) -> Any:
         message = f'{what} needs {library}, which is not installed: pip install "delone[{extra}]"'
         raise MissingExtraError(message, extra=extra) from error
     except ImportError as error:
-        message = f"{what} needs {module}, which is there and cannot be imported: {error}"
+        message = f"{what} needs {module}, which is installed but cannot be imported: {error}"
         raise MissingExtraError(message, extra=extra) from error

@@ -1,9 +1,9 @@
 """Coordinate reference systems of input data, and the warning about degrees.
 
-Everything that delone computes is planar. Longitudes and latitudes are taken as they are, which is
-rarely what is meant: a degree of longitude is shorter near the poles, and 179.9 is next to -179.9.
-So what is plainly in degrees is worth a warning. Plain arrays say nothing of themselves, and none
-is given for them.
+Everything that delone computes is planar. Longitudes and latitudes are used as they are, which is
+rarely intended: a degree of longitude is shorter near the poles, and 179.9 is next to -179.9. Data
+that are known to be in degrees therefore cause a warning. Plain arrays carry no such information
+and cause none.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ __all__ = [
 
 _LONGITUDE = {"lon", "long", "lng", "longitude"}
 _LATITUDE = {"lat", "latitude"}
-# What is recognized without pyproj.
+# Systems that are recognized without pyproj.
 _GEOGRAPHIC = re.compile(
     r"\s*(EPSG:(4326|4979|4258|4269)$|OGC:CRS84|GEOG|\+proj=longlat)", re.IGNORECASE
 )
-# Longitudes may be counted twice around; no latitude is beyond a pole.
+# Longitudes may span two turns; no latitude is beyond a pole.
 _WIDEST, _HIGHEST = 720.0, 90.0
 
 
 class GeographicWarning(UserWarning):
-    """Longitudes and latitudes are about to be taken for coordinates of a plane.
+    """Longitudes and latitudes are used as planar coordinates.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class GeographicWarning(UserWarning):
 
 
 class CRSWarning(UserWarning):
-    """A file is written without the reference system, for which its format has no place.
+    """A file is written without the reference system, because its format cannot store one.
 
     Examples
     --------
@@ -87,17 +87,17 @@ def as_crs(crs: Any, *, name: str = "crs") -> str | None:
     crs : str, int, pyproj.CRS or None
         ``"EPSG:28992"``, the number of an EPSG code, WKT, or an object that has ``to_string``.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
     str or None
-        Authority and code where there are some, else WKT; None for none.
+        Authority and code if available, else WKT; None for None.
 
     Raises
     ------
     DtypeError
-        It is none of these.
+        It is not one of these.
 
     Examples
     --------
@@ -111,11 +111,11 @@ def as_crs(crs: Any, *, name: str = "crs") -> str | None:
         return f"EPSG:{int(crs)}"
     if hasattr(crs, "to_string"):
         return str(crs.to_string())
-    raise DtypeError(f"{name} must be a reference system, as 'EPSG:28992', got {crs!r:.60}")
+    raise DtypeError(f"{name} must be a reference system such as 'EPSG:28992', got {crs!r:.60}")
 
 
 def crs_of(data: Any) -> str | None:
-    """Return the reference system that data say they have.
+    """Return the reference system that data declare.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def crs_of(data: Any) -> str | None:
     Returns
     -------
     str or None
-        None where they say nothing.
+        The reference system; None if they declare none.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def crs_of(data: Any) -> str | None:
     >>> crs_of(ahn3()), crs_of([(0, 0), (1, 1)])
     ('EPSG:28992', None)
     """
-    # GeoDataFrames without geometry refuse to be asked.
+    # GeoDataFrames without a geometry column raise an error.
     try:
         found = getattr(data, "crs", None)
     except Exception:
@@ -148,12 +148,12 @@ def common_crs(geometries: Any) -> str | None:
     Parameters
     ----------
     geometries : object
-        As `delone.from_geometry` takes them.
+        As for `delone.from_geometry`.
 
     Returns
     -------
     str or None
-        None where nothing says.
+        The reference system; None if none is declared.
 
     Raises
     ------
@@ -168,25 +168,25 @@ def common_crs(geometries: Any) -> str | None:
             continue
         if found is not None and not same_crs(found, crs):
             raise InputError(
-                f"geometries are in {_short(found)} and in {_short(crs)}: bring them to one "
-                "reference system, for example by to_crs of geopandas"
+                f"geometries are in {_short(found)} and in {_short(crs)}: transform them to one "
+                "reference system, for example with geopandas to_crs"
             )
         found = found or crs
     return found
 
 
 def same_crs(a: str, b: str) -> bool:
-    """Tell whether two texts name one reference system.
+    """Return whether two strings denote the same reference system.
 
     Parameters
     ----------
     a, b : str
-        Texts as `as_crs` returns them.
+        Strings as returned by `as_crs`.
 
     Returns
     -------
     bool
-        As pyproj says; without it, whether they are equal.
+        According to pyproj; without it, whether they are equal.
 
     Examples
     --------
@@ -201,17 +201,17 @@ def same_crs(a: str, b: str) -> bool:
 
 
 def is_known(crs: str) -> bool:
-    """Tell whether a text is the name of a reference system.
+    """Return whether a string denotes a reference system.
 
     Parameters
     ----------
     crs : str
-        Text as `as_crs` returns it.
+        String as returned by `as_crs`.
 
     Returns
     -------
     bool
-        As pyproj says; without it always True.
+        According to pyproj; without it always True.
 
     Examples
     --------
@@ -223,17 +223,17 @@ def is_known(crs: str) -> bool:
 
 
 def is_geographic(crs: str) -> bool:
-    """Tell whether coordinates of a reference system are longitudes and latitudes.
+    """Return whether coordinates of a reference system are longitudes and latitudes.
 
     Parameters
     ----------
     crs : str
-        Text as `as_crs` returns it.
+        String as returned by `as_crs`.
 
     Returns
     -------
     bool
-        As pyproj says; without it, whether the text is one of the common ones.
+        According to pyproj; without it, whether it is one of the common ones.
 
     Examples
     --------
@@ -246,12 +246,12 @@ def is_geographic(crs: str) -> bool:
 
 
 def names_degrees(names: Any) -> bool:
-    """Tell whether columns are called longitude and latitude.
+    """Return whether columns are named longitude and latitude.
 
     Parameters
     ----------
     names : iterable of str
-        Names of columns; units and further words behind the first word do not count.
+        Names of columns; units and other words after the first are ignored.
 
     Returns
     -------
@@ -269,18 +269,18 @@ def names_degrees(names: Any) -> bool:
 
 
 def degrees_in(data: Any) -> str | None:
-    """Say by what data are recognized as longitudes and latitudes.
+    """Return what identifies data as longitudes and latitudes.
 
     Parameters
     ----------
     data : object
-        What was given as points or geometries.
+        The points or geometries.
 
     Returns
     -------
     str or None
-        The reference system or the names of columns; None where nothing says so. What the system
-        says counts more than names.
+        The reference system or the names of columns; None if they are not identified. The system
+        takes precedence over names.
     """
     if isinstance(data, np.ndarray | list | tuple):
         return None
@@ -302,29 +302,29 @@ def warn_of_degrees(
     name: str = "points",
     by: str | None = None,
 ) -> None:
-    """Warn where data are longitudes and latitudes, unless they are meant to be planar.
+    """Warn if data are longitudes and latitudes, unless they are declared to be planar.
 
     Parameters
     ----------
     data : object
-        What was given.
+        The points or geometries.
     coordinates : ndarray of float64, shape (n, d)
-        Its coordinates. Where they are too large for degrees nothing is said: files without a
-        reference system may be taken for one in degrees.
+        The coordinates. If they are too large for degrees there is no warning: a library may assume
+        degrees for files without a reference system.
     planar : bool
-        Whether coordinates are meant as those of a plane, whatever they are.
+        Whether the coordinates are declared to be planar, whatever they are.
     name : str, optional
-        What the argument is called.
+        Name of the argument.
     by : str, optional
-        By what they are known already; nothing is asked of the data then.
+        What identifies them, if already known; the data are then not examined.
 
     Warns
     -----
     GeographicWarning
-        They are longitudes and latitudes.
+        The data are longitudes and latitudes.
     """
     if planar is False and by is None and type(data) is np.ndarray:
-        return  # who triangulates in a loop waits for this
+        return  # hot path for small inputs
     if not isinstance(planar, bool | np.bool_):
         raise DtypeError(f"planar must be True or False, got {planar!r:.60}")
     if planar:
@@ -335,7 +335,7 @@ def warn_of_degrees(
 
 
 def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
-    """Tell whether coordinates are in the range of longitudes and latitudes.
+    """Return whether coordinates are in the range of longitudes and latitudes.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
     Returns
     -------
     bool
-        Whether all that are finite are.
+        Whether all finite coordinates are in the range.
 
     Examples
     --------
@@ -360,14 +360,14 @@ def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
 
 
 def message_of_degrees(what: str, by: str) -> str:
-    """Return what is said of longitudes and latitudes.
+    """Return the message about longitudes and latitudes.
 
     Parameters
     ----------
     what : str
-        What they are.
+        Name of the data.
     by : str
-        By what they are known.
+        What identifies them.
 
     Returns
     -------
@@ -375,13 +375,13 @@ def message_of_degrees(what: str, by: str) -> str:
         One sentence.
     """
     return (
-        f"{what} are longitudes and latitudes ({by}), taken as coordinates of a plane: distances "
+        f"{what} are longitudes and latitudes ({by}), used as planar coordinates: distances "
         "are distorted, and 179.9 is far from -179.9. Project them first, or give planar=True"
     )
 
 
 def _level() -> int:
-    """The stack level of the first caller outside of the package."""
+    """The stack level of the first caller outside the package."""
     level, frame = 2, sys._getframe(2)
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("delone."):
         level, frame = level + 1, frame.f_back
@@ -389,7 +389,7 @@ def _level() -> int:
 
 
 def _short(crs: str) -> str:
-    """Authority and code, or the name that WKT begins with."""
+    """Authority and code, or the name at the beginning of WKT."""
     named = re.match(r'\s*\w+\["([^"]+)"', crs)
     return named[1] if named else crs[:60]
 
@@ -399,7 +399,7 @@ def _has_pyproj() -> bool:
 
 
 def _parsed(crs: str) -> Any:
-    """The system as pyproj has it; None without pyproj, and for what it does not know."""
+    """The pyproj object; None without pyproj, and for unknown systems."""
     if not _has_pyproj():
         return None
     pyproj = importlib.import_module("pyproj")

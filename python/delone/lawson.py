@@ -1,7 +1,7 @@
 """Lawson's flips: turn any triangulation of points into the Delaunay triangulation, step by step.
 
-The core flips; this module coerces what goes in and, where asked, computes the angles after each
-flip from exact integers.
+The core flips edges; this module validates the input and, if requested, computes the angles after
+each flip from exact integers.
 
 Lawson, C. L. (1977), "Software for C1 surface interpolation", in Mathematical Software III, edited
 by J. R. Rice, Academic Press, 161-194.
@@ -31,29 +31,28 @@ if TYPE_CHECKING:
 
 __all__ = ["LawsonResult", "lawson"]
 
-# 128 MiB of angles: for example 3,700 flips of 1,500 triangles.
+# 128 MiB of angles: for example, 3,700 flips of 1,500 triangles.
 _MOST_ANGLES = 2**24
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LawsonResult(ReadOnly):
-    """A triangulation made Delaunay, and the flips that it took. The arrays are read-only.
+    """A triangulation made Delaunay, and the flips required. The arrays are read-only.
 
     Parameters
     ----------
     simplices : ndarray of int32, shape (m, 3)
-        The Delaunay triangles, counter-clockwise. Triangles that no flip touched are in their old
-        rows.
+        The Delaunay triangles, counter-clockwise. Triangles that no flip changed keep their rows.
     neighbors : ndarray of int32, shape (m, 3)
         The triangle opposite each vertex, -1 outside.
     flips : int
-        How many edges were flipped.
+        Number of flipped edges.
     sequence : ndarray of int32, shape (flips, 4), or None
         For each flip u, v, p, q: the edge uv, with p on its left and q on its right, became pq.
-        None where it was not recorded.
+        None if it was not recorded.
     angles : ndarray of float64, shape (flips + 1, 3 m), or None
         All angles of all triangles in radians, in ascending order: before the first flip and after
-        each. None where it was not recorded.
+        each. None if it was not recorded.
 
     Examples
     --------
@@ -82,54 +81,55 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
     points : array_like, shape (n, 2)
         Finite coordinates, in any unit.
     simplices : array_like of int, shape (m, 3)
-        Triangles, counter-clockwise, that tile the convex hull of `points` and have each distinct
-        point for a vertex. Of equal points any one may be the vertex, and stays it.
+        Counter-clockwise triangles that tile the convex hull of `points` and have each distinct
+        point as a vertex. Of equal points, any one may be the vertex, and remains it.
     record : bool, optional
         Whether to record each flip, and the angles before and after each.
 
     Returns
     -------
     LawsonResult
-        Triangles, neighbours, the number of flips and, where recorded, the flips and the angles.
+        Triangles, neighbors, the number of flips and, if recorded, the flips and the angles.
 
     Raises
     ------
     ShapeError
         The triangles do not tile the convex hull: one is not counter-clockwise, two lie on the same
-        side of an edge, a point is no vertex, or the boundary is not the hull. The message names
-        the first culprit.
+        side of an edge, a point is not a vertex, or the boundary is not the hull. The message names
+        the first fault.
     DegenerateInputError
-        There are no triangles, and the points span none.
+        There are no triangles, and the points span no area.
     NonFiniteError
         A coordinate is NaN or infinite.
     LimitError
-        The record would hold more than 2**24 angles, (flips + 1) times 3 m.
+        The record would contain more than 2**24 angles, (flips + 1) times 3 m.
     InputError, DtypeError
-        An index is no row of `points`, or an array does not hold numbers.
+        An index is not a row of `points`, or an array is not numeric.
 
     Notes
     -----
-    An edge uv with the opposite vertices p and q is flipped where q lies inside the circle of u, v
-    and p. If all four lie on the circle, it is flipped where the lexicographically smallest of
-    them is p or q. The end is the triangulation of `Delaunay`, whatever the start.
+    An edge uv with the opposite vertices p and q is flipped if q lies inside the circle of u, v and
+    p. If all four are cocircular, it is flipped if the lexicographically smallest of them is p or
+    q. The result is the triangulation of `Delaunay`, whatever the start.
 
-    Each flip lowers the surface of the triangles lifted to x² + y²; an edge that is flipped away
-    lies above that surface for good. So there are at most n (n - 1) / 2 flips, a bound of the right
-    order: the fan of n points of a parabola from the first of them takes about n² / 4. The
+    Each flip lowers the surface of the triangles lifted to x² + y², and a flipped edge lies above
+    that surface from then on. Therefore there are at most n (n - 1) / 2 flips. The bound has the
+    right order: the fan of n points of a parabola from the first of them takes about n² / 4. The
     predicates are exact.
 
-    The angles of the record are those of the exact triangles, rounded. At a flip of an edge whose
-    circle holds the opposite vertex in its inside, the smallest of the six angles of the two
-    triangles gets larger, so the sorted angles rise lexicographically (Lawson 1977; Sibson, R.,
-    1978, "Locally equiangular triangulations", The Computer Journal 21). At a flip on a tie they
+    The recorded angles are those of the exact triangles, rounded. If an edge is flipped because the
+    opposite vertex is strictly inside the circle, the smallest of the six angles of the two
+    triangles increases, so the sorted angles increase lexicographically (Lawson 1977; Sibson, R.,
+    1978, "Locally equiangular triangulations", The Computer Journal 21). In a flip of a tie they
     need not: four of the six angles are inscribed angles over the sides of the quadrilateral and
-    stay, the smallest of all six among them; the other two, which add up to pi, change to two that
-    add up to pi and may be larger or smaller. Hence the smallest angle of all never falls, and the
-    whole vector falls at ties alone. ``delone.predicates.incircle`` tells which flips are ties.
+    remain, including the smallest of all six; the other two, which add up to pi, change to two that
+    add up to pi and may be larger or smaller. Hence the smallest angle of all never decreases, and
+    the whole vector decreases only at ties. ``delone.predicates.incircle`` identifies flips of
+    ties.
 
     Examples
     --------
-    The long diagonal of a rhomb becomes the short one:
+    The long diagonal of a rhombus is replaced by the short one:
 
     >>> import numpy as np
     >>> from delone import lawson
@@ -154,7 +154,7 @@ def lawson(points: ArrayLike, simplices: ArrayLike, *, record: bool = False) -> 
 
 
 def _angles(points: Floats, simplices: Indices, sequence: Indices) -> Floats:
-    """Replay the flips and list the sorted angles before the first and after each."""
+    """Replay the flips and return the sorted angles before the first and after each."""
     shape = (len(sequence) + 1, simplices.size)
     if shape[0] * shape[1] > _MOST_ANGLES:
         raise LimitError(
@@ -177,7 +177,7 @@ def _angles(points: Floats, simplices: Indices, sequence: Indices) -> Floats:
 
 
 def _integers(points: Floats) -> list[IntegerPoint]:
-    """Multiply all coordinates by one power of two that makes them integers."""
+    """Multiply all coordinates by a power of two that makes them integers."""
     ratios = [(x.as_integer_ratio(), y.as_integer_ratio()) for x, y in points.tolist()]
     unit = max(denominator for pair in ratios for _, denominator in pair)
     return [(a * (unit // b), c * (unit // d)) for (a, b), (c, d) in ratios]
@@ -189,7 +189,7 @@ def _corners(a: IntegerPoint, b: IntegerPoint, c: IntegerPoint) -> list[float]:
     angles = []
     for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
         dot = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1])
-        # Integers beyond the range of doubles divide to the nearest double.
+        # The quotient of integers beyond the range of doubles is the nearest double.
         scale = max(area, abs(dot))
         angles.append(math.atan2(area / scale, dot / scale))
     return angles

@@ -216,12 +216,12 @@ def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
     Returns
     -------
     a, b : ndarray of float64, shape (2,)
-        The same.
+        The ends, converted.
 
     Raises
     ------
     ShapeError, DtypeError
-        An end is no point in the plane.
+        An end is not a 2-D point.
     NonFiniteError
         An end is not finite.
     """

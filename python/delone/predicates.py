@@ -1,7 +1,7 @@
 """Exact geometric predicates over arrays of points.
 
-Each answers with a sign that is right for every finite double: what decides it is computed without
-rounding wherever rounding could matter (J. R. Shewchuk, "Adaptive precision floating-point
+Each function returns a sign that is correct for all finite doubles: wherever rounding could matter,
+the decision is computed without rounding (J. R. Shewchuk, "Adaptive precision floating-point
 arithmetic and fast robust geometric predicates", 1997, for the idea of stages). Arguments broadcast
 against each other over their leading axes.
 """
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     Signs = NDArray[np.int8]
     Ties = Literal["zero", "canonical"]
 
-# NumPy broadcasts no more than this in every release.
+# The maximum number of axes that all releases of NumPy can broadcast.
 _MOST_AXES = 32
 
 __all__ = ["incircle", "insphere", "orient2d", "orient3d"]
 
 
 def orient2d(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Signs:
-    """Tell which way the path a, b, c turns.
+    """Return the orientation of three points: the turn of the path a, b, c.
 
     Parameters
     ----------
@@ -39,20 +39,20 @@ def orient2d(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Signs:
     Returns
     -------
     ndarray of int8, shape (...)
-        1 where c lies to the left of the line from a to b (a, b, c are counter-clockwise), -1 where
-        it lies to the right, 0 where the three are in line. Zero-dimensional for single points.
+        1 if c lies to the left of the line from a to b (a, b, c are counter-clockwise), -1 if it
+        lies to the right, 0 if the three are collinear. Zero-dimensional for single points.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        An argument is no array of real points in the plane, or the shapes do not broadcast.
+        An argument is not a real array of shape (..., 2), or the shapes do not broadcast.
 
     Notes
     -----
-    Exact for all finite doubles. Time is linear in the number of answers; a few nanoseconds each
-    where the points are in general position.
+    Exact for all finite doubles. Time is linear in the number of results, with a few nanoseconds
+    each if the points are in general position.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def orient2d(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Signs:
     >>> orient2d((0, 0), (1, 0), [(0, 1), (2, 0), (0, -1e-300)])
     array([ 1,  0, -1], dtype=int8)
 
-    Plain arithmetic takes these three for collinear:
+    In plain arithmetic these three are collinear:
 
     >>> a, b, c = (0.1, 0.1), (0.2, 0.2), (0.3, 0.3)
     >>> (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -75,37 +75,37 @@ def orient2d(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Signs:
 def incircle(
     a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike, *, ties: Ties = "zero"
 ) -> Signs:
-    """Tell whether d lies inside the circle through a, b and c.
+    """Return whether d lies inside the circle through a, b and c.
 
     Parameters
     ----------
     a, b, c, d : array_like, shape (..., 2)
         Finite points. Leading axes broadcast.
     ties : {"zero", "canonical"}, optional
-        What four points on one circle give: 0, or the sign by which delone triangulates.
+        The result for four cocircular points: 0, or the sign that delone's tie-breaking uses.
 
     Returns
     -------
     ndarray of int8, shape (...)
-        For counter-clockwise a, b, c: 1 where d is inside, -1 where it is outside, 0 where it is on
-        the circle. The sign is the opposite for clockwise a, b, c; where these are in line, it is
-        that of the lifted determinant. Zero-dimensional for single points.
+        For counter-clockwise a, b, c: 1 if d is inside, -1 if it is outside, 0 if it is on the
+        circle. The sign is the opposite for clockwise a, b, c; if these are collinear, it is that
+        of the lifted determinant. Zero-dimensional for single points.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        An argument is no array of real points in the plane, or the shapes do not broadcast.
+        An argument is not a real array of shape (..., 2), or the shapes do not broadcast.
     InputError
-        `ties` is none of its choices.
+        `ties` is not one of its choices.
 
     Notes
     -----
     Exact for all finite doubles. With ``ties="canonical"`` the height x² + y² of each lifted point
-    is lowered by an infinitesimal, the larger the smaller the point is in lexicographic order
-    (H. Edelsbrunner and E. P. Mücke, "Simulation of simplicity", 1990, with coordinates in place of
-    indices). It is never 0 for four distinct points that are not all in line.
+    is lowered by an infinitesimal, which is larger for lexicographically smaller points (H.
+    Edelsbrunner and E. P. Mücke, "Simulation of simplicity", 1990, with coordinates instead of
+    indices). The result is never 0 for four distinct points that are not all collinear.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def incircle(
 
 
 def orient3d(a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> Signs:
-    """Tell on which side of the plane through a, b and c the point d lies.
+    """Return on which side of the plane through a, b and c the point d lies.
 
     Parameters
     ----------
@@ -131,20 +131,20 @@ def orient3d(a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> Signs:
     Returns
     -------
     ndarray of int8, shape (...)
-        1 where b - a, c - a, d - a are a right-handed frame (the tetrahedron is positively
-        oriented; a, b, c turn left as seen from d), -1 where they are left-handed, 0 where the four
-        points lie in one plane. Zero-dimensional for single points.
+        1 if b - a, c - a, d - a form a right-handed frame (the tetrahedron is positively oriented;
+        a, b, c turn left as seen from d), -1 if they are left-handed, 0 if the four points lie in
+        one plane. Zero-dimensional for single points.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        An argument is no array of real points in space, or the shapes do not broadcast.
+        An argument is not a real array of shape (..., 3), or the shapes do not broadcast.
 
     Notes
     -----
-    Exact for all finite doubles; linear in the number of answers.
+    Exact for all finite doubles; time is linear in the number of results.
 
     Examples
     --------
@@ -165,35 +165,35 @@ def insphere(
     *,
     ties: Ties = "zero",
 ) -> Signs:
-    """Tell whether e lies inside the sphere through a, b, c and d.
+    """Return whether e lies inside the sphere through a, b, c and d.
 
     Parameters
     ----------
     a, b, c, d, e : array_like, shape (..., 3)
         Finite points. Leading axes broadcast.
     ties : {"zero", "canonical"}, optional
-        What five points on one sphere give: 0, or the sign by which delone triangulates.
+        The result for five cospherical points: 0, or the sign that delone's tie-breaking uses.
 
     Returns
     -------
     ndarray of int8, shape (...)
-        For positively oriented a, b, c, d (see `orient3d`): 1 where e is inside, -1 where it is
-        outside, 0 where it is on the sphere. The sign is the opposite for negatively oriented
-        ones. Zero-dimensional for single points.
+        For positively oriented a, b, c, d (see `orient3d`): 1 if e is inside, -1 if it is outside,
+        0 if it is on the sphere. The sign is the opposite for negatively oriented ones.
+        Zero-dimensional for single points.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
-        An argument is no array of real points in space, or the shapes do not broadcast.
+        An argument is not a real array of shape (..., 3), or the shapes do not broadcast.
     InputError
-        `ties` is none of its choices.
+        `ties` is not one of its choices.
 
     Notes
     -----
     Exact for all finite doubles. With ``ties="canonical"`` the heights x² + y² + z² are perturbed
-    as in `incircle`; it is never 0 for five distinct points that are not all in one plane.
+    as in `incircle`; the result is never 0 for five distinct points that are not all in one plane.
 
     Examples
     --------
@@ -208,7 +208,7 @@ def insphere(
 
 
 def _broadcast(ndim: int, *points: ArrayLike) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:
-    """Return arguments as equally long rows of finite points, and the shape of the answer."""
+    """Return arguments as equally long rows of finite points, and the shape of the result."""
     arrays = []
     for name, values in zip("abcde", points, strict=False):
         array = as_vectors(values, ndim, name=name)

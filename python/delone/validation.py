@@ -1,7 +1,7 @@
-"""Reports of exact validation: what is wrong with a triangulation, by number.
+"""Reports of exact validation, with the numbers of the simplices that are wrong.
 
-The checks themselves run in the core; this module only gives their answer a name for each kind of
-fault and words that a person can read. `validate` takes triangles from anywhere.
+The checks themselves run in the core; this module adds a name for each kind of fault and readable
+messages. `validate` accepts triangles from any source.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ _SHOWN = 5
 SENTENCES = {
     "orientation": ("triangle is not counter-clockwise", "triangles are not counter-clockwise"),
     "edges": ("directed edge is used more than once", "directed edges are used more than once"),
-    "neighbors": ("triangle has wrong neighbours", "triangles have wrong neighbours"),
+    "neighbors": ("triangle has wrong neighbors", "triangles have wrong neighbors"),
     "hull": ("boundary edge is not on the hull", "boundary edges are not on the hull"),
-    "missing": ("point is no vertex", "points are no vertices"),
+    "missing": ("point is not a vertex", "points are not vertices"),
     "repeats": (
         "vertex repeats an earlier row of points",
         "vertices repeat earlier rows of points",
@@ -66,9 +66,9 @@ def _no_pairs() -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ValidationReport(ReadOnly):
-    """The answer of ``validate()``: truthy when the triangulation is right.
+    """The result of ``validate()``: truthy if the triangulation is correct.
 
-    Every field is an array of culprits and empty when there is none.
+    Every field is an array of faulty elements, which is empty if there are none.
 
     Parameters
     ----------
@@ -77,25 +77,25 @@ class ValidationReport(ReadOnly):
     edges : ndarray of int, shape (k, 2)
         Directed edges that more than one triangle uses.
     neighbors : ndarray of int, shape (k,)
-        Triangles whose row of neighbours is wrong.
+        Triangles whose row of neighbors is wrong.
     hull : ndarray of int, shape (k, 2)
-        Boundary edges that are no part of the convex hull's cycle, or have a point outside.
+        Boundary edges that are not part of the convex hull, or have a point outside.
     missing : ndarray of int, shape (k,)
         Rows of distinct points that no triangle uses.
     repeats : ndarray of int, shape (k,)
-        Rows that triangles use in spite of an earlier row with the same coordinates.
+        Rows that triangles use although an earlier row has the same coordinates.
     delaunay : ndarray of int, shape (k, 2)
-        Pairs of adjacent triangles of which one has the other's far vertex inside its circle.
+        Pairs of adjacent triangles, one of which has the other's opposite vertex inside its circle.
     ties : ndarray of int, shape (k, 2)
         Pairs of adjacent triangles that share one circle but are not fanned from the
         lexicographically smallest vertex.
     count : ndarray of int, shape (2,) or (0,)
-        Number of triangles expected, 2n - h - 2, and found, where they differ.
+        Number of triangles expected, 2n - h - 2, and found, if they differ.
 
     Attributes
     ----------
     ok : bool
-        True when there is no culprit.
+        True if there are no faults.
 
     Examples
     --------
@@ -105,7 +105,7 @@ class ValidationReport(ReadOnly):
     False
     >>> print(report)
     not a canonical Delaunay triangulation:
-      missing: 1 point is no vertex: 7
+      missing: 1 point is not a vertex: 7
     >>> print(ValidationReport())
     a canonical Delaunay triangulation
     """
@@ -131,7 +131,7 @@ class ValidationReport(ReadOnly):
 
     @property
     def ok(self) -> bool:
-        """True when there is no culprit."""
+        """True if there are no faults."""
         return all(getattr(self, each.name).size == 0 for each in fields(self))
 
     def __bool__(self) -> bool:
@@ -157,7 +157,7 @@ _SPACE_SENTENCES = SENTENCES | {
         "tetrahedra are not positively oriented",
     ),
     "facets": ("oriented face is used more than once", "oriented faces are used more than once"),
-    "neighbors": ("tetrahedron has wrong neighbours", "tetrahedra have wrong neighbours"),
+    "neighbors": ("tetrahedron has wrong neighbors", "tetrahedra have wrong neighbors"),
     "hull": ("boundary face is not on the hull", "boundary faces are not on the hull"),
     "delaunay": (
         "pair of tetrahedra is not locally Delaunay",
@@ -176,15 +176,15 @@ def _no_triples() -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SpaceReport(ValidationReport):
-    """The answer of ``validate()`` in space: truthy when the triangulation is right.
+    """The result of ``validate()`` in 3-D: truthy if the triangulation is correct.
 
-    The fields are those of `ValidationReport`, with tetrahedra where that says triangles, and faces
-    of three vertices in `hull`; `edges` and `count` are always empty. One more:
+    The fields are those of `ValidationReport`, for tetrahedra instead of triangles, with faces of
+    three vertices in `hull`; `edges` and `count` are always empty. One more:
 
     Parameters
     ----------
     facets : ndarray of int, shape (k, 3)
-        Oriented faces that more than one tetrahedron has.
+        Oriented faces that more than one tetrahedron uses.
 
     Examples
     --------
@@ -204,7 +204,7 @@ class SpaceReport(ValidationReport):
 def validate(
     points: ArrayLike, simplices: ArrayLike, *, neighbors: ArrayLike | None = None
 ) -> ValidationReport:
-    """Prove that any simplices are the canonical Delaunay triangulation, or name the culprits.
+    """Prove that simplices are the canonical Delaunay triangulation, or name the faults.
 
     Parameters
     ----------
@@ -218,14 +218,14 @@ def validate(
     Returns
     -------
     ValidationReport
-        Truthy when all is right. Only `ties` filled means Delaunay, but fanned in another way; only
-        `repeats`, that of equal points another one than the first is the vertex. In space it is a
-        `SpaceReport`.
+        Truthy if everything is correct. If only `ties` is filled, the triangulation is Delaunay but
+        has other diagonals; if only `repeats` is, a duplicate other than the first is a vertex. In
+        3-D it is a `SpaceReport`.
 
     Raises
     ------
     ShapeError, DtypeError
-        The arrays are not of these kinds.
+        The arrays have the wrong shape or dtype.
     InputError
         An index is out of range.
     NonFiniteError
@@ -233,7 +233,7 @@ def validate(
 
     Notes
     -----
-    Exact. Linear time, and O(m log m) where neighbours are to be found.
+    Exact. Linear time, or O(m log m) if neighbors must be computed.
 
     Examples
     --------
@@ -344,7 +344,7 @@ def not_across(
 
 
 def _list(culprits: NDArray[np.integer]) -> str:
-    """Name the first few culprits, pairs joined by a hyphen."""
+    """List the first few faulty elements, pairs joined by a hyphen."""
     shown = [
         "-".join(map(str, culprit)) if isinstance(culprit, list) else str(culprit)
         for culprit in culprits[:_SHOWN].tolist()

@@ -42,14 +42,14 @@ def test_every_code_is_documented(command):
         (["triangulate", "S", "--classes", "ground"], 2, "classes"),
         (["triangulate", "missing.csv"], 3, "no such file"),
         (["triangulate", "S", "--columns", "x,w"], 3, "its columns are x, y, z"),
-        (["triangulate", "unknown.doc"], 3, "known are .csv"),
+        (["triangulate", "unknown.doc"], 3, "known suffixes are .csv"),
         (["info", "empty.csv"], 3, "is empty"),
-        (["info", "torn.laz"], 3, "torn"),
-        (["check", "torn.npz"], 3, "torn"),
+        (["info", "torn.laz"], 3, "version or the size"),
+        (["check", "torn.npz"], 3, "truncated"),
         (["triangulate", "line.csv"], 4, "line"),
         (["triangulate", "two.csv"], 4, "two|few"),
         (["triangulate", "nan.csv"], 4, "row 1"),
-        (["triangulate", "S", "-o", "a.doc"], 5, "known are .vtu"),
+        (["triangulate", "S", "-o", "a.doc"], 5, "known suffixes are .vtu"),
         (["triangulate", "S", "-o", "nowhere/a.vtu"], 5, "does not exist"),
         (["triangulate", "S", "-o", "a.vtu", "-o", "a.stl", "--edges"], 5, "not edges"),
     ],
@@ -222,7 +222,7 @@ def test_no_input_is_replaced(tmp_path: Path, command, name: str) -> None:
     code, _, err = command(
         name, source, *options, "-o", tmp_path / "b.gpkg", "-o", tmp_path / "b.gpkg"
     )
-    assert code == 2 and "one file" in err
+    assert code == 2 and "same file" in err
     assert source.read_bytes() == before and not (tmp_path / "b.gpkg").exists()
 
 

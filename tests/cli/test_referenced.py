@@ -90,7 +90,7 @@ def test_what_the_file_says_otherwise_is_said(tmp_path, command):
     geopandas.GeoDataFrame(geometry=points).to_file(file, driver="GPKG")
     code, _, err = command("triangulate", file, "--crs", "EPSG:32631")
     assert (code, err.count("\n")) == (0, 1)
-    assert "says EPSG:28992, --crs EPSG:32631 counts" in err
+    assert "says EPSG:28992, but --crs EPSG:32631 is used" in err
     assert command("triangulate", file, "--crs", "EPSG:28992")[::2] == (0, "")
 
 
@@ -99,7 +99,7 @@ def test_files_without_a_place_for_a_system_are_named(tmp_path, plain, command):
     options = ("--crs", "EPSG:28992", "-o", tmp_path / "a.vtu")
     code, _, err = command("triangulate", plain, *options)
     assert (code, err.count("\n")) == (0, 1)
-    assert ".vtu files hold no reference system; EPSG:28992 is not in it" in err
+    assert ".vtu files cannot store a reference system; EPSG:28992 is not in the file" in err
     assert command("triangulate", plain, "--quiet", *options)[::2] == (0, "")
     assert ".vtu" in output_suffixes()
 

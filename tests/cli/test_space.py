@@ -77,7 +77,7 @@ def test_what_space_refuses(tmp_path, command):
     solid = xyz(tmp_path / "solid.xyz", cloud())
     code, _, err = command("triangulate", solid, "--3d", "-o", tmp_path / "a.svg")
     assert code != 0
-    assert "hold no tetrahedra" in err
+    assert "cannot store tetrahedra" in err
     plane = xyz(tmp_path / "plane.xyz", cloud() * (1, 1, 0))
     code, _, err = command("triangulate", plane, "--3d")
     assert code != 0
@@ -147,7 +147,7 @@ def test_the_limit_on_passes_is_reported(tmp_path, command, figures):
     assert (found["passes"], found["exhausted"]) == (1, True)
     assert found["below"]["budget"] > 0
     out = command("triangulate", source, "--improve", "--max-passes", "1")[1]
-    assert "--max-passes 1: more passes may gain more" in out
+    assert "--max-passes 1: more passes may improve further" in out
     code, _, err = command("triangulate", source, "--max-passes", "1")
     assert (code, "--improve" in err) == (2, True)
 

@@ -40,7 +40,7 @@ def test_a_dry_run_does_nothing(survey, tmp_path, figures, command):
     assert said["worker_memory"] > 0 and said["disk"] > said["output"] > 0
     code, out, _ = command("tile", survey, "--dry-run")
     assert code == 0
-    assert "it would need" in out
+    assert "required" in out
     assert not (tmp_path / "tin").exists()
 
 
@@ -86,10 +86,10 @@ def test_wrong_inputs_and_outputs(survey, tmp_path, command):
     (tmp_path / "full" / "thesis.txt").touch()
     code, _, err = command("tile", survey, "-o", tmp_path / "full")
     assert code == 2
-    assert "holds something else" in err
+    assert "does not contain a run" in err
     code, _, err = command("dem", tmp_path / "full", "-r", "1", "-o", tmp_path / "dem.tif")
     assert code == 3
-    assert "holds no triangulation" in err
+    assert "does not contain a tiled" in err
     code, _, err = command("dem", tmp_path / "full", "-r", "a", "-o", tmp_path / "dem.tif")
     assert code == 2
 

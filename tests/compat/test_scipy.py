@@ -124,7 +124,7 @@ def test_nearly_flat_triangles_have_no_transform() -> None:
 
 
 def test_triangles_are_exact() -> None:
-    points = datasets.utm_millimetres(2000)
+    points = datasets.utm_millimeters(2000)
     tri = Delaunay(points)
     assert_delaunay(points, tri.simplices, neighbors=tri.neighbors)
     # An in-plane distance is 0 at the corners, to a rounding of the differences.
@@ -449,7 +449,7 @@ def test_pictures_beside_scipy() -> None:
         assert drawn_edges(mine) == drawn_edges(other)
         np.testing.assert_array_equal(mine.lines[0].get_xydata(), other.lines[0].get_xydata())
         assert mine.get_xlim() == other.get_xlim() and mine.get_ylim() == other.get_ylim()
-        with pytest.raises(ValueError, match="not in the plane"):
+        with pytest.raises(ValueError, match="not 2-D"):
             draw(kind(np.random.default_rng(0).random((9, 3))), mine)
 
 

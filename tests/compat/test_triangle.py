@@ -79,24 +79,24 @@ class TestWholeSegments:
 
     @pytest.mark.parametrize("switch", ["Y", "YY"])
     def test_areas_yield_and_a_warning_counts_them(self, switch: str) -> None:
-        with pytest.warns(UserWarning, match="switch Y keeps segments whole") as caught:
+        with pytest.warns(UserWarning, match="switch Y forbids splitting segments") as caught:
             out = triangulate(self.STRIP, f"pq{switch}a0.5")
         a, b, c = out["vertices"][out["triangles"]].transpose(1, 0, 2)
         u, v = b - a, c - a
         areas = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
         large = int((areas > 0.5).sum())
         assert large > 0
-        assert f"leaves {large} triangles larger than asked for" in str(caught[0].message)
+        assert f"leaves {large} triangles larger than requested" in str(caught[0].message)
         assert len(out["segments"]) == 4
         assert len(out["triangles"]) < 20
 
     def test_areas_of_regions_and_of_triangles(self) -> None:
         regions = self.STRIP | {"regions": [(50, 0.5, 7, 0.5)]}
-        with pytest.warns(UserWarning, match="larger than asked for"):
+        with pytest.warns(UserWarning, match="larger than requested"):
             triangulate(regions, "pqYYa")
         halves = [(0, 1, 2), (0, 2, 3)]
         given = self.STRIP | {"triangles": halves, "triangle_max_area": [0.5, -1.0]}
-        with pytest.warns(UserWarning, match="1 triangle larger than asked for"):
+        with pytest.warns(UserWarning, match="1 triangle larger than requested"):
             triangulate(given, "rYYa")
 
     def test_nothing_is_said_where_nothing_is_missed(self) -> None:

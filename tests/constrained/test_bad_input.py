@@ -23,7 +23,7 @@ class TestSegments:
         assert mesh.report
 
     def test_rows_out_of_range_are_named(self) -> None:
-        with pytest.raises(errors.InputError, match=r"3 of 4 rows.*range 0 to 3.*first: 0, 2, 3"):
+        with pytest.raises(errors.InputError, match=r"3 of 4 rows.*outside 0 to 3.*first: 0, 2, 3"):
             ConstrainedDelaunay(SQUARE, [(0, 4), (0, 1), (-1, 2), (2**40, 0)])
 
     def test_only_ten_rows_are_named(self) -> None:

@@ -161,7 +161,7 @@ class TestRefusals:
             (lambda e: e.remove_segments([1]), errors.InputError, "rows of segments"),
             (lambda e: e.remove_segment(0, 1), errors.InputError, "no segment joins.*0-1"),
             (lambda e: e.remove_segment(1.5), errors.DtypeError, "integer"),
-            (lambda e: e.insert_segment(0, 4), errors.InputError, "range 0 to 3"),
+            (lambda e: e.insert_segment(0, 4), errors.InputError, "outside 0 to 3"),
             (lambda e: e.insert_segment(True, 0), errors.DtypeError, "integer"),
             (lambda e: e.insert_segments([(0.0, 1.0)]), errors.DtypeError, "integers"),
             (lambda e: e.insert_points([(np.nan, 0)]), errors.NonFiniteError, "NaN"),

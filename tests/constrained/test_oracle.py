@@ -109,7 +109,7 @@ def test_every_wrong_flag_is_caught(case: tuple[ConstrainedArrays, Any]) -> None
     for t, k in np.ndindex(flags.shape):
         damaged = flags.copy()
         damaged[t, k] ^= True
-        word = "but not flagged" if flags[t, k] else "but no subsegment"
+        word = "but not flagged" if flags[t, k] else "but is not a subsegment"
         refused(mesh._replace(constrained=damaged), segments, f"{word}.*:\n  triangle {t}: edge")
 
 
@@ -125,7 +125,7 @@ def test_every_swapped_neighbour_is_caught(case: tuple[ConstrainedArrays, Any]) 
     for t in range(len(neighbors)):
         damaged = neighbors.copy()
         damaged[t] = np.roll(damaged[t], 1)
-        refused(mesh._replace(neighbors=damaged), segments, f"wrong neighbours:\n  triangle {t}:")
+        refused(mesh._replace(neighbors=damaged), segments, f"wrong neighbors:\n  triangle {t}:")
 
 
 def test_every_dropped_or_turned_triangle_is_caught(case: tuple[ConstrainedArrays, Any]) -> None:
@@ -152,7 +152,7 @@ def test_every_wrong_source_is_caught(case: tuple[ConstrainedArrays, Any]) -> No
     for edge, rows in sources_of(mesh).items():
         for row in range(len(segments)):
             changed = sorted(set(rows) ^ {row})
-            words = "covered|line of its row|each subsegment a row"
+            words = "covered|line of its row|a subsegment without a row"
             refused(again(mesh, sources=sources_of(mesh) | {edge: changed}), segments, words)
 
 
@@ -175,7 +175,7 @@ def test_a_segment_that_is_nowhere_is_caught(case: tuple[ConstrainedArrays, Any]
 def test_subsegments_joined_over_a_vertex_are_caught() -> None:
     points, segments = [*SQUARE, (2, 2)], [(0, 2)]
     mesh = ConstrainedArrays.of(points, *constrained_delaunay(points, segments))
-    refused(again(mesh, sources={(0, 2): [0]}), segments, "no edge of a triangle")
+    refused(again(mesh, sources={(0, 2): [0]}), segments, "not an edge of a triangle")
     assert_constrained_delaunay(again(mesh, sources={(4, 0): [0], (2, 4): [0]}), segments)
     doubled = mesh._replace(
         segments=[(0, 4), (2, 4), (4, 2)], segment_source=([0, 1, 2, 3], [0, 0, 0])
@@ -195,12 +195,12 @@ def test_a_tie_under_segments_is_named() -> None:
 @pytest.mark.parametrize(
     ("source", "words"),
     [
-        (([0, 1, 2], [0, 0]), "does not fit 1 subsegment"),
-        (([0, 0], []), "each subsegment a row"),
-        (([1, 1], [0]), "each subsegment a row"),
-        (([0, 2], [0]), "each subsegment a row"),
+        (([0, 1, 2], [0, 0]), "does not match 1 subsegment"),
+        (([0, 0], []), "a subsegment without a row"),
+        (([1, 1], [0]), "a subsegment without a row"),
+        (([0, 2], [0]), "a subsegment without a row"),
         (([0, 1], [3]), "outside 0 to 2"),
-        (([0, 2], [1, 0]), "do not ascend|does not ascend"),
+        (([0, 2], [1, 0]), "are not ascending"),
         (([0, 2], [1, 1]), "not ascend"),
     ],
 )
@@ -303,7 +303,7 @@ def test_removed_areas_leave_a_boundary_of_subsegments() -> None:
     assert 0 < hole.sum() < len(hole) and len(set(label.tolist())) == 3
     holed = again(mesh, simplices=np.asarray(mesh.simplices)[~hole])
     assert_constrained_delaunay(holed, segments, complete=False)
-    refused(holed, segments, "no vertex of any triangle|boundary")
+    refused(holed, segments, "not a vertex of any triangle|boundary")
     for t in range(len(np.asarray(holed.simplices))):
         if not ((np.asarray(holed.neighbors)[t] >= 0) & ~np.asarray(holed.constrained)[t]).any():
             continue  # an area of its own, or a hull edge on each side that is open
@@ -323,7 +323,7 @@ def test_regions_are_told_apart(case: tuple[ConstrainedArrays, Any]) -> None:
         if (label == label[t]).sum() > 1:
             damaged = label.copy()
             damaged[t] = label.max() + 1
-            with pytest.raises(AssertionError, match="not the label of its area"):
+            with pytest.raises(AssertionError, match="not have the label of its area"):
                 assert_regions(mesh, damaged)
 
 

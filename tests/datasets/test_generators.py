@@ -108,7 +108,7 @@ def test_collinear_lines_are_exactly_collinear() -> None:
 
 
 def test_utm_is_rounded_to_the_nearest_millimetre() -> None:
-    points = datasets.utm_millimetres(1000)
+    points = datasets.utm_millimeters(1000)
     millimetres = np.round(points * 1000)
     np.testing.assert_array_equal(millimetres / 1000, points)
     assert (points.min(axis=0) >= [500_000, 5_400_000]).all()

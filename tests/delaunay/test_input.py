@@ -207,7 +207,9 @@ def test_geometries_are_told_from_coordinates() -> None:
     points = shapely.points([(0, 0), (1, 0), (0, 1)])
     series = geopandas.GeoSeries(points)
     for given in (points, points.tolist(), series, series.to_frame("geometry")):
-        with pytest.raises(DtypeError, match=r"holds geometries.*get_coordinates.*from_geometry"):
+        with pytest.raises(
+            DtypeError, match=r"contains geometries.*get_coordinates.*from_geometry"
+        ):
             Delaunay(given)
     assert Delaunay(shapely.get_coordinates(points)).nsimplex == 1
     assert Delaunay(series.get_coordinates().to_numpy()).nsimplex == 1

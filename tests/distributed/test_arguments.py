@@ -101,7 +101,7 @@ def test_arguments_of_plan(source: Any, options: dict[str, Any]) -> None:
 
 
 def test_a_name_with_a_null_character(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="output holds a null character"):
+    with pytest.raises(InputError, match="output contains a null character"):
         distributed.triangulate(POINTS, str(tmp_path / "a\0b"))
 
 

@@ -171,7 +171,7 @@ def test_a_file_that_fails_leaves_nothing_behind(cluster: Any, tmp_path: Path) -
         pyarrow.parquet.write_table(pyarrow.table(columns), tmp_path / f"{number}.parquet")
     source = str(tmp_path / "*.parquet")
     with library.Client(cluster) as client:
-        with pytest.raises(FileFormatError, match=r"2\.parquet: 'kind' holds no single numbers"):
+        with pytest.raises(FileFormatError, match=r"2\.parquet: 'kind' is not one number per row"):
             distributed.triangulate(
                 source, tmp_path / "tin", attributes=["kind"], executor=client, tile_points=300
             )

@@ -28,7 +28,7 @@ GENERATORS = {
         "near_collinear",
         "duplicates",
         "collinear_lines",
-        "utm_millimetres",
+        "utm_millimeters",
         "pythagorean_circle",
         "integer_lattice",
         "mixed_exponents",

@@ -164,7 +164,7 @@ def test_every_field_of_every_note(stopped: Path, tmp_path: Path) -> None:
                 tin = distributed.triangulate(POINTS, again, tile_points=SIZE)
                 assert tin.npoints == len(POINTS) or not tin.validate()
             except (FileFormatError, InputError) as error:
-                assert note.name in str(error) or "holds a run of another kind" in str(error)
+                assert note.name in str(error) or "contains a different run" in str(error)
             shutil.rmtree(again)
         note.write_text(text, encoding="utf-8")
 

@@ -43,7 +43,7 @@ def test_figures(tin: distributed.TiledDelaunay) -> None:
     assert (tin.npoints, tin.nsimplex) == (len(SURVEY.points), len(right.simplices))
     assert np.array_equal(tin.bounds, [*right.min_bound, *right.max_bound])
     assert str(tin.ntiles) in repr(tin)
-    with pytest.raises(InputError, match="there are tiles"):
+    with pytest.raises(InputError, match="tile must be from 0"):
         tin.tile(tin.ntiles)
 
 
@@ -139,7 +139,7 @@ def test_a_disk_without_room_for_a_raster(
     pytest.importorskip("rasterio")
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: usage._replace(free=1000))
-    with pytest.raises(OSError, match="on disk while it is made") as caught:
+    with pytest.raises(OSError, match="on disk while it is computed") as caught:
         tin.to_raster(0.01, tmp_path / "dem.tif")
     assert caught.value.errno == errno.ENOSPC
     assert not list(tmp_path.iterdir())
@@ -192,7 +192,7 @@ def test_geoparquet(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
     assert sum(map(len, frames)) == tin.nsimplex
     area = sum(frame.area.sum() for frame in frames)
     assert area == pytest.approx(Delaunay(SURVEY.points).areas.sum())
-    with pytest.raises(InputError, match="is there already"):
+    with pytest.raises(InputError, match="already exists"):
         tin.to_geoparquet(tmp_path / "triangles")
 
 
@@ -267,8 +267,8 @@ def renumber(columns: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("table", "change", "words"),
     [
-        ("triangles", drop, "in place of"),
-        ("triangles", longer, "in place of"),
+        ("triangles", drop, "instead of"),
+        ("triangles", longer, "instead of"),
         ("triangles", twice, "occurs twice"),
         ("triangles", turn, "not counter-clockwise"),
         ("triangles", fold, "not counter-clockwise"),
@@ -276,7 +276,7 @@ def renumber(columns: dict[str, Any]) -> None:
         ("vertices", move, "tile 0"),
         ("vertices", steal, "a point of tile"),
         ("vertices", renumber, "a vertex twice"),
-        ("vertices", disown, "points is 0 in place of"),
+        ("vertices", disown, "points is 0 instead of"),
     ],
 )
 def test_what_is_wrong_is_found(
@@ -328,17 +328,20 @@ def said(name: str) -> Callable[[dict[str, Any]], None]:
     [
         *[("triangles", absent(name), f"no column '{name}'") for name in "abc"],
         *[("vertices", absent(name), f"no column '{name}'") for name in ("id", "x", "z", "owned")],
-        *[("triangles", said(name), f"column '{name}' holds") for name in "abc"],
-        *[("vertices", said(name), f"column '{name}' holds") for name in ("id", "y", "z", "owned")],
+        *[("triangles", said(name), f"column '{name}' has dtype") for name in "abc"],
+        *[
+            ("vertices", said(name), f"column '{name}' has dtype")
+            for name in ("id", "y", "z", "owned")
+        ],
         ("triangles", holding("a", None), "'a' has gaps"),
         ("vertices", holding("x", None), "'x' has gaps"),
         ("vertices", holding("owned", None), "'owned' has gaps"),
-        ("triangles", holding("a", -1), "no row of the vertices"),
-        ("triangles", holding("c", 1 << 40), "no row of the vertices"),
+        ("triangles", holding("a", -1), "not a row of the vertices"),
+        ("triangles", holding("c", 1 << 40), "not a row of the vertices"),
         ("vertices", holding("x", float("nan")), "not finite"),
         ("vertices", holding("y", float("inf")), "not finite"),
-        ("vertices", holding("id", len(SURVEY.points)), "no row of the source"),
-        ("vertices", holding("id", -1), "no row of the source"),
+        ("vertices", holding("id", len(SURVEY.points)), "not a row of the source"),
+        ("vertices", holding("id", -1), "not a row of the source"),
     ],
 )
 def test_tables_of_another_kind_are_refused_by_name(
@@ -385,7 +388,7 @@ def test_a_torn_manifest(tin: distributed.TiledDelaunay, tmp_path: Path, left: i
     shutil.copytree(tin.path, torn)
     manifest = torn / "manifest.json"
     manifest.write_text(manifest.read_text(encoding="utf-8")[:left], encoding="utf-8")
-    with pytest.raises(FileFormatError, match=r"manifest\.json is torn"):
+    with pytest.raises(FileFormatError, match=r"manifest\.json is truncated"):
         distributed.open(torn)
 
 
@@ -394,12 +397,12 @@ def test_torn_outputs(tin: distributed.TiledDelaunay, tmp_path: Path) -> None:
     path = tmp_path / "tin" / "triangles" / "tile=000000.parquet"
     path.write_bytes(path.read_bytes()[:-9])
     torn = distributed.open(tmp_path / "tin")
-    with pytest.raises(FileFormatError, match="torn"):
+    with pytest.raises(FileFormatError, match="truncated"):
         torn.simplices()
     assert "cannot be read" in str(torn.validate())
     path.unlink()
-    with pytest.raises(FileFormatError, match="has lost"):
+    with pytest.raises(FileFormatError, match="is missing"):
         distributed.open(tmp_path / "tin")
     (tmp_path / "tin" / "manifest.json").write_text('{"format": "other"}')
-    with pytest.raises(FileFormatError, match="is none of"):
+    with pytest.raises(FileFormatError, match="it is not"):
         distributed.open(tmp_path / "tin")

@@ -157,7 +157,7 @@ def test_copies_that_lie_elsewhere(axis: int, tmp_path: Path) -> None:
     row = int(np.flatnonzero(~table["owned"])[-1])
     table["points"][row, axis] += 2.0**-40
     copy = table["id"][row]
-    assert faults(output, tmp_path) == (f"vertex {copy} of tile 0 is not that of tile 1",)
+    assert faults(output, tmp_path) == (f"vertex {copy} of tile 0 differs from that of tile 1",)
 
 
 @pytest.mark.parametrize("number", [4, 99])
@@ -175,7 +175,7 @@ def test_copies_of_points_that_there_are_not(number: int, tmp_path: Path) -> Non
     manifest["rows"], manifest["dropped"] = 108, 100
     (tmp_path / "tin" / "manifest.json").write_text(json.dumps(manifest))
     report = distributed.open(tin.path).validate()
-    assert report.faults == (f"vertex {number} of tile 1 is not that of tile 0",)
+    assert report.faults == (f"vertex {number} of tile 1 differs from that of tile 0",)
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_tiles_without_any_triangle(tmp_path: Path) -> None:
     found = faults(Output(SQUARE, [], hull=0), tmp_path)
     assert found == (
         "the boundary meets itself",
-        "0 triangles in place of 14: a point is missing",
+        "0 triangles instead of 14: a point is missing",
     )
 
 
@@ -242,17 +242,17 @@ AROUND = [s for s in Delaunay(RING).simplices.tolist() if set(s) != {3, 4, 5}]
 
 def test_a_boundary_of_several_cycles(tmp_path: Path) -> None:
     """A hole means too many triangles, two parts too few; both together the right number."""
-    cycles = "the boundary is no single cycle: there is a hole"
+    cycles = "the boundary is not a single cycle: there is a hole"
     apart = [(20, 0), (24, 0), (20, 4)]
     (tmp_path / "hole").mkdir()
     (tmp_path / "parts").mkdir()
     assert faults(Output(RING, AROUND, hull=0), tmp_path / "hole") == (
         cycles,
-        "6 triangles in place of 4: a point is missing",
+        "6 triangles instead of 4: a point is missing",
     )
     assert faults(Output(RING[:3] + apart, [(0, 1, 2), (3, 4, 5)], hull=0), tmp_path / "parts") == (
         cycles,
-        "2 triangles in place of 4: a point is missing",
+        "2 triangles instead of 4: a point is missing",
     )
     both = Output(RING + apart, [*AROUND, (6, 7, 8)], cuts=(4.5,), hull=0)
     assert faults(both, tmp_path) == (cycles,)
@@ -264,7 +264,7 @@ def test_a_boundary_that_goes_round_twice(tmp_path: Path) -> None:
     points = [(0.125, 0.0625), *np.column_stack([np.cos(angles), np.sin(angles)])]
     fan = [(0, k, k % 6 + 1) for k in range(1, 7)]
     output = Output(points, fan, cuts=(0.0,), hull=6)
-    assert faults(output, tmp_path) == ("the boundary turns more than once",)
+    assert faults(output, tmp_path) == ("the boundary winds more than once",)
 
 
 @pytest.mark.parametrize("row", [8, 9])
@@ -295,7 +295,7 @@ def test_a_row_that_two_tiles_own(
         for name in ("id", "triangles"):
             table[name] = number[table[name]]
     found = faults(output, tmp_path)
-    assert found == ("row 9 is a point of tile 1 and of another one",)
+    assert found == ("row 9 is a point of tile 1 and of another tile",)
 
 
 def test_a_triangle_in_the_files_of_another_tile(tmp_path: Path) -> None:
@@ -358,7 +358,7 @@ def test_a_point_that_no_triangle_has(lost: int, tmp_path: Path) -> None:
     mesh = rest[Delaunay(np.array(SQUARE)[rest]).simplices]
     right = 2 * 8 - 2 - 4
     assert faults(Output(SQUARE, mesh), tmp_path) == (
-        f"{right - 2} triangles in place of {right}: a point is missing",
+        f"{right - 2} triangles instead of {right}: a point is missing",
     )
 
 
@@ -371,10 +371,10 @@ def test_files_that_are_others_or_lost(table: str, tmp_path: Path) -> None:
     assert tin.validate().faults == (f"{name} is not the file that was written",)
     path.unlink()
     found = tin.validate().faults
-    assert found[0] == f"{name} is lost"
+    assert found[0] == f"{name} is missing"
     assert found[1].startswith("tile 1 cannot be read: ")
     # Of what the other tile says alone, nothing follows.
-    assert all("in place of" not in fault and "boundary" not in fault for fault in found)
+    assert all("instead of" not in fault and "boundary" not in fault for fault in found)
 
 
 def changed(tin: distributed.TiledDelaunay, change: Callable[[Any], None]) -> tuple[str, ...]:
@@ -404,7 +404,7 @@ def test_what_the_manifest_says_of_a_tile(name: str, tile: int, tmp_path: Path) 
             manifest["bounds"][0] = min(t["box"][0] for t in manifest["tiles"])
 
     found = changed(tin, change)
-    assert f"tile {tile}: {name} is {right} in place of {wrong} in the manifest" in found
+    assert f"tile {tile}: {name} is {right} instead of {wrong} in the manifest" in found
     sums = {"points": 2, "triangles": 1}.get(name, 0)
     assert len(found) == 1 + sums
 
@@ -415,5 +415,5 @@ def test_what_the_manifest_says_of_all_tiles(name: str, tmp_path: Path) -> None:
     right = tin.manifest[name]
     wrong = right + 1 if isinstance(right, int) else [right[0] - 1.0, *right[1:]]
     found = changed(tin, lambda manifest: manifest.__setitem__(name, wrong))
-    assert f"the manifest says {name} {wrong} in place of {right}" in found
+    assert f"the manifest says {name} {wrong} instead of {right}" in found
     assert len(found) == 1

@@ -144,7 +144,7 @@ def test_a_full_disk_is_a_clean_stop(
 def test_outputs_are_never_mixed(tmp_path: Path) -> None:
     run(tmp_path)
     assert run(tmp_path).npoints == len(POINTS)
-    with pytest.raises(InputError, match="holds a run already"):
+    with pytest.raises(InputError, match="already contains a run"):
         run(tmp_path, resume=False)
     with pytest.raises(InputError, match=r"tile_points differ"):
         distributed.triangulate(POINTS, tmp_path / "tin", tile_points=SIZE + 1)
@@ -153,10 +153,10 @@ def test_outputs_are_never_mixed(tmp_path: Path) -> None:
     other = tmp_path / "other"
     other.mkdir()
     (other / "thesis.txt").write_text("years of work")
-    with pytest.raises(InputError, match="holds something else"):
+    with pytest.raises(InputError, match="does not contain a run"):
         distributed.triangulate(POINTS, other, tile_points=SIZE)
     assert (other / "thesis.txt").read_text() == "years of work"
-    with pytest.raises(InputError, match="no folder"):
+    with pytest.raises(InputError, match="not a folder"):
         distributed.triangulate(POINTS, other / "thesis.txt", tile_points=SIZE)
 
 
@@ -164,7 +164,7 @@ def test_a_folder_named_work_of_somebody_else_is_left_alone(tmp_path: Path) -> N
     theirs = tmp_path / "tin" / "work" / "thesis.txt"
     theirs.parent.mkdir(parents=True)
     theirs.write_text("years of work")
-    with pytest.raises(InputError, match="holds something else"):
+    with pytest.raises(InputError, match="does not contain a run"):
         run(tmp_path)
     assert theirs.read_text() == "years of work"
     assert [p.name for p in (tmp_path / "tin").iterdir()] == ["work"]

@@ -257,9 +257,9 @@ def test_rows_that_are_not_finite(tmp_path: Path, canonical: Callable[[Any], Any
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
-        ({"k": ["a"] * 900}, "holds no single numbers"),
+        ({"k": ["a"] * 900}, "is not one number per row"),
         ({"k": [None, *range(1, 900)]}, None),
-        ({"k": [None, *range(1 << 60, (1 << 60) + 899)]}, r"beyond the 2\*\*53"),
+        ({"k": [None, *range(1 << 60, (1 << 60) + 899)]}, r"beyond (the )?2\*\*53"),
         ({"K": range(900)}, None),
         ({"K": range(900), "k": range(900)}, None),
         ({"x": range(1 << 60, (1 << 60) + 900), "k": range(900)}, r"column 'x' .* 2\*\*53"),
@@ -291,7 +291,7 @@ def test_files_whose_attributes_have_other_types(other: Any, tmp_path: Path) -> 
     for tile in tin.tiles():
         assert np.array_equal(tile.attributes["k"], tile.ids % 450)
     table(tmp_path / "0.parquet", POINTS[:450], k=np.arange(450) + (1 << 53))
-    with pytest.raises(DtypeError, match=r"attribute 'k' .* of row 1 is beyond the 2\*\*53"):
+    with pytest.raises(DtypeError, match=r"attribute 'k' .* of row 1 is beyond (the )?2\*\*53"):
         distributed.triangulate(source, tmp_path / "tin2", tile_points=300, attributes=["k"])
     assert not (tmp_path / "tin2").exists()
 
@@ -306,7 +306,7 @@ def test_scales_of_a_header_beyond_the_range(scale: float, tmp_path: Path) -> No
     las.add_extra_dim(laspy.ExtraBytesParams(name="normal", type="3f4"))
     path = tmp_path / "points.las"
     las.write(str(path))
-    with pytest.raises(FileFormatError, match=r"'normal' holds no single numbers \(float32, sev"):
+    with pytest.raises(FileFormatError, match=r"'normal' is not one number per row \(float32, sev"):
         distributed.triangulate(path, tmp_path / "tin", attributes=["normal"])
     whole = bytearray(path.read_bytes())
     whole[131:139] = struct.pack("<d", scale)

@@ -110,14 +110,14 @@ def one_is_one() -> dict[str, Callable[[], object]]:
             delone.Delaunay([(0, 0), (1, inf), (0, 1)])
         ),
         "1 distinct point is too few": lambda: delone.Delaunay([(0, 0), (0, 0)]),
-        "1 point comes again with another value": lambda: interpolate.Linear(survey, [0, 1, 2, 3]),
+        "1 duplicate has a different value": lambda: interpolate.Linear(survey, [0, 1, 2, 3]),
         "values: 1 of 3 rows holds NaN": lambda: interpolate.Linear(three, [0, nan, 0]),
-        "xi: 1 of 1 query is outside of the hull: row 0;": lambda: interpolate.Linear(
+        "xi: 1 of 1 query is outside the hull: row 0;": lambda: interpolate.Linear(
             three, [0, 1, 2], extrapolate="error"
         )([(5, 5)]),
         "1 weight is NaN": lambda: delone.RegularTriangulation(three, [0, nan, 0]),
         "1 geometry holds NaN": lambda: delone.from_geometry(line),
-        "segments: 1 of 1 row leaves": lambda: delone.ConstrainedDelaunay(three, [(0, 7)]),
+        "segments: 1 of 1 row has indices": lambda: delone.ConstrainedDelaunay(three, [(0, 7)]),
         "1 row holds NaN": lambda: reference.bowyer_watson([(0, 0), (1, 0), (nan, 1)]),
         "1 pair of segments crosses": lambda: reference.constrained_delaunay(
             [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 2), (1, 3)]

@@ -101,7 +101,7 @@ def test_the_first_bytes_alone_make_no_flatgeobuf(tmp_path, canary, listener, ve
 def test_other_formats_under_a_suffix_are_refused(tmp_path, suffix):
     FRAME.to_file(tmp_path / "whole.geojson")
     shutil.copy(tmp_path / "whole.geojson", tmp_path / f"other{suffix}")
-    with pytest.raises(FileFormatError, match=f"no {suffix} file"):
+    with pytest.raises(FileFormatError, match=f"not a {suffix} file"):
         read_points(tmp_path / f"other{suffix}")
 
 

@@ -131,7 +131,7 @@ def test_computed_columns_are_read(package):
 @pytest.mark.parametrize("application", [0, 0x4D504258])
 def test_other_databases_are_refused(package, application):
     execute(package, f"PRAGMA application_id = {application}")
-    with pytest.raises(FileFormatError, match=r"no \.gpkg file"):
+    with pytest.raises(FileFormatError, match=r"not a \.gpkg file"):
         read_points(package)
 
 

@@ -117,9 +117,9 @@ def test_other_forms_are_seen(system):
 
 
 def test_sets_refuse_them(system):
-    with pytest.raises(FileFormatError, match="names a file or an address"):
+    with pytest.raises(FileFormatError, match="names a file or a URL"):
         PointSet(points=POINTS, crs=system)
-    with pytest.raises(FileFormatError, match="names a file or an address"):
+    with pytest.raises(FileFormatError, match="names a file or a URL"):
         GeometrySet(geometries=shapely.points(POINTS), crs=system)
 
 
@@ -190,7 +190,7 @@ def harmless_or_refused(path, system):
     try:
         found = read_points(path).crs
     except FileFormatError as error:
-        assert "names a file or an address" in str(error)
+        assert "names a file or a URL" in str(error)
     else:
         assert found is None or "init" not in found
 
@@ -238,13 +238,13 @@ def test_geoparquet(tmp_path, system):
         other = table.replace_schema_metadata({b"geo": json.dumps(facts).encode()})
         pyarrow.parquet.write_table(other, path)
         for read in (read_points, read_geometries):
-            with pytest.raises(FileFormatError, match="names a file or an address"):
+            with pytest.raises(FileFormatError, match="names a file or a URL"):
                 read(path)
 
 
 def test_npz(tmp_path, system):
     np.savez(tmp_path / "a.npz", points=POINTS, crs=np.array(system))
-    with pytest.raises(FileFormatError, match="names a file or an address"):
+    with pytest.raises(FileFormatError, match="names a file or a URL"):
         read_points(tmp_path / "a.npz")
 
 
@@ -254,7 +254,7 @@ def test_las(tmp_path, system):
     data.header.global_encoding.wkt = True
     data.header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(system))
     data.write(tmp_path / "a.las")
-    with pytest.raises(FileFormatError, match="names a file or an address"):
+    with pytest.raises(FileFormatError, match="names a file or a URL"):
         read_points(tmp_path / "a.las")
 
 
@@ -271,7 +271,7 @@ def test_manifest(tmp_path, system):
 
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson", ".tif"])
 def test_nothing_is_opened_for_a_file_to_be_written(tmp_path, system, suffix):
-    with pytest.raises(FileFormatError, match="names a file or an address"):
+    with pytest.raises(FileFormatError, match="names a file or a URL"):
         if suffix == ".tif":
             write_raster(tmp_path / "a.tif", _ramp(), crs=system)
         else:

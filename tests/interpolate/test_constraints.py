@@ -106,11 +106,11 @@ def test_what_has_no_meaning_is_refused() -> None:
     with pytest.raises(InputError, match="respect_constraints=True"):
         NaturalNeighbor(mesh)
     gaps = np.where(np.arange(mesh.npoints) == mesh.npoints - 2, np.nan, 1.0)
-    with pytest.raises(InputError, match=r"out of a constrained .*need rows 308"):
+    with pytest.raises(InputError, match=r"from a constrained .*need rows 308"):
         Linear(mesh, gaps, nan="drop")
     ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
     fine = delone.mesh((SQUARE, ring), max_area=0.1)
-    with pytest.raises(InputError, match="out of a constrained"):
+    with pytest.raises(InputError, match="from a constrained"):
         Linear(fine, np.full(fine.npoints, np.nan), nan="drop")
 
 

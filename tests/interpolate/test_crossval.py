@@ -117,7 +117,7 @@ def test_duplicates_are_left_out_together() -> None:
     points = datasets.uniform(50, seed=8)
     twice = np.concatenate((points, points[:5]))
     values = np.concatenate((field(points), field(points)[:5] + 1))
-    with pytest.raises(InputError, match="another value"):
+    with pytest.raises(InputError, match="a different value"):
         cross_validate(twice, values)
     found = cross_validate(twice, values, duplicates="mean")
     np.testing.assert_array_equal(found.predicted[50:], found.predicted[:5])
@@ -186,5 +186,5 @@ def test_a_seed_that_is_none(seed: Any, kind: type[Exception]) -> None:
 
 def test_a_predictor_that_returns_too_few() -> None:
     points = datasets.uniform(20)
-    with pytest.raises(ShapeError, match="what the interpolator returns must have shape"):
+    with pytest.raises(ShapeError, match="the result of the interpolator must have shape"):
         cross_validate(points, points[:, 0], lambda *_: lambda xi: xi[:0, 0], folds=2)

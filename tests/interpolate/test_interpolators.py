@@ -194,7 +194,7 @@ def test_duplicates(method: str) -> None:
     twice = np.concatenate((points, points[[3, 3, 5]]))
     values = np.concatenate((linear(points), [10.0, 40.0], linear(points[5:6])))
     first = values[3]
-    with pytest.raises(InputError, match="2 points come again with another value: rows 20 and 3,"):
+    with pytest.raises(InputError, match="2 duplicates have a different value: rows 20 and 3,"):
         interpolator(method, twice, values)
     expected = {
         "first": first,

@@ -108,7 +108,7 @@ def test_beyond_the_strip() -> None:
     for how in ("nearest", "linear"):
         found = Linear(*copies, extrapolate=how)(out)
         np.testing.assert_allclose(made[how](out), found, rtol=0, atol=1e-9)
-    with pytest.raises(InputError, match="outside of the hull: rows 0, 1"):
+    with pytest.raises(InputError, match="outside the hull: rows 0, 1"):
         made["error"](out)
     # There is no left and no right outside.
     assert np.isfinite(made["error"]([(1e6, 10.0), (-1e6, 10.0)])).all()

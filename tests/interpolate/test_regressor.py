@@ -41,7 +41,7 @@ def test_other_features() -> None:
     wide = np.column_stack((np.zeros(50), points[:, 1], points[:, 0]))
     model = DelaunayRegressor(columns=(2, 1)).fit(wide, points[:, 0])
     np.testing.assert_allclose(model.predict(wide), points[:, 0])
-    with pytest.raises(ValueError, match="choose two by columns"):
+    with pytest.raises(ValueError, match="choose two with columns"):
         DelaunayRegressor().fit(wide, points[:, 0])
     with pytest.raises(ValueError, match="not among 3"):
         DelaunayRegressor(columns=(0, 3)).fit(wide, points[:, 0])

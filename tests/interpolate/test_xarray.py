@@ -108,16 +108,16 @@ def test_nan_and_complex() -> None:
     assert np.iscomplexobj(array.delone.interp([0.5], [0.5]).values)
     gaps = stations().height.where(stations().height > 2)
     assert np.isnan(gaps.delone.interp([0.5], [0.5]).values[0]).all()
-    with pytest.raises(InputError, match="other triangles"):
+    with pytest.raises(InputError, match="triangulation per field"):
         gaps.delone.interp([0.5], [0.5], nan="drop")
 
 
 def test_what_is_not_understood_is_refused() -> None:
-    with pytest.raises(InputError, match="name two by coords"):
+    with pytest.raises(InputError, match="name two with coords"):
         stations().height.drop_vars(["lon", "lat"]).delone.interp([0], [0])
     with pytest.raises(InputError, match="no coordinates u and v"):
         stations().delone.grid(shape=(2, 2), coords=("u", "v"))
-    with pytest.raises(InputError, match="one axis"):
+    with pytest.raises(InputError, match="one-dimensional"):
         stations().delone.interp([[0]], [0])
 
 
@@ -126,6 +126,6 @@ def test_a_variable_without_numbers_is_named() -> None:
         {"height": ("station", [1.0, 5.0, 9.0]), "label": ("station", ["a", "b", "c"])},
         coords={"x": ("station", [0.0, 4.0, 0.0]), "y": ("station", [0.0, 0.0, 4.0])},
     )
-    with pytest.raises(TypeError, match="variable 'label' holds no numbers"):
+    with pytest.raises(TypeError, match="variable 'label' is not numeric"):
         stations.delone.grid(shape=(2, 2))
     assert stations.drop_vars("label").delone.grid(shape=(2, 2)).height.shape == (2, 2)

@@ -81,7 +81,7 @@ def test_entry_that_claims_to_expand_beyond_reason(tmp_path):
     at = raw.rindex(b"PK\x01\x02") + 24  # size in the table of contents
     raw[at : at + 4] = (2**32 - 2).to_bytes(4, "little")
     (tmp_path / "a.npz").write_bytes(raw)
-    with pytest.raises(FileFormatError, match="claims more"):
+    with pytest.raises(FileFormatError, match="declares more"):
         read_points(tmp_path / "a.npz")
 
 
@@ -217,4 +217,4 @@ def test_what_memory_has_no_room_for_is_not_torn(tmp_path, name):
         [sys.executable, "-c", code, str(file)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (7, "")
-    assert done.stderr.startswith(f"delone: {file} needs more memory than there is")
+    assert done.stderr.startswith(f"delone: {file} needs more memory than is available")

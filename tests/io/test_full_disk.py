@@ -121,7 +121,7 @@ def test_a_raster_of_tiles(tmp_path: Path) -> None:
 
 def test_notes_and_arrays_of_tiles(tmp_path: Path) -> None:
     store = Store(tmp_path)
-    with no_file_beyond(10), pytest.raises(OutputError, match="goes on where it stopped") as caught:
+    with no_file_beyond(10), pytest.raises(OutputError, match="resumes where it stopped") as caught:
         store.save("a.npy", POINTS)
     assert caught.value.filename == str(tmp_path / "a.npy")
     assert os.listdir(tmp_path) == []

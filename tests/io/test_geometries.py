@@ -78,7 +78,7 @@ def test_compressed(tmp_path, suffix, compress):
     with pytest.raises(FileFormatError, match="no layers"):
         read_geometries(file, layer="a")
     file.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(FileFormatError, match="torn"):
+    with pytest.raises(FileFormatError, match="truncated"):
         read_geometries(file)
     file.write_bytes((tmp_path / "a.geojson").read_bytes())
     with pytest.raises(FileFormatError, match="compressed"):
@@ -87,7 +87,7 @@ def test_compressed(tmp_path, suffix, compress):
 
 def test_other_formats_are_not_read_compressed(tmp_path):
     (tmp_path / "a.gpkg.gz").write_bytes(b"?")
-    with pytest.raises(FileFormatError, match="GeoJSON are read compressed"):
+    with pytest.raises(FileFormatError, match="GeoJSON can be read compressed"):
         read_geometries(tmp_path / "a.gpkg.gz")
 
 
@@ -191,5 +191,5 @@ def test_npz_keeps_the_object(tmp_path, mesh):
     assert np.array_equal(again.region, mesh.region)
     assert read_points(file).z.tolist() == list(range(11))
     assert read_points(file).crs == "EPSG:28992"
-    with pytest.raises(FileFormatError, match="its own 'segments'"):
+    with pytest.raises(FileFormatError, match="'segments' is the name"):
         write_mesh(file, mesh, attributes={"segments": np.arange(11)})

@@ -85,7 +85,7 @@ def test_header_that_claims_more_records(cloud, claim):
         raw[COUNT_14 : COUNT_14 + 8] = struct.pack("<Q", claim * 1000)
     raw[COUNT_12 : COUNT_12 + 4] = struct.pack("<I", claim)
     file.write_bytes(raw)
-    with pytest.raises(FileFormatError, match="cut short"):
+    with pytest.raises(FileFormatError, match="truncated"):
         read_points(file)
 
 
@@ -138,7 +138,7 @@ def test_unknown_attribute_and_columns(cloud):
     file, _ = cloud
     with pytest.raises(FileFormatError, match="has no 'colour'"):
         read_points(file, attributes=["colour"])
-    with pytest.raises(FileFormatError, match="not to be chosen"):
+    with pytest.raises(FileFormatError, match="cannot be chosen"):
         read_points(file, columns=["x", "y"])
 
 
@@ -152,7 +152,7 @@ def test_header_that_claims_fewer_records(cloud, count):
     struct.pack_into("<I", whole, COUNT_12, count)
     struct.pack_into("<Q", whole, COUNT_14, count) if whole[25] == 4 else None
     file.write_bytes(whole)
-    with pytest.raises(FileFormatError, match=rf"announces {count} points and holds 1"):
+    with pytest.raises(FileFormatError, match=rf"declares {count} points and contains 1"):
         read_points(file)
 
 
@@ -187,11 +187,11 @@ def test_two_counts_that_differ(cloud):
     file, _ = cloud
     whole = bytearray(file.read_bytes())
     # A file of version 1.2 has one count, which then differs from its records.
-    where = "in one place" if whole[25] == 4 else "and holds"
+    where = "in one field" if whole[25] == 4 else "and contains"
     struct.pack_into("<I", whole, COUNT_12, N - 1 if whole[25] == 4 else 0)
     file.write_bytes(whole)
     announced = N - 1 if whole[25] == 4 else 0
-    with pytest.raises(FileFormatError, match=f"announces {announced} points {where}"):
+    with pytest.raises(FileFormatError, match=f"declares {announced} points {where}"):
         read_points(file)
 
 

@@ -101,7 +101,9 @@ def test_decimals_of_every_power_of_ten(tmp_path, scale):
 def test_decimals_of_which_digits_would_be_lost_are_refused(tmp_path, value, kind):
     column = pa.array([Decimal(0), Decimal(value)], kind)
     save(tmp_path / "a.parquet", pa.table({"x": column, "y": [1, 2]}))
-    with pytest.raises(FileFormatError, match=f"column 'x' holds {value}, with more digits"):
+    with pytest.raises(
+        FileFormatError, match=f"column 'x' has the value {value}, with more digits"
+    ):
         read_points(tmp_path / "a.parquet")
 
 

@@ -81,6 +81,6 @@ def test_what_a_format_cannot_hold_is_refused(tmp_path: Path, raster: Grid) -> N
 def test_arrays_are_no_rasters(tmp_path: Path, raster: Grid) -> None:
     given: Any
     for given in (raster.values, raster.values.tolist(), None):
-        with pytest.raises(InputError, match=r"is no raster.*Grid\(values, x, y\)"):
+        with pytest.raises(InputError, match=r"is not a raster.*Grid\(values, x, y\)"):
             write_raster(tmp_path / "a.csv", given)
     assert list(tmp_path.iterdir()) == []

@@ -199,7 +199,7 @@ def test_improved_tetrahedra_have_a_picture(tmp_path):
 def test_the_drop_in_is_written_but_for_its_edges(tmp_path, suffix):
     """It has the attributes of SciPy's class, and edges are none of them."""
     drop_in = DropIn(MESH.points)
-    with pytest.raises(InputError, match=r"edges: write delone\.Delaunay"):
+    with pytest.raises(InputError, match=r"edges to write; write delone\.Delaunay"):
         write_mesh(tmp_path / f"a{suffix}", drop_in, edges=True)
     if suffix in (".png", ".svg"):
         with pytest.raises(InputError, match=r"delone\.compat.*draw delone\.Delaunay"):

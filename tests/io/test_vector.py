@@ -110,7 +110,7 @@ def test_no_reference_system(tmp_path, recwarn):
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
 @pytest.mark.parametrize("crs", ["EPSG:99999999", "\0", "nonsense"])
 def test_a_reference_system_that_nobody_knows(tmp_path, suffix, crs):
-    with pytest.raises(FileFormatError, match="cannot hold the reference system"):
+    with pytest.raises(FileFormatError, match="cannot store the reference system"):
         write_mesh(tmp_path / f"a{suffix}", Delaunay(XY), crs=crs)
     assert list(tmp_path.iterdir()) == []
 

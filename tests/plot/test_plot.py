@@ -100,7 +100,7 @@ def test_many_triangles_become_an_image():
 
 
 def test_ticks_say_the_coordinates():
-    mesh = Delaunay(datasets.utm_millimetres(200))
+    mesh = Delaunay(datasets.utm_millimeters(200))
     figure = Figure(figsize=(6, 6))
     figure.set_layout_engine("constrained")
     ax = plot(mesh, figure.add_subplot())

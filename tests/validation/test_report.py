@@ -69,5 +69,5 @@ def test_of_equal_points_the_first_is_the_vertex() -> None:
     report = validate(points, [(3, 1, 2)])
     assert not report
     assert report.repeats.tolist() == [3] and report.missing.size == 0
-    with pytest.raises(AssertionError, match="earlier equal row"):
+    with pytest.raises(AssertionError, match="an earlier row is equal"):
         assert_delaunay(points, [(3, 1, 2)])

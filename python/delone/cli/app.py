@@ -1,4 +1,4 @@
-"""The commands, their options, and the way from an error to one line and an exit code."""
+"""The commands, their options, and the conversion of errors to one line and an exit code."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from delone.cli.exits import (
     code_of,
     naming_lines,
     os_message,
+    protect_inputs,
     reading,
-    spare_inputs,
     writing,
 )
 from delone.cli.info import describe
@@ -66,15 +66,14 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-# The mark \b keeps the lines of a paragraph as they are.
+# The mark \b preserves the line breaks of a paragraph.
 _CODES = "\b\nExit codes:\n" + "\n".join(
     f"  {code.value:>3}  {text}" for code, text in MEANINGS.items()
 )
 
 app = typer.Typer(
     name="delone",
-    help="Exact, canonical and fast Delaunay triangulation of what a file holds: points, lines, "
-    "polygons.",
+    help="Exact, canonical and fast Delaunay triangulation of a file: points, lines, polygons.",
     epilog=_CODES,
     no_args_is_help=True,
     add_completion=False,
@@ -112,10 +111,10 @@ def _version(wanted: bool) -> None:
 def _options(
     *,
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which version.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    """Exact, canonical and fast Delaunay triangulation of what a file holds."""
+    """Exact, canonical and fast Delaunay triangulation of a file."""
 
 
 def triangulate(
@@ -134,45 +133,45 @@ def triangulate(
     columns: Columns = None,
     layer: Layer = None,
     method: Annotated[
-        str, typer.Option(help="How to compute it; the answer is the same.")
+        str, typer.Option(help="Algorithm; the result does not depend on it.")
     ] = "auto",
-    workers: Annotated[
-        int | None, typer.Option(help="Threads; by default one for each core.")
-    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Threads; by default one per core.")] = None,
     edges: Annotated[
-        bool, typer.Option("--edges", help="Write edges in place of triangles.")
+        bool, typer.Option("--edges", help="Write edges instead of triangles.")
     ] = False,
     crossing: Annotated[
         str | None,
-        typer.Option(help="Where lines cross: split (a vertex there, the default) or error."),
+        typer.Option(help="Where lines cross: split (add a vertex, the default) or error."),
     ] = None,
     outline: Annotated[
         bool,
-        typer.Option("--outline", help="Drop what lies outside of polygons, or of closed lines."),
+        typer.Option(
+            "--outline", help="Remove triangles outside polygons, or outside closed lines."
+        ),
     ] = False,
     conforming: Annotated[
         bool,
         typer.Option("--conforming", help="Add vertices until all segments are Delaunay edges."),
     ] = False,
     max_vertices: Annotated[
-        int | None, typer.Option(help="How many vertices may be added to lines and polygons.")
+        int | None, typer.Option(help="Maximum number of vertices added to lines and polygons.")
     ] = None,
     space: Annotated[
         bool | None,
         typer.Option(
             "--3d/--2d",
-            help="Triangulate in space, or in the plane below; by default PLY files of points "
-            "alone are taken for clouds in space.",
+            help="Triangulate in 3-D or in 2-D; by default, PLY files that contain only points "
+            "are 3-D point clouds.",
         ),
     ] = None,
     better: Annotated[
         bool,
-        typer.Option("--improve", help="In space: remove slivers; points inside may move."),
+        typer.Option("--improve", help="3-D: remove slivers; points inside may move."),
     ] = False,
     min_angle: Annotated[
         float | None,
         typer.Option(
-            metavar="DEGREES", help="The goal of --improve for dihedral angles; 20 by default."
+            metavar="DEGREES", help="Goal of --improve for dihedral angles; 20 by default."
         ),
     ] = None,
     crs: Crs = None,
@@ -182,25 +181,25 @@ def triangulate(
         typer.Option(
             min=0,
             metavar="N",
-            help="The most passes that --improve makes over the tetrahedra; 30 by default.",
+            help="Maximum number of passes of --improve over the tetrahedra; 30 by default.",
         ),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Triangulate the points of a file, report, and write meshes and pictures.
+    """Triangulate the points of a file, report, and write meshes and plots.
 
-    Lines and the sides of polygons become edges of the triangulation. Heights are values over the
-    plane, or with --3d a third coordinate: then tetrahedra go to .vtu, .msh, .npz, .xdmf, .inp,
-    .su2 and .png.
+    Lines and the sides of polygons become edges of the triangulation. Heights are values at the
+    points; with --3d they are the third coordinate, and tetrahedra are written to .vtu, .msh, .npz,
+    .xdmf, .inp, .su2 and .png.
     """
     if min_angle is not None and not better:
-        raise Failure("--min-angle is the goal of --improve: give that, too", Exit.USAGE)
+        raise Failure("--min-angle is the goal of --improve: give --improve as well", Exit.USAGE)
     require_known(crs)
     if max_passes is not None and not better:
-        raise Failure("--max-passes is the limit of --improve: give that, too", Exit.USAGE)
+        raise Failure("--max-passes is the limit of --improve: give --improve as well", Exit.USAGE)
     with writing():
-        spare_inputs(output or (), source)
+        protect_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
@@ -271,12 +270,14 @@ def check(
     *,
     canonical: Annotated[
         bool,
-        typer.Option("--canonical", help="Cocircular points must be fanned as delone does it."),
+        typer.Option(
+            "--canonical", help="Require delone's choice of diagonals among cocircular points."
+        ),
     ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Prove exactly that triangles are Delaunay, or name the culprits and exit with 1."""
+    """Prove exactly that triangles are Delaunay, or name the faults and exit with 1."""
     with spinner(quiet or as_json) as say:
         figures, lines = check_mesh(mesh, canonical=canonical, say=say)
     if as_json:
@@ -299,12 +300,12 @@ def info(
         bool | None,
         typer.Option(
             "--3d/--2d",
-            help="Take points for points in space, or in the plane; as for triangulate.",
+            help="Read points as 3-D or 2-D; as for triangulate.",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Say what a file holds, without triangulating it."""
+    """Describe the contents of a file without triangulating it."""
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(
@@ -316,7 +317,7 @@ def info(
         print_rows(str(source), rows)
 
 
-# Called, not used as decorators: the functions above stay what they are.
+# Called, not used as decorators: the functions above remain plain functions.
 app.callback()(_options)
 for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
     app.command(epilog="The table of exit codes is in: delone --help")(naming_lines(_command))
@@ -328,7 +329,7 @@ app.command(name="mesh", epilog="The table of exit codes is in: delone --help")(
 
 
 def _ready(path: Path) -> Callable[..., None]:
-    """Make sure that a file can be written before any work is spent on it."""
+    """Check that a file can be written before any work is done."""
     write = writer(path)
     check_target(path)
     return write
@@ -351,7 +352,7 @@ def _write(
     watch: Stopwatch,
     say: Callable[[str], None],
 ) -> None:
-    """Write all files beside their targets, and rename them when the last one is whole."""
+    """Write all files next to their targets, and rename them once all are complete."""
     with writing(), contextlib.ExitStack() as stack:
         for path, write in writers.items():
             say(f"writing {path.name}")
@@ -367,7 +368,9 @@ def _numbers(text: str | None) -> list[int] | None:
     try:
         return None if text is None else [int(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"--classes takes numbers, as 2 or 2,6; got {text!r}", Exit.USAGE) from None
+        raise Failure(
+            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
+        ) from None
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -376,24 +379,24 @@ def run(arguments: Sequence[str]) -> int:
     Parameters
     ----------
     arguments : sequence of str
-        What stands behind ``delone`` on the command line.
+        The arguments after ``delone`` on the command line.
 
     Returns
     -------
     int
-        The exit code. Whatever went wrong has been said in one line on standard error.
+        The exit code. Errors have been reported in one line on standard error.
     """
-    # Only the main thread may say what signals do.
+    # Only the main thread may set signal handlers.
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGTERM, _terminated) if main else None
     _prepare_streams()
     try:
-        # typer says what is wrong with a command line itself, and Ctrl-C must not be its Abort.
+        # typer reports errors of the command line itself, and Ctrl-C must not become its Abort.
         code = typer.main.get_command(app).main(
             args=list(arguments), prog_name="delone", standalone_mode=False
         )
         sys.stdout.flush()
-        # typer turns Ctrl-C into this code.
+        # typer converts Ctrl-C to this code.
         if code == Exit.INTERRUPTED:
             return _said(KeyboardInterrupt())
         return code if isinstance(code, int) else Exit.OK
@@ -405,7 +408,7 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _prepare_streams() -> None:
-    """Make standard output one that always exists and takes every character."""
+    """Make sure that standard output exists and accepts every character."""
     if sys.stdout is None:
         sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
@@ -414,22 +417,22 @@ def _prepare_streams() -> None:
 
 
 def _dropped_stdout() -> None:
-    """Drop what cannot be printed, or the interpreter tries again when it ends."""
+    """Discard output that cannot be printed; the interpreter would retry when it exits."""
     with contextlib.suppress(OSError):
         sys.stdout.close()
     sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115
 
 
 def _said(error: BaseException) -> int:
-    """Say what went wrong, and return the exit code."""
+    """Report an error and return the exit code."""
     if _is_closed_pipe(error):
-        # Silently, as a program that SIGPIPE ends.
+        # No message, like a program killed by SIGPIPE.
         _dropped_stdout()
         return Exit.PIPE
     if isinstance(error, OSError) and not isinstance(error, OutputError | MissingExtraError):
-        # Files have been blamed for their own errors: this one is of standard output.
+        # Errors of files were handled before: this one is of standard output.
         _dropped_stdout()
-        why = f"the report cannot be printed: {error.strerror}; files of -o, if any, are whole"
+        why = f"the report cannot be printed: {error.strerror}; files of -o, if any, are complete"
         error = Failure(why, Exit.OUTPUT)
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else Exit.USAGE
@@ -455,16 +458,16 @@ def _said(error: BaseException) -> int:
         if code == Exit.INTERNAL:
             message = f"{type(error).__name__}: {message} (a bug in delone; please report it)"
     if message:
-        # Standard error may be closed, too.
+        # Standard error may be closed as well.
         with contextlib.suppress(OSError):
             print(f"delone: {' '.join(message.split())}", file=sys.stderr)
     return code
 
 
 def _is_closed_pipe(error: BaseException) -> bool:
-    """Tell whether nobody reads standard output any more.
+    """Return whether the reader of standard output has closed it.
 
-    Where typer prints help, it turns that into an exit with 1.
+    When typer prints help, it converts that to an exit with 1.
     """
     if isinstance(error, Failure):
         return error.code == Exit.PIPE
@@ -473,5 +476,5 @@ def _is_closed_pipe(error: BaseException) -> bool:
 
 
 def _terminated(number: int, frame: object) -> NoReturn:
-    # As an exception, so that temporary files are removed on the way out.
+    # As an exception, so that temporary files are removed on exit.
     raise SystemExit(Exit.TERMINATED)

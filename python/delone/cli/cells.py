@@ -1,4 +1,4 @@
-"""The command ``voronoi``: cells of the sites in a file, cut to an outline, with attributes."""
+"""The command ``voronoi``: cells of the sites in a file, clipped to an outline, with attributes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 
 from delone import Voronoi, __version__
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
@@ -47,7 +47,7 @@ def voronoi(
     ] = None,
     clip: Annotated[
         str,
-        typer.Option(help="A file of polygons; XMIN,YMIN,XMAX,YMAX; or box: that of the sites."),
+        typer.Option(help="A file of polygons; XMIN,YMIN,XMAX,YMAX; or box (of the sites)."),
     ] = "box",
     fix: Annotated[bool, typer.Option("--fix", help="Repair an invalid outline.")] = False,
     weights: Annotated[
@@ -55,7 +55,7 @@ def voronoi(
     ] = None,
     attributes: Annotated[
         str | None,
-        typer.Option(help="Columns to carry; by default all of a file of geometries."),
+        typer.Option(help="Columns to keep; by default all of a file of geometries."),
     ] = None,
     columns: Annotated[
         str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
@@ -63,16 +63,14 @@ def voronoi(
     layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
     crs: Crs = None,
     planar: Planar = False,
-    workers: Annotated[
-        int | None, typer.Option(help="Threads; by default one for each core.")
-    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Threads; by default one per core.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Cut the Voronoi cells of sites to an outline, and write them with the sites' attributes."""
+    """Clip the Voronoi cells of sites to an outline, and write them with their attributes."""
     require_known(crs)
     with writing():
-        spare_inputs(output or (), source, Path(clip))
+        protect_inputs(output or (), source, Path(clip))
         for path in output or ():
             _ready(path)
     watch = Stopwatch()
@@ -126,9 +124,9 @@ def _split(text: str | None) -> list[str] | None:
 
 
 def _ready(path: Path) -> None:
-    """Make sure that a file can be written before any work is spent on it."""
+    """Check that a file can be written before any work is done."""
     if path.suffix.lower() not in _SUFFIXES:
-        raise Failure(f"{path}: cells are written to {' '.join(_SUFFIXES)}", Exit.USAGE)
+        raise Failure(f"{path}: cells can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
     require("geopandas", extra="geo", what="writing cells")
     if path.suffix.lower() == ".parquet":
         require("pyarrow.parquet", extra="geo", what="writing Parquet files")
@@ -149,14 +147,14 @@ def _sites(
 
 
 def _all_attributes(source: Path, layer: str | None) -> list[str]:
-    """The names of all attributes of a file of geometries; of other files none."""
+    """The names of all attributes of a file of geometries; none for other files."""
     if source.suffix.lower() not in DRIVERS or not source.exists():
         return []
     return attribute_names(source, layer=layer)
 
 
 def _outline(clip: str, crs: str | None) -> Any:
-    """What --clip names: a word, four numbers or one geometry of all areas in a file."""
+    """The value of --clip: a word, four numbers, or the union of all areas in a file."""
     if clip == "box":
         return clip
     parts = clip.split(",")
@@ -167,14 +165,14 @@ def _outline(clip: str, crs: str | None) -> Any:
             pass
     shapely = require("shapely", extra="geo", what="reading an outline")
     if not Path(clip).exists():
-        raise Failure(f"{clip}: no such file, nor box, nor four numbers", Exit.INPUT)
+        raise Failure(f"{clip}: not a file, nor box, nor four numbers", Exit.INPUT)
     found = read_geometries(clip)
     geometries = found.geometries[~shapely.is_missing(found.geometries)]
     if not len(geometries) or not np.isin(shapely.get_type_id(geometries), _AREAS).all():
-        raise FileFormatError(f"{clip} must hold polygons, and nothing else")
+        raise FileFormatError(f"{clip} must contain only polygons")
     if crs is not None and found.crs is not None and not _same_system(found.crs, crs):
         raise FileFormatError(
-            f"{clip} is in {found.crs}, the sites in {crs}: bring both to one system"
+            f"{clip} is in {found.crs}, but the sites are in {crs}: transform one of them"
         )
     return geometries[0] if len(geometries) == 1 else _joined(shapely, geometries)
 
@@ -188,7 +186,7 @@ def _same_system(one: str, other: str) -> bool:
 
 
 def _joined(shapely: Any, geometries: Any) -> Any:
-    """All areas as one; parts that are invalid stay so, and are named later."""
+    """All areas as one geometry; invalid parts remain so and are reported later."""
     if shapely.is_valid(geometries).all():
         return shapely.union_all(geometries)
     return shapely.multipolygons(shapely.get_parts(geometries))
@@ -224,12 +222,12 @@ def _write(diagram: Voronoi, sites: PointSet, output: list[Path], watch: Stopwat
 
 
 def write_cells(table: Any, path: Path) -> None:
-    """Write a table of cells to a file; its suffix tells the format.
+    """Write a table of cells to a file; the suffix determines the format.
 
     Parameters
     ----------
     table : GeoDataFrame
-        As `Voronoi.to_geopandas` returns it.
+        The result of `Voronoi.to_geopandas`.
     path : Path
         The file, written in place.
     """
@@ -239,6 +237,6 @@ def write_cells(table: Any, path: Path) -> None:
         return
     options: dict[str, Any] = {"driver": _DRIVERS[suffix], "promote_to_multi": True}
     if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
-        # The index of FlatGeobuf has no place for cells that are empty.
+        # The index of FlatGeobuf cannot contain empty cells.
         options["SPATIAL_INDEX"] = "NO"
     write_layer(path, table, "cells", **options)

@@ -1,4 +1,4 @@
-"""Exact proof or refutation of a mesh file: the figures of ``delone check``."""
+"""Exact validation of a mesh file: the figures of ``delone check``."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ _FIRST = 10
 def check_mesh(
     path: Path, *, canonical: bool, say: Callable[[str], None]
 ) -> tuple[dict[str, Any], list[str]]:
-    """Read triangles and prove that they are Delaunay, or name the culprits.
+    """Read triangles and prove that they are Delaunay, or name the faults.
 
-    What `ConstrainedDelaunay.save` wrote is judged as the constrained triangulation that it is.
+    Files of `ConstrainedDelaunay.save` are checked as constrained triangulations.
 
     Parameters
     ----------
     path : Path
         The file.
     canonical : bool
-        Whether another choice among cocircular points is a fault.
+        Whether a different choice among cocircular points is a fault.
     say : callable
-        Is told what is being done.
+        Called with a description of the current step.
 
     Returns
     -------
     figures : dict
-        For machines; ``figures["ok"]`` is the verdict.
+        Machine-readable; ``figures["ok"]`` is the verdict.
     lines : list of str
-        For people.
+        Human-readable.
     """
     watch = Stopwatch()
     say(f"reading {path.name}")
@@ -62,8 +62,8 @@ def check_mesh(
         report = _checked(mesh, path)
     faults = {each.name: getattr(report, each.name) for each in fields(report)}
     faults = {name: culprits for name, culprits in faults.items() if culprits.size}
-    # Which of equal rows is the vertex, and which diagonal of a cocircular polygon, is delone's
-    # own choice: others may choose otherwise.
+    # Which of equal rows is the vertex, and which diagonal divides a cocircular polygon, is
+    # delone's own choice; other programs may choose differently.
     delaunay = set(faults) <= {"ties", "repeats"}
     figures = {
         "input": str(path),
@@ -104,13 +104,13 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
                 if mesh.points.shape[1] == 3
                 else ("triangles share a circle")
             )
-            lines.append(f"  {ties:,} pairs of {what} and are fanned otherwise")
+            lines.append(f"  {ties:,} pairs of {what} and have other diagonals")
         if repeats := len(report.repeats):
             lines.append(f"  {repeats:,} vertices are not the first row with their coordinates")
         return lines
     lines = str(report).replace("a canonical", "a", 1).splitlines()
     if isinstance(report, ConstrainedReport):
-        # Its numbers are those of all triangles of the hull.
+        # Its row numbers refer to all triangles of the hull.
         return lines
     if isinstance(report, SpaceReport):
         return lines
@@ -118,7 +118,7 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
 
 
 def _coordinates(report: ValidationReport, mesh: MeshFile) -> list[str]:
-    """Say where the first culprits are, by the coordinates of their corners."""
+    """Return the coordinates of the corners of the first faults."""
     triangles = np.concatenate(
         (report.delaunay[:3].reshape(-1), report.orientation[:3], report.neighbors[:3])
     )

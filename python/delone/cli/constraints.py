@@ -1,4 +1,4 @@
-"""Lines and polygons of a file: how they are read and triangulated, and what is said of them."""
+"""Lines and polygons of a file: reading, triangulation and report."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ _FIRST = 3
 
 
 class Constraints(NamedTuple):
-    """What the command line says of lines and polygons.
+    """The command-line options for lines and polygons.
 
     Parameters
     ----------
     crossing : str or None
-        What happens where segments cross; None where nothing is said.
+        How to treat crossing segments; None if not given.
     outline, conforming : bool
-        Drop what lies outside; add vertices until all segments are Delaunay edges.
+        Remove triangles outside; add vertices until all segments are Delaunay edges.
     max_vertices : int or None
-        How many vertices may be added.
+        Maximum number of added vertices.
     """
 
     crossing: str | None
@@ -46,7 +46,7 @@ class Constraints(NamedTuple):
     max_vertices: int | None
 
     def require_none(self, source: str) -> None:
-        """Refuse options that have no meaning for points.
+        """Reject options that do not apply to points.
 
         Parameters
         ----------
@@ -56,12 +56,12 @@ class Constraints(NamedTuple):
         Raises
         ------
         Failure
-            One of them was given.
+            One of these options was given.
         """
         given = [f"--{name.replace('_', '-')}" for name in self._fields if self._is_given(name)]
         if given:
             raise Failure(
-                f"{given[0]} is for lines and polygons; {source} holds points alone", Exit.USAGE
+                f"{given[0]} is for lines and polygons; {source} contains only points", Exit.USAGE
             )
 
     def _is_given(self, name: str) -> bool:
@@ -76,19 +76,19 @@ def read_input(
     layer: str | None,
     attributes: Sequence[str] = (),
 ) -> PointSet | GeometrySet:
-    """Read points, or geometries where lines or areas are among them.
+    """Read points, or geometries if there are lines or areas among them.
 
     Parameters
     ----------
     source : Path
         The file.
     columns, classes, layer, attributes
-        As `delone.io.read_points` takes them.
+        As in `delone.io.read_points`.
 
     Returns
     -------
     PointSet or GeometrySet
-        What the file holds.
+        The contents of the file.
     """
     if classes is None and holds_geometries(source):
         found = read_geometries(source, columns=columns, layer=layer)
@@ -101,14 +101,14 @@ def read_input(
 def triangulated(
     survey: PointSet | GeometrySet, constraints: Constraints, **options: Any
 ) -> tuple[Mesh, NDArray[np.float64] | None]:
-    """Triangulate what was read.
+    """Triangulate the input.
 
     Parameters
     ----------
     survey : PointSet or GeometrySet
         Points, or lines and polygons as well.
     constraints : Constraints
-        What is wanted of those.
+        The options for those.
     **options
         `method` and `workers`.
 
@@ -138,7 +138,7 @@ def triangulated(
             f"{survey.source}: NaN or infinity in features {first}", Exit.DEGENERATE
         ) from error
     if not mesh.nsimplex:
-        raise Failure(f"{survey.source}: no line or ring encloses anything", Exit.DEGENERATE)
+        raise Failure(f"{survey.source}: no line or ring encloses an area", Exit.DEGENERATE)
     return mesh, survey.z_of(mesh)
 
 
@@ -148,25 +148,25 @@ def _crossing(error: CrossingSegmentsError) -> str:
         f"{len(error.pairs):,} pairs of segments cross"
     )  # fmt: skip
     more = ", ..." if len(error.pairs) > _FIRST else ""
-    return f"{pairs}, at {', '.join(points)}{more}; --crossing split makes vertices there"
+    return f"{pairs}, at {', '.join(points)}{more}; --crossing split adds vertices there"
 
 
 def _boundary(survey: GeometrySet, outline: bool) -> str:
-    """Say what is to be triangulated: lines alone have no inside but what they enclose."""
+    """Return the boundary option: lines alone have only the inside that they enclose."""
     if not outline:
         return "hull"
     return "polygons" if len(survey.areas) else "outline"
 
 
 def constraint_figures(mesh: ConstrainedDelaunay, survey: GeometrySet) -> dict[str, Any]:
-    """Return what became of lines and polygons.
+    """Return the figures on lines and polygons.
 
     Parameters
     ----------
     mesh : ConstrainedDelaunay
         The triangulation.
     survey : GeometrySet
-        What it was made of.
+        The input.
 
     Returns
     -------
@@ -195,17 +195,17 @@ def _first(mesh: ConstrainedDelaunay, crossings: NDArray[np.int32]) -> list[dict
 
 
 def constraint_rows(figures: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the rows of the report that speak of lines and polygons.
+    """Return the rows of the report on lines and polygons.
 
     Parameters
     ----------
     figures : dict
-        As `constraint_figures` returns them.
+        The result of `constraint_figures`.
 
     Returns
     -------
     list of tuple of str
-        Names and values; what did not occur has no row.
+        Names and values; counts of zero are omitted.
     """
     rows = [
         ("features", f"{figures['features']:,}"),
@@ -216,7 +216,7 @@ def constraint_rows(figures: dict[str, Any]) -> list[tuple[str, str]]:
         for name, key in (
             ("repeated segments", "repeated"),
             ("overlapping pairs", "overlaps"),
-            ("segments of no length", "zero"),
+            ("zero-length segments", "zero"),
             ("points on segments", "through"),
         )
         if figures[key]

@@ -1,4 +1,4 @@
-"""Exit codes, and which error leads to which."""
+"""Exit codes, and the errors that they stand for."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 Given = ParamSpec("Given")
-# How many pairs of rows have their lines named; of single rows errors have ten.
+# Number of pairs of rows whose lines are named; for single rows errors list ten.
 _FIRST = 10
 
 __all__ = [
@@ -44,14 +44,14 @@ __all__ = [
     "code_of",
     "naming_lines",
     "os_message",
+    "protect_inputs",
     "reading",
-    "spare_inputs",
     "writing",
 ]
 
 
 class Exit(IntEnum):
-    """What the command tells the shell."""
+    """The exit codes of the command."""
 
     OK = 0
     NOT_DELAUNAY = 1
@@ -68,24 +68,24 @@ class Exit(IntEnum):
 
 
 MEANINGS = {
-    Exit.OK: "all is well",
+    Exit.OK: "success",
     Exit.NOT_DELAUNAY: "check: the mesh is not a Delaunay triangulation",
     Exit.USAGE: "the command line is wrong",
-    Exit.INPUT: "the input is missing, torn or of unknown format",
-    Exit.DEGENERATE: "no triangulation: too few points, one line, NaN or infinity, one point with "
-    "several values, crossings that are errors, vertices beyond a limit",
-    Exit.OUTPUT: "the output cannot be written; no file was, unless the message says so",
+    Exit.INPUT: "the input is missing, truncated or of unknown format",
+    Exit.DEGENERATE: "no triangulation: too few points, collinear points, NaN or infinity, "
+    "duplicates with different values, crossings that are errors, vertices beyond a limit",
+    Exit.OUTPUT: "the output cannot be written; no file was written, unless the message says so",
     Exit.MISSING_EXTRA: "an optional library is not installed",
     Exit.MEMORY: "there is not enough memory",
     Exit.INTERNAL: "a bug in delone; please report it",
     Exit.INTERRUPTED: "interrupted by Ctrl-C; nothing was written",
-    Exit.PIPE: "standard output was closed by its reader, as head does; files of -o are whole",
+    Exit.PIPE: "standard output was closed by its reader, as head does; files of -o are complete",
     Exit.TERMINATED: "terminated; nothing was written",
 }
 
 
 class Failure(Exception):  # noqa: N818
-    """The end of a command: a line for the user and the exit code.
+    """Terminates the command with a message for the user and an exit code.
 
     Parameters
     ----------
@@ -100,20 +100,20 @@ class Failure(Exception):  # noqa: N818
         self.code = code
 
 
-def spare_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
-    """Refuse outputs that would replace an input, or each other.
+def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
+    """Reject outputs that would replace an input, or each other.
 
     Parameters
     ----------
     outputs : iterable of Path
         Files to be written.
     *inputs : Path
-        Files to be read, there or not.
+        Files to be read, existing or not.
 
     Raises
     ------
     Failure
-        Two of the names, links followed, are of one file.
+        Two of the names refer to the same file, after following links.
     """
     read = {os.path.realpath(path): path for path in inputs}
     written: set[str] = set()
@@ -122,22 +122,22 @@ def spare_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
         if real in read:
             raise Failure(f"{path}: the output would replace the input {read[real]}", Exit.USAGE)
         if real in written:
-            raise Failure(f"{path}: two outputs are one file", Exit.USAGE)
+            raise Failure(f"{path}: two outputs are the same file", Exit.USAGE)
         written.add(real)
 
 
 def code_of(error: BaseException) -> Exit:
-    """Return the exit code of an error that did not come from a file.
+    """Return the exit code of an error that is not related to a file.
 
     Parameters
     ----------
     error : BaseException
-        What was raised.
+        The exception.
 
     Returns
     -------
     Exit
-        Its code; that of a bug for everything unexpected.
+        Its exit code; that of a bug for unexpected errors.
     """
     codes: tuple[tuple[type[BaseException], Exit], ...] = (
         (KeyboardInterrupt, Exit.INTERRUPTED),
@@ -164,17 +164,17 @@ _OPTION = re.compile(
 
 
 def as_options(message: str) -> str:
-    """Return a message with arguments of Python as options of the command.
+    """Rewrite Python arguments in a message as options of the command.
 
     Parameters
     ----------
     message : str
-        Of an exception.
+        The message of an exception.
 
     Returns
     -------
     str
-        The same for the shell.
+        The message with command-line options.
 
     Examples
     --------
@@ -186,7 +186,7 @@ def as_options(message: str) -> str:
 
 
 def os_message(error: OSError) -> str:
-    """Return what the system says about a file, after the name of the file.
+    """Return the name of the file and the system's message.
 
     Parameters
     ----------
@@ -206,23 +206,23 @@ def os_message(error: OSError) -> str:
     'survey.las: Input/output error'
     """
     if error.errno is None:
-        # delone's own words, which have the name.
+        # delone's own messages already contain the name.
         return str(error)
     return ": ".join(str(part) for part in (error.filename, error.strerror) if part is not None)
 
 
 def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
-    """Make a command say which lines of a text file the rows of an error are.
+    """Make a command add the lines of a text file to errors that name rows.
 
     Parameters
     ----------
     command : callable
-        A command whose argument ``source``, or ``sources``, is what it reads.
+        A command whose argument ``source`` or ``sources`` names its input.
 
     Returns
     -------
     callable
-        The same; it adds a note to errors that have rows.
+        The command; it adds a note to errors that have rows.
     """
 
     @functools.wraps(command)
@@ -234,7 +234,7 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
             files = given if isinstance(given, list | tuple) else [given]
             rows = np.ravel(error.rows[:_FIRST]).tolist()
             if rows and len(files) == 1 and isinstance(files[0], str | Path) and is_text(files[0]):
-                # What is said without lines is right, too.
+                # The message is also correct without lines.
                 with suppress(FileFormatError, OSError):
                     lines = ", ".join(map(str, line_numbers(files[0], rows)))
                     noun = agreed(len(rows), "line", "lines")
@@ -246,14 +246,14 @@ def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
 
 @contextmanager
 def reading() -> Iterator[None]:
-    """Take errors of files for errors of the input."""
+    """Treat errors of files as errors of the input."""
     with _blaming(Exit.INPUT):
         yield
 
 
 @contextmanager
 def writing() -> Iterator[None]:
-    """Take errors of files for errors of the output."""
+    """Treat errors of files as errors of the output."""
     with _blaming(Exit.OUTPUT), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -1,4 +1,4 @@
-"""The commands of fields: ``interpolate`` to rasters and to points, ``crossval`` of methods."""
+"""The commands ``interpolate`` (to rasters) and ``crossval`` (comparison of methods)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 
 from delone import __version__
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
@@ -30,7 +30,7 @@ __all__ = ["crossval", "interpolate"]
 
 Source = Annotated[Path, typer.Argument(metavar="INPUT", help="File of points with values.")]
 Value = Annotated[
-    str | None, typer.Option(help="Column of the values, by name; by default that of heights.")
+    str | None, typer.Option(help="Column of the values, by name; by default the height column.")
 ]
 Columns = Annotated[
     str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
@@ -41,9 +41,7 @@ Classes = Annotated[
 Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
 Duplicates = Annotated[
     str,
-    typer.Option(
-        help="Points that come again with another value: error, mean, first, last, min, max."
-    ),
+    typer.Option(help="Duplicates with different values: error, mean, first, last, min, max."),
 ]
 Nan = Annotated[
     str, typer.Option(help="Values that are NaN: error, drop or (no raster) propagate.")
@@ -51,7 +49,7 @@ Nan = Annotated[
 Gradients = Annotated[
     str | None, typer.Option(help="Gradients of the smooth methods: global, local or plane.")
 ]
-Workers = Annotated[int | None, typer.Option(help="Threads; by default one for each core.")]
+Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
@@ -64,7 +62,7 @@ def interpolate(
     source: Source,
     *,
     value: Value = None,
-    method: Annotated[str, typer.Option(help=f"How: {_NAMES}.")] = "sibson",
+    method: Annotated[str, typer.Option(help=f"Method: {_NAMES}.")] = "sibson",
     size: Annotated[
         str | None, typer.Option("--grid", help="Columns and rows of the raster: 500x400.")
     ] = None,
@@ -73,7 +71,7 @@ def interpolate(
     ] = None,
     bounds: Annotated[
         str | None,
-        typer.Option(help="Left, bottom, right, top; by default the box of the points."),
+        typer.Option(help="Left, bottom, right, top; by default the bounding box of the points."),
     ] = None,
     output: Annotated[
         list[Path] | None,
@@ -85,7 +83,7 @@ def interpolate(
         ),
     ] = None,
     extrapolate: Annotated[
-        str, typer.Option(help="Outside of the hull: nan, nearest or linear.")
+        str, typer.Option(help="Outside the hull: nan, nearest or linear.")
     ] = "nan",
     max_distance: Annotated[
         float | None,
@@ -106,11 +104,11 @@ def interpolate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Interpolate the values of points to a raster, and write it to files and pictures."""
+    """Interpolate the values of points to a raster, and write it to files and plots."""
     where = _raster_options(size, resolution, bounds)
     require_known(crs)
     with writing():
-        spare_inputs(output or (), source)
+        protect_inputs(output or (), source)
         writers = {path: (raster_writer(path), check_target(path))[0] for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
@@ -150,14 +148,14 @@ def crossval(
         list[str] | None,
         typer.Option(
             "--method",
-            help=f"What to compare, by commas or one option each; by default {_COMPARED}. "
-            f"There are {_NAMES}.",
+            help=f"Methods to compare, with commas or repeated options; by default {_COMPARED}. "
+            f"Available: {_NAMES}.",
         ),
     ] = None,
     folds: Annotated[
-        int | None, typer.Option(help="Parts to deal the points into; by default leave one out.")
+        int | None, typer.Option(help="Number of random folds; by default leave one out.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the dealing.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the random folds.")] = 0,
     duplicates: Duplicates = "error",
     nan: Nan = "error",
     gradients: Gradients = None,
@@ -168,8 +166,8 @@ def crossval(
     planar: Planar = False,
     as_json: Json = False,
 ) -> None:
-    """Predict each value from the others, and say how far off each method is."""
-    # Each once, in the order given.
+    """Predict each value from the others, and report the error of each method."""
+    # Each method once, in the order given.
     named = ",".join(methods or [_COMPARED]).split(",")
     names = list(dict.fromkeys(name.strip() for name in named))
     for name in names:
@@ -231,7 +229,7 @@ def _read(  # noqa: PLR0917
     watch: Stopwatch,
     say: Callable[[str], None],
 ) -> tuple[PointSet, NDArray[Any], str]:
-    """Points, values and their name."""
+    """Points, values and the name of the values."""
     say(f"reading {source.name}")
     with reading(), watch.stage("read"):
         survey = read_points(
@@ -269,7 +267,9 @@ def _raster_options(size: str | None, resolution: str | None, bounds: str | None
     if size is not None:
         found["shape"] = tuple(_numbers(size.replace("x", ","), int, "--grid"))
         if len(found["shape"]) != 2:
-            raise Failure(f"--grid takes columns and rows, as 500x400; got {size!r}", Exit.USAGE)
+            raise Failure(
+                f"--grid takes columns and rows, such as 500x400; got {size!r}", Exit.USAGE
+            )
     if resolution is not None:
         cells = _numbers(resolution, float, "--resolution")
         if len(cells) > 2:
@@ -294,7 +294,7 @@ def _write(
     watch: Stopwatch,
     say: Callable[[str], None],
 ) -> None:
-    """Write all files beside their targets, and rename them when the last one is whole."""
+    """Write all files next to their targets, and rename them once all are complete."""
     with writing(), contextlib.ExitStack() as stack:
         for path, write in writers.items():
             say(f"writing {path.name}")
@@ -324,10 +324,10 @@ def _figures(
 
 
 def _why_none(figures: dict[str, Any]) -> str:
-    """Say why cells have no value."""
+    """Return why cells have no value."""
     limit = figures["max_distance"]
     beyond = "" if limit is None else f" or farther than {limit:.6g} from any point"
-    return f"outside of the hull{beyond}"
+    return f"outside the hull{beyond}"
 
 
 def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""What a file of points or other geometries holds: the figures of ``delone info``."""
+"""The contents of a file of points or other geometries: the figures of ``delone info``."""
 
 from __future__ import annotations
 
@@ -50,23 +50,23 @@ def describe(
     layer: str | None,
     space: bool | None = None,
 ) -> tuple[dict[str, Any], list[Row]]:
-    """Read a file and say what is in it.
+    """Read a file and describe its contents.
 
     Parameters
     ----------
     source : Path
         The file.
     columns, classes, layer
-        As `delone.io.read_points` takes them.
+        As in `delone.io.read_points`.
     space : bool or None, optional
-        Whether points are in space; by default as `delone.cli.solid.is_space` tells.
+        Whether points are 3-D; by default as `delone.cli.solid.is_space` decides.
 
     Returns
     -------
     figures : dict
-        For machines.
+        Machine-readable.
     rows : list of tuple of str
-        For people.
+        Human-readable.
     """
     las = source.suffix.lower() in (".las", ".laz")
     with reading():
@@ -133,7 +133,7 @@ def _rows(figures: dict[str, Any]) -> list[Row]:
         ("size", f"{figures['file_bytes']:,} bytes"),
         *_feature_rows(figures),
         ("points", f"{figures['points']:,}"),
-        ("reference system", (figures["crs"] or "not told").partition("\n")[0][:100]),
+        ("reference system", (figures["crs"] or "unknown").partition("\n")[0][:100]),
     ]
     if figures["not_finite"]:
         rows.append(

@@ -1,4 +1,4 @@
-"""The command `mesh`: a file of polygons or closed lines to triangles of bounded angles."""
+"""The command `mesh`: polygons or closed lines to a mesh with bounded angles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
 from delone.atomic import check_target, replacing
-from delone.cli.exits import Exit, Failure, reading, spare_inputs, writing
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import memory_text, print_json, print_rows, print_stages
@@ -34,7 +34,9 @@ _FIRST = 3
 def make_mesh(
     source: Annotated[
         Path,
-        typer.Argument(metavar="INPUT", help="File of polygons, with lines and points in them."),
+        typer.Argument(
+            metavar="INPUT", help="File of polygons, with optional lines and points inside."
+        ),
     ],
     *,
     output: Annotated[
@@ -47,16 +49,16 @@ def make_mesh(
         ),
     ] = None,
     min_angle: Annotated[
-        float, typer.Option(help="No smaller angle, in degrees: at least 0, below 60.")
+        float, typer.Option(help="Minimum angle in degrees: at least 0, below 60.")
     ] = 30.0,
-    max_area: Annotated[float | None, typer.Option(help="No larger triangle.")] = None,
-    size: Annotated[float | None, typer.Option(help="Length of edges that is wanted.")] = None,
+    max_area: Annotated[float | None, typer.Option(help="Maximum area of triangles.")] = None,
+    size: Annotated[float | None, typer.Option(help="Target length of edges.")] = None,
     max_points: Annotated[
-        int | None, typer.Option(help="How many points may be added; by default 5,000,000.")
+        int | None, typer.Option(help="Maximum number of added points; by default 5,000,000.")
     ] = None,
-    smooth: Annotated[int, typer.Option(help="Rounds of smoothing afterwards.")] = 0,
+    smooth: Annotated[int, typer.Option(help="Rounds of smoothing after refinement.")] = 0,
     delaunay: Annotated[
-        bool, typer.Option("--delaunay", help="Make triangles Delaunay across segments, too.")
+        bool, typer.Option("--delaunay", help="Make triangles Delaunay across segments as well.")
     ] = False,
     freeze: Annotated[
         bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
@@ -67,13 +69,13 @@ def make_mesh(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Fill polygons with triangles that have no small angle.
+    """Mesh polygons with triangles without small angles.
 
-    Pictures show the mesh and the histogram of its angles.
+    Plots show the mesh and the histogram of its angles.
     """
     require_known(crs)
     with writing():
-        spare_inputs(output or (), source)
+        protect_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
     watch = Stopwatch()
     with reading(), watch.stage("read"):
@@ -158,7 +160,7 @@ def _figures(found: Mesh) -> dict[str, Any]:
 
 @contextmanager
 def _bar(silent: bool) -> Iterator[Callable[[int, float], object] | None]:
-    """Show on standard error how far the mesh is, where somebody looks on."""
+    """Show progress on standard error, if that is a terminal."""
     console = Console(stderr=True)
     if silent or not console.is_terminal:
         yield None
@@ -170,7 +172,7 @@ def _bar(silent: bool) -> Iterator[Callable[[int, float], object] | None]:
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=console, transient=True) as progress:
-        # How many there will be is not known before the end.
+        # The total is not known in advance.
         task = progress.add_task("mesh", total=None, added=0, angle=0.0)
 
         def tell(added: int, angle: float) -> None:

@@ -1,4 +1,4 @@
-"""What the command line says of reference systems, and what it says of degrees."""
+"""Reference systems on the command line, and notes on coordinates in degrees."""
 
 from __future__ import annotations
 
@@ -25,35 +25,33 @@ __all__ = ["Crs", "Planar", "note", "note_degrees", "referenced", "require_known
 Crs = Annotated[
     str | None,
     typer.Option(
-        help="The reference system of the input, as EPSG:28992, where the file has none or a wrong "
-        "one; nothing is transformed."
+        help="The reference system of the input, such as EPSG:28992, if the file has none or a "
+        "wrong one; nothing is transformed."
     ),
 ]
 Planar = Annotated[
     bool,
-    typer.Option(
-        "--planar", help="Longitudes and latitudes are meant as coordinates of a plane: no note."
-    ),
+    typer.Option("--planar", help="Treat longitudes and latitudes as planar coordinates: no note."),
 ]
 
 Survey = TypeVar("Survey", bound=PointSet | GeometrySet)
 
 
 def require_known(crs: str | None) -> None:
-    """Refuse a reference system that nobody knows, before any work is spent.
+    """Reject an unknown reference system before any work is done.
 
     Parameters
     ----------
     crs : str or None
-        What --crs says.
+        The value of --crs.
 
     Raises
     ------
     Failure
-        pyproj does not know it.
+        The system is unknown to pyproj.
     """
     if crs is not None and not is_known(crs):
-        raise Failure(f"--crs {crs}: no reference system that pyproj knows", Exit.USAGE)
+        raise Failure(f"--crs {crs}: not a reference system known to pyproj", Exit.USAGE)
 
 
 def referenced(
@@ -65,33 +63,33 @@ def referenced(
     outputs: Iterable[Path] = (),
     known: Sequence[str] = (),
 ) -> Survey:
-    """Give a survey the system of the command line, and say what is to be said.
+    """Set the reference system of a survey from the command line, and print notes.
 
     Parameters
     ----------
     survey : PointSet or GeometrySet
-        What was read.
+        The input.
     crs : str or None
-        What --crs says.
+        The value of --crs.
     planar : bool
         Whether --planar is given.
     quiet : bool
-        Whether nothing is to be said.
+        Whether notes are suppressed.
     outputs : iterable of Path, optional
         Files to be written.
     known : sequence of str, optional
-        The suffixes of files that have a reference system.
+        The suffixes of formats that can store a reference system.
 
     Returns
     -------
     PointSet or GeometrySet
-        With the reference system.
+        The input with the reference system.
     """
     if crs is not None:
         if survey.crs is not None and not same_crs(survey.crs, crs):
             note(
-                f"{survey.source} says {survey.crs.partition(chr(10))[0]:.60}, --crs {crs} counts; "
-                "coordinates stay as they are",
+                f"{survey.source} says {survey.crs.partition(chr(10))[0]:.60}, but --crs {crs} "
+                "is used; coordinates are unchanged",
                 quiet=quiet,
             )
         for path in outputs:
@@ -107,18 +105,18 @@ def referenced(
 def note_degrees(
     source: str, by: str | None, coordinates: NDArray[np.float64], *, quiet: bool
 ) -> None:
-    """Say that coordinates are longitudes and latitudes.
+    """Print a note that coordinates are longitudes and latitudes.
 
     Parameters
     ----------
     source : str
         The file.
     by : str or None
-        By what they are known; None for nothing to say.
+        How that is known; None for no note.
     coordinates : ndarray of float64, shape (n, 2)
         The coordinates.
     quiet : bool
-        Whether nothing is to be said.
+        Whether notes are suppressed.
     """
     if by is not None and may_be_degrees(coordinates):
         sentence = message_of_degrees(f"{source}: coordinates", by)
@@ -126,14 +124,14 @@ def note_degrees(
 
 
 def note(message: str | None, *, quiet: bool = False) -> None:
-    """Print a line on standard error that is no error.
+    """Print a note on standard error.
 
     Parameters
     ----------
     message : str or None
-        The line; None for nothing.
+        The note; None for nothing.
     quiet : bool, optional
-        Whether nothing is to be said.
+        Whether notes are suppressed.
     """
     if message is not None and not quiet:
         print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)

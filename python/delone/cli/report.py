@@ -1,8 +1,8 @@
-"""The figures of a triangulation, as plain numbers that JSON can hold.
+"""The figures of a triangulation, as plain numbers for JSON.
 
-Counts are taken from the arrays, not from formulas, so that comparing them with 2n - h - 2 and
-3n - h - 3 tells something. Triangles are gone through in blocks: what a report needs beyond the
-triangulation stays small whatever its size.
+Counts are taken from the arrays, not from formulas, so that comparing them with 2n - h - 2 and 3n -
+h - 3 is meaningful. Triangles are processed in blocks, so that the memory beyond the triangulation
+stays small whatever its size.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ _FIRST_DUPLICATES = 5
 
 
 class Stopwatch:
-    """Seconds of the stages of a command, in their order."""
+    """Seconds of the stages of a command, in order."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Measure what happens inside.
+        """Measure the time of a block.
 
         Parameters
         ----------
         name : str
-            What it is called.
+            Name of the stage.
         """
         start = time.perf_counter()
         yield
@@ -58,14 +58,14 @@ class Stopwatch:
         Parameters
         ----------
         points : int
-            How many points were worked on.
+            Number of points processed.
         others : mapping of str to int, optional
-            How many in stages of which that does not hold.
+            Number of points in stages where it is different.
 
         Returns
         -------
         list of dict
-            Name, seconds and points per second.
+            Names, seconds and points per second.
         """
         counts = dict.fromkeys(self.seconds, points) | dict(others or {})
         return [
@@ -84,13 +84,13 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
     Parameters
     ----------
     triangulation : Delaunay or ConstrainedDelaunay
-        What to report upon.
+        The triangulation to report on.
 
     Returns
     -------
     dict
-        Counts, duplicates, what Euler's formula expects, mean degree, smallest angle, area. Where
-        triangles have been removed nothing is expected.
+        Counts, duplicates, the numbers expected from Euler's formula, mean degree, smallest angle,
+        area. If triangles have been removed, no numbers are expected.
     """
     n, m = triangulation.npoints, triangulation.nsimplex
     coplanar = triangulation.coplanar
@@ -116,7 +116,7 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
 
 
 def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
-    """Return the measures of any triangles.
+    """Return the measures of arbitrary triangles.
 
     Parameters
     ----------
@@ -150,12 +150,13 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
     Returns
     -------
     float
-        180 where there is no triangle.
+        180 if there are no triangles.
 
     Notes
     -----
-    The cross product of two sides is the same at each corner, so the smallest angle is where the
-    dot product is largest. Each triangle is scaled to its own size, so that no square overflows.
+    The cross product of two sides is the same at each corner, so the smallest angle is at the
+    corner with the largest dot product. Each triangle is scaled to its own size, so that squares do
+    not overflow.
     """
     smallest = math.pi
     for start in range(0, len(simplices), _BLOCK):
@@ -167,7 +168,7 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
         (ax, bx, cx), (ay, by, cy) = sides[..., 0].T, sides[..., 1].T
         dots = np.array((ax * bx + ay * by, bx * cx + by * cy, cx * ax + cy * ay))
         crosses = np.array((ax * by - ay * bx, bx * cy - by * cx, cx * ay - cy * ax))
-        # All three are twice the area; the one of the two shorter sides is rounded least.
+        # All three are twice the area; that of the two shorter sides has the least rounding.
         lengths = np.hypot((ax, bx, cx), (ay, by, cy))
         best = (lengths * np.roll(lengths, -1, axis=0)).argmin(axis=0)
         twice = np.abs(np.take_along_axis(crosses, best[None], axis=0)[0])
@@ -177,7 +178,7 @@ def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
 
 
 def _is_whole(triangulation: Mesh) -> bool:
-    """Tell whether no triangle of the convex hull has been removed."""
+    """Return whether no triangle of the convex hull has been removed."""
     if isinstance(triangulation, ConstrainedDelaunay | QualityMesh):
         return np.array_equal(triangulation.boundary, triangulation.convex_hull)
     return True
@@ -194,7 +195,7 @@ def area(triangulation: Mesh) -> float:
     Returns
     -------
     float
-        In the square of the unit of the points.
+        The area in squared units of the points.
     """
     ring = triangulation.points[triangulation.hull]
     with np.errstate(all="ignore"):
@@ -216,12 +217,12 @@ def _first(triangulation: Mesh, coplanar: NDArray[np.int32]) -> list[dict[str, A
 
 
 def peak_memory() -> int | None:
-    """Return the most memory that this process has held, in bytes.
+    """Return the peak memory of this process in bytes.
 
     Returns
     -------
     int or None
-        None where the system does not tell.
+        None if the system does not report it.
     """
     try:
         import resource
@@ -232,7 +233,7 @@ def peak_memory() -> int | None:
 
 
 def finite_or_none(value: float) -> float | None:
-    """Return a number that JSON can hold.
+    """Return a number that JSON can represent.
 
     Parameters
     ----------

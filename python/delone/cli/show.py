@@ -1,4 +1,4 @@
-"""What the command prints: tables for people, one JSON object for machines, a spinner meanwhile."""
+"""Output of the command: tables, JSON, and a spinner."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = [
 
 Row = tuple[str, str]
 
-# Longer than any line of a report: Linux has names of files of up to 4096 bytes.
+# Longer than any line of a report: file names on Linux have up to 4096 bytes.
 _UNBOUNDED = 1 << 16
 
 
@@ -38,7 +38,7 @@ def print_json(figures: dict[str, Any]) -> None:
     Parameters
     ----------
     figures : dict
-        What to print; no NaN and no infinity.
+        The figures, without NaN and infinity.
     """
     print_text(json.dumps(figures, indent=2, allow_nan=False))
 
@@ -67,7 +67,7 @@ def print_stages(stages: list[dict[str, Any]]) -> None:
     Parameters
     ----------
     stages : list of dict
-        As `Stopwatch.rows` returns them.
+        The result of `Stopwatch.rows`.
     """
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("stage", no_wrap=True)
@@ -87,7 +87,7 @@ def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
     Parameters
     ----------
     figures : dict
-        As `report.summary` returns them.
+        The result of `report.summary`.
 
     Returns
     -------
@@ -110,17 +110,17 @@ def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
 
 
 def memory_text(size: int | None) -> str:
-    """Return a number of bytes for people.
+    """Format a number of bytes.
 
     Parameters
     ----------
     size : int or None
-        Bytes.
+        Number of bytes.
 
     Returns
     -------
     str
-        In MiB.
+        The size in MiB.
     """
     return "unknown" if size is None else f"{size / 2**20:,.0f} MiB"
 
@@ -154,17 +154,17 @@ def _duplicates(duplicates: dict[str, Any]) -> str:
 
 
 def print_text(text: str) -> None:
-    """Print on standard output.
+    """Print text on standard output.
 
     Parameters
     ----------
     text : str
-        One line or more.
+        One or more lines.
 
     Raises
     ------
     Failure
-        Nobody reads any more. The message is empty: there is nobody to be told either.
+        Standard output is closed. The message is empty, as nothing can be reported there.
     """
     try:
         print(text, flush=True)
@@ -173,7 +173,7 @@ def print_text(text: str) -> None:
 
 
 def _heading(title: str) -> str:
-    # Whole whatever its length, so that the name of a file can be copied and searched for.
+    # Never truncated, so that the name of a file can be copied and searched for.
     console = _console()
     with console.capture() as captured:
         console.print(Text(title, style="italic"), soft_wrap=True, end="")
@@ -189,14 +189,14 @@ def _rendered(table: Table) -> str:
 
 
 def _console() -> Console:
-    # Reports are read from files and pipes too, where no line is too long.
+    # Reports are also read from files and pipes, where lines may have any length.
     width = None if sys.stdout.isatty() else _UNBOUNDED
     return Console(highlight=False, markup=False, width=width)
 
 
 @contextmanager
 def spinner(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show on standard error what is being done, where that is a terminal.
+    """Show the current step on standard error, if that is a terminal.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def spinner(quiet: bool) -> Iterator[Callable[[str], None]]:
     Yields
     ------
     callable
-        Takes what is being done now.
+        Takes a description of the current step.
     """
     console = Console(stderr=True)
     if quiet or not console.is_terminal:

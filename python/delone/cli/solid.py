@@ -1,8 +1,8 @@
-"""Points in space: when the command takes them for that, their triangulation and its figures.
+"""3-D input of the command: detection, triangulation and figures.
 
-Heights are values over the plane unless something says otherwise, for surveys of the ground have
-them, too. A PLY file of points and nothing else is a cloud in space; any other file is taken for
-one by ``--3d``.
+Heights are values at 2-D points unless requested otherwise, because surveys of the ground also have
+them. A PLY file that contains only points is a 3-D point cloud; any other file is one with
+``--3d``.
 """
 
 from __future__ import annotations
@@ -40,34 +40,34 @@ __all__ = [
 ]
 
 _FIRST_DUPLICATES = 5
-# The goal of an improvement, in degrees, and its most passes, where the command line has none.
+# Defaults of the command line for the goal in degrees and the maximum number of passes.
 _GOAL = 20.0
 _PASSES = 30
-# What holds a Delaunay triangulation of space, but no other tetrahedra.
+# Formats of 3-D Delaunay triangulations, not of other tetrahedra.
 _DELAUNAY_ONLY = (".npz",)
 
 
 def is_space(source: Path, wanted: bool | None, survey: PointSet | GeometrySet) -> bool:
-    """Tell whether the points of a file are to be triangulated in space.
+    """Return whether the points of a file are triangulated in 3-D.
 
     Parameters
     ----------
     source : Path
         The file.
     wanted : bool or None
-        What the command line says; None for nothing.
+        The option of the command line; None if not given.
     survey : PointSet or GeometrySet
-        What was read.
+        The input.
 
     Returns
     -------
     bool
-        As wanted; otherwise whether it is a PLY file of points alone, with three coordinates.
+        `wanted` if given; otherwise whether it is a PLY file with only points, with 3 coordinates.
 
     Raises
     ------
     Failure
-        Space is wanted, but there are no heights, or no points.
+        3-D is requested, but there are no heights, or no points.
     """
     if wanted is None:
         return (
@@ -102,7 +102,7 @@ def triangulated_space(survey: PointSet, **options: Any) -> Delaunay:
     Returns
     -------
     Delaunay
-        In space.
+        A triangulation in 3-D.
     """
     assert survey.z is not None
     return Delaunay(np.column_stack((survey.points, survey.z)), **options)
@@ -116,30 +116,30 @@ def improved(
     min_angle: float | None,
     passes: int | None,
 ) -> TetMesh:
-    """Make tetrahedra better before they are written.
+    """Improve tetrahedra before they are written.
 
     Parameters
     ----------
     mesh : Delaunay
-        In space.
+        A triangulation in 3-D.
     outputs : iterable of Path
         The files to be written.
     say : callable
-        Called with what is going on.
+        Called with a description of the current step.
     min_angle : float or None
         The goal for dihedral angles, in degrees.
     passes : int or None
-        The most passes.
+        Maximum number of passes.
 
     Returns
     -------
     TetMesh
-        What `delone.improve` makes of them.
+        The result of `delone.improve`.
 
     Raises
     ------
     Failure
-        A file is of a format for Delaunay triangulations only.
+        A file has a format for Delaunay triangulations only.
     """
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
@@ -155,7 +155,7 @@ def improved(
 
 
 def improvement_figures(report: ImproveReport) -> dict[str, Any]:
-    """Return what an improvement did.
+    """Return the figures of an improvement.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def improvement_rows(figures: dict[str, Any]) -> list[Row]:
     Parameters
     ----------
     figures : dict
-        As `improvement_figures` returns them.
+        The result of `improvement_figures`.
 
     Returns
     -------
@@ -208,24 +208,24 @@ def improvement_rows(figures: dict[str, Any]) -> list[Row]:
 
 
 def _ended(figures: dict[str, Any]) -> list[Row]:
-    """Say that the limit on passes ended an improvement that was still gaining."""
+    """Return a note if the limit on passes stopped an improvement that was still progressing."""
     if not figures["exhausted"]:
         return []
-    return [("ended by", f"--max-passes {figures['passes']}: more passes may gain more")]
+    return [("stopped by", f"--max-passes {figures['passes']}: more passes may improve further")]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:
-    """Return the counts and measures of a triangulation in space.
+    """Return the counts and measures of a 3-D triangulation.
 
     Parameters
     ----------
     mesh : Delaunay
-        What to report upon.
+        The triangulation to report on.
 
     Returns
     -------
     dict
-        Counts, duplicates, what Euler's formula says, mean degree, volume.
+        Counts, duplicates, the number expected from Euler's formula, mean degree, volume.
     """
     n, m, repeats = mesh.npoints, mesh.nsimplex, mesh.coplanar
     distinct, edges, faces = n - len(repeats), len(mesh.edges), len(mesh.faces)
@@ -256,7 +256,7 @@ def space_summary(mesh: Delaunay) -> dict[str, Any]:
 
 
 def space_measures(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
-    """Return the measures of any tetrahedra.
+    """Return the measures of arbitrary tetrahedra.
 
     Parameters
     ----------
@@ -274,12 +274,12 @@ def space_measures(points: NDArray[np.float64], simplices: NDArray[np.int32]) ->
 
 
 def space_rows(figures: dict[str, Any]) -> list[Row]:
-    """Return the rows of the report of a triangulation in space.
+    """Return the rows of the report of a 3-D triangulation.
 
     Parameters
     ----------
     figures : dict
-        As `space_summary` returns them.
+        The result of `space_summary`.
 
     Returns
     -------

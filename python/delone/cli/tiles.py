@@ -1,4 +1,4 @@
-"""The commands of tiles: ``tile`` triangulates more than memory holds, ``dem`` makes rasters."""
+"""The commands ``tile`` (out-of-core triangulation) and ``dem`` (rasters from tiles)."""
 
 from __future__ import annotations
 
@@ -47,12 +47,15 @@ def tile(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", metavar="FOLDER", help="New, or of an interrupted run to go on with."
+            "--output",
+            "-o",
+            metavar="FOLDER",
+            help="New folder, or that of an interrupted run to resume.",
         ),
     ] = None,
     tile_points: Annotated[int, typer.Option(help="Points in a tile, on average.")] = 2_000_000,
     workers: Annotated[
-        int, typer.Option(help="Processes on this machine; 1: this one, with all cores.")
+        int, typer.Option(help="Processes on this machine; 1: only this one, with all cores.")
     ] = 1,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler: tcp://host:8786.")
@@ -64,21 +67,21 @@ def tile(
         str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
     ] = None,
     attributes: Annotated[
-        str | None, typer.Option(help="Columns to carry to the vertices: intensity,gps_time.")
+        str | None, typer.Option(help="Columns to keep at the vertices: intensity,gps_time.")
     ] = None,
     nan: Annotated[str, typer.Option(help="Rows with NaN or infinity: raise or drop.")] = "raise",
     resume: Annotated[
-        bool, typer.Option(help="Go on with an interrupted run of the same input.")
+        bool, typer.Option(help="Resume an interrupted run of the same input.")
     ] = True,
     crs: Crs = None,
     planar: Planar = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Say what it would need, and do nothing.")
+        bool, typer.Option("--dry-run", help="Print the required resources, and do nothing.")
     ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Triangulate more points than memory holds, in tiles whose union is the one triangulation."""
+    """Triangulate more points than fit into memory, in tiles that form one triangulation."""
     options: dict[str, Any] = {
         "tile_points": tile_points,
         "columns": _split(columns),
@@ -93,7 +96,7 @@ def tile(
             _print_plan(distributed.plan(sources, workers=workers, **options), as_json)
             return
     if output is None:
-        raise Failure("give the folder to write to: --output", Exit.USAGE)
+        raise Failure("give the output folder: --output", Exit.USAGE)
     start = time.perf_counter()
     with _executor(scheduler, workers) as executor, _live(quiet or as_json) as tell:
         try:
@@ -110,7 +113,7 @@ def tile(
         except OSError as error:
             raise _blamed(error, output) from error
         except DeloneError as error:
-            # Workers or the scheduler are gone, which is nobody's bug.
+            # Workers or the scheduler disappeared, which is not a bug.
             if type(error) is DeloneError:
                 raise Failure(str(error), Exit.OUTPUT) from error
             raise
@@ -125,7 +128,7 @@ def tile(
 
 
 def dem(
-    tin: Annotated[Path, typer.Argument(metavar="FOLDER", help="What delone tile has written.")],
+    tin: Annotated[Path, typer.Argument(metavar="FOLDER", help="Output of delone tile.")],
     *,
     resolution: Annotated[
         str, typer.Option("--resolution", "-r", help="Size of a cell: 1 or 0.5,0.25.")
@@ -136,7 +139,7 @@ def dem(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Interpolate a triangulation in tiles to a GeoTIFF, linearly and without seams."""
+    """Interpolate a tiled triangulation to a GeoTIFF, linearly and without seams."""
     try:
         sides = [float(part) for part in resolution.split(",")]
     except ValueError:
@@ -160,12 +163,12 @@ def dem(
 
 @contextlib.contextmanager
 def _executor(scheduler: str | None, workers: int) -> Iterator[Any]:
-    """Who works."""
+    """The executor."""
     if scheduler is None:
         yield Processes(workers) if workers > 1 else "serial"
         return
     library = require("distributed", extra="dask", what="--scheduler")
-    # What becomes of the scheduler is said in one line, not in a trace.
+    # Problems of the scheduler are reported in one line, not in a traceback.
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -178,7 +181,7 @@ def _executor(scheduler: str | None, workers: int) -> Iterator[Any]:
 
 @contextlib.contextmanager
 def _live(silent: bool) -> Iterator[Callable[[Progress], None] | None]:
-    """Show on a terminal how far a run is."""
+    """Show the progress of a run on a terminal."""
     if silent or not sys.stderr.isatty():
         yield None
         return
@@ -213,8 +216,8 @@ def _live(silent: bool) -> Iterator[Callable[[Progress], None] | None]:
 # With the longest stage, a million tasks and the time, no line is longer than 80 columns.
 _BAR = 30
 _STAGES = {
-    "look": "looking at pieces",
-    "deal": "dealing points to tiles",
+    "look": "scanning the input",
+    "deal": "distributing points to tiles",
     "begin": "triangulating tiles",
     "answer": "answering",
     "proceed": "inserting",
@@ -223,7 +226,7 @@ _STAGES = {
 
 
 def _words(progress: Progress) -> tuple[str, str]:
-    """What to say of progress: the stage, and tiles, rounds, foreign points, memory."""
+    """Texts for progress: the stage, and tiles, rounds, foreign points, memory."""
     stage = progress.stage.partition("-")[0]
     said = _STAGES.get(stage, "beginning")
     if stage in ("answer", "proceed"):
@@ -239,7 +242,7 @@ def _words(progress: Progress) -> tuple[str, str]:
 
 
 def _blamed(error: OSError, output: Path) -> BaseException:
-    """Tell errors of the input from those of the output by the file."""
+    """Distinguish errors of input and output by the file."""
     if isinstance(error, OutputError):
         return Failure(os_message(error), Exit.OUTPUT)
     if isinstance(error, DeloneError):
@@ -257,12 +260,12 @@ def _print_plan(plan: Plan, as_json: bool) -> None:
         ("points", f"{plan.points:,}"),
         ("tiles", f"{plan.tiles:,}"),
         ("tasks", f"{plan.tasks:,}"),
-        ("foreign points", f"{plan.foreign:,} a tile"),
-        ("memory", f"{memory_text(plan.worker_memory)} a worker"),
+        ("foreign points", f"{plan.foreign:,} per tile"),
+        ("memory", f"{memory_text(plan.worker_memory)} per worker"),
         ("disk", f"{memory_text(plan.disk)} while it runs, {memory_text(plan.output)} after"),
-        ("time", f"{plan.seconds:,.0f} s, and that of decompression"),
+        ("time", f"{plan.seconds:,.0f} s, plus decompression"),
     ]
-    print_rows("it would need", rows)
+    print_rows("required", rows)
 
 
 def _report(
@@ -285,7 +288,7 @@ def _report(
             ("tiles", f"{tin.ntiles:,}"),
             ("rounds", f"{figures['rounds']:,}"),
             ("foreign points", f"{figures['given']:,}, {share:.3%}"),
-            ("peak memory", f"{memory_text(figures['memory'])} a process"),
+            ("peak memory", f"{memory_text(figures['memory'])} per process"),
             ("seconds", f"{seconds:.1f}"),
             ("written", str(output)),
         ]
@@ -300,4 +303,6 @@ def _numbers(text: str | None) -> list[int] | None:
     try:
         return None if text is None else [int(part) for part in text.split(",")]
     except ValueError:
-        raise Failure(f"--classes takes numbers, as 2 or 2,6; got {text!r}", Exit.USAGE) from None
+        raise Failure(
+            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
+        ) from None

@@ -1,10 +1,10 @@
-"""Facets of the hull of dual points, joined where half-spaces meet in one point exactly.
+"""Facets of the hull of dual points, merged where half-spaces meet exactly in one point.
 
-Dual points are rounded, so their hull has several simplices where boundaries of more than d
-half-spaces meet in one point. Whether d + 1 boundaries do is the sign of a determinant of the
-half-spaces themselves: in floating point where that is certain, by integers otherwise. Simplices
-side by side whose half-spaces meet in one point are one facet. A simplex whose own half-spaces
-share a line is there by rounding alone, and belongs to a facet beside it.
+Dual points are rounded, so their hull has several simplices where the boundaries of more than d
+half-spaces meet in one point. Whether d + 1 boundaries do is decided by the sign of a determinant
+of the half-spaces themselves: in floating point if that is certain, otherwise in integers. Adjacent
+simplices whose half-spaces meet in one point form one facet. A simplex whose own half-spaces share
+a line exists only because of rounding, and belongs to an adjacent facet.
 """
 
 from __future__ import annotations
@@ -28,19 +28,20 @@ if TYPE_CHECKING:
 
 __all__ = ["Dual", "Facets", "first_of_equal", "rounded"]
 
-# Determinants of up to four rows of numbers of at most 1, one in each row off by less than 1e-14:
-# these change a determinant by less than 3e-13, and so does the rounding of elimination.
+# Determinants of up to four rows of numbers of at most 1, with one in each row off by less than
+# 1e-14: these errors change a determinant by less than 3e-13, and so does the rounding of
+# elimination.
 _CERTAIN = 1e-12
-# Normals of a larger determinant lose less than five digits where their planes meet.
+# If the determinant of the normals is larger, the intersection loses less than five digits.
 _STEEP = 1e-5
 
 
 class Facets(NamedTuple):
     """Facets of the dual hull."""
 
-    # The half-spaces of each, counter-clockwise as seen from outside.
+    # The half-spaces of each facet, counter-clockwise as seen from outside.
     vertices: list[tuple[int, ...]]
-    # A simplex of each whose half-spaces meet in one point or in parallel.
+    # For each facet, a simplex whose half-spaces meet in one point or are parallel.
     simplex: Rows
 
 
@@ -71,7 +72,7 @@ class Dual:
     ) -> None:
         self._rows, self._point = rows, point
         self._simplices, self._neighbors = simplices, neighbors
-        # Moving the origin to p and scaling rows and a column changes no sign of a determinant.
+        # Moving the origin to p and scaling rows and a column preserve the signs of determinants.
         with np.errstate(all="ignore"):
             size = np.abs(rows[:, :-1]).max(axis=1)
             exponent = np.frexp(np.where(size > 0, size, np.abs(slack)))[1]
@@ -81,17 +82,17 @@ class Dual:
             self._filter = np.column_stack((normals, offset / self._unit))
 
     def facets(self, *, triangulated: bool) -> Facets:
-        """Join simplices.
+        """Merge simplices into facets.
 
         Parameters
         ----------
         triangulated : bool
-            Whether facets of more than three half-spaces become triangles again.
+            Whether facets of more than three half-spaces are split into triangles again.
 
         Returns
         -------
         Facets
-            In the order of their first simplices.
+            The facets, in the order of their first simplices.
         """
         flat = self._flat()
         label = self._labels(flat)
@@ -111,7 +112,7 @@ class Dual:
         return Facets(vertices, np.array(places, dtype=np.int64))
 
     def _flat(self) -> Bools:
-        """Tell triangles whose half-spaces share a line; in the plane there are none."""
+        """Find triangles whose half-spaces share a line; there are none in 2-D."""
         flat = np.zeros(len(self._simplices), dtype=bool)
         if self._simplices.shape[1] == 2:
             return flat
@@ -128,7 +129,7 @@ class Dual:
         return flat
 
     def _labels(self, flat: Bools) -> Rows:
-        """Number simplices by facets: the first one of each that is not flat."""
+        """Label simplices by facet, with the first simplex that is not flat."""
         t, k = np.nonzero(self._neighbors > np.arange(len(self._simplices))[:, None])
         u = self._neighbors[t, k]
         both = ~flat[t] & ~flat[u]
@@ -146,7 +147,7 @@ class Dual:
         return label
 
     def _adopt(self, label: Rows, open_: Bools) -> None:
-        """Give flat simplices to a facet beside them; ends, for each round gives one at least."""
+        """Assign flat simplices to an adjacent facet; ends, as each round assigns at least one."""
         while open_.any():
             before = int(np.count_nonzero(open_))
             for t in np.flatnonzero(open_).tolist():
@@ -157,14 +158,14 @@ class Dual:
                 break
 
     def _extreme(self, label: Rows) -> set[int]:
-        """The half-spaces that are not redundant: each has d facets at least."""
+        """The half-spaces that are not redundant: each has at least d facets."""
         count = self._simplices.shape[1]
         pairs = np.column_stack((self._simplices.ravel(), np.repeat(label, count)))
         row, times = np.unique(np.unique(pairs, axis=0)[:, 0], return_counts=True)
         return set(row[times >= count].tolist())
 
     def _around(self, simplices: list[int], label: Rows) -> list[int]:
-        """The half-spaces around a facet, those between two of its simplices left out."""
+        """The half-spaces around a facet, without those between two of its simplices."""
         if len(simplices) == 1:
             return [int(row) for row in self._simplices[simplices[0]]]
         after: dict[int, int] = {}
@@ -187,7 +188,7 @@ class Dual:
         return ring
 
     def corners(self, simplices: Rows) -> Floats:
-        """Return where the half-spaces of simplices meet.
+        """Return the intersections of the half-spaces of simplices.
 
         Parameters
         ----------
@@ -197,12 +198,12 @@ class Dual:
         Returns
         -------
         ndarray of float64, shape (c, d)
-            The points; infinite where the intersection has no end.
+            The points; infinite if the intersection is unbounded.
         """
         rows = self._simplices[simplices]
         found = np.full(rows.shape, np.inf)
         normals = self._filter[..., :-1]
-        # The origin is inside of a facet's plane if the normals are oriented as the facet is.
+        # The origin is inside the plane of a facet if the normals have the facet's orientation.
         real = np.flatnonzero(_signs(normals, self._rows[:, :-1], rows) > 0)
         rows = rows[real]
         steep = np.abs(np.linalg.det(normals[rows])) > _STEEP
@@ -221,17 +222,17 @@ def _root(label: Rows, at: int) -> int:
 
 
 def first_of_equal(rows: Floats) -> Rows:
-    """Return the rows that are no positive multiple of a row before.
+    """Return the rows that are not positive multiples of earlier rows.
 
     Parameters
     ----------
     rows : ndarray of float64, shape (k, d + 1)
-        Half-spaces, none of them of zeros alone.
+        Half-spaces, none of them all zero.
 
     Returns
     -------
     ndarray of int64
-        Ascending.
+        The rows, ascending.
 
     Examples
     --------
@@ -240,7 +241,7 @@ def first_of_equal(rows: Floats) -> Rows:
     >>> first_of_equal(np.array([(1.0, 0, -1), (3, 0, -3), (1, 0, -2)])).tolist()
     [0, 2]
     """
-    # Quotients are rounded correctly, so those of multiples are equal; others may be, too.
+    # Quotients are correctly rounded, so those of multiples are equal; others may be as well.
     quotients = rows / np.abs(rows).max(axis=1, keepdims=True)
     _, group = np.unique(quotients, axis=0, return_inverse=True)
     group = group.reshape(-1)
@@ -272,7 +273,7 @@ def _exact(row: Floats) -> list[Fraction]:
 
 
 def _determinant(matrix: Sequence[Sequence[Fraction]]) -> Fraction:
-    """By minors of the first row: there are at most four."""
+    """Expansion by minors of the first row, of at most four."""
     if len(matrix) == 1:
         return matrix[0][0]
     total = Fraction(0)
@@ -284,7 +285,7 @@ def _determinant(matrix: Sequence[Sequence[Fraction]]) -> Fraction:
 
 
 def _meeting(rows: list[list[Fraction]]) -> list[float]:
-    """The point in which boundaries meet, each coordinate rounded once."""
+    """The intersection of boundaries, each coordinate rounded once."""
     normals = [row[:-1] for row in rows]
     below = _determinant(normals)
     return [
@@ -294,7 +295,7 @@ def _meeting(rows: list[list[Fraction]]) -> list[float]:
 
 
 def rounded(exact: Fraction) -> float:
-    """Return the nearest double, infinite beyond all of them.
+    """Return the nearest double, or infinity beyond the range.
 
     Parameters
     ----------

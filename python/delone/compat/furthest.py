@@ -1,10 +1,10 @@
 """The furthest-site Delaunay triangulation: the upper side of the lifted points' hull.
 
-Its triangles are those whose circles hold all points. Their corners are the extreme points, so it
-is a triangulation of a convex polygon, and each insertion of a polygon's vertex touches a constant
-number of triangles in the mean, if vertices come in random order (L. P. Chew, "Building Voronoi
-diagrams for convex polygons in linear expected time", 1990; here on the other side of the hull).
-Ties are broken by the same infinitesimals as in the rest of the package, so the answer is unique.
+Its triangles are those whose circles contain all points. Their corners are the extreme points, so
+it is a triangulation of a convex polygon. If vertices are inserted in random order, each insertion
+changes a constant expected number of triangles (L. P. Chew, "Building Voronoi diagrams for convex
+polygons in linear expected time", 1990; here on the other side of the hull). Ties are broken by the
+same infinitesimals as in the rest of the package, so the result is unique.
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ __all__ = ["furthest_site"]
 
 
 def furthest_site(points: Floats, hull: Rows) -> NDArray[np.int32]:
-    """Return the triangles whose circles hold all points.
+    """Return the triangles whose circles contain all points.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
         Coordinates.
     hull : ndarray of int64, shape (h,)
-        The convex hull, counter-clockwise; vertices in the middle of a side may be among them.
+        The convex hull, counter-clockwise; it may include vertices inside sides.
 
     Returns
     -------
     ndarray of int32, shape (m, 3)
-        Counter-clockwise, each from its smallest row on, in ascending order. m is two less than the
-        number of extreme points.
+        Counter-clockwise, each starting with its smallest row, in ascending order. m is two less
+        than the number of extreme points.
 
     Notes
     -----
-    O(h) in the mean, for the order of insertion is random (with a fixed seed; the answer does not
-    depend on it).
+    Expected time O(h), because the order of insertion is random (with a fixed seed; the result does
+    not depend on it).
 
     Examples
     --------
@@ -64,7 +64,7 @@ def furthest_site(points: Floats, hull: Rows) -> NDArray[np.int32]:
 
 
 class _Polygon:
-    """A strictly convex polygon that is triangulated vertex by vertex."""
+    """A strictly convex polygon, triangulated one vertex at a time."""
 
     def __init__(self, corners: Floats) -> None:
         self.corners = corners
@@ -79,17 +79,17 @@ class _Polygon:
         self._add(a, b, c)
         for vertex, (before, after) in zip(order[3:], between, strict=True):
             self._insert(vertex, before, after)
-        # Each triangle is found from its three edges; its smallest vertex leads one of them.
+        # Each triangle is found from its three edges; its smallest vertex is the start of one.
         return [(u, v, w) for (u, v), w in self.apex.items() if u < v and u < w]
 
     def _insert(self, vertex: int, before: int, after: int) -> None:
         """Add a vertex outside the polygon's edge before-after.
 
-        Triangles whose circle does not hold it go; they are connected across that edge, and what
-        they leave is seen from the vertex, because the polygon is convex.
+        Triangles whose circle does not contain it are removed. They are connected across that edge,
+        and their area is visible from the vertex because the polygon is convex.
         """
         edges = [(before, after)]
-        while edges:  # ends: each round takes a triangle away or finishes an edge
+        while edges:  # ends: each round removes a triangle or completes an edge
             u, v = edges.pop()
             w = self.apex.get((u, v))
             if w is not None and self._is_outside((u, v, w), vertex):
@@ -110,9 +110,9 @@ class _Polygon:
 
 
 def _neighbors_at_removal(order: list[int]) -> list[tuple[int, int]]:
-    """For each vertex from the fourth on, those beside it when only it and earlier ones are there.
+    """For each vertex from the fourth on, its neighbors among the earlier vertices.
 
-    Found by taking the vertices of a ring away in reverse order.
+    Found by removing the vertices from a ring in reverse order.
     """
     n = len(order)
     before = [(i - 1) % n for i in range(n)]

@@ -1,16 +1,16 @@
-"""The place of SciPy's interpolators of scattered points taken by delone, in the plane and space.
+"""Drop-in replacements for SciPy's interpolators of scattered points, in 2-D and 3-D.
 
-`delone.compat.scipy` has these names. Signatures, attributes, shapes and errors are SciPy's. What
-differs:
+`delone.compat.scipy` exports these names. Signatures, attributes, shapes and errors are SciPy's.
+Differences:
 
-* At a site the value comes back bit for bit, and on the hull it is never the fill value; a query
-  outside by a rounding error is outside, for there is no tolerance.
-* Only points in the plane and in space; other dimensions are refused by a `DimensionError` that
-  names SciPy. In space `tri` is a `delone.Delaunay`.
-* Of equally near sites the one of the smallest row is the nearest.
-* Other norms than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
-  no effect.
-* A triangulation of ``scipy.spatial.Delaunay`` stands for its points.
+* At a site the value is reproduced bit for bit, and on the hull it is never the fill value; a query
+outside by a rounding error is outside, because there is no tolerance.
+* Only 2-D and 3-D points; other dimensions raise a `DimensionError` that names SciPy. In 3-D `tri`
+is a `delone.Delaunay`.
+* Of equally near sites, the one with the smallest row is used.
+* Norms other than the Euclidean one (`p`) are left to SciPy's tree; `eps` and `tree_options` have
+no effect.
+* A triangulation of ``scipy.spatial.Delaunay`` is replaced by its points.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ __all__ = [
 ]
 
 _SPACE = 3
-# Distances that are compared at a time where points lie on one line.
+# Distances compared at a time if all points lie on one line.
 _BLOCK = 1 << 22
 
 
 class _Scale:
-    """Points moved and stretched to the unit square, where that is asked for."""
+    """Points translated and scaled to the unit square, if requested."""
 
     def __init__(self, points: Floats, wanted: bool) -> None:
         self.offset = self.scale = None
@@ -61,7 +61,7 @@ class _Scale:
 
 
 class _Triangulated:
-    """What the interpolators on triangles share."""
+    """Base of the interpolators on triangles."""
 
     points: Floats
     values: NDArray[Any]
@@ -70,7 +70,7 @@ class _Triangulated:
     _interpolator: Linear | CloughTocher
 
     def _set(self, points: Any, values: ArrayLike, fill_value: Any, rescale: bool) -> None:
-        """Triangulate, and keep what SciPy keeps."""
+        """Triangulate, and set SciPy's attributes."""
         from delone.compat.scipy import Delaunay
 
         self.tri = None
@@ -94,14 +94,14 @@ class _Triangulated:
             if self.tri is None:
                 self.tri = own
             if own.furthest_site:
-                raise InputError("a furthest-site triangulation is not one to interpolate on")
+                raise InputError("cannot interpolate on a furthest-site triangulation")
             self._mesh = own._mesh
         self.values = _numbers(values)
         self.is_complex = self.values.dtype.kind == "c"
         self.fill_value = (complex if self.is_complex else float)(fill_value)
 
     def _in_space(self) -> delaunay.Delaunay:
-        """The triangulation of points in space, kept as `tri` unless one was given."""
+        """The triangulation of 3-D points, stored as `tri` unless one was given."""
         if isinstance(self.tri, delaunay.Delaunay):
             return self.tri
         try:
@@ -123,12 +123,12 @@ class _Triangulated:
         Returns
         -------
         ndarray of float64 or complex128
-            Values; the fill value outside of the hull.
+            Values; the fill value outside the hull.
 
         Raises
         ------
         ValueError
-            The points have another number of coordinates than the sites, or are no numbers.
+            The points have a different dimension than the sites, or are not numeric.
 
         Examples
         --------
@@ -140,7 +140,7 @@ class _Triangulated:
         queries = self._scale(_queries(args, self.points.shape[1]))
         found = self._interpolator(queries)
         if np.isnan(self.fill_value):
-            # Both parts of complex values, as SciPy has them.
+            # Both parts of complex values, as in SciPy.
             if self.is_complex:
                 found[self._mesh.find_simplex(queries) < 0] = self.fill_value
             return found
@@ -154,20 +154,20 @@ class LinearNDInterpolator(_Triangulated):
     Parameters
     ----------
     points : array_like, shape (npoints, d), tuple of d arrays, or Delaunay
-        Sites in the plane or in space, or a triangulation of them.
+        2-D or 3-D sites, or a triangulation of them.
     values : array_like, shape (npoints, ...)
         Real or complex values.
     fill_value : float, optional
-        What there is outside of the hull.
+        Value outside the hull.
     rescale : bool, optional
         Triangulate the points scaled to the unit square or cube.
 
     Raises
     ------
     QhullError
-        The points span no area, in space no volume.
+        The points span no area, or in 3-D no volume.
     ValueError
-        Arrays do not fit; a triangulation is to be rescaled.
+        Array shapes do not match; rescaling is requested for a triangulation.
 
     See Also
     --------
@@ -202,26 +202,26 @@ class CloughTocher2DInterpolator(_Triangulated):
     values : array_like, shape (npoints, ...)
         Real or complex values.
     fill_value : float, optional
-        What there is outside of the hull.
+        Value outside the hull.
     tol : float, optional
         Tolerance of the estimation of gradients: relative for gradients above 1 and absolute for
         others, as in SciPy.
     maxiter : int, optional
-        Its greatest number of sweeps.
+        Maximum number of sweeps.
     rescale : bool, optional
         Triangulate the points scaled to the unit square.
 
     Attributes
     ----------
     grad : ndarray, shape (npoints, nvalues, 2)
-        Gradients at the sites, which may be changed.
+        Gradients at the sites, which may be modified.
 
     Raises
     ------
     QhullError
         The points span no area.
     ValueError
-        Arrays do not fit; a triangulation is to be rescaled.
+        Array shapes do not match; rescaling is requested for a triangulation.
 
     See Also
     --------
@@ -254,19 +254,19 @@ class CloughTocher2DInterpolator(_Triangulated):
         self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))
 
     def __call__(self, *args: ArrayLike) -> NDArray[Any]:
-        """Interpolate at points, as `LinearNDInterpolator` does when it is called."""
+        """Interpolate at points, like `LinearNDInterpolator`."""
         self._interpolator.given = self.grad  # type: ignore[union-attr]
         return super().__call__(*args)
 
 
 class _GivenGradients(CloughTocher):
-    """Clough-Tocher interpolation from gradients that somebody else may change."""
+    """Clough-Tocher interpolation with gradients that the user may modify."""
 
     given: NDArray[Any] | None = None
     _floor = 1.0
 
     def gradients(self, columns: Floats) -> Floats:
-        """Return the gradients given, those that are estimated where there are none."""
+        """Return the gradients given, or the estimated ones if there are none."""
         if self.given is None:
             return super().gradients(columns)
         if self.given.dtype.kind != "c":
@@ -281,7 +281,7 @@ class NearestNDInterpolator:
     Parameters
     ----------
     x : array_like, shape (npoints, d), or tuple of d arrays
-        Sites in the plane or in space.
+        2-D or 3-D sites.
     y : array_like, shape (npoints, ...)
         Real or complex values.
     rescale : bool, optional
@@ -292,7 +292,7 @@ class NearestNDInterpolator:
     Raises
     ------
     ValueError
-        Arrays do not fit.
+        Array shapes do not match.
 
     See Also
     --------
@@ -339,14 +339,14 @@ class NearestNDInterpolator:
         eps, workers
             Accepted as in SciPy, without effect.
         p : float, optional
-            The norm by which distances are measured; others than 2 are left to SciPy.
+            The norm by which distances are measured; norms other than 2 are left to SciPy.
         distance_upper_bound : float, optional
-            Sites as far as this or farther do not count.
+            Sites at this distance or farther are ignored.
 
         Returns
         -------
         ndarray of float64 or complex128
-            Values; NaN where no site counts.
+            Values; NaN if no site is near enough.
         """
         ndim = self.points.shape[1]
         queries = self._scale(_queries(args, ndim))
@@ -356,7 +356,7 @@ class NearestNDInterpolator:
             return self._field.shaped(none, queries.shape[:-1])
         rows = self._nearest(flat, p)
         offset = self._scaled[rows] - flat
-        with np.errstate(over="ignore"):  # beyond all doubles is beyond any bound
+        with np.errstate(over="ignore"):  # infinity is beyond any bound
             distance = np.linalg.norm(offset, ord=p, axis=1)
         # NaN is not below the bound.
         counts = (rows >= 0) & (distance < distance_upper_bound)
@@ -404,18 +404,18 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     Parameters
     ----------
     points : array_like, shape (n, d), or tuple of d arrays
-        Sites in the plane or in space; or on a line, of shape (n,) or (n, 1).
+        2-D or 3-D sites; or 1-D sites of shape (n,) or (n, 1).
     values : array_like, shape (n, ...)
         Real or complex values.
     xi : array_like, shape (..., d), or tuple of d arrays
         Where to interpolate.
     method : {"linear", "nearest", "cubic"}, optional
-        `LinearNDInterpolator`, `NearestNDInterpolator` or, in the plane,
-        `CloughTocher2DInterpolator`. On a line SciPy interpolates: cubic is its spline.
+        `LinearNDInterpolator`, `NearestNDInterpolator` or, in 2-D, `CloughTocher2DInterpolator`.
+        1-D data are interpolated by SciPy: cubic is its spline.
     fill_value : float, optional
-        What there is outside of the hull; without effect for ``"nearest"``.
+        Value outside the hull; without effect for ``"nearest"``.
     rescale : bool, optional
-        Scale the points to the unit square before.
+        Scale the points to the unit square first.
 
     Returns
     -------
@@ -425,11 +425,11 @@ def griddata(  # noqa: PLR0917 (as in SciPy)
     Raises
     ------
     ValueError
-        The method is unknown; arrays do not fit.
+        The method is unknown; array shapes do not match.
     DimensionError
         The points have more than three coordinates.
     MissingExtraError
-        The points are on a line, and SciPy is not installed.
+        The points are 1-D, and SciPy is not installed.
 
     Examples
     --------
@@ -461,12 +461,12 @@ def _is_line(points: Any) -> bool:
 def _on_line(  # noqa: PLR0917 (as in SciPy)
     points: Any, values: ArrayLike, xi: Any, method: str, fill_value: Any, rescale: bool
 ) -> NDArray[Any]:
-    """Let SciPy interpolate between points on a line, where nothing needs a triangulation."""
+    """Interpolate 1-D points with SciPy, as no triangulation is needed."""
     try:
         from scipy import interpolate
     except ImportError as error:
         raise MissingExtraError(
-            "griddata of points on a line needs SciPy, which is not installed: pip install scipy",
+            "griddata of 1-D points needs SciPy, which is not installed: pip install scipy",
             extra="learn",
         ) from error
     line = points[0] if isinstance(points, tuple) and np.ndim(points[0]) == 1 else points
@@ -484,7 +484,7 @@ def _on_line(  # noqa: PLR0917 (as in SciPy)
 def estimate_gradients_2d_global(
     tri: Any, y: ArrayLike, maxiter: int = 400, tol: float = 1e-6
 ) -> NDArray[Any]:
-    """Estimate gradients at the points of a triangulation so that edges bend least.
+    """Estimate gradients at the points of a triangulation that minimize the curvature along edges.
 
     Parameters
     ----------
@@ -493,14 +493,14 @@ def estimate_gradients_2d_global(
     y : array_like, shape (npoints, ...)
         Values.
     maxiter : int, optional
-        Greatest number of sweeps.
+        Maximum number of sweeps.
     tol : float, optional
-        Change at which sweeps end: relative for gradients above 1 and absolute for others.
+        Change at which sweeps stop: relative for gradients above 1 and absolute for others.
 
     Returns
     -------
     ndarray of float64 or complex128
-        Of the shape of the values, and 2.
+        The shape of the values, then 2.
 
     Examples
     --------
@@ -514,7 +514,7 @@ def estimate_gradients_2d_global(
 
 
 def _coordinates(points: Any) -> Floats:
-    """Points from an array, or from one array for each coordinate, as SciPy takes them."""
+    """Points from an array, or from one array for each coordinate, as in SciPy."""
     if isinstance(points, tuple) and points and np.ndim(points[0]) == 1:
         lengths = {np.shape(part) for part in points}
         if len(lengths) > 1:
@@ -523,34 +523,33 @@ def _coordinates(points: Any) -> Floats:
     shape = np.shape(points)
     if len(shape) == 1 or (len(shape) == 2 and shape[1] == 1):
         raise DimensionError(
-            "delone interpolates in the plane and in space; on a line use griddata or "
-            "scipy.interpolate"
+            "delone interpolates in 2-D and 3-D; in 1-D use griddata or scipy.interpolate"
         )
     return as_low_points(_real_points(points), _SPACE)
 
 
 def _real_points(points: ArrayLike) -> NDArray[Any]:
-    """Sites as a plain array, none of which may be masked."""
+    """Sites as a plain array; masked entries raise."""
     if isinstance(points, np.ma.MaskedArray) and np.ma.is_masked(points):
         mask = np.ma.getmaskarray(points)
         row = int(np.flatnonzero(mask.reshape(len(mask), -1).any(axis=1))[0])
-        raise InputError(f"points: row {row} is masked; leave out what is not known")
+        raise InputError(f"points: row {row} is masked; remove unknown points")
     return unmasked(np.asanyarray(points))
 
 
 def _real_queries(xi: ArrayLike) -> Floats:
-    """Queries as plain numbers, NaN where they are masked."""
+    """Queries as plain numbers, NaN if masked."""
     return np.asarray(unmasked(np.asanyarray(xi)), dtype=np.float64)
 
 
 def _numbers(values: ArrayLike) -> NDArray[Any]:
-    """Values as SciPy takes them: truth values and objects as floats, NaN where they are masked."""
+    """Values as in SciPy: booleans and objects become floats, masked values NaN."""
     array = unmasked(np.asanyarray(values))
     return unboxed(array, "values") if array.dtype.kind in "bO" else array
 
 
 def _queries(args: tuple[Any, ...], ndim: int) -> Floats:
-    """Queries from an array, a tuple of arrays, or several arguments, as SciPy takes them."""
+    """Queries from an array, a tuple of arrays, or several arguments, as in SciPy."""
     parts = args[0] if len(args) == 1 else args
     if isinstance(parts, tuple):
         if len(parts) != ndim:

@@ -1,4 +1,4 @@
-"""What the classes share that take the places of Qhull's: errors, points, adding more of them."""
+"""Base of the drop-ins for SciPy's Qhull classes: errors, points, incremental mode."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ else:
     except ImportError:
 
         class QhullError(RuntimeError):
-            """Degenerate input or an unknown option; SciPy's own class where it is installed."""
+            """Degenerate input or an unknown option; SciPy's own class if SciPy is installed."""
 
             # Users know it by this name.
             __module__ = "delone.compat.scipy"
@@ -52,25 +52,25 @@ __all__ = [
 
 
 class DimensionError(InputError, NotImplementedError):
-    """The points have more coordinates than there is an answer for."""
+    """The points have too many coordinates."""
 
     __module__ = "delone.compat.scipy"
 
 
 class Incremental:
-    """Points, and what follows from them anew when more are added; the base of the drop-ins."""
+    """Points, and results that are recomputed when points are added; base of the drop-ins."""
 
-    # What it is called in messages.
+    # Its name in messages.
     _what: str = DELAUNAY
 
-    # Of triangulations and diagrams alone.
+    # Only for triangulations and diagrams.
     furthest_site: bool
     _open: bool
     _options: QhullOptions
     _points: Floats
 
     def _begin(self, points: ArrayLike, options: str | None, incremental: bool) -> None:
-        """Read the options, then take the points."""
+        """Parse the options, then set the points."""
         self._open = bool(incremental)
         self._options = read_options(options, incremental=self._open, what=self._what)
         if self._options.furthest:
@@ -78,31 +78,31 @@ class Incremental:
         self._set(as_low_points(points, 2 if getattr(self, "furthest_site", False) else 3))
 
     def _set(self, points: Floats) -> None:
-        """Compute what there is of the points; nothing changes where that fails."""
+        """Compute the results for the points; nothing changes if that fails."""
         raise NotImplementedError
 
     def _forget(self) -> None:
-        """Drop what was computed on first use."""
+        """Clear results that were computed on first use."""
         for name in list(self.__dict__):
             if isinstance(getattr(type(self), name, None), cached_property):
                 del self.__dict__[name]
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Add points, and compute everything anew.
+        """Add points, and recompute everything.
 
         Parameters
         ----------
         points : array_like, shape (k, ndim)
-            What to append to `points`.
+            Points to append to `points`.
         restart : bool, optional
-            Accepted as in SciPy. The result is the same.
+            Accepted as in SciPy, without effect.
 
         Raises
         ------
         RuntimeError
             `incremental` was not set, or `close` has been called.
         QhullError, ValueError
-            As in the constructor; then nothing has changed.
+            As in the constructor; nothing is changed.
 
         Examples
         --------
@@ -121,14 +121,14 @@ class Incremental:
         array([[1., 1.]])
         """
         if not self._open:
-            raise RuntimeError("points can be added with incremental=True only, and before close()")
+            raise RuntimeError("points can only be added with incremental=True, and before close()")
         more, ndim = as_low_points(points, 3), self._points.shape[1]
         if more.shape[1] != ndim:
             raise ShapeError(f"points must have {ndim} coordinates, got shape {more.shape}")
         self._set(np.concatenate((self._points, more)))
 
     def close(self) -> None:
-        """End incremental mode; `add_points` is refused from then on."""
+        """End incremental mode; `add_points` raises from then on."""
         self._open = False
 
     @property
@@ -138,7 +138,7 @@ class Incremental:
 
 
 def read_options(options: str | None, *, incremental: bool, what: str) -> QhullOptions:
-    """Read a string of options, and refuse with SciPy's kinds of errors.
+    """Parse an option string; errors have SciPy's types.
 
     Parameters
     ----------
@@ -148,12 +148,12 @@ def read_options(options: str | None, *, incremental: bool, what: str) -> QhullO
     Returns
     -------
     QhullOptions
-        What they ask for.
+        The parsed options.
 
     Raises
     ------
     QhullError, InputError
-        As Qhull refuses them, or as delone does.
+        An option that Qhull or delone rejects.
     """
     try:
         return QhullOptions.parse(options, incremental=incremental, what=what)
@@ -163,19 +163,19 @@ def read_options(options: str | None, *, incremental: bool, what: str) -> QhullO
 
 @contextmanager
 def told_as_qhull_does(points: Floats, what: str = DELAUNAY) -> Iterator[None]:
-    """Turn errors about points into those that SciPy raises.
+    """Convert errors about points to those that SciPy raises.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, d)
-        The points that are worked on.
+        The points being processed.
     what : str, optional
-        What they have none of where they span no area or no volume.
+        Name of the result that does not exist if they span no area or volume.
 
     Returns
     -------
     context manager
-        In which the work is done.
+        Wraps the computation.
     """
     if len(points) == 0:
         raise ShapeError("no points given")
@@ -185,23 +185,23 @@ def told_as_qhull_does(points: Floats, what: str = DELAUNAY) -> Iterator[None]:
         reason = str(error).partition(":")[0]
         raise QhullError(f"{reason}: there is no {what}") from error
     except NonFiniteError as error:
-        # SciPy looks for NaN itself and leaves infinity to Qhull.
+        # SciPy checks for NaN itself and leaves infinity to Qhull.
         if np.isnan(points).any():
             raise
         raise QhullError(str(error)) from error
 
 
 def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delaunay.Delaunay:
-    """Triangulate as SciPy does, and refuse with its kinds of errors.
+    """Triangulate as SciPy does; errors have SciPy's types.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
         Points.
     furthest : bool
-        Whether circles are to hold all points, rather than none.
+        Whether circles contain all points, rather than none.
     what : str, optional
-        What is computed of it.
+        Name of the result.
 
     Returns
     -------
@@ -223,23 +223,23 @@ def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delauna
 
 
 def as_low_points(points: ArrayLike, most: int) -> Floats:
-    """Coerce as SciPy does where that is exact, and refuse with its kinds of errors.
+    """Convert as SciPy does if that is exact; errors have SciPy's types.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
         Points.
     most : {2, 3}
-        The largest number of coordinates.
+        The maximum dimension.
 
     Returns
     -------
     ndarray of float64, of the same shape
-        The same.
+        The points.
     """
     ndim = 2 if most == 2 else None
     if isinstance(points, np.ma.MaskedArray):
-        return as_points(points, ndim=ndim)  # which refuses it by name
+        return as_points(points, ndim=ndim)  # which names it in its error
     try:
         array = np.asarray(points)
     except ValueError:
@@ -249,9 +249,9 @@ def as_low_points(points: ArrayLike, most: int) -> Floats:
     if array.shape[1] < 2:
         raise ShapeError(f"points must have at least two coordinates, got shape {array.shape}")
     if array.shape[1] > most:
-        where = "in the plane" if most == 2 else "in the plane and in space"
+        where = "in 2-D" if most == 2 else "in 2-D and 3-D"
         raise DimensionError(
-            f"this answer of delone.compat.scipy is for points {where}; for "
+            f"this function of delone.compat.scipy is only available {where}; for "
             f"{array.shape[1]} coordinates use scipy.spatial"
         )
     if array.dtype.kind in "bO":
@@ -260,14 +260,14 @@ def as_low_points(points: ArrayLike, most: int) -> Floats:
 
 
 def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
-    """Return truth values and Python objects as numbers, if these are the same numbers.
+    """Convert booleans and Python objects to numbers, if that is exact.
 
     Parameters
     ----------
     array : ndarray of bool or object
         Numbers.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -277,9 +277,9 @@ def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
     Raises
     ------
     TypeError, ValueError
-        Something is no real number.
+        An element is not a real number.
     DtypeError
-        A number is none that float64 holds.
+        A number is not representable as float64.
 
     Examples
     --------
@@ -291,12 +291,12 @@ def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
     numbers = array.astype(np.float64)
     if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
         wrong = array[(numbers != array) & ~np.isnan(numbers)]
-        raise DtypeError(f"{name} hold {wrong.flat[0]!r}, which float64 cannot")
+        raise DtypeError(f"{name} contain {wrong.flat[0]!r}, which float64 cannot represent")
     return numbers
 
 
 def unmasked(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a plain array, with NaN for what is masked.
+    """Return a plain array, with NaN for masked entries.
 
     Parameters
     ----------
@@ -306,7 +306,7 @@ def unmasked(array: NDArray[Any]) -> NDArray[Any]:
     Returns
     -------
     ndarray
-        The same where nothing is masked; otherwise of floats, complex numbers or objects.
+        The same array if nothing is masked; otherwise floats, complex numbers or objects.
 
     Examples
     --------
@@ -327,7 +327,7 @@ def unmasked(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def as_queries(xi: ArrayLike, ndim: int) -> Floats:
-    """Coerce points to locate as SciPy does where that is exact.
+    """Convert query points as SciPy does if that is exact.
 
     Parameters
     ----------
@@ -339,14 +339,14 @@ def as_queries(xi: ArrayLike, ndim: int) -> Floats:
     Returns
     -------
     ndarray of float64, of the same shape
-        The same.
+        The points.
 
     Raises
     ------
     IndexError
-        `xi` is a number.
+        `xi` is a scalar.
     ShapeError, DtypeError
-        It has another number of coordinates, or is none of numbers.
+        `xi` has a wrong number of coordinates, or is not numeric.
     """
     array = unmasked(np.asanyarray(xi))
     if array.ndim == 0:

@@ -1,9 +1,9 @@
-"""The option strings that scipy.spatial hands to Qhull, as far as they mean something here.
+"""Parser of the option strings that scipy.spatial passes to Qhull.
 
 Most of Qhull's options are about rounding: joggling, merging, tracing, precision constants. An
-exact result has no use for them, and accepts them without effect. A few say what is computed or
-reported, and those are obeyed. Those that ask for another result are refused by name rather than
-ignored.
+exact algorithm does not need them, and they are accepted without effect. A few determine what is
+computed or reported, and those are obeyed. Options that require a different result raise an error
+that names them.
 """
 
 from __future__ import annotations
@@ -21,40 +21,41 @@ HULL = "convex hull"
 HALFSPACES = "intersection of half-spaces"
 
 _NUMBER = r"[-+.\de]*"
-# Rounding, tracing and printing. QbB scales the points to a cube: a triangulation, the corners of a
-# hull and what they span do not depend on that. Coplanar facets are merged (C-0, A-1) as it is.
+# Rounding, tracing and printing. QbB scales the points to a cube, which does not affect a
+# triangulation, or the corners and measures of a hull. Coplanar facets are always merged (C-0,
+# A-1).
 _WITHOUT_EFFECT = re.compile(
     rf"Qbb|QbB|Qc|Qt|Qx|Qs|Qi|Qm|Qf|Qr|Qa|Qw|Q\d+|QJ{_NUMBER}|QR{_NUMBER}"
     rf"|C-?0(\.0*)?|A-?1(\.0*)?|[EUVW]{_NUMBER}|Pp|Po|T\w+{_NUMBER}|F\w+|G\w+|[dfimnops]"
 )
-# Of triangulations and diagrams: a point at infinity, and the furthest site.
+# For triangulations and diagrams: a point at infinity, and the furthest site.
 _OF_SITES = ("Qz", "Qu")
 _REFUSED = (
-    (r"[CA]-?\d.*", "merges facets within a tolerance, where delone merges coplanar ones alone"),
-    (r"Q[bB].+", "scales or drops single coordinates; do that to the points"),
-    (r"R.+", "rotates the points; do that to the points"),
-    (r"Qg|Q[GV].*|P[dDAFGMg].*", "leaves out a part of the result"),
-    (r"[vH].*", "asks for something else; use the class for it"),
+    (r"[CA]-?\d.*", "merges facets within a tolerance, but delone merges only coplanar ones"),
+    (r"Q[bB].+", "scales or drops single coordinates; transform the points instead"),
+    (r"R.+", "rotates the points; transform the points instead"),
+    (r"Qg|Q[GV].*|P[dDAFGMg].*", "omits part of the result"),
+    (r"[vH].*", "requests a different result; use its class"),
     (r"[AC].*", "needs a number"),
 )
 
 
 class QhullOptionError(InputError):
-    """An option that Qhull itself does not know, or not for what is computed."""
+    """An option that Qhull does not know, or not for this computation."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class QhullOptions:
-    """What a string of options asks for.
+    """The contents of an option string.
 
     Parameters
     ----------
     scaled : bool
         ``Qbb``: lifted points are scaled to the size of their coordinates.
     infinite_point : bool
-        ``Qz``: a point above all others counts in that scaling.
+        ``Qz``: a point above all others is included in that scaling.
     coplanar : bool
-        ``Qc``: rows that are no vertices are listed.
+        ``Qc``: rows that are not vertices are listed.
     furthest : bool
         ``Qu``: the furthest-site triangulation or diagram.
     triangulated : bool
@@ -69,12 +70,12 @@ class QhullOptions:
 
     @classmethod
     def parse(cls, options: str | None, *, incremental: bool, what: str = DELAUNAY) -> QhullOptions:
-        """Read a string of options.
+        """Parse an option string.
 
         Parameters
         ----------
         options : str or None
-            Separated by spaces. None stands for SciPy's defaults of Delaunay triangulations.
+            Separated by spaces. None means SciPy's defaults for Delaunay triangulations.
         incremental : bool
             Whether points can be added later.
         what : str, optional
@@ -83,14 +84,14 @@ class QhullOptions:
         Returns
         -------
         QhullOptions
-            What they ask for.
+            The parsed options.
 
         Raises
         ------
         QhullOptionError
-            Qhull has no such option, or not for this.
+            Qhull has no such option, or not for this computation.
         InputError
-            An option asks for another result than the exact one, or for what does not go with
+            An option requires a result other than the exact one, or one that is incompatible with
             adding points.
 
         Examples
@@ -107,7 +108,7 @@ class QhullOptions:
         for option in given:
             _check(option, incremental, what)
         if {*_OF_SITES} <= {*given}:
-            raise QhullOptionError("option 'Qu' does not go with option 'Qz'")
+            raise QhullOptionError("option 'Qu' is incompatible with option 'Qz'")
         return cls(
             scaled="Qbb" in given,
             infinite_point="Qz" in given,
@@ -118,9 +119,9 @@ class QhullOptions:
 
 
 def _check(option: str, incremental: bool, what: str) -> None:
-    """Refuse what is unknown, or asks for another result."""
+    """Reject unknown options and those that require a different result."""
     if option in ("Qbb", "Qz", "QbB") and incremental:
-        raise InputError(f"option {option!r} does not go with incremental=True")
+        raise InputError(f"option {option!r} is incompatible with incremental=True")
     if option in _OF_SITES:
         if what in (DELAUNAY, VORONOI):
             return

@@ -1,4 +1,4 @@
-"""The place of ``scipy.spatial``'s Delaunay, Voronoi and ConvexHull taken by delone, and more.
+"""Drop-in replacements for ``scipy.spatial``'s Delaunay, Voronoi, ConvexHull and more.
 
 >>> from delone.compat.scipy import Delaunay
 >>> tri = Delaunay([(0, 0), (0, 1.1), (1, 0), (1, 1)])
@@ -7,24 +7,24 @@
 >>> sorted(map(sorted, tri.simplices.tolist()))
 [[0, 1, 3], [0, 2, 3]]
 
-The signature, attributes, dtypes, errors and the mutability of arrays are SciPy's. What differs:
+Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's. Differences:
 
-* Every distinct point is a vertex, so `coplanar` lists duplicates alone.
-* Among the triangulations of cocircular points it is delone's canonical one, and triangles come in
-  delone's order.
+* Every distinct point is a vertex, so `coplanar` lists only duplicates.
+* Among the triangulations of cocircular points, the result is delone's canonical one, with
+triangles in delone's order.
 * `find_simplex` is exact: `tol` has no effect, and a point outside by a rounding error is outside.
 * `vertex_to_simplex` of a duplicate is a triangle of its first occurrence.
-* Triangles are counter-clockwise and tetrahedra positively oriented, furthest-site ones, too.
-* Furthest-site triangulations are of the plane.
-* Complex numbers, masked points, and integers which float64 does not hold, are refused rather than
-  rounded or unmasked. A masked query is one with NaN, and so in no simplex.
+* Triangles are counter-clockwise and tetrahedra positively oriented, including furthest-site ones.
+* Furthest-site triangulations are only available in 2-D.
+* Complex numbers, masked points, and integers that float64 cannot represent are rejected rather
+than rounded or unmasked. A masked query is treated as NaN, and is therefore in no simplex.
 * Option ``Qu`` sets `furthest_site`; SciPy leaves it False.
-* `add_points` triangulates anew, which takes the time of a triangulation, not of an insertion.
+* `add_points` recomputes the triangulation, and takes as long as the first one.
 
-`Voronoi` and `voronoi_plot_2d` are here by name; `delone.compat.scipy_voronoi` has them and what
-differs. So are `ConvexHull`, of `delone.compat.scipy_hull`, `HalfspaceIntersection`, of
-`delone.compat.scipy_halfspaces`, `delaunay_plot_2d` and `convex_hull_plot_2d`. The interpolators of
-``scipy.interpolate`` are here by name; `delone.compat.interpolate` has them and what differs.
+`Voronoi` and `voronoi_plot_2d` are exported here; `delone.compat.scipy_voronoi` documents their
+differences. So are `ConvexHull` of `delone.compat.scipy_hull`, `HalfspaceIntersection` of
+`delone.compat.scipy_halfspaces`, `delaunay_plot_2d` and `convex_hull_plot_2d`, and the
+interpolators of ``scipy.interpolate``, whose differences are in `delone.compat.interpolate`.
 """
 
 from __future__ import annotations
@@ -86,19 +86,19 @@ class Delaunay(Incremental):
         Coordinates.
     furthest_site : bool, optional
         Whether to compute the furthest-site triangulation: that of the extreme points, whose
-        circles hold all points. In the plane only.
+        circles contain all points. Only available in 2-D.
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
-        As in SciPy. Options about rounding have no effect, for nothing is rounded; ``QJ`` is among
-        them, so that duplicates stay duplicates, and so are ``QbB``, ``C-0`` and ``A-1``. ``Qu``
-        is the same as `furthest_site`. Without ``Qc``, `coplanar` is empty. The default is
-        ``"Qbb Qc Qz Q12"``; without the ``Qbb`` and ``Qz`` in incremental mode.
+        As in SciPy. Options about rounding have no effect, because nothing is rounded. These
+        include ``QJ``, so that duplicates remain duplicates, and ``QbB``, ``C-0`` and ``A-1``.
+        ``Qu`` is the same as `furthest_site`. Without ``Qc``, `coplanar` is empty. The default is
+        ``"Qbb Qc Qz Q12"``, without ``Qbb`` and ``Qz`` in incremental mode.
 
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, ndim)
-        Coordinates; the array given where it is of this dtype and layout, as in SciPy.
+        Coordinates; the given array itself if it has this dtype and layout, as in SciPy.
     simplices : ndarray of int32, shape (nsimplex, ndim + 1)
         Triangles, counter-clockwise, or tetrahedra, positively oriented.
     neighbors : ndarray of int32, shape (nsimplex, ndim + 1)
@@ -110,13 +110,13 @@ class Delaunay(Incremental):
     transform : ndarray of float64, shape (nsimplex, ndim + 1, ndim)
         Affine maps to barycentric coordinates; NaN for nearly flat simplices, as in SciPy.
     vertex_to_simplex : ndarray of int32, shape (npoints,)
-        A triangle of each point, -1 where there is none.
+        A triangle of each point, -1 if there is none.
     convex_hull : ndarray of int32, shape (nfaces, ndim)
         Edges or triangles of the convex hull.
     coplanar : ndarray of int32, shape (ncoplanar, 3)
         Each duplicate, a triangle of its vertex, and its vertex.
     vertex_neighbor_vertices : tuple of two ndarrays of int32
-        ``indices[indptr[k]:indptr[k + 1]]`` are the neighbours of vertex k.
+        ``indices[indptr[k]:indptr[k + 1]]`` are the neighbors of vertex k.
     good : ndarray of int32, shape (nsimplex,)
         Ones.
     furthest_site : bool
@@ -124,23 +124,23 @@ class Delaunay(Incremental):
     ndim, npoints, nsimplex : int
         Sizes.
     min_bound, max_bound : ndarray of float64, shape (ndim,)
-        The least and the greatest coordinates.
+        The minimum and maximum coordinates.
 
     Raises
     ------
     QhullError
-        The points span no area, or in space no volume; a coordinate is infinite; an option is
-        unknown. ``scipy.spatial.QhullError`` where SciPy is installed.
+        The points span no area, or in 3-D no volume; a coordinate is infinite; an option is
+        unknown. This is ``scipy.spatial.QhullError`` if SciPy is installed.
     ValueError
-        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for other
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option requires other
         triangles.
     DimensionError
-        The points have more than three coordinates, or more than two where `furthest_site` is set.
+        The points have more than three coordinates, or more than two if `furthest_site` is set.
         (A NotImplementedError and a ValueError.)
 
     Notes
     -----
-    The module's documentation lists what differs from SciPy.
+    The documentation of the module lists the differences from SciPy.
 
     Examples
     --------
@@ -187,7 +187,7 @@ class Delaunay(Incremental):
 
     @cached_property
     def vertex_to_simplex(self) -> Indices:
-        """A simplex of each point, (npoints,); -1 where there is none."""
+        """A simplex of each point, (npoints,); -1 if there is none."""
         found = self._mesh.vertex_to_simplex.copy()
         if not self._options.coplanar:
             found[self._mesh.coplanar[:, 0]] = -1
@@ -195,7 +195,7 @@ class Delaunay(Incremental):
 
     @cached_property
     def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
-        """Neighbours of vertices as compressed rows (indptr, indices)."""
+        """Neighbors of vertices as compressed rows (indptr, indices)."""
         indptr, indices = self._mesh.vertex_neighbor_vertices
         return indptr.copy(), indices.copy()
 
@@ -208,7 +208,7 @@ class Delaunay(Incremental):
 
     @cached_property
     def good(self) -> Indices:
-        """Ones, (nsimplex,): no option leaves a simplex out."""
+        """Ones, (nsimplex,): no option excludes a simplex."""
         return np.ones(self._mesh.nsimplex, dtype=np.int32)
 
     @cached_property
@@ -225,8 +225,8 @@ class Delaunay(Incremental):
     def transform(self) -> Floats:
         """Affine maps to barycentric coordinates, NaN for nearly flat simplices.
 
-        Nearly flat is what SciPy takes for it: the reciprocal condition number of the matrix of
-        edge vectors, in the 1-norm, is below 1000 eps. The maps of these triangles are in
+        A simplex is nearly flat by SciPy's definition: the reciprocal condition number of the
+        matrix of edge vectors, in the 1-norm, is below 1000 eps. The maps of these triangles are in
         ``delone.Delaunay.transform``.
         """
         maps = self._mesh.transform.copy()
@@ -260,15 +260,15 @@ class Delaunay(Incremental):
 
     @cached_property
     def paraboloid_shift(self) -> float:
-        """What is added to the lifted coordinate."""
+        """Offset of the lifted coordinate."""
         return self._paraboloid[1]
 
     @cached_property
     def _normals(self) -> tuple[Floats, Floats]:
-        """Horizontal parts of the normals before they are made unit vectors, and their lengths.
+        """Horizontal parts of the normals before normalization, and their lengths.
 
-        The plane over a circle with centre c is z = s (2 c x + r² - c²) + t, so that its normal is
-        (2 s c, -1), which points down, as the outside of the lower side of the lifted hull.
+        The plane over a circle with center c is z = s (2 c x + r² - c²) + t, so that its normal is
+        (2 s c, -1), which points down, out of the lower side of the lifted hull.
         """
         horizontal = 2 * self.paraboloid_scale * self._mesh.circumcenters
         length = np.ones(len(horizontal))
@@ -281,7 +281,7 @@ class Delaunay(Incremental):
         """Normal and offset of the plane through the lifted corners of each simplex."""
         horizontal, length = self._normals
         corner = self._mesh.points[self._mesh.simplices[:, 0]]
-        # The offset is what makes the equation 0 at a lifted corner.
+        # The offset makes the equation 0 at a lifted corner.
         offset = self.lift_points(corner)[:, -1] - (horizontal * corner).sum(axis=1)
         down = np.column_stack((horizontal, -np.ones(len(length)), offset)) / length[:, None]
         return -down if self.furthest_site else down
@@ -302,9 +302,9 @@ class Delaunay(Incremental):
         Raises
         ------
         IndexError
-            `x` is a number.
+            `x` is a scalar.
         ValueError
-            `x` has another number of coordinates.
+            `x` has a wrong number of coordinates.
 
         Examples
         --------
@@ -317,7 +317,7 @@ class Delaunay(Incremental):
         return np.concatenate((x, height[..., None]), axis=-1)
 
     def plane_distance(self, xi: ArrayLike) -> Floats:
-        """Return how far lifted points are from the planes of all simplices.
+        """Return the distances of lifted points to the planes of all simplices.
 
         Parameters
         ----------
@@ -327,20 +327,21 @@ class Delaunay(Incremental):
         Returns
         -------
         ndarray of float64, shape (..., nsimplex)
-            Positive where the lifted point is on the outer side of the plane: for a point inside
-            the circle or sphere of a simplex, or outside it in a furthest-site triangulation.
+            Positive if the lifted point is on the outer side of the plane: for a point inside the
+            circumcircle or circumsphere of a simplex, or outside it in a furthest-site
+            triangulation.
 
         Raises
         ------
         IndexError
-            `xi` is a number.
+            `xi` is a scalar.
         ValueError
-            `xi` has another number of coordinates.
+            `xi` has a wrong number of coordinates.
 
         Notes
         -----
-        Computed from differences to a corner, so that nothing is lost far from the origin. Time and
-        memory are those of all pairs of points and simplices.
+        Computed from differences to a corner, so that no precision is lost far from the origin.
+        Time and memory are proportional to the number of pairs of points and simplices.
 
         Examples
         --------
@@ -363,7 +364,7 @@ class Delaunay(Incremental):
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
     ) -> Indices:
-        """Tell which simplices hold points, exactly.
+        """Find the simplices that contain points, exactly.
 
         Parameters
         ----------
@@ -375,14 +376,14 @@ class Delaunay(Incremental):
         Returns
         -------
         ndarray of int32, shape (...)
-            Triangles or tetrahedra, the first one where there are several, -1 outside.
+            Triangles or tetrahedra, the first one if there are several, -1 outside.
 
         Raises
         ------
         IndexError
-            `xi` is a number.
+            `xi` is a scalar.
         ValueError
-            `xi` has another number of coordinates.
+            `xi` has a wrong number of coordinates.
 
         Examples
         --------
@@ -394,7 +395,7 @@ class Delaunay(Incremental):
 
 
 def tsearch(tri: Any, xi: ArrayLike) -> Indices:
-    """Tell which simplices hold points: ``tri.find_simplex(xi)``.
+    """Find the simplices that contain points: ``tri.find_simplex(xi)``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The place of ``scipy.spatial.HalfspaceIntersection`` taken by delone.
+"""Drop-in replacement for ``scipy.spatial.HalfspaceIntersection``.
 
 >>> import numpy as np
 >>> from delone.compat.scipy import HalfspaceIntersection
@@ -7,19 +7,19 @@
 >>> sorted(found.intersections.tolist())
 [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
 
-A half-space ``a x + b <= 0`` that holds the interior point p is the dual point ``-a / (a p + b)``,
-and corners of the intersection are facets of the convex hull of the dual points. What differs from
-SciPy:
+A half-space ``a x + b <= 0`` that contains the interior point p corresponds to the dual point ``-a
+/ (a p + b)``, and corners of the intersection to facets of the convex hull of the dual points.
+Differences from SciPy:
 
-* Facets and corners come in delone's order, and the vertices of a dual facet in order around it,
-  counter-clockwise as seen from outside.
-* Half-spaces whose boundaries meet in one point make one corner if they do so exactly; where they
-  miss it by rounding there are several corners, which SciPy merges within a tolerance.
-* Where the intersection has no end, the dual facet that stands for that has an intersection of
-  infinities. SciPy returns a point outside of the intersection there.
+* Facets and corners are in delone's order, and the vertices of a dual facet are in order around it,
+counter-clockwise as seen from outside.
+* Half-spaces whose boundaries meet exactly in one point have one corner there; if they miss it by
+rounding there are several corners, which SciPy merges within a tolerance.
+* If the intersection is unbounded, the dual facet that represents this has an infinite
+intersection. SciPy returns a point outside the intersection there.
 * Corners are computed from the half-spaces, not from the dual hull, and are more accurate.
-* Points in more than three dimensions are refused.
-* `add_halfspaces` computes everything anew.
+* Points in more than three dimensions are rejected.
+* `add_halfspaces` recomputes everything.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 __all__ = ["HalfspaceIntersection"]
 
 _SPACE = 3
-# Sums that lose more of their terms than this are summed exactly.
+# Sums with more cancellation than this are computed exactly.
 _CANCELED = 0.1
 
 
@@ -54,23 +54,23 @@ class HalfspaceIntersection:
     Parameters
     ----------
     halfspaces : array_like, shape (nineq, ndim + 1)
-        Rows ``(a, b)`` for ``a @ x + b <= 0``, in the plane or in space.
+        Rows ``(a, b)`` for ``a @ x + b <= 0``, in 2-D or 3-D.
     interior_point : array_like, shape (ndim,)
         A point that is strictly inside all of them.
     incremental : bool, optional
         Whether `add_halfspaces` may be called.
     qhull_options : str, optional
-        As in SciPy. Options about rounding have no effect. With ``Qt`` dual facets are triangulated
-        in space, and a corner comes once for each triangle.
+        As in SciPy. Options about rounding have no effect. With ``Qt``, dual facets are
+        triangulated in 3-D, and a corner is repeated for each triangle.
 
     Attributes
     ----------
     halfspaces : ndarray of float64, shape (nineq, ndim + 1)
         The half-spaces.
     interior_point : ndarray of float64, shape (ndim,)
-        The point inside.
+        The interior point.
     intersections : ndarray of float64, shape (ninter, ndim)
-        The corners, one for each dual facet; infinite where the intersection has no end.
+        The corners, one for each dual facet; infinite if the intersection is unbounded.
     dual_points : ndarray of float64, shape (nineq, ndim)
         The dual point of each half-space.
     dual_facets : list of list of int
@@ -80,7 +80,7 @@ class HalfspaceIntersection:
     dual_equations : ndarray of float64, shape (ninter, ndim + 1)
         Outer normals and offsets of the dual facets.
     dual_area, dual_volume : float
-        Surface and volume of the dual hull; in the plane perimeter and area.
+        Surface area and volume of the dual hull; in 2-D perimeter and area.
     ndim, nineq : int
         Sizes.
 
@@ -90,16 +90,16 @@ class HalfspaceIntersection:
         The point is not strictly inside; there are too few half-spaces for a corner; a number is
         infinite; an option is unknown.
     ValueError
-        A number is NaN, an array has a wrong shape or dtype or is masked, or an option asks for
-        something else.
+        A number is NaN, an array has a wrong shape or dtype or is masked, or an option requires a
+        different result.
     DimensionError
         There are more than three coordinates.
 
     Notes
     -----
-    Whether the point is inside, which boundaries meet in one point, and whether there is an end is
-    decided exactly. The dual points are rounded, so that a half-space which cuts off less than that
-    may count as redundant.
+    Whether the point is inside, which boundaries meet in one point, and whether the intersection is
+    bounded are decided exactly. The dual points are rounded, so a half-space that cuts off less
+    than that may be classified as redundant.
 
     Examples
     --------
@@ -132,13 +132,13 @@ class HalfspaceIntersection:
         self._set(rows)
 
     def _set(self, rows: Floats) -> None:
-        """Compute what there is of the half-spaces; nothing changes where that fails."""
+        """Compute the results for the half-spaces; nothing changes if that fails."""
         slack = _slack(rows, self.interior_point)
         with np.errstate(over="ignore", divide="ignore"):
             points = rows[:, :-1] / -slack[:, None]
         if not np.isfinite(points).all():
             row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-            raise QhullError(f"interior_point is too near to the boundary of half-space {row}")
+            raise QhullError(f"interior_point is too close to the boundary of half-space {row}")
         distinct = duals.first_of_equal(rows)
         with told_as_qhull_does(points[distinct], "corner of the half-spaces"):
             found = hull.ConvexHull(points[distinct])
@@ -167,21 +167,21 @@ class HalfspaceIntersection:
         return np.unique(np.concatenate(self._facets.vertices))
 
     def add_halfspaces(self, halfspaces: ArrayLike, restart: bool = False) -> None:
-        """Add half-spaces, and compute everything anew.
+        """Add half-spaces, and recompute everything.
 
         Parameters
         ----------
         halfspaces : array_like, shape (k, ndim + 1) or (ndim + 1,)
-            What to append to `halfspaces`.
+            Half-spaces to append to `halfspaces`.
         restart : bool, optional
-            Accepted as in SciPy. The result is the same.
+            Accepted as in SciPy, without effect.
 
         Raises
         ------
         RuntimeError
             `incremental` was not set, or `close` has been called.
         QhullError, ValueError
-            As in the constructor; then nothing has changed.
+            As in the constructor; nothing is changed.
 
         Examples
         --------
@@ -194,19 +194,19 @@ class HalfspaceIntersection:
         5
         """
         if not self._open:
-            raise RuntimeError("incremental mode is not enabled, or closed already")
+            raise RuntimeError("incremental mode is not enabled, or already closed")
         more = _as_rows(np.atleast_2d(np.asanyarray(halfspaces)))
         if more.shape[1] != self.ndim + 1:
             raise ShapeError(f"halfspaces must have shape (k, {self.ndim + 1}), got {more.shape}")
         self._set(np.concatenate((self.halfspaces, more)))
 
     def close(self) -> None:
-        """End incremental mode; `add_halfspaces` is refused from then on."""
+        """End incremental mode; `add_halfspaces` raises from then on."""
         self._open = False
 
 
 def _as_rows(halfspaces: ArrayLike) -> Floats:
-    """Half-spaces as rows of doubles, refused with SciPy's kinds of errors."""
+    """Half-spaces as rows of doubles, with errors of SciPy's types."""
     if isinstance(halfspaces, np.ma.MaskedArray):
         raise DtypeError("halfspaces must not be a masked array")
     given: NDArray[Any] = np.asarray(halfspaces)
@@ -219,13 +219,13 @@ def _as_rows(halfspaces: ArrayLike) -> Floats:
         )
     if rows.shape[1] > _SPACE + 1:
         raise DimensionError(
-            "this answer of delone.compat.scipy is for half-spaces in the plane and in space; for "
+            "this function of delone.compat.scipy is only available in 2-D and 3-D; for "
             f"{rows.shape[1] - 1} coordinates use scipy.spatial"
         )
     bad = np.flatnonzero(np.isnan(rows).any(axis=1))
     if bad.size:
         raise NonFiniteError(
-            f"halfspaces: {len(bad)} of {len(rows)} rows hold NaN; first: {bad[0]}",
+            f"halfspaces: {len(bad)} of {len(rows)} rows contain NaN; first: {bad[0]}",
             rows=bad[:10],
             count=len(bad),
         )

@@ -1,19 +1,19 @@
-"""The place of ``scipy.spatial.ConvexHull`` taken by delone.
+"""Drop-in replacement for ``scipy.spatial.ConvexHull``.
 
 >>> from delone.compat.scipy import ConvexHull
 >>> hull = ConvexHull([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
 >>> hull.vertices.tolist(), hull.volume, hull.area
 ([0, 1, 2, 3], 12.0, 14.0)
 
-The signature, attributes, dtypes, errors and the mutability of arrays are SciPy's. What differs:
+Signatures, attributes, dtypes, errors and the mutability of arrays are SciPy's. Differences:
 
-* Simplices come in delone's order, and each facet is triangulated by delone's rule.
-* Normals are those of whole facets, so that coplanar triangles have one equation.
+* Simplices are in delone's order, and each facet is triangulated by delone's rule.
+* Normals are those of whole facets, so that coplanar triangles have the same equation.
 * `coplanar`, with option ``Qc``, lists the rows that repeat a vertex.
-* ``QGn`` is exact: a facet is visible to point n where that is strictly beyond its plane.
-* In space the boundary is oriented: triangles are counter-clockwise seen from outside.
-* Points in more than three dimensions are refused.
-* `add_points` computes the hull anew.
+* ``QGn`` is exact: a facet is visible from point n if the point is strictly beyond its plane.
+* In 3-D the boundary is oriented: triangles are counter-clockwise seen from outside.
+* Points in more than three dimensions are rejected.
+* `add_points` recomputes the hull.
 """
 
 from __future__ import annotations
@@ -48,17 +48,18 @@ class ConvexHull(Incremental):
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
-        As in SciPy. Options about rounding have no effect, for nothing is rounded; ``QbB``, after
-        which SciPy measures the scaled points, ``C-0`` and ``A-1`` are among them. With ``Qc`` rows
-        that repeat a vertex are listed in `coplanar`; with ``QGn`` or ``QG-n`` point n is left out,
-        and `good` tells which facets are visible to it, or are not. The default is ``"Qt"``.
+        As in SciPy. Options about rounding have no effect, because nothing is rounded. These
+        include ``QbB`` (after which SciPy measures the scaled points), ``C-0`` and ``A-1``. With
+        ``Qc``, rows that repeat a vertex are listed in `coplanar`. With ``QGn`` or ``QG-n``, point
+        n is left out, and `good` says which facets are, or are not, visible from it. The default is
+        ``"Qt"``.
 
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, ndim)
-        Coordinates; the array given where it is of this dtype and layout, as in SciPy.
+        Coordinates; the given array itself if it has this dtype and layout, as in SciPy.
     vertices : ndarray of int32, shape (nvertices,)
-        The extreme points: counter-clockwise in the plane, ascending in space.
+        The extreme points: counter-clockwise in 2-D, ascending in 3-D.
     simplices : ndarray of int32, shape (nfacet, ndim)
         Edges or triangles.
     neighbors : ndarray of int32, shape (nfacet, ndim)
@@ -70,25 +71,25 @@ class ConvexHull(Incremental):
     good : ndarray of bool, shape (nfacet,), or None
         Which facets are visible, with option ``QGn``.
     area, volume : float
-        In the plane perimeter and area.
+        Surface area and volume; in 2-D perimeter and area.
     ndim, npoints, nsimplex : int
         Sizes.
     min_bound, max_bound : ndarray of float64, shape (ndim,)
-        The least and the greatest coordinates.
+        The minimum and maximum coordinates.
 
     Raises
     ------
     QhullError
         The points span no area, or no volume; a coordinate is infinite; an option is unknown.
     ValueError
-        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for another
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option requires a different
         hull.
     DimensionError
         The points have more than three coordinates. (A NotImplementedError and a ValueError.)
 
     Notes
     -----
-    The module's documentation lists what differs from SciPy.
+    The documentation of the module lists the differences from SciPy.
 
     Examples
     --------
@@ -115,7 +116,9 @@ class ConvexHull(Incremental):
         with told_as_qhull_does(points, self._what):
             if self._viewer is not None:
                 if self._viewer[0] >= len(points):
-                    raise QhullError(f"option QG names point {self._viewer[0]}, beyond the last")
+                    raise QhullError(
+                        f"option QG names point {self._viewer[0]}, which does not exist"
+                    )
                 rows = np.delete(rows, self._viewer[0])
             found = hull.ConvexHull(points[rows] if self._viewer else points)
         self._points, self._hull, self._rows = points, found, rows
@@ -152,7 +155,7 @@ class ConvexHull(Incremental):
 
     @cached_property
     def good(self) -> NDArray[np.bool_] | None:
-        """Which facets are visible to the point of option ``QGn``, or are not."""
+        """Which facets are (or are not) visible from the point of option ``QGn``."""
         if self._viewer is None:
             return None
         row, visible = self._viewer
@@ -167,12 +170,12 @@ class ConvexHull(Incremental):
 
     @cached_property
     def volume(self) -> float:
-        """The volume; in the plane the area."""
+        """The volume; in 2-D the area."""
         return self._hull.volume
 
     @cached_property
     def area(self) -> float:
-        """The area of the surface; in the plane the perimeter."""
+        """The surface area; in 2-D the perimeter."""
         return self._hull.area
 
     @cached_property
@@ -198,7 +201,7 @@ def _viewer(options: str) -> tuple[str, tuple[int, bool] | None]:
         if match is None:
             others.append(option)
         elif found is not None:
-            raise InputError("only one point can look at the hull: QG is given twice")
+            raise InputError("option QG is allowed only once")
         else:
             found = (int(match[2]), match[1] == "")
     return " ".join(others), found

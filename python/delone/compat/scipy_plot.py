@@ -1,4 +1,4 @@
-"""The places of SciPy's ``delaunay_plot_2d`` and ``convex_hull_plot_2d`` taken by delone."""
+"""Drop-in replacements for SciPy's ``delaunay_plot_2d`` and ``convex_hull_plot_2d``."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from delone.extras import require
 
 __all__ = ["convex_hull_plot_2d", "delaunay_plot_2d"]
 
-# Share of the box of the points that stays free on each side.
+# Margin on each side, as a fraction of the bounding box of the points.
 _MARGIN = 0.1
 
 
 def delaunay_plot_2d(tri: Any, ax: Any = None) -> Any:
-    """Draw a Delaunay triangulation as SciPy does.
+    """Plot a Delaunay triangulation as SciPy does.
 
     Parameters
     ----------
     tri : Delaunay
-        A triangulation; those of SciPy and of `delone.Delaunay` do as well.
+        A triangulation; those of SciPy and `delone.Delaunay` are accepted as well.
     ax : matplotlib Axes, optional
-        Where to draw; by default on new axes.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def delaunay_plot_2d(tri: Any, ax: Any = None) -> Any:
     MissingExtraError
         matplotlib is not installed.
     ValueError
-        The triangulation is not in the plane.
+        The triangulation is not 2-D.
 
     Examples
     --------
@@ -53,14 +53,14 @@ def delaunay_plot_2d(tri: Any, ax: Any = None) -> Any:
 
 
 def convex_hull_plot_2d(hull: Any, ax: Any = None) -> Any:
-    """Draw a convex hull as SciPy does.
+    """Plot a convex hull as SciPy does.
 
     Parameters
     ----------
     hull : ConvexHull
-        A hull; those of SciPy and of `delone.ConvexHull` do as well.
+        A hull; those of SciPy and `delone.ConvexHull` are accepted as well.
     ax : matplotlib Axes, optional
-        Where to draw; by default on new axes.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def convex_hull_plot_2d(hull: Any, ax: Any = None) -> Any:
     MissingExtraError
         matplotlib is not installed.
     ValueError
-        The hull is not in the plane.
+        The hull is not 2-D.
 
     Examples
     --------
@@ -95,14 +95,14 @@ def _begun(thing: Any, ax: Any, what: str) -> tuple[Any, Any]:
     """The points, and axes to draw on."""
     points = np.asarray(thing.points)
     if points.shape[1] != 2:
-        raise ShapeError(f"the {what} is not in the plane")
+        raise ShapeError(f"the {what} is not 2-D")
     if ax is None:
         ax = require("matplotlib.pyplot", extra="plot", what="drawing").figure().gca()
     return points, ax
 
 
 def _ended(points: Any, ax: Any) -> Any:
-    """The figure, its limits set as SciPy sets them."""
+    """The figure, with SciPy's limits."""
     margin = _MARGIN * np.ptp(points, axis=0)
     low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))

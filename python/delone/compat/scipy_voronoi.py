@@ -1,13 +1,13 @@
-"""The place of ``scipy.spatial.Voronoi`` and ``voronoi_plot_2d`` taken by delone.
+"""Drop-in replacements for ``scipy.spatial.Voronoi`` and ``voronoi_plot_2d``.
 
-`delone.compat.scipy` has both by name. What differs from SciPy:
+`delone.compat.scipy` exports both. Differences from SciPy:
 
-* Sites on one circle or sphere share one vertex whatever their coordinates, so that no ridge is
-  without length or area, and vertices, ridges and regions come in delone's order.
-* In space every ridge is listed; Qhull leaves out those that go on for ever and have one vertex.
-* Furthest-site diagrams are of the plane.
+* Sites on one circle or sphere share one vertex whatever their coordinates, so every ridge has a
+positive length or area, and vertices, ridges and regions are in delone's order.
+* In 3-D every ridge is listed; Qhull omits unbounded ones with one vertex.
+* Furthest-site diagrams are only available in 2-D.
 * Every distinct point has a region; duplicates share that of their first row, as in SciPy.
-* `add_points` computes the diagram anew.
+* `add_points` recomputes the diagram.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Voronoi(Incremental):
         The sites.
     furthest_site : bool, optional
         Whether to compute the furthest-site diagram, in which each cell is nearer to all other
-        sites. In the plane only.
+        sites. Only available in 2-D.
     incremental : bool, optional
         Whether `add_points` may be called.
     qhull_options : str, optional
@@ -55,18 +55,18 @@ class Voronoi(Incremental):
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, ndim)
-        The sites; the array given where it is of this dtype and layout, as in SciPy.
+        The sites; the given array itself if it has this dtype and layout, as in SciPy.
     vertices : ndarray of float64, shape (nvertices, ndim)
         Vertices, accurate to a few units in the last place.
     ridge_points : ndarray of int32, shape (nridges, 2)
         The two sites of each ridge.
     ridge_vertices : list of list of int
-        The vertices of each ridge, two in the plane and in space all in order around it; -1, which
-        comes first, where it is unbounded.
+        The vertices of each ridge, two in 2-D, and in 3-D all in order around it; -1, which is
+        first, if it is unbounded.
     ridge_dict : dict
-        The vertices of each ridge by the pair of its sites.
+        The vertices of each ridge keyed by the pair of its sites.
     regions : list of list of int
-        For each region its vertices, in the plane in order around it; -1 where it is unbounded.
+        The vertices of each region, in 2-D in order around it; -1 if it is unbounded.
     point_region : ndarray of int64, shape (npoints,)
         The region of each site.
     furthest_site : bool
@@ -74,22 +74,22 @@ class Voronoi(Incremental):
     ndim, npoints : int
         Sizes.
     min_bound, max_bound : ndarray of float64, shape (ndim,)
-        The least and the greatest coordinates.
+        The minimum and maximum coordinates.
 
     Raises
     ------
     QhullError
-        The points span no area, or in space no volume; a coordinate is infinite; an option is
-        unknown. (`delone.Voronoi` has diagrams of any number of sites in the plane.)
+        The points span no area, or in 3-D no volume; a coordinate is infinite; an option is
+        unknown. (`delone.Voronoi` supports any number of sites in 2-D.)
     ValueError
-        A coordinate is NaN, the array has a wrong shape or dtype, or an option asks for another
+        A coordinate is NaN, the array has a wrong shape or dtype, or an option requires a different
         diagram.
     DimensionError
-        The points have more than three coordinates, or more than two where `furthest_site` is set.
+        The points have more than three coordinates, or more than two if `furthest_site` is set.
 
     Notes
     -----
-    The module's documentation lists what differs from SciPy.
+    The documentation of the module lists the differences from SciPy.
 
     Examples
     --------
@@ -145,7 +145,7 @@ class Voronoi(Incremental):
 
     @cached_property
     def ridge_dict(self) -> dict[tuple[int, ...], list[int]]:
-        """The vertices of each ridge by the pair of its sites."""
+        """The vertices of each ridge keyed by the pair of its sites."""
         pairs = map(tuple, self.ridge_points.tolist())
         return dict(zip(pairs, self.ridge_vertices, strict=True))
 
@@ -159,7 +159,7 @@ class Voronoi(Incremental):
         lists: list[list[int]] = [[]] if infinite else []
         of_point[of_point >= 0] += len(lists)
         lists += cells
-        # Sites without a cell (inner ones, of a furthest-site diagram) have an empty one each.
+        # Sites without a cell (inner ones of a furthest-site diagram) have an empty one each.
         rows = np.flatnonzero((of_point < 0) & (self._first_rows == np.arange(self.npoints)))
         of_point[rows] = len(lists) + np.arange(len(rows))
         lists += [[] for _ in rows]
@@ -173,7 +173,7 @@ class Voronoi(Incremental):
 
     @property
     def regions(self) -> list[list[int]]:
-        """For each region its vertices, -1 where it is unbounded."""
+        """The vertices of each region; -1 if it is unbounded."""
         return self._regions[0]
 
     @property
@@ -193,14 +193,14 @@ class Voronoi(Incremental):
 
 
 def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
-    """Draw a Voronoi diagram as SciPy does.
+    """Plot a Voronoi diagram as SciPy does.
 
     Parameters
     ----------
     vor : Voronoi
-        A diagram; that of SciPy and that of `delone.Voronoi` do as well.
+        A diagram; those of SciPy and `delone.Voronoi` are accepted as well.
     ax : matplotlib Axes, optional
-        Where to draw; by default on new axes.
+        Axes to draw on; by default new ones.
     **kw
         ``show_points``, ``show_vertices`` (bool), ``line_colors``, ``line_width``, ``line_alpha``,
         ``point_size``: as in SciPy.
@@ -215,11 +215,11 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
     MissingExtraError
         matplotlib is not installed.
     ValueError
-        The diagram is not in the plane.
+        The diagram is not 2-D.
 
     Notes
     -----
-    Unbounded ridges, dashed, go as far as SciPy draws them: by the longer side of the box of the
+    Unbounded ridges are dashed and as long as in SciPy: the longer side of the bounding box of the
     sites times its aspect ratio, away from the mean of all sites.
 
     Examples
@@ -235,7 +235,7 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
 
     lines = require("matplotlib.collections", extra="plot", what="drawing")
     if vor.points.shape[1] != 2:
-        raise ShapeError("the Voronoi diagram is not in the plane")
+        raise ShapeError("the Voronoi diagram is not 2-D")
     ax = ax or require("matplotlib.pyplot", extra="plot", what="drawing").figure().gca()
     if kw.get("show_points", True):
         ax.plot(*vor.points.T, ".", markersize=kw.get("point_size"))
@@ -259,7 +259,7 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
 
 
 def _far_segments(vor: Any, pairs: Indices) -> Floats:
-    """The unbounded ridges that have a vertex, as far as they are drawn."""
+    """The unbounded ridges with a vertex, up to their drawn ends."""
     rows = np.flatnonzero((pairs < 0).any(axis=1) & (pairs >= 0).any(axis=1))
     start = vor.vertices[pairs[rows].max(axis=1)]
     first, second = vor.points[np.asarray(vor.ridge_points)[rows]].swapaxes(0, 1)

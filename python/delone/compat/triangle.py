@@ -1,8 +1,8 @@
-"""`triangulate` and its kin with the dictionaries and switches of the package ``triangle``.
+"""Drop-in replacement for the package ``triangle``: its functions, dictionaries and switches.
 
-That package wraps J. R. Shewchuk's program Triangle (1996); here the same keys go in and come out,
-and delone does the work. Nothing of either is used. Vertices of the input keep their rows, added
-ones follow; the order of triangles and the places of added vertices are delone's own.
+That package wraps J. R. Shewchuk's program Triangle (1996). Here the input and output keys are the
+same, but delone does the work; no code of either is used. Vertices of the input keep their rows,
+and added ones follow; the order of triangles and the positions of added vertices are delone's own.
 """
 
 from __future__ import annotations
@@ -41,24 +41,24 @@ _KEYS = (
 )  # fmt: skip
 _SWITCH = re.compile(r"([qaS])((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)?|([A-Za-z])")
 _KNOWN = "pqaAcDejnrvXYS"
-# How Triangle computes, how much it says and checks: nothing of it changes what comes out.
+# Algorithms, verbosity and checks of Triangle, which do not change the result.
 _WITHOUT_EFFECT = "XviFlsCQVz"
 _REFUSED = {
-    "u": "a test of triangles in C that is compiled into Triangle; give delone.mesh a size",
+    "u": "a test of triangles in C that is compiled into Triangle; use size= of delone.mesh",
     "o": "triangles of second order with six nodes",
     "B": "output without markers; leave out the keys",
     "P": "output without segments; leave out the key",
     "N": "output without vertices; leave out the key",
     "E": "output without triangles; leave out the key",
-    "I": "numbers of iterations in the names of files",
-    "g": "files of Geomview",
-    "O": "holes that are passed over; leave out the key holes",
+    "I": "iteration numbers in file names",
+    "g": "Geomview files",
+    "O": "ignored holes; leave out the key holes",
 }
 _DEFAULT_ANGLE = 20.0
 
 
 class Switches(NamedTuple):
-    """What the letters say."""
+    """The parsed switches."""
 
     on: frozenset[str]
     angle: float
@@ -68,61 +68,62 @@ class Switches(NamedTuple):
 
 
 def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
-    """Triangulate or mesh what a dictionary holds.
+    """Triangulate or mesh the contents of a dictionary.
 
     Parameters
     ----------
     tri : mapping
         Arrays by name: ``vertices`` (n, 2), ``vertex_attributes`` (n, k), ``vertex_markers``,
         ``segments`` (s, 2), ``segment_markers``, ``holes`` (h, 2), ``regions`` (r, 4) of x, y,
-        attribute and largest area; and for ``r`` ``triangles`` (m, 3), ``triangle_attributes``
-        (m, k) and ``triangle_max_area``.
+        attribute and maximum area; and for switch ``r``, ``triangles`` (m, 3),
+        ``triangle_attributes`` (m, k) and ``triangle_max_area``.
     opts : str, optional
         Switches:
 
-        - ``p``: the segments are edges, what lies outside of them and in holes is removed;
-        - ``c``: with ``p`` or without, the convex hull is kept and bounded by segments;
-        - ``q``: no angle below 20 degrees, or below the number behind it;
-        - ``a``: no triangle larger than the number behind it; without a number the areas of
-          ``regions``, or with ``r`` of ``triangle_max_area``, count where they are above 0;
+        - ``p``: the segments are edges; triangles outside them and in holes are removed;
+        - ``c``: with or without ``p``, the convex hull is kept and bounded by segments;
+        - ``q``: no angle below 20 degrees, or below the number that follows;
+        - ``a``: no triangle larger than the number that follows; without a number, the areas of
+          ``regions``, or with ``r`` of ``triangle_max_area``, are used if they are above 0;
         - ``A``: triangles get the attribute of their region, 0 without one;
-        - ``D``: every triangle is Delaunay, also across segments;
-        - ``r``: the triangles that are given are refined, together with ``q`` or ``a``;
-        - ``S``: add at most so many vertices;
+        - ``D``: every triangle is Delaunay, including across segments;
+        - ``r``: the given triangles are refined, together with ``q`` or ``a``;
+        - ``S``: add at most this many vertices;
         - ``Y``: add none on the boundary; ``YY`` none on any segment. Triangles there may keep
           small angles and large areas: a warning says how many;
         - ``e``: return ``edges`` and ``edge_markers``; ``n``: return ``neighbors``;
-        - ``j``: leave vertices out that no triangle has.
+        - ``j``: omit vertices that no triangle uses.
 
-        ``X i F l s C Q V v z`` are accepted and change nothing: arithmetic is always exact, and
-        as in the package ``v`` returns nothing here, see `voronoi`. All others are refused by name.
+        ``X i F l s C Q V v z`` are accepted and change nothing: arithmetic is always exact, and as
+        in the package ``v`` returns nothing here, see `voronoi`. All others raise an error with
+        their name.
 
     Returns
     -------
     dict
-        ``vertices``, ``vertex_markers`` (n, 1), ``triangles``, and as asked for or given
-        ``vertex_attributes`` (linear in between), ``triangle_attributes``, ``segments``,
+        ``vertices``, ``vertex_markers`` (n, 1), ``triangles``, and if requested or given
+        ``vertex_attributes`` (linearly interpolated), ``triangle_attributes``, ``segments``,
         ``segment_markers``, ``neighbors``, ``edges``, ``edge_markers``, ``holes``, ``regions``.
-        Edges of the boundary without a marker have 1, and so have vertices there.
+        Boundary edges without a marker have 1, and so do boundary vertices.
 
     Raises
     ------
     InputError
-        An unknown key, a switch that is not supported, or an outline that encloses nothing.
+        An unknown key, a switch that is not supported, or an outline that encloses no area.
     ShapeError, DtypeError, NonFiniteError, DegenerateInputError, BudgetExceededError
         As for `delone.mesh`.
 
     Warns
     -----
     UserWarning
-        ``Y`` has kept segments whole at the price of angles or areas. The message says how many
-        triangles miss what was asked for.
+        ``Y`` left segments unsplit at the expense of angles or areas. The message says how many
+        triangles miss the requested bounds.
 
     Notes
     -----
-    Without ``q``, ``a`` and ``D`` no vertex is added, except where segments cross: each crossing
-    becomes one, as in Triangle. Where Triangle would end the process on bad input, an exception is
-    raised.
+    Without ``q``, ``a`` and ``D`` no vertex is added, except at crossings of segments, which become
+    vertices as in Triangle. Where Triangle would terminate the process on bad input, an exception
+    is raised.
 
     Examples
     --------
@@ -146,7 +147,7 @@ into Triangle; give delone.mesh a size
     if unknown:
         raise InputError(f"unknown key {unknown[0]!r}; known are {', '.join(_KEYS)}")
     if "vertices" not in tri:
-        raise InputError("there is no key 'vertices'")
+        raise InputError("key 'vertices' is missing")
     points = as_points(tri["vertices"], ndim=2, name="vertices")
     if "r" in switches.on:
         made, attributes, base = again(tri, points, switches)
@@ -164,7 +165,7 @@ def _parsed(opts: str) -> Switches:
     for match in _SWITCH.finditer(opts):
         letter, number = match[1] or match[3], match[2]
         if letter in _REFUSED or letter not in _KNOWN + _WITHOUT_EFFECT:
-            reason = _REFUSED.get(letter, "no switch of Triangle that delone knows")
+            reason = _REFUSED.get(letter, "not a known switch of Triangle")
             raise InputError(f"switch {letter} is not supported: {reason}")
         on.append(letter)
         if letter == "q":
@@ -175,7 +176,7 @@ def _parsed(opts: str) -> Switches:
             steiner = int(float(number or 0))
     rest = _SWITCH.sub("", opts).strip()
     if rest:
-        raise InputError(f"switches {opts!r} hold {rest!r}, which belongs to none")
+        raise InputError(f"switches {opts!r} contain {rest!r}, which belongs to no switch")
     frozen: bool | str = on.count("Y") > 1 or ("boundary" if "Y" in on else False)
     return Switches(frozenset(on), angle, area, steiner, frozen)
 
@@ -183,16 +184,16 @@ def _parsed(opts: str) -> Switches:
 def _meshed(
     tri: Mapping[str, Any], points: Floats, switches: Switches
 ) -> tuple[Mesh, Floats | None, ConstrainedDelaunay]:
-    """Mesh points and segments; the attributes of triangles, and what came first."""
+    """Mesh points and segments; return the attributes of triangles, and the input mesh."""
     planar = "p" in switches.on
     segments = as_segments(tri.get("segments", ()) if planar else (), len(points))
     seeds = rows_of(tri.get("regions"), 4, "regions") if planar else np.empty((0, 4))
-    labelled = np.column_stack((seeds[:, :2], np.arange(len(seeds))))
+    labeled = np.column_stack((seeds[:, :2], np.arange(len(seeds))))
     base = ConstrainedDelaunay(
         points,
         segments,
         holes=tri.get("holes") if planar else None,
-        regions=labelled if len(seeds) else None,
+        regions=labeled if len(seeds) else None,
         boundary="outline" if planar and "c" not in switches.on else "hull",
         crossing="split",
     )
@@ -200,7 +201,7 @@ def _meshed(
     if "a" in switches.on and area is None:
         present = set(np.unique(base.region).tolist())
         area = {i: a for i, a in enumerate(seeds[:, 3].tolist()) if a > 0 and i in present}
-    # S ends the work, as in Triangle, where mesh() would refuse what it cannot do with so few.
+    # S stops the refinement, as in Triangle, where mesh() would raise an error.
     limits = Limits(
         as_min_angle(switches.angle),
         MOST_ADDED if switches.steiner is None else switches.steiner,
@@ -283,7 +284,7 @@ def _rows(found: Mesh, points: Floats, *, jettison: bool) -> tuple[Indices, Floa
 
 
 def _segment_markers(found: Mesh) -> Indices:
-    """Markers of subsegments, 1 on the boundary where there is none."""
+    """Markers of subsegments, 1 on the boundary if there is none."""
     marks = found.segment_markers.copy()
     n = found.npoints
     keys = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
@@ -320,7 +321,7 @@ def delaunay(pts: ArrayLike) -> Indices:
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points in the plane.
+        `pts` is not a finite real array of shape (n, 2).
 
     Examples
     --------
@@ -342,14 +343,14 @@ def convex_hull(pts: ArrayLike) -> Indices:
     Returns
     -------
     ndarray of int32, shape (h, 2)
-        Edges, each with the points to its left; points inside of a side divide it.
+        Edges, each with the points on its left; points inside a side split it.
 
     Raises
     ------
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points in the plane.
+        `pts` is not a finite real array of shape (n, 2).
 
     Examples
     --------
@@ -371,20 +372,20 @@ def voronoi(pts: ArrayLike) -> tuple[Floats, Indices, Indices, Floats]:
     Returns
     -------
     points : ndarray of float64, shape (m, 2)
-        The centre of the circle of each Delaunay triangle.
+        The center of the circle of each Delaunay triangle.
     edges : ndarray of int32, shape (k, 2)
         Bounded edges as rows of these.
     ray_origin : ndarray of int32, shape (h,)
-        Where each unbounded edge begins.
+        The origin of each unbounded edge.
     ray_direct : ndarray of float64, shape (h, 2)
-        Which way it goes; as long as the edge of the hull that it crosses.
+        Its direction, with the length of the hull edge that it crosses.
 
     Raises
     ------
     DegenerateInputError
         The points span no area.
     ShapeError, DtypeError, NonFiniteError
-        `pts` is no array of finite points in the plane.
+        `pts` is not a finite real array of shape (n, 2).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the drop-in for the package ``triangle`` is given: tables, meshes to refine, attributes."""
+"""Input of the drop-in for the package ``triangle``: tables, meshes to refine, attributes."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ __all__ = ["again", "interpolated", "not_reached", "rows_of"]
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
-    """Return a table of numbers.
+    """Convert a table of numbers.
 
     Parameters
     ----------
     values : array_like or None
-        The table; a vector is a column; None is no rows.
+        The table; a vector is a column; None has no rows.
     columns : int or None
-        How many columns there must be.
+        Number of columns required.
     name : str
-        What it is called in error messages.
+        Its name in error messages.
     count : int, optional
-        How many rows there must be.
+        Number of rows required.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
     Raises
     ------
     ShapeError
-        It has another shape.
+        The shape is wrong.
 
     Examples
     --------
@@ -76,25 +76,25 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
 def again(
     tri: Mapping[str, Any], points: Floats, switches: Switches
 ) -> tuple[Mesh, Floats | None, Any]:
-    """Refine triangles that are given.
+    """Refine given triangles.
 
     Parameters
     ----------
     tri : mapping
-        What was given.
+        The input.
     points : ndarray of float64, shape (n, 2)
         Its vertices.
     switches : Switches
-        What is wanted.
+        The switches.
 
     Returns
     -------
     mesh : Mesh
         The refined mesh.
     attributes : ndarray of float64, shape (m, k), or None
-        Those of the triangles in which its triangles lie.
+        Attributes of the given triangles that contain its triangles.
     base : tuple
-        The triangles given: vertices, neighbours, and what finds places in them.
+        The given triangles: vertices, neighbors, and their point location index.
     """
     if "triangles" not in tri:
         raise InputError("switch r needs the key 'triangles'")
@@ -128,7 +128,7 @@ def _domain(
     neighbors: Indices,
     switches: Switches,
 ) -> Domain:
-    """The triangles given, made Delaunay between segments and boundary."""
+    """The given triangles, made Delaunay between segments and boundary."""
     given = as_segments(tri.get("segments", ()), len(points))
     markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
@@ -180,51 +180,51 @@ def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches
     elif "a" in switches.on and tri.get("triangle_max_area") is not None:
         count = len(tri["triangles"])
         given = rows_of(tri["triangle_max_area"], None, "triangle_max_area", count)[:, 0]
-        centres = domain.points[domain.simplices[inside]].mean(axis=1)
-        wanted = given[_homes(centres, index)]
+        centers = domain.points[domain.simplices[inside]].mean(axis=1)
+        wanted = given[_homes(centers, index)]
         caps[inside] = np.where(wanted > 0, wanted, math.inf)
     return caps
 
 
 def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> str | None:
-    """Say what segments that were kept whole have cost.
+    """Return a warning about triangles that miss bounds because segments were not split.
 
     Parameters
     ----------
     tri : mapping
-        What was given.
+        The input.
     found : Mesh
-        What was made of it.
+        The result.
     base : ConstrainedDelaunay or tuple
         The triangles before points were added.
     switches : Switches
-        What was wanted.
+        The switches.
 
     Returns
     -------
     str or None
-        How many triangles are larger than they may be or have too small an angle; None where there
-        are none, or no switch keeps segments whole.
+        Numbers of triangles that are too large or have too small an angle; None if there are none,
+        or no switch forbids splitting segments.
     """
     if not switches.frozen:
         return None
-    # Areas were compared after other roundings.
+    # The refinement compared areas with different rounding.
     large = int(np.count_nonzero(found.areas > (1 + 1e-12) * _allowed(tri, found, base, switches)))
     small = int(np.count_nonzero(found.report.cause == "frozen"))
     missed = []
     if large:
-        missed.append(f"{counted(large, 'triangle')} larger than asked for")
+        missed.append(f"{counted(large, 'triangle')} larger than requested")
     if small:
         missed.append(
             f"{counted(small, 'triangle')} with an angle below {switches.angle:g} degrees"
         )
     if not missed:
         return None
-    return f"switch Y keeps segments whole and leaves {' and '.join(missed)}"
+    return f"switch Y forbids splitting segments and leaves {' and '.join(missed)}"
 
 
 def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> Floats | float:
-    """Return the largest area that each triangle of a mesh was to have."""
+    """Return the maximum area for each triangle of a mesh."""
     if switches.area is not None or "a" not in switches.on:
         return math.inf if switches.area is None else switches.area
     if isinstance(base, tuple):
@@ -236,7 +236,7 @@ def _allowed(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches)
         areas = rows_of(tri.get("regions"), 4, "regions")[:, 3]
         if not len(areas):
             return math.inf
-        # The last row is for what has no seed, and the number -1.
+        # The last row is for triangles without a seed, with number -1.
         wanted = np.append(areas, 0.0)[found.region]
     return np.where(wanted > 0, wanted, math.inf)
 
@@ -249,21 +249,21 @@ def _homes(places: Floats, index: Any) -> Indices:
 
 
 def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
-    """Return values at the points of a mesh, linear between the vertices of what came first.
+    """Return values at the points of a mesh, linearly interpolated in the input mesh.
 
     Parameters
     ----------
     found : Mesh
         The mesh.
     values : ndarray of float64, shape (n, k)
-        Values at the vertices that were given.
+        Values at the given vertices.
     base : ConstrainedDelaunay or tuple
         The triangles before points were added.
 
     Returns
     -------
     ndarray of float64, shape (points of the mesh, k)
-        Values; those of the vertices given are as they were.
+        Values; those of the given vertices are unchanged.
     """
     out = np.empty((found.npoints, values.shape[1]))
     old = found.point_source >= 0
@@ -288,7 +288,7 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
 
 
 def _with_crossings(values: Floats, base: Any, simplices: Indices) -> Floats:
-    """Values of vertices that crossings have added: the mean of their neighbours'."""
+    """Values of vertices added at crossings: the mean of those of their neighbors."""
     if isinstance(base, tuple) or not base.nadded:
         return values
     full = np.concatenate((values, np.full((base.nadded, values.shape[1]), np.nan)))

@@ -1,8 +1,8 @@
-"""Point sets to try, test and measure with: seeded generators, and two real surveys.
+"""Point sets for examples, tests and benchmarks: seeded generators, and two real surveys.
 
-Each generator is a function of the number of points and a seed. `plane` has those of the plane,
-which `GENERATORS` lists by name, `space` those of space, which `GENERATORS3` lists, and `samples`
-the surveys.
+Each generator is a function of the number of points and a seed. The 2-D generators are in `plane`
+and listed by name in `GENERATORS`, the 3-D ones are in `space` and listed in `GENERATORS3`, and the
+surveys are in `samples`.
 """
 
 from delone.datasets.plane import (
@@ -20,7 +20,7 @@ from delone.datasets.plane import (
     spiral,
     tilted_grid,
     uniform,
-    utm_millimetres,
+    utm_millimeters,
 )
 from delone.datasets.samples import Sample, ahn3, baja
 from delone.datasets.space import GENERATORS as GENERATORS3
@@ -44,5 +44,5 @@ __all__ = [
     "spiral",
     "tilted_grid",
     "uniform",
-    "utm_millimetres",
+    "utm_millimeters",
 ]

@@ -1,9 +1,9 @@
-"""Point sets in the plane to try, test and measure with: seeded generators.
+"""2-D point sets for examples, tests and benchmarks: seeded generators.
 
 Every generator is a function of the number of points and a seed, and returns float64 points of
-shape (n, 2); n must be an integer of at least 0, or InputError is raised. Each is here because it
-breaks something: a float predicate, a sort, a tolerance, a super-triangle. `GENERATORS` lists them
-by name.
+shape (n, 2); n must be an integer of at least 0, or InputError is raised. Each one is included
+because it breaks something: a float predicate, a sort, a tolerance, a super-triangle. `GENERATORS`
+lists them by name.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ __all__ = [
     "spiral",
     "tilted_grid",
     "uniform",
-    "utm_millimetres",
+    "utm_millimeters",
 ]
 
 
 def uniform(n: int, *, seed: int = 0, ndim: int = 2) -> Points:
-    """Return points uniform in the unit square or cube.
+    """Return uniformly distributed points in the unit square or cube.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def uniform(n: int, *, seed: int = 0, ndim: int = 2) -> Points:
 
 
 def gaussian_clusters(n: int, *, seed: int = 0, clusters: int = 11) -> Points:
-    """Return normal clusters in the unit square, of widths over ten orders of magnitude.
+    """Return normal clusters in the unit square, with widths over ten orders of magnitude.
 
     Parameters
     ----------
@@ -80,16 +80,16 @@ def gaussian_clusters(n: int, *, seed: int = 0, clusters: int = 11) -> Points:
     seed : int, optional
         The same seed gives the same points.
     clusters : int, optional
-        Number of clusters; their standard deviations go from 1 to 1e-10.
+        Number of clusters; their standard deviations range from 1 to 1e-10.
 
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Points, clusters mixed.
+        The points, with clusters mixed.
 
     Notes
     -----
-    Crowded cells: whatever sorts points into cells of one size ends up with most in a few.
+    Crowded cells: uniform grids put most of the points into a few cells.
 
     Examples
     --------
@@ -99,14 +99,14 @@ def gaussian_clusters(n: int, *, seed: int = 0, clusters: int = 11) -> Points:
     """
     n = as_count(n)
     rng = np.random.default_rng(seed)
-    centres, widths = rng.random((clusters, 2)), np.logspace(0, -10, clusters)
+    centers, widths = rng.random((clusters, 2)), np.logspace(0, -10, clusters)
     of = rng.integers(clusters, size=n)
-    points: Points = centres[of] + widths[of, None] * rng.standard_normal((n, 2))
+    points: Points = centers[of] + widths[of, None] * rng.standard_normal((n, 2))
     return points
 
 
 def kuzmin(n: int, *, seed: int = 0) -> Points:
-    """Return points of a Kuzmin disk, a flat galaxy: dense at the centre, thin for ever outside.
+    """Return points of a Kuzmin disk, a flat galaxy: dense at the center, with a long tail.
 
     Parameters
     ----------
@@ -118,12 +118,12 @@ def kuzmin(n: int, *, seed: int = 0) -> Points:
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        A share of 1 - 1 / sqrt(1 + r²) of them is expected within radius r.
+        The expected fraction within radius r is 1 - 1 / sqrt(1 + r²).
 
     Notes
     -----
     The density is that of Kuzmin, G. G. (1956), Astronomicheskii Zhurnal 33, 27-45. The farthest of
-    n points is about n times as far out as the median.
+    n points is about n times as far from the center as the median.
 
     Examples
     --------
@@ -139,23 +139,23 @@ def kuzmin(n: int, *, seed: int = 0) -> Points:
 
 
 def grid(n: int, *, seed: int | None = 0) -> Points:
-    """Return the first n points of the smallest square grid of integers that has as many.
+    """Return the first n points of the smallest square integer grid with at least n points.
 
     Parameters
     ----------
     n : int
         Number of points.
     seed : int or None, optional
-        Shuffles the rows; None leaves them in order, the lowest line first.
+        Shuffles the rows; None leaves them in order, starting with the lowest line.
 
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Whole numbers from 0 on.
+        Integers from 0.
 
     Notes
     -----
-    Every square of four is cocircular, every line and the whole hull collinear.
+    Every square of four is cocircular; every line and the sides of the hull are collinear.
 
     Examples
     --------
@@ -170,7 +170,7 @@ def grid(n: int, *, seed: int | None = 0) -> Points:
 
 
 def tilted_grid(n: int, *, seed: int | None = 0, angle: float = 0.3) -> Points:
-    """Return a grid turned about the origin, each coordinate rounded.
+    """Return a grid rotated about the origin, with rounded coordinates.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def tilted_grid(n: int, *, seed: int | None = 0, angle: float = 0.3) -> Points:
     seed : int or None, optional
         Shuffles the rows; None leaves them in order.
     angle : float, optional
-        Radians to turn by, counter-clockwise.
+        Angle of rotation in radians, counter-clockwise.
 
     Returns
     -------
@@ -188,7 +188,7 @@ def tilted_grid(n: int, *, seed: int | None = 0, angle: float = 0.3) -> Points:
 
     Notes
     -----
-    The classic trap for tolerances: nothing is degenerate, and everything looks so.
+    The classic trap for tolerances: nothing is degenerate, but everything looks degenerate.
 
     Examples
     --------
@@ -202,7 +202,7 @@ def tilted_grid(n: int, *, seed: int | None = 0, angle: float = 0.3) -> Points:
 
 
 def circle(n: int, *, seed: int | None = 0, radius: float = 1.0) -> Points:
-    """Return points evenly spaced on a circle, as well as doubles allow.
+    """Return points evenly spaced on a circle, up to rounding.
 
     Parameters
     ----------
@@ -237,9 +237,9 @@ def spiral(n: int, *, seed: int | None = 0, turns: float = 10.0) -> Points:
     n : int
         Number of points.
     seed : int or None, optional
-        Shuffles the rows; None leaves them in order from the centre.
+        Shuffles the rows; None leaves them in order from the center.
     turns : float, optional
-        How often it winds round the origin.
+        Number of turns around the origin.
 
     Returns
     -------
@@ -248,7 +248,7 @@ def spiral(n: int, *, seed: int | None = 0, turns: float = 10.0) -> Points:
 
     Notes
     -----
-    Long thin triangles between the arms; an insertion in order walks and digs along the hull.
+    Long thin triangles between the arms; insertions in order walk along the hull.
 
     Examples
     --------
@@ -271,12 +271,12 @@ def near_collinear(n: int, *, seed: int = 0, ulps: int = 2) -> Points:
     seed : int, optional
         The same seed gives the same points.
     ulps : int, optional
-        How many steps to the next double the second coordinate may be off.
+        Maximum error of the second coordinate, in steps to the next double.
 
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Points about y = x / 3 + 1 with 0 <= x < 1; of more than a few, not all are on one line.
+        Points about y = x / 3 + 1 with 0 <= x < 1; with more than a few, not all are on one line.
 
     Examples
     --------
@@ -292,7 +292,7 @@ def near_collinear(n: int, *, seed: int = 0, ulps: int = 2) -> Points:
 
 
 def duplicates(n: int, *, seed: int = 0, distinct: int | None = None) -> Points:
-    """Return uniform points most of which come more than once.
+    """Return uniform points, most of which are repeated.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ def duplicates(n: int, *, seed: int = 0, distinct: int | None = None) -> Points:
     seed : int, optional
         The same seed gives the same points.
     distinct : int, optional
-        How many places the rows are drawn from, by default one for four rows, at least three.
+        Number of distinct points to draw from; by default one per four rows, at least three.
 
     Returns
     -------
@@ -335,7 +335,7 @@ def collinear_lines(n: int, *, seed: int = 0, lines: int = 5) -> Points:
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Whole numbers; points of one line may coincide.
+        Integers; points of one line may coincide.
 
     Examples
     --------
@@ -353,8 +353,8 @@ def collinear_lines(n: int, *, seed: int = 0, lines: int = 5) -> Points:
     return points
 
 
-def utm_millimetres(n: int, *, seed: int = 0) -> Points:
-    """Return a square kilometre of survey points in UTM coordinates, rounded to millimetres.
+def utm_millimeters(n: int, *, seed: int = 0) -> Points:
+    """Return a square kilometer of survey points in UTM coordinates, rounded to millimeters.
 
     Parameters
     ----------
@@ -370,13 +370,13 @@ def utm_millimetres(n: int, *, seed: int = 0) -> Points:
 
     Notes
     -----
-    The offset takes half of the bits, and rounding leaves points in rows: a circle test in plain
+    The offset uses half of the bits, and rounding leaves points in rows: a circle test in plain
     double precision is noise here.
 
     Examples
     --------
-    >>> from delone.datasets import utm_millimetres
-    >>> utm_millimetres(1000).min(axis=0).round(-3).tolist()
+    >>> from delone.datasets import utm_millimeters
+    >>> utm_millimeters(1000).min(axis=0).round(-3).tolist()
     [500000.0, 5400000.0]
     """
     corner = np.array([500_000.0, 5_400_000.0])
@@ -392,23 +392,23 @@ def pythagorean_circle(n: int, *, seed: int = 0) -> Points:
     n : int
         Number of points, up to 236,196.
     seed : int, optional
-        Chooses the points where the circle has more than n, and their order.
+        Chooses the points if the circle has more than n, and their order.
 
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Whole numbers with x² + y² the same for all; the radius is below 2**53.
+        Integers with the same x² + y²; the radius is below 2**53.
 
     Raises
     ------
     InputError
-        More points than such a circle has.
+        n is larger than the number of points on such a circle.
 
     Notes
     -----
-    A prime p = a² + b² splits into the Gaussian integers a ± bi. A product of k such primes, as
-    radius, has 4 · 3^k integer points: for each prime the square of one factor, of the other, or
-    p itself, times a unit.
+    A prime p = a² + b² splits into the Gaussian integers a ± bi. If the radius is a product of k
+    such primes, there are 4 · 3^k integer points: for each prime the square of one factor, of the
+    other, or p itself, times a unit.
 
     Examples
     --------
@@ -429,19 +429,19 @@ def pythagorean_circle(n: int, *, seed: int = 0) -> Points:
             np.concatenate([x * d + y * c for c, d in factors]),
         )
     if len(x) < n:
-        raise InputError(f"an exact circle of {n} points is more than the {len(x)} there are")
+        raise InputError(f"an exact circle has at most {len(x)} points, not {n}")
     chosen = np.random.default_rng(seed).permutation(len(x))[:n]
     return np.column_stack((x, y))[chosen].astype(np.float64)
 
 
-# p = 5, 13, 17, 29, 37, 41, 53, 61, 73, 89: the product 1.02e15 is below 2**53, with 97 it is not.
+# p = 5, 13, 17, 29, 37, 41, 53, 61, 73, 89: their product 1.02e15 is below 2**53, but not with 97.
 _GAUSSIAN_PRIMES = (
     (2, 1), (3, 2), (4, 1), (5, 2), (6, 1), (5, 4), (7, 2), (6, 5), (8, 3), (8, 5),
 )  # fmt: skip
 
 
 def mixed_exponents(n: int, *, seed: int = 0) -> Points:
-    """Return coordinates of all magnitudes that doubles have, subnormal ones included.
+    """Return coordinates of all magnitudes of doubles, including subnormal ones.
 
     Parameters
     ----------
@@ -491,7 +491,7 @@ def integer_lattice(n: int, *, seed: int = 0, side: int = 32) -> Points:
     Returns
     -------
     ndarray of float64, shape (n, 2)
-        Whole numbers, with duplicates as chance has it.
+        Integers, with random duplicates.
 
     Examples
     --------
@@ -525,11 +525,11 @@ GENERATORS: Mapping[str, Callable[..., Points]] = MappingProxyType(
             near_collinear,
             duplicates,
             collinear_lines,
-            utm_millimetres,
+            utm_millimeters,
             pythagorean_circle,
             mixed_exponents,
             integer_lattice,
         )
     }
 )
-"""The generators of plane points by name; each is called with n and the keyword seed."""
+"""The generators of 2-D points by name; each is called with n and the keyword seed."""

@@ -1,7 +1,7 @@
-"""Two real surveys that travel in the wheel, with their credits in CREDITS.md beside them.
+"""Two real surveys included in the package, with their credits in CREDITS.md.
 
-The files hold integer columns as NumPy writes them, so that NumPy alone reads them; what comes out
-are the nearest doubles to the surveyed decimals.
+The files contain integer columns in NumPy's format, so that only NumPy is needed to read them; the
+results are the doubles nearest to the surveyed decimals.
 """
 
 from __future__ import annotations
@@ -26,26 +26,26 @@ __all__ = ["Sample", "ahn3", "baja"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sample:
-    """A real survey: points with heights, and where they come from.
+    """A real survey: points with heights, and their origin.
 
     Parameters
     ----------
     name : str
-        What it shows.
+        Title of the survey.
     points : ndarray of float64, shape (n, 2)
         Horizontal coordinates, read-only.
     z : ndarray of float64, shape (n,)
-        Heights in metres, read-only.
+        Heights in meters, read-only.
     attributes : mapping of str to ndarray
         Other values of each point.
     crs : str
-        Authority and code of the coordinate reference system, as ``"EPSG:28992"``.
+        Authority and code of the coordinate reference system, such as ``"EPSG:28992"``.
     credit : str
-        Who is to be named, and the licence.
+        The required credit, and the license.
 
     Notes
     -----
-    It can be given wherever points are wanted; arrays of NumPy are made of `points`.
+    A Sample can be passed wherever points are expected; NumPy converts it to `points`.
     """
 
     name: str
@@ -65,13 +65,13 @@ class Sample:
 
 
 def ahn3() -> Sample:
-    """Return airborne laser points of 100 m by 100 m of the Dutch coast.
+    """Return airborne lidar points of 100 m by 100 m of the Dutch coast.
 
     Returns
     -------
     Sample
-        212,550 points, all distinct in the plane; coordinates are whole millimetres, each the
-        nearest double. Attribute ``classification``: 2 ground, 6 building.
+        212,550 points, all distinct in 2-D; coordinates are whole millimeters, as nearest doubles.
+        Attribute ``classification``: 2 ground, 6 building.
 
     Examples
     --------
@@ -119,7 +119,7 @@ def baja() -> Sample:
 
 
 def _columns(name: str) -> dict[str, NDArray[np.integer]]:
-    """Read integer columns; x, y and z are stored as steps from row to row, which pack better."""
+    """Read integer columns; x, y and z are stored as differences, which compress better."""
     with (files(__package__) / name).open("rb") as file, np.load(file) as archive:
         columns: dict[str, NDArray[np.integer]] = {key: archive[key] for key in archive.files}
     for key in "xyz":

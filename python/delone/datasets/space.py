@@ -1,8 +1,8 @@
-"""Point sets in space to try, test and measure with: seeded generators.
+"""3-D point sets for examples, tests and benchmarks: seeded generators.
 
-As those in the plane, every generator is a function of the number of points and a seed, returns
-float64 points of shape (n, 3), and is here because it breaks something. `GENERATORS` lists them by
-name; `delone.datasets` has it as `GENERATORS3`.
+Like those in 2-D, every generator is a function of the number of points and a seed, returns float64
+points of shape (n, 3), and is included because it breaks something. `GENERATORS` lists them by
+name; `delone.datasets` exports it as `GENERATORS3`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["GENERATORS"]
 
 
 def uniform(n: int, *, seed: int = 0) -> Points:
-    """Return points uniform in the unit cube.
+    """Return uniformly distributed points in the unit cube.
 
     Parameters
     ----------
@@ -43,19 +43,19 @@ def uniform(n: int, *, seed: int = 0) -> Points:
 
 
 def grid(n: int, *, seed: int | None = 0) -> Points:
-    """Return the first n points of the smallest cubic grid of integers that has as many.
+    """Return the first n points of the smallest cubic integer grid with at least n points.
 
     Parameters
     ----------
     n : int
         Number of points.
     seed : int or None, optional
-        Of their order; None for that of the grid.
+        Shuffles the rows; None leaves them in order.
 
     Returns
     -------
     ndarray of float64, shape (n, 3)
-        The points: each small cube is eight points on one sphere.
+        The points; the eight corners of each small cube are on one sphere.
     """
     n = as_count(n)
     side = max(1, int(np.ceil(np.cbrt(n))))
@@ -66,7 +66,7 @@ def grid(n: int, *, seed: int | None = 0) -> Points:
 
 
 def integer_lattice(n: int, *, seed: int = 0, side: int = 4) -> Points:
-    """Return random points of a cubic lattice, most of them more than once.
+    """Return random points of a cubic lattice, most of them repeated.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def integer_lattice(n: int, *, seed: int = 0, side: int = 4) -> Points:
     seed : int, optional
         The same seed gives the same points.
     side : int, optional
-        Lattice points along an axis.
+        Number of lattice points along an axis.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def integer_lattice(n: int, *, seed: int = 0, side: int = 4) -> Points:
 
 
 def sphere(n: int, *, seed: int = 0) -> Points:
-    """Return points on the unit sphere, as well as doubles allow: all are on the hull.
+    """Return points on the unit sphere, up to rounding: all are on the hull.
 
     Parameters
     ----------
@@ -107,12 +107,12 @@ def sphere(n: int, *, seed: int = 0) -> Points:
 
 
 def integer_sphere(n: int, *, seed: int = 0) -> Points:
-    """Return integer points exactly on one sphere about the origin, distinct where n is not large.
+    """Return integer points exactly on a sphere about the origin, distinct for small n.
 
     Parameters
     ----------
     n : int
-        Number of points; beyond 294 some come again.
+        Number of points; if there are more than 294, some repeat.
     seed : int, optional
         The same seed gives the same points.
 
@@ -136,7 +136,7 @@ def integer_sphere(n: int, *, seed: int = 0) -> Points:
 
 
 def clusters(n: int, *, seed: int = 0) -> Points:
-    """Return normal clusters in the unit cube, of widths over ten orders of magnitude.
+    """Return normal clusters in the unit cube, with widths over ten orders of magnitude.
 
     Parameters
     ----------
@@ -151,9 +151,9 @@ def clusters(n: int, *, seed: int = 0) -> Points:
         The points.
     """
     n, rng = as_count(n), np.random.default_rng(seed)
-    centres, widths = rng.random((11, 3)), np.logspace(-11, -1, 11)
+    centers, widths = rng.random((11, 3)), np.logspace(-11, -1, 11)
     which = rng.integers(0, 11, n)
-    return centres[which] + widths[which, None] * rng.standard_normal((n, 3))
+    return centers[which] + widths[which, None] * rng.standard_normal((n, 3))
 
 
 def planes(n: int, *, seed: int = 0, count: int = 3) -> Points:
@@ -180,7 +180,7 @@ def planes(n: int, *, seed: int = 0, count: int = 3) -> Points:
 
 
 def near_coplanar(n: int, *, seed: int = 0) -> Points:
-    """Return points within a few of the least doubles of a plane.
+    """Return points within two times the smallest positive double of a plane.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def prism(n: int, *, seed: int = 0) -> Points:
 
 
 def mixed_exponents(n: int, *, seed: int = 0) -> Points:
-    """Return coordinates of all magnitudes that doubles have, subnormal ones included.
+    """Return coordinates of all magnitudes of doubles, including subnormal ones.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""Triangulations in tiles: more points than memory holds, on one machine or on a Dask cluster.
+"""Tiled triangulation: more points than fit into memory, on one machine or on a Dask cluster.
 
-The union of the tiles is the Delaunay triangulation of all points, triangle for triangle: `tiles`
-cuts the plane, `certify` and `merge` decide what is certain, `stages` are the tasks, `run` their
-order. Pure functions of arrays decide; tasks read and write files; `executors` and `dask` spread
-them.
+The union of the tiles is the Delaunay triangulation of all points, triangle for triangle. The pure
+functions of arrays in `pure` make all decisions: `tiles` partitions the plane, `certify` and
+`merge` decide which triangles are certain. The tasks in `stages` read and write files, `run` orders
+them, and `executors` and `dask` distribute them.
 """
 
 from delone.distributed.api import plan, triangulate

@@ -1,4 +1,4 @@
-"""The two functions to begin with: `plan` says what a run will need, `triangulate` does it."""
+"""The entry points: `plan` estimates the resources of a run, `triangulate` performs it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plan", "triangulate"]
 
-# Numbers of rows are stored in 64 bits, and read back with a sign.
+# Row numbers are stored as 64 bits and read back as signed integers.
 _ROWS = (1 << 63) - 1
 
 
@@ -45,32 +45,32 @@ def triangulate(
     progress: Callable[[Progress], None] | None = None,
     crs: Any = None,
 ) -> TiledDelaunay:
-    """Triangulate more points than memory holds, in tiles whose union is the one triangulation.
+    """Triangulate more points than fit into memory, in tiles that form one triangulation.
 
     Parameters
     ----------
     source : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
-        LAS, LAZ (COPC, too), Parquet, npy or what else `delone.io.read_points` reads: a file, a
-        glob, a folder of Parquet files, several of these; or an array, with heights in a third
-        column.
+        LAS, LAZ (including COPC), Parquet, npy or anything else that `delone.io.read_points` reads:
+        a file, a glob, a folder of Parquet files, or several of these; or an array, with heights in
+        a third column.
     output : path
-        A folder, new or of an interrupted run.
+        A new folder, or that of an interrupted run.
     tile_points : int, optional
         Points in a tile, on average, from 3 to 2^27. A worker needs some 200 bytes for each.
     executor : {"serial", "processes"} or dask.distributed.Client, optional
-        Who works: this process, with all cores; one process for each core, which ends with this
-        one; a Dask cluster whose machines see the folder of the output.
+        The executor of the tasks: this process, with all cores; one process per core, which ends
+        with this one; or a Dask cluster whose machines can access the output folder.
     resume : bool, optional
-        Whether to go on with an interrupted run of the same source and arguments. Tiles that are
-        finished are not done again.
+        Whether to resume an interrupted run of the same source and arguments. Finished tiles are
+        not computed again.
     columns, classes, attributes
-        As in `delone.io.read_points`; attributes, which must be numbers, go to the vertices.
+        As in `delone.io.read_points`; attributes, which must be numeric, go to the vertices.
     nan : {"raise", "drop"}, optional
-        What to do with rows whose x, y or height is NaN or infinite: refuse them by number, or
-        leave them out. Attributes are carried as they are, NaN included; so are heights that come
-        as an attribute.
+        What to do with rows whose x, y or height is NaN or infinite: raise an error that names
+        them, or drop them. Attributes are copied unchanged, including NaN; so are heights that are
+        given as an attribute.
     progress : callable, optional
-        Is told how far the run is, as `Progress`.
+        Called with a `Progress` from time to time.
     crs : str, int or pyproj.CRS, optional
         The reference system of the coordinates, by default that of the files. Nothing is
         transformed.
@@ -83,40 +83,40 @@ def triangulate(
     Raises
     ------
     InputError
-        An argument is none of its choices; the output holds something else; files have different
-        reference systems.
+        An argument is not one of its choices; the output folder does not contain such a run; the
+        files have different reference systems.
     DtypeError
-        An argument is of the wrong type.
+        An argument has the wrong type.
     NonFiniteError
-        Coordinates or heights are NaN or infinite, and `nan` is ``"raise"``; ``error.rows`` has
-        the first.
+        Coordinates or heights are NaN or infinite, and `nan` is ``"raise"``; ``error.rows`` has the
+        first rows.
     DegenerateInputError
         The points span no area.
     FileFormatError, FileNotFoundError
-        A file is missing, torn, or lacks a column.
+        A file is missing, truncated, or lacks a column.
     MissingExtraError
-        pyarrow is not installed (extra ``dask``), or a library that reads the source.
+        pyarrow is not installed (extra ``dask``), or a library for reading the source.
     OSError
-        The output cannot be written; a full disk says so. What is done is kept.
+        The output cannot be written, because the disk is full, for example. Finished work is kept.
     BusyError
-        Another run is at work in this output.
+        Another run is using this output.
     DeloneError
-        The scheduler or too many workers are gone. What is done is kept.
+        The scheduler or too many workers were lost. Finished work is kept.
 
     Notes
     -----
-    The plane is cut by a k-d tree over a sample. A tile triangulates its points, those of strips
-    around it and the corners of the hull, and keeps each triangle whose closed circumdisk, rounded
-    outward, holds no unknown space. About the others it asks the tiles that the disks meet, which
-    tell points in conflict, found exactly; what they tell is inserted in the part of the tile that
-    is still open, until none is. As ties go by coordinates, all tiles agree, and the union is the
-    triangulation that `delone.Delaunay` makes, triangle for triangle. The proof is in the
-    documentation, under mathematics.
+    The plane is partitioned by a k-d tree over a sample. A tile triangulates its points, those of
+    strips around it and the corners of the hull, and keeps each triangle whose closed circumdisk,
+    rounded outward, contains no unknown area. For the other triangles it queries the tiles that
+    their disks meet. These return points in conflict, found exactly, which are inserted into the
+    open part of the tile until no triangle is open. As ties are broken by coordinates, all tiles
+    agree, and the union is the triangulation that `delone.Delaunay` computes, triangle for
+    triangle. The proof is in the documentation, under mathematics.
 
-    Memory is that of one tile for each worker, whatever the number of points, but for the corners
-    of the hull, which each tile gets. On disk a run needs some 120 bytes a point, of which half
-    stay. The folder holds ``manifest.json``, which is written last, ``vertices/tile=*.parquet`` and
-    ``triangles/tile=*.parquet``.
+    Memory is that of one tile per worker, whatever the number of points, plus the corners of the
+    hull, which every tile receives. On disk, a run needs about 120 bytes per point, of which half
+    remain. The folder contains ``manifest.json``, which is written last,
+    ``vertices/tile=*.parquet`` and ``triangles/tile=*.parquet``.
 
     Examples
     --------
@@ -159,7 +159,7 @@ def plan(
     classes: Sequence[int] | None = None,
     attributes: Sequence[str] = (),
 ) -> Plan:
-    """Say what a run will need, from what files announce and from measured constants.
+    """Estimate the resources of a run, from the headers of files and measured constants.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def plan(
     tile_points : int, optional
         Points in a tile.
     workers : int, optional
-        Tasks at a time.
+        Number of concurrent tasks.
     columns, classes, attributes
         As in `triangulate`.
 
@@ -195,7 +195,7 @@ def plan(
     if isinstance(source, int | np.integer):
         count = as_count(int(source) if isinstance(source, np.integer) else source, name="source")
         if count > _ROWS:
-            raise InputError(f"source must be at most {_ROWS} points, which 63 bits number")
+            raise InputError(f"source must have at most {_ROWS} points (63 bits)")
     else:
         count = find(source, choice).count
     return estimate(count, size, workers, len(choice.attributes))
@@ -209,7 +209,7 @@ def _choice(
     names = as_names(attributes, name="attributes")
     clash = sorted({"id", "x", "y", "z", "owned"} & set(names))
     if clash:
-        raise InputError(f"{clash[0]!r} is a column of its own, not to be named among attributes")
+        raise InputError(f"{clash[0]!r} is a column of its own and cannot be one of the attributes")
     return Choice(
         None if columns is None else as_names(columns, name="columns", places=True),
         None if classes is None else as_classes(classes),
@@ -232,7 +232,7 @@ def _executor(executor: Any) -> Executor:
         return executor
     if isinstance(executor, str) and executor in _EXECUTORS:
         return _EXECUTORS[executor]()
-    # Who has a client has imported its library.
+    # A caller with a client has already imported its library.
     library = sys.modules.get("distributed")
     if library is None or not isinstance(executor, library.Client):
         raise InputError(

@@ -1,4 +1,4 @@
-"""What callers pass beside points: paths, names, numbers of classes, callbacks. Refused by name."""
+"""Validation of arguments other than points: paths, column names, classes, callbacks."""
 
 from __future__ import annotations
 
@@ -24,39 +24,39 @@ def as_path(path: Any, *, name: str) -> Path:
     Raises
     ------
     DtypeError
-        It is none.
+        It is not a path.
     InputError
-        It holds a null character.
+        It contains a null character.
     """
     if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str):
         if "\0" in text:
-            raise InputError(f"{name} holds a null character: {text!r:.60}")
-        # Folders are made where they are missing, one called ~ nobody wants.
+            raise InputError(f"{name} contains a null character: {text!r:.60}")
+        #  nobody wants.~ nobody wants.
         return Path(path).expanduser()
     raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
 
 
 def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
-    """Return names of columns, or, where these are allowed, their numbers from 0.
+    """Return column names or, if allowed, column numbers from 0.
 
     Raises
     ------
     DtypeError
-        They are none; a text alone is no sequence of texts.
+        They are not names; a single string is not a sequence of names.
     InputError
-        A name is empty or there twice, or a number is below 0.
+        A name is empty or repeated, or a number is below 0.
     """
-    wanted = f"{name} must be a sequence of names of columns" + (" or numbers" if places else "")
+    wanted = f"{name} must be a sequence of column names" + (" or numbers" if places else "")
     found = tuple(_sequence(names, wanted))
     for one in found:
         if places and not isinstance(one, str):
-            as_count(one, name=f"{name}: a number of a column")
+            as_count(one, name=f"{name}: a column number")
         elif not isinstance(one, str):
             raise DtypeError(f"{wanted}, got {one!r:.60} among them")
         elif not one:
-            raise InputError(f"{wanted}, none of them empty")
+            raise InputError(f"{wanted}, and none may be empty")
         if found.count(one) > 1:
-            raise InputError(f"{name}: {one!r} is named twice")
+            raise InputError(f"{name}: {one!r} is repeated")
     return tuple(one if isinstance(one, str) else int(one) for one in found)
 
 
@@ -66,7 +66,7 @@ def as_classes(classes: Any) -> tuple[int, ...]:
     Raises
     ------
     DtypeError, InputError
-        They are none, or none of LAS files, which have 0 to 255.
+        They are not class numbers of LAS files, 0 to 255.
     """
     wanted = "classes must be a sequence of integers from 0 to 255"
     found = tuple(as_count(one, name="a class") for one in _sequence(classes, wanted))
@@ -89,7 +89,7 @@ def as_callback(function: Any, *, name: str) -> Callable[..., Any] | None:
     Raises
     ------
     DtypeError
-        It cannot be called.
+        It is not callable.
     """
     if function is None or callable(function):
         found: Callable[..., Any] | None = function

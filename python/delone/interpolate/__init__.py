@@ -1,8 +1,8 @@
-"""Interpolation of scattered data: exact at the sites, no NaN inside the hull, reusable weights.
+"""Interpolation of scattered data: exact at the sites, no NaN inside the hull.
 
-Each interpolator is built once, from points or from a triangulation, and serves any number of
-fields and queries. `grid` makes rasters, `cross_validate` tells how good a method is on the data at
-hand.
+Each interpolator is built once, from points or from a triangulation, and evaluates any number of
+fields and queries with reusable weights. `grid` makes rasters, and `cross_validate` measures how
+well a method predicts the given data.
 
 >>> from delone.interpolate import Linear
 >>> Linear([(0, 0), (4, 0), (0, 4)], [1.0, 5.0, 9.0])([(1, 1), (4, 0)])
@@ -41,7 +41,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # It is made of scikit-learn's classes, which not every program has.
+    # It subclasses scikit-learn's classes, which are an optional dependency.
     if name == "DelaunayRegressor":
         from delone.interpolate.regressor import DelaunayRegressor
 

@@ -1,9 +1,8 @@
-"""Interpolation of what xarray holds (extra ``xarray``): ``import delone.interpolate.accessor``.
+"""Interpolation of xarray objects (extra ``xarray``): ``import delone.interpolate.accessor``.
 
 The import registers ``.delone`` on DataArray and Dataset. Scattered points are one dimension with
 two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``, ``lat(j,
-i)``). The weights of the target points are computed once; every other dimension (time, level) is a
-field more to which they are applied, chunk by chunk where the data are Dask arrays.
+The weights of the target points are computed once
 """
 
 from __future__ import annotations
@@ -80,29 +79,29 @@ class ArrayInterpolation:
         Parameters
         ----------
         x, y : array_like or xarray.DataArray
-            Plain arrays of one axis are the nodes of a grid. DataArrays are points, one for each
-            entry of what they broadcast to.
+            One-dimensional arrays are the nodes of a grid. DataArrays are points: they are
+            broadcast against each other, and each entry is a point.
         coords : pair of str, optional
             Names of the coordinates of the array; by default x and y, lon and lat, longitude and
             latitude, or easting and northing.
         method : str, optional
             As in `interpolator`.
         **options
-            As the interpolator takes them: ``extrapolate``, ``respect_constraints``, ``workers``,
+            Options of the interpolator: ``extrapolate``, ``respect_constraints``, ``workers``,
             ``planar`` and so on. NaN among the values propagates unless ``nan="error"`` is given.
-            With ``max_distance`` targets farther than this from the nearest point get NaN.
+            With ``max_distance``, targets farther than this from the nearest point get NaN.
 
         Returns
         -------
         xarray.DataArray
-            In place of the dimensions of the points, those of the targets; name, attributes and
-            other dimensions as they were.
+            The dimensions of the points are replaced by those of the targets; the name, the
+            attributes and the other dimensions are unchanged.
 
         Raises
         ------
         InputError
-            The coordinates are not found, or ``nan="drop"`` is asked for, which would need other
-            triangles for each field; `max_distance` is negative or NaN.
+            The coordinates are not found; or ``nan="drop"`` is given, which would need a separate
+            triangulation for each field; or `max_distance` is negative or NaN.
 
         Examples
         --------
@@ -134,7 +133,8 @@ class ArrayInterpolation:
         Returns
         -------
         xarray.DataArray
-            With the dimensions y and x, or as the coordinates are called, in place of the points.
+            The dimensions of the points are replaced by y and x, or by the names of the
+            coordinates.
 
         Raises
         ------
@@ -217,16 +217,18 @@ def _coordinates(data: Any, coords: Sequence[str] | None) -> tuple[Any, Any]:
         if len(pair) == 2 and all(name in data.coords for name in pair):
             return tuple(xarray.broadcast(*(data.coords[name] for name in pair)))
     wanted = ", or ".join(" and ".join(map(str, pair)) for pair in pairs)
-    raise InputError(f"there are no coordinates {wanted}; name two by coords=")
+    raise InputError(f"found no coordinates {wanted}; name two with coords=")
 
 
 def _target(x: Any, y: Any, coords: Sequence[str] | None, data: Any) -> tuple[Any, Any]:
-    """Targets as two arrays of the same dimensions, with coordinates that say where they are."""
+    """Targets as two arrays of the same dimensions, with their coordinates attached."""
     if isinstance(x, xarray.DataArray) and isinstance(y, xarray.DataArray):
         return tuple(xarray.broadcast(x, y))
     nodes = [np.asarray(axis, dtype=np.float64) for axis in (x, y)]
     if any(axis.ndim != 1 for axis in nodes):
-        raise InputError("x and y are both DataArrays, or both arrays of one axis: nodes of a grid")
+        raise InputError(
+            "x and y must both be DataArrays, or both one-dimensional arrays: nodes of a grid"
+        )
     names = [coordinate.name for coordinate in _coordinates(data, coords)]
     across, up = (
         xarray.DataArray(axis, dims=name, coords={name: axis})
@@ -255,10 +257,10 @@ def _interpolated(
     method: str,
     options: dict[str, Any],
 ) -> Any:
-    """Interpolate what has the points, and mask what is too far from them."""
+    """Interpolate the variables that have the points, and mask targets too far from them."""
     limit = as_max_distance(options.pop("max_distance", None))
     if options.get("nan") == "drop":
-        raise InputError("nan='drop' needs other triangles for each field; fill or drop NaN before")
+        raise InputError("nan='drop' needs a triangulation per field; fill or drop NaN first")
     places = _coordinates(data, coords)
     _require_memory(data, places[0].dims, target)
     points = np.column_stack([np.ravel(part) for part in places]).astype(np.float64)
@@ -268,7 +270,7 @@ def _interpolated(
     made = interpolator(method, points, **({"nan": "propagate"} | options))
     near = None if limit is None else made.distance(queries) <= limit
     geometry = _Geometry(made.weights(queries), places[0].dims, target, near)
-    # Coordinates of the points are not those of the result.
+    # Coordinates of the points are not coordinates of the result.
     dims = geometry.dims
     gone = [name for name, part in data.coords.items() if set(part.dims) & set(dims)]
     plain = data.drop_vars(gone)
@@ -277,25 +279,25 @@ def _interpolated(
         for name in names:
             if plain[name].dtype.kind not in "iufc":
                 kind = plain[name].dtype
-                raise DtypeError(f"variable {name!r} holds no numbers (dtype {kind}); drop it")
+                raise DtypeError(f"variable {name!r} is not numeric (dtype {kind}); drop it")
         found = {name: _applied(plain[name], geometry) for name in names}
         return plain.drop_vars(names).assign(found)
     return _applied(plain, geometry)
 
 
 class _Geometry(NamedTuple):
-    """What all fields on the same points share."""
+    """The data that all fields on the same points share."""
 
     table: Weights
     # The dimensions of the points.
     dims: tuple[Any, ...]
     target: tuple[Any, Any]
-    # Of the shape of the targets: whether they are near enough to a site; None where all are.
+    # Whether each target is close enough to a site, in the shape of the targets; None if all are.
     near: NDArray[np.bool_] | None
 
 
 def _degrees(places: tuple[Any, Any]) -> str | None:
-    """By what coordinates are known to be longitudes and latitudes."""
+    """Return what shows that the coordinates are longitudes and latitudes, or None."""
     units = [str(part.attrs.get("units", "")) for part in places]
     if units[0].startswith("degrees_e") and units[1].startswith("degrees_n"):
         return f"units {', '.join(units)}"
@@ -304,7 +306,7 @@ def _degrees(places: tuple[Any, Any]) -> str | None:
 
 
 def _require_memory(data: Any, dims: tuple[Any, ...], target: tuple[Any, Any]) -> None:
-    """Refuse more than fits into memory; what Dask holds comes chunk by chunk."""
+    """Raise if the result would not fit into memory; Dask arrays are computed chunk by chunk."""
     parts = data.data_vars.values() if isinstance(data, xarray.Dataset) else [data]
     fields = 0
     for part in parts:
@@ -340,7 +342,7 @@ def _applied(array: Any, geometry: _Geometry) -> Any:
 
 
 def _last_axes(values: NDArray[Any], table: Weights, count: int) -> NDArray[Any]:
-    """Interpolate along the last axes, which are the points, all other axes being fields."""
+    """Interpolate along the last axes, which are the points; the other axes are fields."""
     leading = values.shape[: values.ndim - count]
     fields = np.moveaxis(values.reshape(*leading, -1), -1, 0)
     found = table.apply(fields)

@@ -1,11 +1,11 @@
-"""What interpolators share: points or a triangulation, policies for values, queries of any shape.
+"""Base class of the interpolators: sites, policies for values, queries of any shape.
 
-A subclass says what the interpolant and its derivatives are worth inside (`_derived`), what counts
-beyond the hull (`_terms`), and which sites count at all (`_table`). Everything else is here: the
+A subclass computes the interpolant and its derivatives inside the hull (`_derived`), the terms
+beyond the hull (`_terms`), and the weights of the sites (`_table`). Everything else is here: the
 mesh, the policies for NaN, duplicates and extrapolation, shapes, complex numbers.
 
-Rows of points come in two kinds: the caller's, and those of the mesh, from which ``nan="drop"`` has
-left some out.
+There are two kinds of rows of points: the caller's, and those of the mesh, which omits the rows
+that ``nan="drop"`` removed.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _NAMED = 5
 
 
 class Interpolator:
-    """Values between scattered points; the base of the public classes.
+    """Interpolation of scattered data; the base of the public classes.
 
     Parameters
     ----------
@@ -121,15 +121,15 @@ class Interpolator:
 
     @property
     def triangulation(self) -> Triangulation:
-        """The triangulation of the sites; without those that ``nan="drop"`` left out.
+        """The triangulation of the sites, without those that ``nan="drop"`` removed.
 
-        Of periodic sites that of as many copies as are needed, those of one site side by side.
+        For periodic sites, that of as many copies as are needed; the copies of a site are adjacent.
         """
         return self._mesh
 
     @property
     def _box(self) -> tuple[list[float], list[float]]:
-        """Least and greatest coordinates of the sites; of periodic ones, one period."""
+        """Least and greatest coordinates of the sites; for periodic sites, one period."""
         low, high = self._mesh.min_bound.copy(), self._mesh.max_bound.copy()
         if self._repeated is not None:
             for axis, length in enumerate(self._repeated.periods):
@@ -140,7 +140,7 @@ class Interpolator:
 
     @property
     def npoints(self) -> int:
-        """How many sites were given, duplicates and dropped ones included."""
+        """Number of sites given, including duplicates and dropped ones."""
         return len(self._sites)
 
     def __call__(
@@ -155,27 +155,26 @@ class Interpolator:
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Where. NaN gives NaN; so does infinity, unless ``extrapolate="error"`` refuses it.
+            Queries. NaN gives NaN; so does infinity, unless ``extrapolate="error"`` rejects it.
         values : array_like, shape (n,) or (n, ...), optional
-            Another field on the same sites; by default that of the constructor.
+            Another field on the same sites; by default the values given to the constructor.
         max_distance : float, optional
-            Queries farther than this from the nearest site get NaN; by default no distance is too
-            far.
+            Queries farther than this from the nearest site get NaN; by default there is no limit.
 
         Returns
         -------
         ndarray of float64 or complex128
-            Of the shape of the queries and that of one value.
+            The shape of the queries followed by the shape of one value.
 
         Raises
         ------
         ShapeError, DtypeError
-            `xi` or `values` have a wrong shape, or are no numbers.
+            `xi` or `values` have the wrong shape, or are not numeric.
         NonFiniteError
-            Values are not finite, and ``nan="error"``.
+            A value is not finite and ``nan="error"``.
         InputError
-            No values are there; duplicates have different ones; a query is outside of the hull,
-            infinity included, and ``extrapolate="error"``; `max_distance` is negative or NaN.
+            No values were given; duplicates have different values; a query (infinity included) is
+            outside the hull and ``extrapolate="error"``; `max_distance` is negative or NaN.
 
         Examples
         --------
@@ -197,27 +196,27 @@ class Interpolator:
         return field.shaped(found, shape)
 
     def distance(self, xi: ArrayLike) -> Floats:
-        """Return how far queries are from the nearest site.
+        """Return the distance from each query to the nearest site.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Where.
+            Queries.
 
         Returns
         -------
         ndarray of float64, shape (...)
-            Distances in the unit of the sites; NaN where a coordinate is NaN or infinite.
+            Distances in the units of the sites; NaN where a coordinate is NaN or infinite.
 
         Raises
         ------
         ShapeError, DtypeError
-            `xi` is no array of real points of the dimension of the sites.
+            `xi` is not a real array of points with the dimension of the sites.
 
         Notes
         -----
-        Which site is nearest is decided exactly; the distance is rounded. Sites that ``nan="drop"``
-        left out do not count.
+        The nearest site is found exactly; the distance is rounded. Sites that ``nan="drop"``
+        removed are ignored.
 
         Examples
         --------
@@ -237,26 +236,26 @@ class Interpolator:
         return np.where(rows >= 0, found, np.nan)
 
     def gradient(self, xi: ArrayLike, *, values: ArrayLike | None = None) -> NDArray[Any]:
-        """Return the slope of the interpolant.
+        """Return the gradient of the interpolant.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Where.
+            Queries.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites.
 
         Returns
         -------
         ndarray of float64 or complex128
-            Of the shape of the queries, that of one value, and d: the derivatives by x and by y, in
-            space by z as well. Outside of the hull NaN, or with ``extrapolate="linear"`` the slope
-            with which the interpolant goes on there.
+            The shape of the queries, then that of one value, then d: the derivatives by x and y,
+            and in 3-D by z. Outside the hull NaN or, with ``extrapolate="linear"``, the gradient of
+            the extrapolation.
 
         Raises
         ------
         ShapeError, DtypeError, NonFiniteError, InputError
-            As for values; or there are no derivatives, as of natural neighbours in space.
+            As for values; or the method has no derivatives, such as natural neighbors in 3-D.
 
         Examples
         --------
@@ -271,24 +270,24 @@ class Interpolator:
         return shaped_derivatives(interpolator._sloped(queries, columns), field, shape)
 
     def weights(self, xi: ArrayLike) -> Weights:
-        """Return which sites count at each query, and how much.
+        """Return the sites that contribute to each query, with their weights.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Where.
+            Queries.
 
         Returns
         -------
         Weights
-            A table that turns any number of fields into interpolated ones by one product each.
+            A table that interpolates any number of fields, with one product for each.
 
         Raises
         ------
         ShapeError, DtypeError
-            `xi` is no array of real points of the dimension of the sites.
+            `xi` is not a real array of points with the dimension of the sites.
         InputError
-            A query is outside of the hull, and ``extrapolate="error"``.
+            A query is outside the hull and ``extrapolate="error"``.
 
         Examples
         --------
@@ -299,27 +298,27 @@ class Interpolator:
         """
         return self._table(*self._queries(xi))
 
-    # What subclasses say.
+    # Implemented by subclasses.
 
     def _check_space(self, given: Triangulation | None) -> None:
-        """Refuse what there is in the plane only."""
+        """Raise for options that are only available in 2-D."""
         if given is not None and not isinstance(given, Delaunay):
-            raise InputError("in space sites are points, or a Delaunay triangulation of them")
+            raise InputError("in 3-D the sites must be points or a Delaunay triangulation of them")
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         """Values (k, c), derivatives (k, c, d) or second ones (k, c, 3); NaN outside."""
         raise NotImplementedError
 
     def _terms(self, place: Any, step: Floats, base: bool) -> Terms:
-        """What counts a step away from the nearest points of the hull."""
+        """The terms for a step away from the nearest points of the hull."""
         raise NotImplementedError
 
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
-        """Weights of the rows that `settled` has."""
+        """Weights for the rows of `settled`."""
         raise NotImplementedError
 
     def gradients(self, columns: Floats) -> Floats | None:
-        """Return gradients at the sites, None where the interpolant needs none.
+        """Return gradients at the sites, or None if the interpolant needs none.
 
         Parameters
         ----------
@@ -334,24 +333,24 @@ class Interpolator:
         return None
 
     def _needed(self) -> dict[str, bool]:
-        """What of periodic sites must be seen; as `repeated` takes it."""
+        """The arguments of `repeated` that say how far periodic sites must be copied."""
         return {}
 
-    # What they share.
+    # Shared by subclasses.
 
     def _queries(self, xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
-        """Queries, flat and in the period of the sites, and their leading axes."""
+        """Flattened queries, moved into the period of the sites, and their leading axes."""
         queries = as_vectors(xi, self._ndim, name="xi")
         flat = queries.reshape(-1, self._ndim)
         return flat if self._repeated is None else self._repeated.wrapped(flat), queries.shape[:-1]
 
     @property
     def workers(self) -> int | None:
-        """How many threads may work; None for one each core."""
+        """Number of threads; None for one per core."""
         return self._workers
 
     def settled(self, field: Field) -> Floats:
-        """Return values for the vertices of the mesh, by the policies.
+        """Apply the policies and return values for the vertices of the mesh.
 
         Parameters
         ----------
@@ -366,60 +365,60 @@ class Interpolator:
         Raises
         ------
         InputError
-            A policy refuses them.
+            A policy rejects them.
         """
         if self._kept is not None:
             field = field.at(self._kept)
         if self._nan == "error":
             require_finite_values(field)
         if self._repeated is not None:
-            # By the sites: rounding may make copies of different sites one.
+            # Duplicates are those of the sites: rounding may make copies of different sites equal.
             merged = field.merged(self._repeated.duplicate_of, self._duplicates)
             return merged.at(self._repeated.sites(len(merged))).columns
         return field.merged(self._mesh.duplicate_of, self._duplicates).columns
 
     def caller_rows(self) -> NDArray[np.int32]:
-        """Return which of the caller's rows stands for each point of the mesh.
+        """Return the caller's row that represents each point of the mesh.
 
         Returns
         -------
         ndarray of int32
-            Of points that coincide the first, or the last with ``duplicates="last"``.
+            For points that coincide, the first, or the last with ``duplicates="last"``.
         """
         rows = np.arange(self._mesh.npoints, dtype=np.int32)
         if self._duplicates == "last":
-            # Assignments to the same row happen in order, so the last one stays.
+            # Assignments to the same row happen in order, so the last one wins.
             rows[self._mesh.duplicate_of] = rows.copy()
         return self._as_given(rows[self._spoken_of()])
 
     def _as_given(self, rows: NDArray[np.integer]) -> NDArray[np.int32]:
-        """The caller's rows of rows of the mesh."""
+        """The caller's rows for the given rows of the mesh."""
         if self._repeated is not None:
             rows = rows // len(self._repeated.moves)
         return (rows if self._kept is None else self._kept[rows]).astype(np.int32)
 
     def mixed_rows(self) -> tuple[Rows, NDArray[np.int32]] | None:
-        """Return which of the caller's rows have their mean in each row that a table speaks of.
+        """Return the groups of the caller's rows that are averaged in each row of a table.
 
         Returns
         -------
         tuple of ndarray, or None
-            Compressed rows (indptr, rows); None where `caller_rows` says it all.
+            Compressed rows (indptr, rows); None if `caller_rows` is sufficient.
 
         Raises
         ------
         InputError
-            The least or the greatest value of points that coincide counts.
+            The policy takes the least or the greatest value of points that coincide.
         """
         first = self._mesh.duplicate_of
         if self._duplicates not in ("mean", "min", "max") or not len(self._mesh.coplanar):
             return None
         if self._duplicates != "mean":
             raise InputError(
-                f"duplicates={self._duplicates!r} counts one value of points that coincide, which "
-                "depends on the values; use apply"
+                f"duplicates={self._duplicates!r} selects one value of the points that coincide, "
+                "which depends on the values; use apply"
             )
-        # Points of one group side by side; each row of it has the whole group.
+        # The points of a group are adjacent; each of its rows lists the whole group.
         order = np.argsort(first, kind="stable")
         starts = np.searchsorted(first[order], first)
         counts = np.bincount(first)[first]
@@ -430,7 +429,7 @@ class Interpolator:
         return indptr, self._as_given(order[within])
 
     def _spoken_of(self) -> NDArray[np.integer]:
-        """The point of the mesh that each row of a table is."""
+        """The point of the mesh for each row of a table."""
         return np.arange(self._mesh.npoints)
 
     def _interpolated(self, queries: Floats, columns: Floats) -> Floats:
@@ -453,7 +452,7 @@ class Interpolator:
         return found
 
     def _completed(self, table: Table, queries: Floats, known: Floats) -> Table:
-        """A table of queries inside with what counts outside, where that is asked for."""
+        """The table of queries inside, extended by the terms of those outside if asked for."""
         if self._extrapolate == "nan":
             return table
         rows, place = self._outside(queries, known)
@@ -466,13 +465,13 @@ class Interpolator:
         return self._terms(place, step, True)
 
     def _outside(self, queries: Floats, found: Floats | None) -> tuple[Rows, Any]:
-        """The finite queries outside of the hull, refused where that is the policy."""
+        """The finite queries outside the hull; raises if that is the policy."""
         suspects = np.arange(len(queries))
         if found is not None and found.shape[1]:
             suspects = np.flatnonzero(np.isnan(found[:, 0]))
         place = self._located(queries[suspects])
         if self._extrapolate == "error":
-            # Not by `beside`: infinity, and what is outside of no triangle at all, is beside none.
+            # Not by `beside`, which is -1 for infinite queries and for meshes without triangles.
             missed = (place.simplex < 0) & ~np.isnan(queries[suspects]).any(axis=1)
             self._refuse(suspects[missed], len(queries))
         outside = np.flatnonzero(place.beside >= 0)
@@ -486,7 +485,7 @@ class Interpolator:
         *most, last = (f"'{each}'" for each in self.EXTRAPOLATE if each != "error")
         raise InputError(
             f"xi: {len(rows)} of {count} {agreed(count, 'query', 'queries')} "
-            f"{agreed(len(rows), 'is', 'are')} outside of the hull: "
+            f"{agreed(len(rows), 'is', 'are')} outside the hull: "
             f"{agreed(len(rows), 'row', 'rows')} {first}{more}; "
             f"choose extrapolate={', '.join(most)} or {last}"
         )
@@ -498,10 +497,10 @@ class Interpolator:
         return location.locate(mesh._dimension, index, mesh.points, queries, self._workers)
 
     def _with(self, values: ArrayLike | None) -> tuple[Self, Field, Floats]:
-        """The interpolator, the field, its settled columns; those of the constructor for None."""
+        """The interpolator, the field, its settled columns; None: the constructor's values."""
         if values is None:
             if self._field is None:
-                raise InputError("there are no values: give them to the constructor or the call")
+                raise InputError("no values: pass them to the constructor or to the call")
             return self, *self._field
         field = as_field(values, len(self._sites))
         kept = self._kept_rows(field)
@@ -533,7 +532,7 @@ class Interpolator:
         return Delaunay(sites, workers=self._workers)
 
     def __getstate__(self) -> dict[str, Any]:
-        # Indices over triangles are not to be written down; they are made again.
+        # Spatial indices are not pickled; they are rebuilt.
         return self.__dict__ | {"_cache": {}, "_other": None}
 
     def __repr__(self) -> str:
@@ -542,12 +541,14 @@ class Interpolator:
 
 def _own(points: Any) -> Floats:
     if hasattr(points, "simplices"):
-        raise DtypeError(f"{type(points).__name__} is no triangulation of delone; pass its points")
+        raise DtypeError(
+            f"{type(points).__name__} is not a triangulation of delone; pass its points"
+        )
     return own_copy(points, ndim=None)
 
 
 def _with_only(mesh: Any, kept: Rows) -> Triangulation:
-    """A constrained triangulation without some of its points, which no constraint may need."""
+    """A constrained triangulation with some points removed; no constraint may need them."""
     dropped = np.delete(np.arange(mesh.npoints), kept)
     needed = np.intersect1d(mesh.duplicate_of[dropped], mesh.segments)
     if not hasattr(mesh, "edit") or mesh.nadded or needed.size:
@@ -555,7 +556,7 @@ def _with_only(mesh: Any, kept: Rows) -> Triangulation:
         first = ", ".join(map(str, rows[:_NAMED].tolist()))
         which = f"; constraints need rows {first}" if rows.size else ""
         raise InputError(
-            "nan='drop' would take vertices out of a constrained triangulation" + which
+            "nan='drop' would remove vertices from a constrained triangulation" + which
         )
     with mesh.edit() as edit:
         edit.remove_points(dropped)
@@ -564,12 +565,12 @@ def _with_only(mesh: Any, kept: Rows) -> Triangulation:
 
 
 def as_max_distance(max_distance: float | None) -> float | None:
-    """Return how far from sites there are values.
+    """Validate `max_distance`, the greatest distance from a site at which there are values.
 
     Parameters
     ----------
     max_distance : float or None
-        A distance; None for any.
+        A distance; None for no limit.
 
     Returns
     -------
@@ -579,7 +580,7 @@ def as_max_distance(max_distance: float | None) -> float | None:
     Raises
     ------
     InputError, DtypeError
-        It is negative or NaN, or no number.
+        It is negative, NaN or not a number.
 
     Examples
     --------
@@ -600,7 +601,7 @@ def _same(a: Rows | None, b: Rows | None) -> bool:
 
 
 def shaped_derivatives(derivatives: Floats, field: Field, leading: tuple[int, ...]) -> NDArray[Any]:
-    """Return derivatives of real columns in the shape and kind of the values.
+    """Return derivatives of real columns in the shape and dtype of the values.
 
     Parameters
     ----------
@@ -614,7 +615,7 @@ def shaped_derivatives(derivatives: Floats, field: Field, leading: tuple[int, ..
     Returns
     -------
     ndarray of float64 or complex128
-        Of the shape of the queries, that of one value, and d.
+        The shape of the queries, then that of one value, then d.
     """
     found: NDArray[Any] = derivatives
     if field.is_complex:

@@ -1,9 +1,9 @@
-"""Clough-Tocher: on each triangle three cubics that meet smoothly, with each other and beyond.
+"""Clough-Tocher: three cubics per triangle, with continuous first derivatives.
 
 The scheme is the reduced one: the derivative across an edge is linear along it, in the direction
 that joins the centroids of its two triangles (P. Alfeld, "A trivariate Clough-Tocher scheme for
 tetrahedral data", 1984; G. Farin, "Triangular Bernstein-Bézier patches", 1986). Gradients at the
-sites minimise the curvature along the edges (G. M. Nielson, "A method for interpolating scattered
+sites minimize the curvature along the edges (G. M. Nielson, "A method for interpolating scattered
 data based upon a minimum norm network", 1983) or come from a least-squares quadric.
 """
 
@@ -37,29 +37,30 @@ class CloughTocher(Smooth):
     points : array_like, shape (n, 2), or a triangulation
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
-        Real or complex values at the sites. They may be left out where calls bring theirs.
+        Real or complex values at the sites. Optional if each call passes its own values.
     gradients : {"global", "local", "plane"}, optional
-        How gradients at the sites are estimated: so that the curvature along all edges together is
-        least, as SciPy does; at each site by the quadric through it that fits its neighbours and
-        theirs best, nearer ones counting more, unless it swings; by the plane that fits its
-        neighbours. A quadric swings where it moves with the values more than three times as much as
-        the plane, which then takes its place: between the tracks of soundings.
+        How gradients at the sites are estimated. ``"global"``: minimize the total curvature along
+        all edges, as SciPy does. ``"local"``: at each site, the quadric through it that best fits
+        its neighbors and their neighbors, with nearer ones weighted more, unless the quadric
+        oscillates. ``"plane"``: the plane that best fits the neighbors. A quadric oscillates if it
+        changes with the values more than three times as much as the plane does, as between the
+        tracks of soundings; the plane then takes its place.
     tol : float, optional
-        Change at which the global estimation ends, as a share of the gradient, or of the range of
-        the values over the longer side of the box of the sites where that is larger. So units of
-        length and of values do not matter.
+        Change at which the global estimation stops, relative to the gradient, or to the range of
+        the values divided by the longer side of the bounding box of the sites if that is larger.
+        The result is therefore independent of the units of length and of the values.
     maxiter : int, optional
-        Number of sweeps after which it ends in any case, with a `GradientWarning`.
+        Maximum number of sweeps; if it is reached, a `GradientWarning` is issued.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
-        What there is outside of the hull: NaN; the value at the nearest point of the hull; from
-        there on the gradients of its sites; an error.
+        Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
+        extrapolation from there with the gradients of its sites; an error.
     duplicates, nan : str, optional
         As in `Linear`.
     respect_constraints : bool, optional
-        On a constrained triangulation: the surface may break along constraints, and nothing of one
-        side shows on the other but the values on the constraint.
+        On a constrained triangulation, the surface may break along constraints, and only the values
+        on a constraint affect both of its sides.
     workers : int, optional
-        Number of threads; by default one for each core. The answer is the same.
+        Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
         As in `Linear`.
 
@@ -70,16 +71,16 @@ class CloughTocher(Smooth):
 
     Notes
     -----
-    With local gradients linear and quadratic functions are reproduced up to rounding, with global
-    ones linear functions up to `tol`. Beside sites that are nearer to each other than 1e-5 of the
-    way to others, up to about 1e-11 of the values is left of rounding, and across the edge between
-    them the first derivatives may differ; near sites within 1e-10 of a line about 1e-8. Global
-    gradients trust the slope between two sites however near they are: there choose ``"local"``.
-    Of a site with more than 32 neighbours, others take those around them and some of the rest.
-    Local gradients take O(n log n), each sweep of the global estimation O(n); sweeps are few where
-    the sites are spread evenly. Values that are not known
-    (``nan="propagate"``) take no part in the gradients of others. A slope that is beyond the range
-    of doubles counts as none.
+    Local gradients reproduce linear and quadratic functions up to rounding, and global ones
+    reproduce linear functions up to `tol`. Next to sites whose distance is below 1e-5 of the
+    distance to other sites, a rounding error of up to about 1e-11 of the values remains, and across
+    the edge between them the first derivatives may differ; near sites within 1e-10 of a line it is
+    about 1e-8. Global gradients rely on the slope between two sites however close they are; choose
+    ``"local"`` for such data. If a site has more than 32 neighbors, other sites use those around
+    them and some of the rest. Local gradients take O(n log n), and each sweep of the global
+    estimation O(n); few sweeps are needed if the sites are evenly spread. Unknown values
+    (``nan="propagate"``) do not affect the gradients of other sites. A slope beyond the range of
+    doubles is ignored.
 
     Examples
     --------

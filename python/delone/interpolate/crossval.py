@@ -1,9 +1,9 @@
-"""How good is a method on the data at hand? Leave sites out, predict them from the rest.
+"""Cross-validation: leave sites out and predict their values from the rest.
 
-Leave-one-out of linear, nearest, Sibson's and Laplace's interpolation reuses one mesh: what a site
-would get from the others follows from its star. Where gradients are estimated, sites that are
-farther apart than their influence reaches are left out together, so that a few hundred
-triangulations do the work of one for each site.
+Leave-one-out of linear, nearest, Sibson's and Laplace's interpolation reuses one mesh: the
+prediction of a site from the others follows from its star. For methods with gradients, sites that
+are farther apart than their influence reaches are left out together, so that a few hundred
+triangulations replace one for each site.
 """
 
 from __future__ import annotations
@@ -39,27 +39,27 @@ if TYPE_CHECKING:
 __all__ = ["CrossValidation", "cross_validate"]
 
 _FROM_STARS = ("linear", "nearest", "sibson", "laplace")
-# Steps between sites that do not feel each other. A predicted value depends on the gradients of the
-# neighbours of the hole, these on neighbours of neighbours: that is three steps and one of the star
-# of whatever else is left out; the hole may shorten a way by one.
+# Steps between sites that do not affect each other. A predicted value depends on the gradients of
+# the neighbors of the hole, and these on neighbors of neighbors: that is three steps, and one for
+# the star of any other site left out; the hole may shorten a path by one.
 _LOCAL_REACH = 6
-# Of globally estimated gradients the influence only fades, to about a third at each step.
+# The influence on globally estimated gradients decays to about a third at each step.
 _GLOBAL_REACH = 12
 
 
 @dataclass(frozen=True, eq=False)
 class CrossValidation:
-    """Predictions of values by the rest of the values.
+    """Predictions of each value from the others.
 
     Parameters
     ----------
     method : str
-        What predicted.
+        The method of the predictions.
     values : ndarray, shape (n,) or (n, ...)
-        The values, those of ``nan="drop"`` left as they are.
+        The values, including those that ``nan="drop"`` removed.
     predicted : ndarray, shape (n,) or (n, ...)
-        What the others say; NaN where they say nothing, as at corners of the hull, and where they
-        span no area.
+        The predictions; NaN where there is none, as at corners of the hull, and where the other
+        sites span no area.
 
     Examples
     --------
@@ -76,38 +76,37 @@ class CrossValidation:
 
     @property
     def residuals(self) -> NDArray[Any]:
-        """Values less predictions, (n,) or (n, ...)."""
+        """Values minus predictions, (n,) or (n, ...)."""
         found: NDArray[Any] = self.values - self.predicted
         return found
 
     @property
     def count(self) -> int:
-        """How many points have a prediction."""
+        """Number of points with a prediction."""
         return int(np.isfinite(self.residuals).reshape(len(self.values), -1).all(axis=1).sum())
 
     @property
     def rmse(self) -> Any:
-        """Root of the mean square of the residuals, of the shape of one value."""
+        """Root mean square of the residuals, in the shape of one value."""
         return np.sqrt(_mean_of_known(np.abs(self.residuals) ** 2))
 
     @property
     def mae(self) -> Any:
-        """Mean of the magnitudes of the residuals, of the shape of one value."""
+        """Mean absolute residual, in the shape of one value."""
         return _mean_of_known(np.abs(self.residuals))
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the predictions over the values (extra ``plot``).
+        """Plot the predictions against the values (extra ``plot``).
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where to draw; by default on the axes of a new pyplot figure.
+            Axes to draw on; by default those of a new pyplot figure.
 
         Returns
         -------
         matplotlib Axes
-            What was drawn on: a dot for each value that was predicted, and the line on which
-            predictions are right.
+            The axes, with a point for each predicted value and the line of perfect predictions.
 
         Raises
         ------
@@ -130,7 +129,7 @@ class CrossValidation:
 
         if self.values.ndim != 1 or self.values.dtype.kind == "c":
             raise InputError(
-                f"a picture shows one real value at each point, not values of shape "
+                f"a plot shows one real value at each point, not values of shape "
                 f"{self.values.shape} and dtype {self.values.dtype}; cross-validate them one by one"
             )
         title = f"{self.method}: rmse {self.rmse:.6g}, mae {self.mae:.6g}"
@@ -165,7 +164,7 @@ def cross_validate(
     planar: bool = False,
     **options: Any,
 ) -> CrossValidation:
-    """Predict each value from the others.
+    """Predict each value from the others by cross-validation.
 
     Parameters
     ----------
@@ -174,26 +173,26 @@ def cross_validate(
     values : array_like, shape (n,) or (n, ...)
         Real or complex values.
     interpolator : str or callable, optional
-        Name of a method, as in `interpolator`; or a class or function that makes of points and
-        values something to be called with queries.
+        Name of a method, as in `interpolator`; or a class or function that takes points and values
+        and returns a callable that evaluates queries.
     folds : int, optional
-        Into how many parts the sites are dealt at random; each is predicted by the others.
+        Number of random parts of the sites; each part is predicted from the others.
     leave_one_out : bool, optional
-        Predict each site by all others. The default where no `folds` are given.
+        Predict each site from all others. The default if `folds` is not given.
     seed : int, optional
-        Of the dealing.
+        Seed of the random parts.
     duplicates : str, optional
         As in `Linear`. Points that coincide are left out together.
     nan : {"error", "drop"}, optional
-        Whether sites without a finite value are refused or left out from the beginning.
+        Whether sites without a finite value raise an error or are removed first.
     progress : callable, optional
-        Is told from time to time which share of the work is done, from 0 to 1.
+        Called from time to time with the fraction of the work that is done, from 0 to 1.
     workers : int, optional
         Number of threads.
     planar : bool, optional
         As in `Linear`.
     **options
-        As the interpolator takes them.
+        Options of the interpolator.
 
     Returns
     -------
@@ -203,15 +202,15 @@ def cross_validate(
     Raises
     ------
     InputError
-        Not exactly one of `folds` and `leave_one_out` is asked for, or there are fewer sites than
-        folds; a policy refuses the values.
+        Not exactly one of `folds` and `leave_one_out` is given; there are fewer sites than folds; a
+        policy rejects the values.
 
     Notes
     -----
-    Leave-one-out takes about the time of a triangulation for the methods without gradients, unless
-    they have options, and of a few hundred for those with gradients, of a thousand where these are
-    estimated globally. It is exact but for the last: there sites twelve edges apart are left out
-    together, which changes predictions by less than a millionth of the values' spread, about.
+    Leave-one-out takes about as long as one triangulation for methods without gradients and without
+    options, as a few hundred for methods with gradients, and as a thousand if these are estimated
+    globally. It is exact except in the last case: sites twelve edges apart are left out together,
+    which changes predictions by less than about a millionth of the range of the values.
 
     Examples
     --------
@@ -230,7 +229,7 @@ def cross_validate(
     if leave_one_out is None:
         leave_one_out = folds is None
     if leave_one_out == (folds is not None):
-        raise InputError("give folds, or leave_one_out=True, and not both")
+        raise InputError("give either folds or leave_one_out=True, not both")
     sites = as_points(points, ndim=2)
     warn_of_degrees(points, sites, planar=planar)
     field = as_field(values, len(sites))
@@ -262,7 +261,7 @@ def _dealer(seed: int) -> np.random.Generator:
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """Distinct sites, their values, and how to predict."""
+    """Distinct sites, their values, and the method."""
 
     mesh: Delaunay
     field: Field
@@ -270,11 +269,11 @@ class _Task:
     options: dict[str, Any]
     workers: int | None
     progress: Callable[[float], None] | None
-    # Each site by all others, not folds.
+    # Leave one out, not folds.
     alone: bool
 
     def left_one_out(self) -> Floats:
-        """Each vertex predicted by the others, as columns."""
+        """Predictions of each vertex from the others, as columns."""
         if self.method in _FROM_STARS and not self.options:
             threads = as_workers(self.workers)
             found = self.mesh._locator.leave_one_out(self.method, threads)
@@ -285,10 +284,12 @@ class _Task:
         return self._by_batches(iter(self._vertices()[:, None]))
 
     def folded(self, folds: int, rng: np.random.Generator) -> Floats:
-        """Each vertex predicted by those of other folds, as columns."""
+        """Predictions of each vertex from the other folds, as columns."""
         vertices = self._vertices()
         if not 2 <= as_count(folds, name="folds") <= len(vertices):
-            raise InputError(f"folds must be from 2 to the {len(vertices)} sites, got {folds}")
+            raise InputError(
+                f"folds must be from 2 to {len(vertices)} (the number of sites), got {folds}"
+            )
         dealt = rng.permutation(vertices)
         return self._by_batches(iter([np.sort(dealt[start::folds]) for start in range(folds)]))
 
@@ -316,13 +317,13 @@ class _Task:
         return predicted
 
     def _tried(self, rest: Rows, batch: Rows) -> Floats:
-        """Predictions from the rest; NaN where that spans no area."""
+        """Predictions from the rest; NaN if they span no area."""
         try:
             return self._predicted(rest, batch)
         except DegenerateInputError:
             found = np.full((len(batch), self.field.columns.shape[1]), np.nan)
         if self.alone and len(batch) > 1:
-            # Left out together only to save time: alone each leaves a rest with more points.
+            # They were left out together only to save time; alone, each leaves more points.
             for k in range(len(batch)):
                 others = np.union1d(rest, np.delete(batch, k))
                 found[k] = self._tried(others, batch[k : k + 1])[0]
@@ -337,14 +338,15 @@ class _Task:
         else:
             made = self.method(points[rest], values, **self.options)
         return as_field(
-            made(points[batch]), len(batch), name="what the interpolator returns"
+            made(points[batch]), len(batch), name="the result of the interpolator"
         ).columns
 
     def _far_apart(self, reach: int) -> Iterator[Rows]:
-        """All vertices in batches whose members are at least so many edges apart.
+        """Split all vertices into batches whose members are at least `reach` edges apart.
 
-        Each time vertices draw lots, and those join that have the highest in their neighbourhood
-        (M. Luby, "A simple parallel algorithm for the maximal independent set problem", 1986).
+        In each round the vertices draw random numbers, and those with the largest in their
+        neighborhood join (M. Luby, "A simple parallel algorithm for the maximal independent set
+        problem", 1986).
         """
         rng = np.random.default_rng(0)
         indptr, indices = self.mesh.vertex_neighbor_vertices

@@ -1,8 +1,8 @@
-"""Beyond the hull: what counts at the nearest point of the boundary, and a step away from it.
+"""Extrapolation beyond the hull: terms at the nearest point of the boundary and a step from it.
 
-On a boundary edge the interpolants here depend on the two ends alone, linearly or (the smooth ones)
-as the cubic with their values and slopes. So they are evaluated there without asking on which side
-of the edge its rounded point lies.
+On a boundary edge, the interpolants here depend only on its two ends: linearly or, for the smooth
+ones, as the cubic with their values and gradients. They are evaluated there without deciding on
+which side of the edge the rounded nearest point lies.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["Terms", "edge_terms", "plane_gradients", "summed"]
 
 
 class Terms(NamedTuple):
-    """Vertices, their weights, and those of their gradients, as many for each query.
+    """Vertices with weights of their values and gradients, the same number for each query.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class Terms(NamedTuple):
 def edge_terms(
     points: Floats, place: Location, step: Floats, *, cubic: bool, base: bool = True
 ) -> Terms:
-    """Return the terms of an interpolant on the boundary, and of how it goes on from there.
+    """Return the terms of an interpolant on the boundary and of its extrapolation.
 
     Parameters
     ----------
@@ -54,23 +54,23 @@ def edge_terms(
     place : Location
         Queries outside, flat.
     step : ndarray of float64, shape (k, 2)
-        How far to go from the nearest points of the boundary.
+        Steps from the nearest points of the boundary.
     cubic : bool
-        Whether the interpolant is cubic on the boundary, by values and gradients of the ends;
+        Whether the interpolant is cubic on the boundary, from values and gradients of the ends;
         otherwise it is linear.
     base : bool, optional
-        Count the value at the nearest point; otherwise only what the step adds.
+        Include the value at the nearest point; otherwise only the contribution of the step.
 
     Returns
     -------
     Terms
-        For the ends of the boundary edges; without slopes where nothing goes by gradients.
+        For the ends of the boundary edges; without slopes if no gradients are used.
 
     Notes
     -----
-    A step goes by the gradients of the ends, linearly from one to the other, so that the whole is
-    continuous, at corners of the hull as well. The triangle at the boundary is not asked: those are
-    often so thin that their planes say nothing.
+    A step uses the gradients of the ends, interpolated linearly along the edge, so that the result
+    is continuous, at corners of the hull as well. The triangle at the boundary is not used: such
+    triangles are often so thin that their planes are meaningless.
     """
     s = place.weights[:, 1]
     shares = place.weights
@@ -90,14 +90,14 @@ def edge_terms(
 def plane_gradients(
     points: Floats, neighborhood: tuple[Indices, Indices], columns: Floats, workers: int
 ) -> Floats:
-    """Return the slopes of the planes through points that fit their neighbours best.
+    """Return the gradients of the planes through points that best fit their neighbors.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
         Coordinates.
     neighborhood : tuple of ndarray of int32
-        Neighbours of vertices as compressed rows (indptr, indices).
+        Neighbors of vertices as compressed rows (indptr, indices).
     columns : ndarray of float64, shape (n, c)
         Values at the vertices.
     workers : int
@@ -117,7 +117,7 @@ def summed(terms: Terms, columns: Floats, gradients: Floats | None) -> Floats:
     Parameters
     ----------
     terms : Terms
-        Which vertices count, and how much.
+        Vertices and their weights.
     columns : ndarray of float64, shape (n, c)
         Values at the vertices.
     gradients : ndarray of float64, shape (n, c, 2), or None
@@ -126,7 +126,7 @@ def summed(terms: Terms, columns: Floats, gradients: Floats | None) -> Floats:
     Returns
     -------
     ndarray of float64, shape (k, c)
-        The sums. What has no weight is not looked at, NaN and the sign of zero included.
+        The sums. Values with zero weight are not read, so their NaN or sign of zero has no effect.
     """
     found = np.full((len(terms.rows), columns.shape[1]), -0.0)
     for k in range(terms.rows.shape[1]):

@@ -1,4 +1,4 @@
-"""Linear interpolation: on each triangle or tetrahedron by the values at its corners."""
+"""Linear interpolation: on each triangle or tetrahedron, from the values at its corners."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["Linear"]
 
 
 class Linear(Interpolator):
-    """Piecewise linear interpolation on the triangles, in space on the tetrahedra.
+    """Piecewise linear interpolation on triangles, or on tetrahedra in 3-D.
 
     Parameters
     ----------
@@ -29,47 +29,49 @@ class Linear(Interpolator):
         Sites. A triangulation of delone is used as it is, constrained ones included. A periodic
         one, ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
-        Real or complex values at the sites. They may be left out where calls bring theirs.
+        Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
-        What there is outside of the hull: NaN; the value at the nearest point of the hull; from
-        there on the slope of the planes that fit its sites and their neighbours best; an error.
+        Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
+        extrapolation from there, with the gradients of the planes that best fit its sites and their
+        neighbors; an error.
     duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
-        Which value a point has that comes several times with different ones.
+        The value of points that coincide but have different values.
     nan : {"error", "drop", "propagate"}, optional
-        What becomes of sites whose value is NaN or infinite: an error that names them; the sites
-        are left out of the triangulation, unless a constraint needs them, which is an error as
-        well; the triangles at them have no value.
+        How to treat sites whose value is NaN or infinite: raise an error that names them; remove
+        them from the triangulation (an error if a constraint needs them); keep them, so that the
+        triangles at them have no value.
     respect_constraints : bool, optional
-        Accepted as by the other interpolators: triangles never cross a constraint.
+        Accepted for consistency with the other interpolators: triangles never cross constraints.
     workers : int, optional
-        Number of threads; by default one for each core. The answer is the same.
+        Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
-        Whether longitudes and latitudes are meant as coordinates of a plane; otherwise points that
-        say they are in degrees (by a reference system or names of columns) are warned of.
+        Treat longitudes and latitudes as coordinates of a plane; otherwise points known to be in
+        degrees (from a reference system or column names) cause a warning.
 
     Raises
     ------
     InputError
-        An argument is none of its choices; values differ at a point with ``duplicates="error"``.
+        An argument is not one of its choices; values differ at a point with ``duplicates="error"``.
     NonFiniteError
         A coordinate, or with ``nan="error"`` a value, is NaN or infinite.
     DegenerateInputError
         The sites span no area.
     ShapeError, DtypeError
-        Arrays do not fit, or hold no numbers.
+        Arrays have the wrong shape, or are not numeric.
 
     Notes
     -----
-    At a site the value comes back bit for bit; linear functions are reproduced up to rounding.
-    Inside of the hull, its boundary included, the answer is never NaN unless a value is. Each query
-    costs its location: O(1) in order along a space-filling curve, which the core sees to.
+    At a site the value is reproduced exactly, bit for bit; linear functions are reproduced up to
+    rounding. Inside the hull, including its boundary, the result is NaN only if a value is. Each
+    query costs its point location: O(1) in the order of a space-filling curve, into which the core
+    sorts the queries.
 
-    On a periodic triangulation queries are moved into one period, and the sites are copied as far
-    as they matter: at least twice on each side. In a direction with a period there is no outside.
+    On a periodic triangulation, queries are moved into one period, and the sites are copied as far
+    as they matter: at least twice on each side. In a periodic direction there is no outside.
 
     See Also
     --------
-    CloughTocher : Smooth, from values and estimated gradients.
+    CloughTocher : Smooth interpolation from values and estimated gradients.
     NaturalNeighbor : Weights that change smoothly from site to site.
 
     Examples
@@ -95,7 +97,7 @@ class Linear(Interpolator):
         return found
 
     def _in_space(self, queries: Floats, columns: Floats, order: int) -> Floats:
-        """Values, or slopes, in the tetrahedra that hold queries."""
+        """Values or gradients in the tetrahedra that contain the queries."""
         mesh = self._mesh
         index: Any = mesh._locator
         simplex, weights = index.within(queries, as_workers(self._workers))
@@ -115,7 +117,7 @@ class Linear(Interpolator):
         return edge_terms(self._mesh.points, place, step, cubic=False, base=base)
 
     def gradients(self, columns: Floats) -> Floats | None:
-        """Return gradients at the sites, which count beyond the hull alone."""
+        """Return gradients at the sites, which are used only beyond the hull."""
         if self._extrapolate != "linear":
             return None
         mesh = self._mesh
@@ -127,7 +129,7 @@ class Linear(Interpolator):
     def _table(self, queries: Floats, shape: tuple[int, ...]) -> Weights:
         place = self._located(queries)
         weights, simplices = place.barycentric, self._mesh.simplices
-        # Without a triangle there is no row that could stand for none.
+        # Without triangles there is no row to use for queries outside.
         corners = (
             simplices[place.simplex] if len(simplices) else np.full(weights.shape, -1, np.int32)
         )

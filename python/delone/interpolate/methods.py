@@ -1,4 +1,4 @@
-"""Interpolators by name, for rasters, cross-validation, the command and other libraries."""
+"""Interpolators by name, for rasters, cross-validation, the command line and other libraries."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def interpolator(
     values: ArrayLike | None = None,
     **options: Any,
 ) -> Interpolator:
-    """Return the interpolator of a name.
+    """Make an interpolator by name.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def interpolator(
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
     **options
-        As the class takes them.
+        Options of the class.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def interpolator(
     Raises
     ------
     InputError
-        There is no such method; and what the class raises.
+        The method is unknown; or the class raises it.
 
     Examples
     --------

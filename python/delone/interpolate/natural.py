@@ -1,9 +1,9 @@
-"""Natural neighbours: a query counts its neighbours by what its Voronoi cell would take of theirs.
+"""Natural neighbor interpolation: weights from the Voronoi cells that a query would take over.
 
 Sibson's weights are areas (R. Sibson, "A vector identity for the Dirichlet tessellation", 1980),
 Laplace's are lengths over distances (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links
 and plaquettes in a random lattice", 1982). Sibson's C1 interpolant ("A brief description of natural
-neighbour interpolation", 1981) and Farin's ("Surfaces over Dirichlet tessellations", 1990) add
+neighbor interpolation", 1981) and Farin's ("Surfaces over Dirichlet tessellations", 1990) add
 gradients at the sites.
 """
 
@@ -38,31 +38,31 @@ _WITH_GRADIENTS = ("sibson1", "farin")
 
 
 class NaturalNeighbor(Smooth):
-    """Interpolation from natural neighbours, smooth but at the sites, or there as well.
+    """Interpolation from natural neighbors, C1 except at the sites, or everywhere.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites; in space the kind is ``"laplace"``. A constrained triangulation needs
+        Sites; in 3-D the kind must be ``"laplace"``. A constrained triangulation needs
         ``respect_constraints=True``.
     values : array_like, shape (n,) or (n, ...), optional
-        Real or complex values at the sites. They may be left out where calls bring theirs.
+        Real or complex values at the sites. Optional if each call passes its own values.
     kind : {"sibson", "laplace", "sibson1", "farin"}, optional
-        Weights by area, smooth but at the sites; by length, continuous and faster; Sibson's and
-        Farin's interpolants from values and gradients, smooth everywhere.
+        Sibson's weights by area, C1 except at the sites; Laplace's weights by length, continuous
+        and faster; Sibson's and Farin's interpolants from values and gradients, C1 everywhere.
     gradients : {"local", "plane", "global"}, optional
-        How ``"sibson1"`` and ``"farin"`` get the gradients at the sites; as in `CloughTocher`.
+        How ``"sibson1"`` and ``"farin"`` estimate gradients at the sites; as in `CloughTocher`.
     tol, maxiter : optional
         As in `CloughTocher`.
     extrapolate : {"nan", "nearest", "linear", "error"}, optional
-        What there is outside of the hull: NaN; the value at the nearest point of the hull; from
-        there on, as in `Linear`, or with gradients by these; an error.
+        Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
+        extrapolation from there, as in `Linear` or with the gradients of the kind; an error.
     duplicates, nan : str, optional
         As in `Linear`.
     respect_constraints : bool, optional
-        On a constrained triangulation: neighbours are those that are seen past no constraint.
+        On a constrained triangulation, neighbors must be visible, not hidden by a constraint.
     workers : int, optional
-        Number of threads; by default one for each core. The answer is the same.
+        Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
         As in `Linear`.
 
@@ -73,15 +73,15 @@ class NaturalNeighbor(Smooth):
 
     Notes
     -----
-    Weights of ``"sibson"`` and ``"laplace"`` are not negative, sum to 1 and have the query as their
-    mean, so that linear functions are reproduced up to rounding, beside sites that all but coincide
-    as well; where doubles do not tell the weights, integers do. On an edge of the hull the
-    interpolant is linear between its ends. ``"farin"`` with local gradients reproduces quadratic
-    functions, ``"sibson1"`` those that are round, as far as gradients do: see `CloughTocher`.
-    Each query takes time in the number of its
-    neighbours, about six. In space, where the weights are areas over distances and neighbours about
-    fifteen, there are values and weights, but no derivatives. At a site the derivatives of
-    ``"sibson"`` and ``"laplace"`` do not exist and are NaN.
+    The weights of ``"sibson"`` and ``"laplace"`` are nonnegative, sum to 1 and have the query as
+    their weighted mean. Linear functions are therefore reproduced up to rounding, even next to
+    sites that almost coincide; where doubles cannot compute the weights, integers do. On an edge of
+    the hull the interpolant is linear. ``"farin"`` with local gradients reproduces quadratic
+    functions, and ``"sibson1"`` spherical ones (multiples of x² + y² plus a linear function), as
+    far as the gradients do: see `CloughTocher`. Each query takes time linear in the number of its
+    neighbors, about six. In 3-D, where the weights are areas over distances and there are about
+    fifteen neighbors, values and weights are available but no derivatives. At a site the
+    derivatives of ``"sibson"`` and ``"laplace"`` do not exist and are NaN.
 
     Examples
     --------
@@ -129,7 +129,7 @@ class NaturalNeighbor(Smooth):
         barred = self._respect_constraints and self._constrained
         if not (barred or isinstance(self._mesh, Delaunay)):
             raise InputError(
-                "natural neighbours are those of a Delaunay triangulation; on a constrained one "
+                "natural neighbors need a Delaunay triangulation; on a constrained one "
                 "choose respect_constraints=True, or pass its points"
             )
 
@@ -144,11 +144,11 @@ class NaturalNeighbor(Smooth):
 
     @property
     def kind(self) -> str:
-        """Which weights are used."""
+        """The kind of weights."""
         return self._kind
 
     def gradients(self, columns: Floats) -> Floats | None:  # type: ignore[override]
-        """Return gradients at the sites, None where the kind needs none."""
+        """Return gradients at the sites, or None if the kind needs none."""
         if self._kind in _WITH_GRADIENTS:
             return super().gradients(columns)
         if self._extrapolate != "linear":
@@ -162,11 +162,11 @@ class NaturalNeighbor(Smooth):
         if self._kind in _WITH_GRADIENTS:
             return
         if self._ndim == SPACE:
-            refuse("site_gradients", f"kind={self._kind!r} is made without gradients")
+            refuse("site_gradients", f"kind={self._kind!r} has no gradients at the sites")
         instead = " or ".join(f"kind={kind!r}" for kind in _WITH_GRADIENTS)
         raise InputError(
-            f"kind={self._kind!r} is made without gradients at the sites: choose {instead}, "
-            "or ask for the slope of the interpolant anywhere else by gradient(xi)"
+            f"kind={self._kind!r} has no gradients at the sites: choose {instead}, "
+            "or get the gradient of the interpolant anywhere else with gradient(xi)"
         )
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:

@@ -1,4 +1,4 @@
-"""Interpolation by the nearest site: one value for each cell of the Voronoi diagram."""
+"""Interpolation by the nearest site: constant on each cell of the Voronoi diagram."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ class Nearest(Interpolator):
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
-        Real or complex values at the sites. They may be left out where calls bring theirs.
+        Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "error"}, optional
-        What there is outside of the hull: the value of the nearest site there, too; NaN; an error.
+        Behavior outside the hull: the value of the nearest site, as inside; NaN; an error.
     duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
-        Which value a point has that comes several times with different ones.
+        The value of points that coincide but have different values.
     nan : {"error", "drop", "propagate"}, optional
-        What becomes of sites whose value is NaN or infinite; as in `Linear`.
+        How to treat sites whose value is NaN or infinite; as in `Linear`.
     respect_constraints : bool, optional
-        On a constrained triangulation: the nearest site that is seen from the query, past no
-        constraint.
+        On a constrained triangulation, use the nearest site that is visible from the query, not
+        hidden by a constraint.
     workers : int, optional
-        Number of threads; by default one for each core. The answer is the same.
+        Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
         As in `Linear`.
 
@@ -53,9 +53,10 @@ class Nearest(Interpolator):
 
     Notes
     -----
-    Exact: distances are compared by predicates, and of equally near sites the smallest row counts.
-    With constraints respected, sites are compared by rounded distances among the neighbours that
-    the query would have as a vertex; the nearest visible one is always among them.
+    The nearest site is exact: distances are compared by predicates, and of equally near sites the
+    one with the smallest row is used. If constraints are respected, rounded distances are compared
+    among the neighbors that the query would have as a vertex; the nearest visible site is always
+    among them.
 
     Examples
     --------
@@ -111,7 +112,7 @@ class Nearest(Interpolator):
         return Weights(*table, shape, self)
 
     def _rows(self, queries: Floats) -> Indices:
-        """The site of each query, -1 where there is none."""
+        """The site of each query, -1 if there is none."""
         if self._respect_constraints and self._constrained:
             return self._seen(queries)
         mesh = self._mesh
@@ -124,7 +125,7 @@ class Nearest(Interpolator):
         return np.where(place.simplex >= 0, rows, np.int32(-1))
 
     def _seen(self, queries: Floats) -> Indices:
-        """The nearest of the neighbours that queries would have in the constrained mesh."""
+        """The nearest of the neighbors that each query would have in the constrained mesh."""
         mesh = self._mesh
         barrier = mesh.constrained  # type: ignore[attr-defined]
         natural = mesh._locator.natural("laplace", queries, barrier, as_workers(self._workers))

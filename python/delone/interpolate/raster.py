@@ -1,8 +1,8 @@
 """Rasters: an interpolant on the nodes of a regular grid.
 
-A node is the centre of a cell; rows go from the lowest to the highest y. Nodes are gone through in
-blocks of rows, so that beyond the result little memory is needed; the result itself is estimated
-before anything is computed.
+A node is the center of a cell; rows go from the lowest to the highest y. Nodes are evaluated in
+blocks of rows, so that little memory is needed beyond the result, whose size is checked before
+anything is computed.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Grid", "grid", "raster_nodes", "require_memory"]
 
-# Queries at a time: few enough for their coordinates and weights to stay in the cache.
+# Queries per block: few enough for their coordinates and weights to stay in the cache.
 _BLOCK = 1 << 18
-# Beside the result: a block of queries, and room for whoever looks at the result.
+# Memory beside the result: a block of queries, and room for further use of the result.
 _SPARE = 1 << 26
 
 
@@ -49,11 +49,11 @@ class Grid:
     Parameters
     ----------
     values : ndarray, shape (rows, columns) or (rows, columns, ...)
-        Values; NaN where there is none.
+        Values; NaN where undefined.
     x : ndarray of float64, shape (columns,)
-        Abscissas, ascending.
+        x coordinates, ascending.
     y : ndarray of float64, shape (rows,)
-        Ordinates, ascending.
+        y coordinates, ascending.
 
     Examples
     --------
@@ -72,12 +72,12 @@ class Grid:
 
     @property
     def cell(self) -> tuple[float, float]:
-        """Width and height of a cell; 0 where there is but one."""
+        """Width and height of a cell; 0 if there is only one."""
         return _step(self.x), _step(self.y)
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top of the outermost cells, as matplotlib's imshow takes them."""
+        """Left, right, bottom and top of the outermost cells, in the order of imshow."""
         half_x, half_y = (side / 2 for side in self.cell)
         x, y = self.x, self.y
         return (
@@ -88,20 +88,20 @@ class Grid:
         )
 
     def to_xarray(self, *, name: str | None = None, crs: str | None = None) -> Any:
-        """Return the grid as a DataArray of xarray (extra ``xarray``).
+        """Return the grid as an xarray.DataArray (extra ``xarray``).
 
         Parameters
         ----------
         name : str, optional
-            What the values are called.
+            Name of the values.
         crs : str, optional
-            Coordinate reference system, kept as an attribute.
+            Coordinate reference system, stored as an attribute.
 
         Returns
         -------
         xarray.DataArray
-            With the dimensions ``y`` and ``x``, then ``value0``, ``value1``, ... where there are
-            several values at each node. It shares the memory of the grid.
+            An array with the dimensions ``y`` and ``x``, then ``value0``, ``value1``, ... if there
+            are several values at each node. It shares memory with the grid.
 
         Raises
         ------
@@ -128,12 +128,12 @@ class Grid:
         )
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw the values in colors (extra ``plot``).
+        """Plot the values in colors (extra ``plot``).
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
-            Where to draw; by default on the axes of a new pyplot figure.
+            Axes to draw on; by default those of a new pyplot figure.
         **options
             As for `delone.plot.plot_raster`: ``contours``, ``shade``, ``cmap``, ``colorbar``,
             ``label``, ``title``.
@@ -141,14 +141,14 @@ class Grid:
         Returns
         -------
         matplotlib Axes
-            What was drawn on.
+            The axes.
 
         Raises
         ------
         MissingExtraError
             matplotlib is not installed.
         InputError
-            The values are complex, several at each node, or none is finite.
+            The values are complex, there are several at each node, or none is finite.
 
         Examples
         --------
@@ -163,8 +163,8 @@ class Grid:
 
         if self.values.ndim != 2 or self.values.dtype.kind == "c":
             raise InputError(
-                f"a picture shows one real value at each node, not values of shape "
-                f"{self.values.shape} and dtype {self.values.dtype}; draw "
+                f"a plot shows one real value at each node, not values of shape "
+                f"{self.values.shape} and dtype {self.values.dtype}; plot "
                 "Grid(part, grid.x, grid.y), where part has one"
             )
         return plot_raster(self.values, self.x, self.y, ax, **options)
@@ -173,7 +173,7 @@ class Grid:
         size = " x ".join(map(str, (len(self.x), len(self.y), *self.values.shape[2:])))
         span = "complex values"
         if self.values.dtype.kind != "c":
-            # These pass over NaN, and copy nothing.
+            # These ignore NaN and copy nothing.
             low, high = (each.reduce(self.values, axis=None) for each in (np.fmin, np.fmax))
             span = "no values" if np.isnan(low) else f"{low:.6g} to {high:.6g}"
         left, right, bottom, top = (f"{bound:.6g}" for bound in self.extent)
@@ -199,25 +199,25 @@ def grid(
     Parameters
     ----------
     points : array_like, shape (n, 2), a triangulation, or an interpolator
-        Sites, or what has been made of them.
+        Sites, or a triangulation or interpolator of them.
     values : array_like, shape (n,) or (n, ...), optional
-        Values at the sites; by default those of the interpolator.
+        Values at the sites; by default the interpolator's own.
     resolution : float or pair of float, optional
         Width and height of a cell, in the units of the points.
     shape : pair of int, optional
-        Numbers of columns and of rows, in place of `resolution`.
+        Numbers of columns and rows, instead of `resolution`.
     x, y : array_like, shape (columns,) and (rows,), optional
-        The nodes themselves, ascending, in place of `resolution`.
+        The nodes themselves, ascending, instead of `resolution`.
     bounds : sequence of four floats, optional
-        Left, bottom, right and top of the raster; by default the box of the points.
+        Left, bottom, right and top of the raster; by default the bounding box of the points.
     method : str, optional
         As in `interpolator`; not together with an interpolator.
     max_distance : float, optional
-        Nodes farther than this from the nearest site get NaN; by default no distance is too far.
+        Nodes farther than this from the nearest site get NaN; by default there is no limit.
     progress : callable, optional
-        Is told from time to time which share of the nodes is done, from 0 to 1.
+        Called from time to time with the fraction of the nodes that is done, from 0 to 1.
     **options
-        As the interpolator takes them: ``extrapolate``, ``duplicates``, ``nan``, ``workers``,
+        Options of the interpolator: ``extrapolate``, ``duplicates``, ``nan``, ``workers``,
         ``planar``.
 
     Returns
@@ -228,14 +228,14 @@ def grid(
     Raises
     ------
     InputError
-        Not exactly one of `resolution`, `shape` and nodes is given, or they are no raster;
+        Not exactly one of `resolution`, `shape` and nodes is given, or they do not define a raster;
         `max_distance` is negative or NaN.
     MemoryError
-        The result would not fit into the memory that is free; raised before anything is computed.
+        The result would not fit into free memory; raised before anything is computed.
 
     Notes
     -----
-    A box that is no whole number of cells wide is filled up to the right and to the top.
+    A box that is not a whole number of cells wide is extended to the right and to the top.
 
     Examples
     --------
@@ -248,15 +248,13 @@ def grid(
     limit = as_max_distance(max_distance)
     if isinstance(points, Interpolator):
         if options or method != "linear":
-            raise InputError(
-                "the interpolator is made already: no method and no options of its own"
-            )
+            raise InputError("method and options cannot be given with an interpolator that exists")
         made = points
     else:
         made = interpolator(method, points, values, **options)
         values = None
     if made._ndim == SPACE:
-        refuse("a raster", "call the interpolator with the points where values are wanted")
+        refuse("a raster", "call the interpolator with the query points")
     field, columns = made._with(values)[1:]
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
     require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
@@ -282,7 +280,7 @@ def _nodes(  # noqa: PLR0917
     if x is None and y is None:
         return raster_nodes(made._box, resolution=resolution, shape=shape, bounds=bounds)
     if x is None or y is None or not (resolution is None and shape is None and bounds is None):
-        raise InputError("nodes are both x and y, without resolution, shape or bounds")
+        raise InputError("give both x and y, without resolution, shape or bounds")
     return _ascending(x, "x"), _ascending(y, "y")
 
 
@@ -294,17 +292,16 @@ def raster_nodes(
     bounds: Sequence[float] | None = None,
     room: Callable[[int, int], None] | None = None,
 ) -> tuple[Floats, Floats]:
-    """Return the nodes of a raster, the centres of its cells.
+    """Return the nodes of a raster, the centers of its cells.
 
     Parameters
     ----------
     box : tuple of two points
-        Least and greatest coordinates, for the lack of bounds.
+        Least and greatest coordinates, used if there are no bounds.
     resolution, shape, bounds
         As in `grid`.
-    room : callable, optional
-        Is told columns and rows before anything is made, and raises where there is no room for
-        such a raster; by default memory must have it.
+    Called with columns and rows before anything is allocated; raises if there is no room for such a
+    raster. By default the raster must fit into memory.
 
     Returns
     -------
@@ -341,12 +338,12 @@ def raster_nodes(
         require_memory(columns + rows, 1, 1)
     if not cells:
         cells = [_length(low[k], high[k], units[k]) / counts[k] for k in range(2)]
-    x, y = (_centres(low[k], cells[k], counts[k], units[k]) for k in range(2))
+    x, y = (_centers(low[k], cells[k], counts[k], units[k]) for k in range(2))
     return x, y
 
 
 def _unit(low: float, high: float) -> float:
-    """The factor by which a length is a double: 1, but where a box is wider than any."""
+    """The factor by which a length is a double: 1, or 1/2 if a box is wider than any."""
     return 1.0 if math.isfinite(high - low) else 0.5
 
 
@@ -354,8 +351,8 @@ def _length(low: float, high: float, unit: float) -> float:
     return high * unit - low * unit
 
 
-def _centres(low: float, cell: float, count: int, unit: float) -> Floats:
-    """Centres of cells of a length in that unit."""
+def _centers(low: float, cell: float, count: int, unit: float) -> Floats:
+    """Centers of cells; `cell` is in the given unit."""
     with np.errstate(over="ignore"):
         nodes: Floats = (low * unit + cell * (np.arange(count, dtype=np.float64) + 0.5)) / unit
     if not np.isfinite(nodes[-1]):
@@ -364,7 +361,7 @@ def _centres(low: float, cell: float, count: int, unit: float) -> Floats:
 
 
 def _listed(given: Any, name: str, count: int) -> list[Any]:
-    """So many things, of whatever holds them."""
+    """A sequence of exactly `count` items, as a list."""
     found = [] if _is_one(given) else list(given)
     if len(found) != count:
         raise ShapeError(f"{name} must be {count} numbers, got {given!r:.60}")
@@ -372,14 +369,14 @@ def _listed(given: Any, name: str, count: int) -> list[Any]:
 
 
 def _is_one(given: Any) -> bool:
-    """Tell one thing from several in order; rows of unequal length are several."""
+    """Whether this is one item, not a sequence; rows of unequal length are a sequence."""
     if isinstance(given, str | bytes) or not hasattr(given, "__getitem__"):
         return True
     return getattr(given, "ndim", 1) == 0 or isinstance(given, Mapping)
 
 
 def _cells(length: float, cell: float) -> int:
-    """How many cells cover a length; a rounding error more does not ask for another one."""
+    """How many cells cover a length; an excess by a rounding error adds none."""
     count = length / cell
     if not math.isfinite(count):
         raise InputError(f"cells of {cell} are too small for a box of {length}")
@@ -406,14 +403,14 @@ def _ascending(nodes: ArrayLike, name: str) -> Floats:
 
 
 def require_memory(columns: int, rows: int, values: int) -> None:
-    """Refuse a raster that would not fit into the memory that is free.
+    """Raise if a raster would not fit into free memory.
 
     Parameters
     ----------
     columns, rows : int
-        Numbers of cells.
+        Number of cells in each direction.
     values : int
-        Numbers of eight bytes in each cell.
+        Number of 8-byte values in each cell.
 
     Raises
     ------
@@ -423,15 +420,15 @@ def require_memory(columns: int, rows: int, values: int) -> None:
     needed = 8 * columns * rows * max(1, values)
     free = _free_memory()
     if needed > sys.maxsize or (free is not None and needed + _SPARE > free):
-        known = "" if free is None else f", and {gigabytes(free)} are free"
+        known = "" if free is None else f", and {gigabytes(free)} is free"
         raise MemoryError(
             f"a raster of {grouped(columns)} x {grouped(rows)} cells needs {gigabytes(needed)}"
-            f"{known}; choose larger cells, or parts by bounds"
+            f"{known}; choose larger cells, or a part with bounds"
         )
 
 
 def _free_memory() -> int | None:
-    """Bytes that can be had without swapping, None where the system does not tell."""
+    """Bytes available without swapping, or None if the system does not say."""
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):

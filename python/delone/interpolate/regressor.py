@@ -1,7 +1,7 @@
-"""Interpolation as an estimator of scikit-learn (extra ``learn``).
+"""Interpolation as a scikit-learn estimator (extra ``learn``).
 
-This module needs scikit-learn when it is imported; `delone.interpolate.DelaunayRegressor` imports
-it when it is asked for.
+Importing this module requires scikit-learn; `delone.interpolate` imports it lazily, when
+`DelaunayRegressor` is accessed.
 """
 
 from __future__ import annotations
@@ -31,37 +31,36 @@ __all__ = ["DelaunayRegressor"]
 
 
 class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
-    """Predict from scattered points in the plane by interpolation.
+    """Regression by interpolation of scattered 2-D points.
 
     Parameters
     ----------
     method : str, optional
         As in `interpolator`.
     extrapolate : {"nearest", "linear", "nan", "error"}, optional
-        What there is outside of the hull of the training points.
+        Behavior outside the hull of the training points.
     duplicates : str, optional
-        Which value a training point has that comes several times with different ones; as in
-        `Linear`, but by default their mean.
+        The value of training points that coincide but have different values; as in `Linear`, but by
+        default their mean.
     columns : pair of int, optional
-        Which two features are the coordinates. By default there must be exactly two.
+        The two features that are the coordinates. By default there must be exactly two.
     workers : int, optional
         Number of threads.
     planar : bool, optional
-        As in `Linear`: whether features called longitude and latitude are meant as coordinates of a
-        plane.
+        As in `Linear`: treat features named longitude and latitude as coordinates of a plane.
 
     Attributes
     ----------
     interpolator_ : Interpolator
         Made by `fit`.
     n_features_in_ : int
-        How many features there are.
+        Number of features.
 
     Notes
     -----
-    With ``columns=(0, 1)`` it passes scikit-learn's own checks of estimators (``check_estimator``).
-    The default does not, as the checks bring more than two features and it refuses to guess which
-    are coordinates. Training points must span an area.
+    With ``columns=(0, 1)`` the estimator passes ``check_estimator``, scikit-learn's own checks. The
+    default does not, as these use more than two features and it does not guess which ones are
+    coordinates. Training points must span an area.
 
     Examples
     --------
@@ -91,24 +90,24 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.planar = planar
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Self:  # noqa: N803
-        """Triangulate training points.
+        """Triangulate the training points.
 
         Parameters
         ----------
         X : array_like, shape (n, 2)
-            Training points; where `columns` are given, with any further features.
+            Training points; with further features if `columns` is given.
         y : array_like, shape (n,) or (n, k)
             Their values.
 
         Returns
         -------
         DelaunayRegressor
-            Itself.
+            The estimator itself.
 
         Raises
         ------
         ValueError
-            There are not two features, or the points span no area.
+            The number of features is not two, or the points span no area.
 
         Examples
         --------
@@ -132,12 +131,12 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         return self
 
     def predict(self, X: ArrayLike) -> NDArray[np.float64]:  # noqa: N803
-        """Interpolate.
+        """Interpolate at the given points.
 
         Parameters
         ----------
         X : array_like, shape (n, 2)
-            Points; as many features as `fit` was given.
+            Points; with the same number of features as in `fit`.
 
         Returns
         -------
@@ -147,7 +146,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         Raises
         ------
         ValueError
-            There are not as many features, or one is NaN or infinite.
+            The number of features differs from that in `fit`, or a value is NaN or infinite.
         NotFittedError
             `fit` has not been called.
 
@@ -164,8 +163,8 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         if self.columns is None:
             if self.n_features_in_ != 2:
                 raise ValueError(
-                    "DelaunayRegressor takes points in the plane: 2 features, not "
-                    f"{self.n_features_in_} feature(s); choose two by columns="
+                    "DelaunayRegressor needs 2-D points: 2 features, not "
+                    f"{self.n_features_in_} feature(s); choose two with columns="
                 )
             return np.asarray(X)
         first, second = self._pair()
@@ -189,9 +188,9 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         return first, second
 
     def __sklearn_tags__(self) -> Any:
-        """Return what scikit-learn wants to know of an estimator."""
+        """Return the tags by which scikit-learn chooses its checks."""
         tags = super().__sklearn_tags__()
         tags.target_tags.multi_output = True
-        # Random features are more than two, and a plane does not fit them.
+        # The random data of the checks has more than two features, and 2-D cannot fit it.
         tags.regressor_tags.poor_score = True
         return tags

@@ -1,10 +1,10 @@
-"""Periodic sites: copies enough that queries of one period see what they would see of all copies.
+"""Periodic sites: enough copies that queries in one period see the infinite set.
 
 Queries are moved into one period, the window. An edge of a periodic Delaunay triangulation is no
 longer than a period in its direction: of an edge from p to q that is longer, q minus a period would
 lie in every circle through p and q on one of its sides, and p plus a period on the other. So each
 triangle at the window has its corners less than a period away from it, and copies one period
-further on each side make its neighborhood that of the endless set. Natural neighbors are as far
+further on each side make its neighborhood that of the infinite set. Natural neighbors are as far
 away as the empty circles are wide; those count when the copies are counted.
 """
 
@@ -28,24 +28,24 @@ if TYPE_CHECKING:
 
 __all__ = ["Repeated", "repeated"]
 
-# Triangles at the window are right with one period on each side, their neighbors with two.
+# Triangles at the window are correct with one period on each side, and their neighbors with two.
 _LEAST = 2
-# What a site says of gradients by the global estimation at least halves from each ring of neighbors
-# to the next; after so many it is below the default tolerance.
+# The influence of a site on globally estimated gradients at least halves from each ring of
+# neighbors to the next; after this many rings it is below the default tolerance.
 _RINGS = 36
 
 
 class Repeated(NamedTuple):
-    """A window of one period, and the moves of the copies around it.
+    """A window of one period, and the offsets of the copies around it.
 
     Parameters
     ----------
     periods : tuple of two floats or None
         The periods in x and y.
     low : ndarray of float64, shape (2,)
-        Where the window begins.
+        The lower corner of the window.
     moves : ndarray of float64, shape (k, 2)
-        How far each copy is moved; the first is not.
+        The offset of each copy; that of the first is zero.
     duplicate_of : ndarray of int32, shape (n,)
         The first row with the same coordinates, for each site.
     """
@@ -56,7 +56,7 @@ class Repeated(NamedTuple):
     duplicate_of: NDArray[np.int32]
 
     def copies(self, sites: Floats) -> Floats:
-        """Return all copies of sites, those of one site side by side, it itself first.
+        """Return all copies of the sites; those of one site are adjacent, the site itself first.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Repeated(NamedTuple):
         LimitError
             A copy lies beyond the range of doubles.
         """
-        # So the order of copies at equal distances is that of their sites.
+        # With this order, copies at equal distances are ordered as their sites.
         with np.errstate(over="ignore"):
             found: Floats = (sites[:, None] + self.moves).reshape(-1, 2)
         if not np.isfinite(found).all():
@@ -86,7 +86,7 @@ class Repeated(NamedTuple):
         Parameters
         ----------
         count : int
-            How many sites there are.
+            Number of sites.
 
         Returns
         -------
@@ -96,12 +96,12 @@ class Repeated(NamedTuple):
         return np.repeat(np.arange(count), len(self.moves))
 
     def unmoved(self, count: int) -> Rows:
-        """Return the copy that is not moved, for each copy.
+        """Return the copy with offset zero, for each copy.
 
         Parameters
         ----------
         count : int
-            How many copies there are.
+            Number of copies.
 
         Returns
         -------
@@ -117,12 +117,12 @@ class Repeated(NamedTuple):
         Parameters
         ----------
         queries : ndarray of float64, shape (k, 2)
-            Where.
+            Queries.
 
         Returns
         -------
         ndarray of float64, shape (k, 2)
-            The same array where nothing is to be moved. What is not finite stays as it is.
+            The same array if nothing is moved. Queries that are not finite are unchanged.
         """
         moved = queries
         for axis, length in enumerate(self.periods):
@@ -137,21 +137,21 @@ class Repeated(NamedTuple):
 
 
 def repeated(mesh: PeriodicDelaunay, *, far: bool = False, rings: bool = False) -> Repeated:
-    """Return how the sites of a periodic triangulation are to be repeated.
+    """Return the copies that the sites of a periodic triangulation need.
 
     Parameters
     ----------
     mesh : PeriodicDelaunay
         Without weights.
     far : bool, optional
-        Whether natural neighbors are wanted, which are as far away as empty circles are wide.
+        Whether natural neighbors are needed, which are as far away as empty circles are wide.
     rings : bool, optional
-        Whether gradients are estimated globally, so that many rings of neighbors count.
+        Whether gradients are estimated globally, so that many rings of neighbors are needed.
 
     Returns
     -------
     Repeated
-        The window and the moves.
+        The window and the offsets.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def repeated(mesh: PeriodicDelaunay, *, far: bool = False, rings: bool = False) 
     ]
     steps: Any = np.meshgrid(*(np.arange(-k, k + 1) for k in counts), indexing="ij")
     steps = np.stack(steps, axis=-1).reshape(-1, 2)
-    # The nearest first, so that the copy that is not moved is the first.
+    # The nearest first, so that the first copy has offset zero.
     steps = steps[np.argsort(np.abs(steps).sum(axis=1), kind="stable")]
     lengths = np.array([length or 0.0 for length in mesh.periods])
     with np.errstate(over="ignore"):
@@ -180,7 +180,7 @@ def repeated(mesh: PeriodicDelaunay, *, far: bool = False, rings: bool = False) 
 
 
 def _count(mesh: PeriodicDelaunay, axis: int, width: float, rings: bool) -> int:
-    """How many copies there are on each side along an axis."""
+    """Number of copies on each side along an axis."""
     length = mesh.periods[axis]
     assert length is not None
     count = max(_LEAST, math.ceil(width / length) + 1)

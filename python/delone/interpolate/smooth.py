@@ -1,9 +1,8 @@
-"""What interpolants with gradients share: how gradients are estimated, and faults that part them.
+"""Base of interpolants with gradients: gradient estimation, and breaks along constraints.
 
-With constraints respected, the triangles are cut along them: a vertex on a constraint stands in as
-many rows as there are sectors between constraints around it, each with a gradient of its own from
-the vertices of its sector. Nothing of one side then reaches the other but the values on the
-constraint.
+If constraints are respected, the triangles are cut along them: a vertex on a constraint has one row
+for each sector between the constraints around it, with a gradient estimated from the vertices of
+that sector. Only the values on a constraint then affect both of its sides.
 """
 
 from __future__ import annotations
@@ -42,11 +41,11 @@ _DEGREES = {"local": 2, "plane": 1}
 
 
 class GradientWarning(UserWarning):
-    """The estimation of gradients stopped before it had converged: `maxiter` was reached."""
+    """The estimation of gradients stopped before it converged: `maxiter` was reached."""
 
 
 class Sheet(NamedTuple):
-    """Triangles as they are evaluated: those of the mesh, cut along constraints where that matters.
+    """Triangles as they are evaluated: cut along constraints if these are respected.
 
     Parameters
     ----------
@@ -55,11 +54,11 @@ class Sheet(NamedTuple):
     simplices : ndarray of int32, shape (m, 3)
         Triangles.
     locator : Locator2 or Locator3
-        The index over them.
+        Their point location index.
     barrier : ndarray of bool, shape (m, 3), or None
-        The edges beyond which nothing counts.
+        The edges that nothing crosses.
     source : ndarray of int32, shape (n,), or None
-        The row of the mesh that each row is; None where they are the same.
+        The row of the mesh for each row; None if they are the same.
     """
 
     points: Floats
@@ -72,7 +71,7 @@ class Sheet(NamedTuple):
 class Smooth(Interpolator):
     """Interpolation from values and gradients; the base of `CloughTocher` and `NaturalNeighbor`."""
 
-    # Gradients below this converge by absolute changes; None for one by which no unit matters.
+    # Below this size, convergence is by absolute change; None for a scale-invariant choice.
     _floor: float | None = None
 
     def __init__(
@@ -98,26 +97,26 @@ class Smooth(Interpolator):
         Parameters
         ----------
         xi : array_like, shape (..., 2)
-            Where.
+            Queries.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites.
 
         Returns
         -------
         ndarray of float64 or complex128
-            Of the shape of the queries, that of one value, and (2, 2). NaN outside of the hull.
+            The shape of the queries, then that of one value, then (2, 2). NaN outside the hull.
 
         Raises
         ------
         ShapeError, DtypeError, NonFiniteError, InputError
-            As for values; or the sites are in space.
+            As for values; or the sites are in 3-D.
 
         Examples
         --------
         See `CloughTocher`.
         """
         if self._ndim == SPACE:
-            refuse("hessian", "there are values alone")
+            refuse("hessian", "only values are available")
         interpolator, field, columns = self._with(values)
         queries, shape = interpolator._queries(xi)
         found = interpolator._derived(queries, columns, 2)
@@ -125,7 +124,7 @@ class Smooth(Interpolator):
         return full.reshape((*full.shape[:-1], 2, 2))
 
     def site_gradients(self, *, values: ArrayLike | None = None) -> NDArray[Any]:
-        """Return the gradients at the sites, from which the interpolant is made.
+        """Return the gradients at the sites, which define the interpolant.
 
         Parameters
         ----------
@@ -135,14 +134,14 @@ class Smooth(Interpolator):
         Returns
         -------
         ndarray of float64 or complex128
-            One for each point of `triangulation`, of the shape of one value and 2. With constraints
-            respected the points on them have one on each side; these come after the others.
+            One for each point of `triangulation`, in the shape of one value and 2. If constraints
+            are respected, points on them have one on each side; the further ones follow the others.
 
         Raises
         ------
         ShapeError, DtypeError, NonFiniteError, InputError
-            As for values; or the interpolant is made without gradients, as those of natural
-            neighbours of the kinds ``"sibson"`` and ``"laplace"`` are.
+            As for values; or the interpolant does not use gradients, as with natural neighbors of
+            the kinds ``"sibson"`` and ``"laplace"``.
 
         Examples
         --------
@@ -162,7 +161,7 @@ class Smooth(Interpolator):
         return {"rings": self._estimate == "global"}
 
     def _require_gradients(self) -> None:
-        """Refuse where the interpolant is made without gradients at the sites."""
+        """Raise if the interpolant does not use gradients at the sites."""
 
     def gradients(self, columns: Floats) -> Floats:
         """Return gradients at the sites; see `Interpolator.gradients`."""
@@ -172,7 +171,7 @@ class Smooth(Interpolator):
             return known
         found = self._estimated(columns)
         if self._repeated is not None:
-            # Copies at the rim see only a part of what their site sees.
+            # Copies at the rim have incomplete neighborhoods.
             found = found[self._repeated.unmoved(len(found))]
         if own:
             self._cache["gradients"] = found
@@ -189,7 +188,7 @@ class Smooth(Interpolator):
         )
         if len(columns) and not iterations.all():
             warnings.warn(
-                f"gradients have not converged to tol={self._tol} in {self._maxiter} iterations",
+                f"gradients did not converge to tol={self._tol} in {self._maxiter} iterations",
                 GradientWarning,
                 stacklevel=5,
             )
@@ -223,7 +222,7 @@ class Smooth(Interpolator):
         return Sheet(points, simplices, index, barrier, source)
 
     def _around(self) -> tuple[Indices, Indices]:
-        """Neighbours of the rows of the sheet, as compressed rows (indptr, indices)."""
+        """Neighbors of the rows of the sheet, as compressed rows (indptr, indices)."""
         sheet = self._sheet
         if sheet.source is None:
             return self._mesh.vertex_neighbor_vertices
@@ -247,14 +246,14 @@ class Smooth(Interpolator):
 def cut(
     simplices: Indices, neighbors: Indices, barrier: Bools, npoints: int
 ) -> tuple[Indices, Indices]:
-    """Give vertices a row for each sector between barriers around them.
+    """Split vertices into one row for each sector between the barriers around them.
 
     Parameters
     ----------
     simplices, neighbors : ndarray of int32, shape (m, 3)
         Triangles.
     barrier : ndarray of bool, shape (m, 3)
-        Edges, by the corner opposite, along which to cut.
+        Edges to cut along, by their opposite corner.
     npoints : int
         Number of points.
 
@@ -295,7 +294,7 @@ def cut(
 
 
 def _corner_pairs(simplices: Indices, neighbors: Indices, is_open: Bools) -> NDArray[np.int64]:
-    """Corners (as 3 t + k) of one vertex in two triangles that share an open edge."""
+    """Corners (as 3 t + k) at the same vertex in two triangles that share an open edge."""
     t, k = np.nonzero(is_open & (neighbors >= 0))
     beyond = neighbors[t, k].astype(np.int64)
     pairs = []
@@ -312,14 +311,14 @@ def _joined(pairs: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     while True:
         before = label.copy()
         np.minimum.at(label, pairs[:, 0], label[pairs[:, 1]])
-        # A label is itself an element of the set: its own label is nearer to the smallest.
+        # A label is itself an element of the set; its own label is at most as large.
         label = label[label]
         if np.array_equal(label, before):
             return label
 
 
 def _sides(simplices: Indices) -> Indices:
-    """Every side of the triangles once, the smaller vertex first, rows ascending."""
+    """Each side of the triangles once, the smaller vertex first, rows ascending."""
     pairs = np.sort(simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     sides: Indices = np.unique(pairs, axis=0)
     return sides

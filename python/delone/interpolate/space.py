@@ -1,8 +1,8 @@
-"""Interpolation in space: what counts beyond the hull, slopes in tetrahedra.
+"""Interpolation in 3-D: extrapolation beyond the hull, gradients in tetrahedra.
 
-These are the parts of interpolators that tell the plane from space; everything else is the same. On
-a face of the hull the interpolants here depend on its three corners alone, or nearly so, and are
-taken as linear there for what lies beyond.
+These are the parts of the interpolators that differ between 2-D and 3-D. On a face of the hull the
+interpolants here depend on its three corners, exactly or almost, and extrapolation takes them as
+linear there.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ SPACE = 3
 
 
 def refuse(what: str, instead: str) -> None:
-    """Refuse what is there in the plane only.
+    """Raise for what is only available in 2-D.
 
     Parameters
     ----------
     what : str
-        What was asked for.
+        What the caller asked for.
     instead : str
-        What there is in space.
+        What to use in 3-D.
 
     Raises
     ------
     InputError
         Always.
     """
-    raise InputError(f"{what} is for points in the plane; in space {instead}")
+    raise InputError(f"{what} is only available in 2-D; in 3-D {instead}")
 
 
 def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
@@ -56,14 +56,14 @@ def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
     place : Location
         Queries outside.
     step : ndarray of float64, shape (k, 3)
-        How far to go from the nearest points of the hull.
+        Steps from the nearest points of the hull.
     base : bool, optional
-        Count the value at the nearest point; otherwise only what the step adds.
+        Include the value at the nearest point; otherwise only the contribution of the step.
 
     Returns
     -------
     Terms
-        For the corners of the faces; without slopes where nothing goes by gradients.
+        For the corners of the faces; without slopes if no gradients are used.
     """
     weights = place.weights if base else np.zeros_like(place.weights)
     slopes = place.weights[..., None] * step[:, None]
@@ -71,7 +71,7 @@ def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
 
 
 def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
-    """Return the slopes of the linear functions with given values at corners of tetrahedra.
+    """Return the gradients of the linear functions with given values at corners of tetrahedra.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
     >>> slopes(points, np.array([(0, 1, 2, 3)]), np.array([[1.0], [3.0], [5.0], [7.0]]))
     array([[[1., 2., 3.]]])
     """
-    # Barycentric coordinates have the rows of these maps for their slopes.
+    # The rows of these maps are the gradients of the barycentric coordinates.
     maps = geometry.transform(points, corners)[:, :SPACE]
     rise = columns[corners[:, :SPACE]] - columns[corners[:, SPACE:]]
     found: Floats = np.einsum("kic,kij->kcj", rise, maps)
@@ -103,12 +103,12 @@ def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
 
 
 def hull_gradients(mesh: Triangulation, columns: Floats, workers: int) -> Floats:
-    """Return, at vertices of the hull, the slopes of linear functions that fit neighbors best.
+    """Return the gradients of the best-fitting linear functions at the vertices of the hull.
 
     Parameters
     ----------
     mesh : Triangulation
-        Of points in 3-D.
+        A triangulation of 3-D points.
     columns : ndarray of float64, shape (n, c)
         Values at the points.
     workers : int
@@ -121,9 +121,9 @@ def hull_gradients(mesh: Triangulation, columns: Floats, workers: int) -> Floats
 
     Notes
     -----
-    Neighbors count by the inverse square of their distance, but no more than rounded values allow
-    where they nearly coincide. Where they determine no slope, or hardly, their neighbors are asked
-    as well; where these lie in one plane, too, the slope across it is 0.
+    Neighbors are weighted by the inverse square of their distance, limited by the rounding of the
+    values where they nearly coincide. If they do not determine the gradient, or only barely, their
+    neighbors are used as well; if these also lie in one plane, the slope across it is 0.
     """
     found = np.zeros((mesh.npoints, columns.shape[1], SPACE))
     rows = np.unique(mesh.boundary)

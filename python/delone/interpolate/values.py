@@ -1,8 +1,8 @@
-"""Values at sites: coerced, NaN and duplicates settled by the policy that the caller chose.
+"""Values at sites: conversion, and the policies for NaN and duplicates.
 
-Everything that interpolates takes a `Field`: one row of doubles for each point, whatever shape and
-kind the values had. Complex values are pairs of real ones, because every interpolator here is
-linear in the values. Points that coincide have the same row after `Field.merged`.
+All interpolation code takes a `Field`: one row of doubles for each point, whatever the shape and
+dtype of the values. Complex values are pairs of real ones, because every interpolator here is
+linear in the values. Points that coincide have equal rows after `Field.merged`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Field:
     Parameters
     ----------
     columns : ndarray of float64, shape (n, c)
-        C-contiguous; real and imaginary parts are columns side by side.
+        C-contiguous; real and imaginary parts are adjacent columns.
     trailing : tuple of int
         Shape of the values of one point.
     is_complex : bool
@@ -54,7 +54,7 @@ class Field:
     @property
     def not_finite(self) -> NDArray[np.int64]:
         """The rows with NaN or infinity."""
-        # A sum of finite numbers may overflow, but one look at it clears nearly every field.
+        # A sum of finite numbers may overflow, but checking it first clears almost every field.
         with np.errstate(all="ignore"):
             if np.isfinite(self.columns.sum()):
                 return np.empty(0, dtype=np.int64)
@@ -66,7 +66,7 @@ class Field:
         Parameters
         ----------
         rows : ndarray of int
-            Which points.
+            Rows of the points.
 
         Returns
         -------
@@ -76,7 +76,7 @@ class Field:
         return replace(self, columns=np.ascontiguousarray(self.columns[rows]))
 
     def merged(self, first: NDArray[np.integer], policy: str) -> Field:
-        """Give points that coincide one value.
+        """Give points that coincide the same value.
 
         Parameters
         ----------
@@ -88,14 +88,14 @@ class Field:
         Returns
         -------
         Field
-            Equal rows for equal points; itself where nothing differs.
+            Equal rows for equal points; the field itself if no values differ.
 
         Raises
         ------
         ConflictingValuesError
             The policy is ``"error"`` and values differ.
         InputError
-            The policy asks for an order of complex numbers.
+            The policy would have to order complex numbers.
         """
         again = np.flatnonzero(first != np.arange(len(first)))
         if not again.size:
@@ -116,7 +116,7 @@ class Field:
         more = ", ..." if len(rows) > _NAMED else ""
         choices = ", ".join(map(repr, DUPLICATES[1:]))
         return ConflictingValuesError(
-            f"{len(rows)} {agreed(len(rows), 'point comes', 'points come')} again with another "
+            f"{len(rows)} {agreed(len(rows), 'duplicate has', 'duplicates have')} a different "
             f"value: rows {named}{more}; "
             f"choose duplicates={choices}",
             rows=np.column_stack((rows, first[rows])),
@@ -126,7 +126,7 @@ class Field:
         columns = self.columns.copy()
         owner = first[again]
         if policy == "last":
-            # Assignments to the same row happen in order, so the last one stays.
+            # Assignments to the same row happen in order, so the last one wins.
             columns[owner] = self.columns[again]
         elif policy == "mean":
             # As an offset from the first, so that the mean of equal numbers is that number.
@@ -145,7 +145,7 @@ class Field:
         return columns
 
     def shaped(self, columns: Floats, leading: tuple[int, ...]) -> NDArray[Any]:
-        """Return interpolated columns in the shape and kind of the values.
+        """Return interpolated columns in the shape and dtype of the values.
 
         Parameters
         ----------
@@ -166,16 +166,16 @@ class Field:
 
 
 def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
-    """Return values as a field, exactly.
+    """Convert values to a field without rounding.
 
     Parameters
     ----------
     values : array_like, shape (count, ...)
         Real or complex numbers.
     count : int
-        How many points there are.
+        Number of points.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Returns
     -------
@@ -185,9 +185,9 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
     Raises
     ------
     ShapeError
-        There are more or fewer of them than points.
+        The number of values is not the number of points.
     DtypeError
-        Masked, no numbers, or numbers that doubles cannot hold.
+        The values are masked, not numeric, or not representable as doubles.
 
     Examples
     --------
@@ -214,16 +214,16 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
 
 
 def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
-    """Return an argument that is one of a few words.
+    """Validate an argument that must be one of several strings.
 
     Parameters
     ----------
     what : str
-        What the argument is called.
+        Name of the argument.
     value : str
-        What came.
+        The value given.
     choices : tuple of str
-        What may come.
+        The valid values.
 
     Returns
     -------
@@ -233,7 +233,7 @@ def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
     Raises
     ------
     InputError
-        It is none of the choices.
+        It is not one of the choices.
 
     Examples
     --------
@@ -247,14 +247,14 @@ def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
 
 
 def require_finite_values(field: Field, name: str = "values") -> None:
-    """Refuse NaN and infinity among values.
+    """Raise if a value is NaN or infinite.
 
     Parameters
     ----------
     field : Field
         The values.
     name : str, optional
-        What the argument is called in error messages.
+        Name of the argument in error messages.
 
     Raises
     ------
@@ -279,7 +279,7 @@ def _both_nan(a: Floats, b: Floats) -> NDArray[np.bool_]:
 
 
 def _refuse_rounded(array: NDArray[Any], plain: NDArray[Any], name: str) -> None:
-    """Refuse integers and extended floats that doubles do not hold."""
+    """Raise for integers and extended floats that doubles cannot represent."""
     if array.dtype.kind in "iu" and array.dtype.itemsize >= 8:
         with np.errstate(all="ignore"):
             wrong = (array > _LARGEST_EXACT_INTEGER) | (array < -_LARGEST_EXACT_INTEGER)
@@ -289,4 +289,6 @@ def _refuse_rounded(array: NDArray[Any], plain: NDArray[Any], name: str) -> None
         return
     if wrong.any():
         row = int(np.flatnonzero(wrong.reshape(len(array), -1).any(axis=1))[0])
-        raise DtypeError(f"{name}: row {row} holds a number that float64 cannot; round it first")
+        raise DtypeError(
+            f"{name}: row {row} has a number that float64 cannot represent; round it first"
+        )

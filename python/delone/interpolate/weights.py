@@ -1,8 +1,8 @@
-"""Weights of sites at queries: a geometry that is computed once and applied to many fields.
+"""Weights of sites at queries: computed once, applied to many fields.
 
-Row i of the table has the sites that count at query i and how much each counts. Smooth interpolants
-count the gradients of the sites as well; those are estimated from each field anew. A query without
-an answer has an empty row, and gets NaN.
+Row i of the table lists the sites that contribute to query i and their weights. Smooth interpolants
+also have weights of the gradients of the sites, which are estimated again for each field. A query
+without a result has an empty row and gets NaN.
 """
 
 from __future__ import annotations
@@ -33,48 +33,48 @@ __all__ = ["Sites", "Weights", "joined", "rectangular"]
 
 
 class Sites(Protocol):
-    """What a table must know of the sites: an interpolator."""
+    """The interface of an interpolator that a table needs."""
 
     @property
     def npoints(self) -> int:
-        """How many points the caller gave."""
+        """Number of points that the caller gave."""
 
     @property
     def workers(self) -> int | None:
-        """How many threads may work."""
+        """Number of threads."""
 
     def settled(self, field: Field) -> Floats:
-        """Columns of values for the rows that a table speaks of, by the policies."""
+        """Columns of values for the rows of a table, after the policies."""
 
     def gradients(self, columns: Floats) -> Floats | None:
-        """Gradients (n, c, 2) of these columns, where the interpolant needs them."""
+        """Gradients (n, c, 2) of these columns, if the interpolant needs them."""
 
     def caller_rows(self) -> Indices:
-        """The caller's row that stands for each row that a table speaks of."""
+        """The caller's row that represents each row of a table."""
 
     def mixed_rows(self) -> tuple[NDArray[np.int64], Indices] | None:
-        """Groups of the caller's rows of which the mean counts; None where one row stands alone."""
+        """Groups of the caller's rows that are averaged; None if no rows are."""
 
 
 @dataclass(frozen=True, eq=False)
 class Weights:
-    """Which sites count at each query, and how much.
+    """The sites that contribute to each query, with their weights.
 
     Parameters
     ----------
     indptr : ndarray of int64, shape (k + 1,)
-        The entries of query i, in the order of the flat queries, are those from ``indptr[i]`` to
-        ``indptr[i + 1]``. None where there is no answer.
+        The entries of query i, in the order of the flattened queries, are ``indptr[i]`` to
+        ``indptr[i + 1]``. There are none if the query has no result.
     rows : ndarray of int32, shape (nnz,)
-        Sites as the interpolator numbers them; `indices` has the caller's rows.
+        Sites in the interpolator's numbering; `indices` has the caller's rows.
     weights : ndarray of float64, shape (nnz,)
-        Their weights, of sum 1 for each query, up to rounding.
+        Their weights; they sum to 1 for each query, up to rounding.
     slopes : ndarray of float64, shape (nnz, d), or None
-        Weights of their gradients, where the interpolant has some.
+        Weights of their gradients, if the interpolant uses them.
     shape : tuple of int
         Shape of the queries, without their last axis.
     sites : Interpolator
-        Where the table comes from.
+        The interpolator that made the table.
 
     Examples
     --------
@@ -98,9 +98,9 @@ class Weights:
 
     @property
     def indices(self) -> Indices:
-        """The rows of the caller's points, (nnz,); of duplicates the one that counts.
+        """The rows of the caller's points, (nnz,); for duplicates, the row whose value is used.
 
-        Of points of which the mean, the least or the greatest value counts it is the first.
+        If duplicates take their mean, least or greatest value, it is the first of them.
         """
         found: Indices = self.sites.caller_rows()[self.rows]
         return found
@@ -116,19 +116,19 @@ class Weights:
         Returns
         -------
         ndarray of float64 or complex128
-            Of the shape of the queries and that of one value; NaN where there is no answer.
+            The shape of the queries, then that of one value; NaN where there is no result.
 
         Raises
         ------
         ShapeError, DtypeError
-            The values do not fit the points, or are no numbers.
+            The number of values is not that of the points, or they are not numeric.
         InputError
-            The policies of the interpolator refuse them.
+            The policies of the interpolator reject them.
 
         Notes
         -----
-        Sites that ``nan="drop"`` left out when the table was made stay out; NaN at other sites
-        shows in what they count for.
+        Sites that ``nan="drop"`` removed when the table was made remain removed; NaN at another
+        site propagates to the queries to which it contributes.
 
         Examples
         --------
@@ -152,11 +152,11 @@ class Weights:
             threads,
         )
         if slopes is not None and plane is None and gradients is not None:
-            self._go_on(found, slopes, gradients)
+            self._add_gradients(found, slopes, gradients)
         return field.shaped(found, self.shape)
 
-    def _go_on(self, found: Floats, slopes: Floats, gradients: Floats) -> None:
-        """Add what gradients say, in space: for queries beyond the hull alone."""
+    def _add_gradients(self, found: Floats, slopes: Floats, gradients: Floats) -> None:
+        """Add the contribution of gradients in 3-D, which only affects queries beyond the hull."""
         entries = np.flatnonzero((slopes != 0).any(axis=1))
         owner = np.searchsorted(self.indptr, entries, side="right") - 1
         rise = np.einsum("kcj,kj->kc", gradients[self.rows[entries]], slopes[entries])
@@ -166,22 +166,22 @@ class Weights:
         return self.apply(values)
 
     def csr(self) -> Any:
-        """Return the table as a sparse matrix of SciPy, whose product with values is `apply`.
+        """Return the table as a SciPy sparse matrix, whose product with values is `apply`.
 
         Returns
         -------
         scipy.sparse.csr_array, shape (k, n)
-            The weights; the queries are flat. Rows without an answer hold one NaN. With
-            ``duplicates="mean"`` points that coincide share their weight.
+            The weights, for flattened queries. Rows without a result contain one NaN. With
+            ``duplicates="mean"``, points that coincide share their weight.
 
         Raises
         ------
         MissingExtraError
             SciPy is not installed.
         InputError
-            The interpolant needs gradients, which a matrix of values does not give: those of smooth
-            methods, and all with ``extrapolate="linear"``. Or the least or greatest value of points
-            that coincide counts, which no matrix finds.
+            The interpolant needs gradients, which cannot be computed by a matrix product: smooth
+            methods, and all with ``extrapolate="linear"``. Or the policy takes the least or
+            greatest value of points that coincide, which is not linear.
 
         Examples
         --------
@@ -191,7 +191,9 @@ class Weights:
         [3.0, 4.0]
         """
         if self.slopes is not None:
-            raise InputError("this interpolant needs gradients, which no matrix has; use apply")
+            raise InputError(
+                "this interpolant needs gradients, which a matrix cannot represent; use apply"
+            )
         try:
             from scipy.sparse import csr_array
         except ImportError as error:
@@ -214,19 +216,19 @@ class Weights:
 
 
 def rectangular(rows: Indices, weights: Floats) -> Table:
-    """Return the table of as many sites for each query, zeros and NaN taken out.
+    """Return a table from a fixed number of sites per query, without zeros and NaN.
 
     Parameters
     ----------
     rows : ndarray of int32, shape (k, m)
-        Sites; any where the weight is NaN.
+        Sites; arbitrary if the weight is NaN.
     weights : ndarray of float64, shape (k, m)
-        Their weights; all NaN where there is no answer.
+        Their weights; all NaN if there is no result.
 
     Returns
     -------
     tuple
-        indptr, rows, weights and None, as `Weights` has them.
+        indptr, rows, weights and None, as in `Weights`.
     """
     # NaN is neither.
     keep = (weights > 0) | (weights < 0)
@@ -240,7 +242,7 @@ def rectangular(rows: Indices, weights: Floats) -> Table:
 
 
 def joined(inner: Table, outside: NDArray[np.int64], terms: Terms) -> Table:
-    """Put the terms of queries outside into the empty rows of a table.
+    """Insert the terms of queries outside into the empty rows of a table.
 
     Parameters
     ----------
@@ -249,12 +251,12 @@ def joined(inner: Table, outside: NDArray[np.int64], terms: Terms) -> Table:
     outside : ndarray of int
         The queries of the terms, ascending.
     terms : Terms
-        What counts there.
+        Their terms.
 
     Returns
     -------
     tuple
-        indptr, rows, weights and slopes of all.
+        indptr, rows, weights and slopes of all queries.
     """
     indptr, rows, weights, slopes = inner
     counts = (terms.weights != 0) & ~np.isnan(terms.weights)

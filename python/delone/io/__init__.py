@@ -1,7 +1,7 @@
 """Reading points, geometries and meshes from files; writing triangulations and rasters.
 
-`read_points` and `write_mesh` choose by the suffix of the file; one module of this package knows
-one family of formats, and imports the library it needs when it is used.
+`read_points` and `write_mesh` choose the format by the suffix of the file. Each module of this
+package handles one family of formats and imports the libraries it needs when it is used.
 """
 
 from delone.io.geometryset import GeometrySet

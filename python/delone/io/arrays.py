@@ -1,8 +1,8 @@
-"""Points and triangles in NumPy's own files, npy and npz.
+"""Points and triangles in NumPy files, npy and npz.
 
-A header is believed only where the bytes it speaks of are there: its shape is compared with the
-size of the file or of the member of the archive, and that with what deflate can expand to. Pickled
-objects are never loaded.
+A header is trusted only if the bytes that it declares exist: its shape is compared with the size of
+the file or of the archive member, and that with the maximum expansion of deflate. Pickled objects
+are never loaded.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
 
-# Deflate expands one byte to at most 1032; small members have headers of their own.
+# Deflate expands one byte to at most 1032; small members also have headers.
 _EXPANSION, _SLACK = 1032, 1 << 16
 
 
@@ -46,7 +46,7 @@ def read_points(
 ) -> PointSet:
     """Read points from an npy or npz file; see `delone.io.read_points`."""
     source = str(path)
-    with _torn_is_an_error(source):
+    with _corrupt_is_an_error(source):
         if path.suffix.lower() == ".npy":
             if layer is not None:
                 raise FileFormatError(f"{source}: an npy file has one array and no layers")
@@ -62,10 +62,10 @@ def read_mesh(path: Path) -> MeshFile:
     source = str(path)
     if is_constrained(path):
         return _kept(path)
-    with _torn_is_an_error(source), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(source), zipfile.ZipFile(path) as archive:
         names = _names(archive)
         if not {"points", "simplices"} <= names:
-            raise FileFormatError(f"{source} holds no triangles: arrays points and simplices")
+            raise FileFormatError(f"{source} contains no triangles (arrays points and simplices)")
         points = as_points(_member(archive, "points"), name="points")
         simplices = as_simplices(_member(archive, "simplices"), len(points), points.shape[1])
         neighbors = _member(archive, "neighbors") if "neighbors" in names else None
@@ -74,17 +74,17 @@ def read_mesh(path: Path) -> MeshFile:
 
 
 def is_constrained(path: Path) -> bool:
-    """Tell whether a file is one that `ConstrainedDelaunay.save` wrote."""
+    """Return whether a file was written by `ConstrainedDelaunay.save`."""
     if path.suffix.lower() != ".npz":
         return False
-    with _torn_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
         return {"points", "simplices", "constrained"} <= _names(archive)
 
 
 def _kept(path: Path) -> MeshFile:
     """Read a constrained triangulation without the triangles that have been removed."""
     mesh = ConstrainedDelaunay.load(path)
-    with _torn_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
         z = _member(archive, "z") if "z" in _names(archive) else None
     return MeshFile(
         points=mesh.points,
@@ -96,7 +96,7 @@ def _kept(path: Path) -> MeshFile:
 
 
 def require_libraries(suffix: str) -> None:
-    """Need nothing: NumPy writes these files."""
+    """Do nothing: NumPy writes these files."""
 
 
 def write_mesh(
@@ -108,9 +108,11 @@ def write_mesh(
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write a triangulation, and heights beside it, to an npz file."""
+    """Write a triangulation, with heights, to an npz file."""
     if edges:
-        raise FileFormatError(f"{path.suffix} files hold the whole triangulation, not edges alone")
+        raise FileFormatError(
+            f"{path.suffix} files contain the whole triangulation; edges cannot be written alone"
+        )
     heights = as_values(z, triangulation.npoints)
     further = {name: np.asarray(values) for name, values in (attributes or {}).items()}
     split_attributes(further, triangulation.npoints, triangulation.nsimplex)
@@ -127,14 +129,16 @@ def write_mesh(
     with zipfile.ZipFile(path, "a") as archive:
         taken = (_names(archive) | own) & set(further)
         if taken:
-            raise FileFormatError(f"an npz file has its own {taken.pop()!r}; rename the attribute")
+            raise FileFormatError(
+                f"{taken.pop()!r} is the name of an array of the file; rename the attribute"
+            )
         for name, array in further.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                 np.lib.format.write_array(member, array, allow_pickle=False)
 
 
 @contextmanager
-def _torn_is_an_error(source: str) -> Iterator[None]:
+def _corrupt_is_an_error(source: str) -> Iterator[None]:
     try:
         yield
     except (FileFormatError, FileNotFoundError, PermissionError):
@@ -142,19 +146,19 @@ def _torn_is_an_error(source: str) -> Iterator[None]:
     except InputError as error:
         raise FileFormatError(f"{source}: {error}") from error
     except MemoryError as error:
-        # Sizes in headers have been compared with what is there.
-        reason = str(error) or "it is refused"
-        raise MemoryError(f"{source} needs more memory than there is: {reason}") from error
-    # NumPy's headers are parsed by Python's own parser, which has errors of its own; sizes beyond
-    # what a mapping can have overflow; an encrypted member is a RuntimeError.
+        # Sizes in headers have already been compared with the file.
+        reason = str(error) or "allocation failed"
+        raise MemoryError(f"{source} needs more memory than is available: {reason}") from error
+    # Python's own parser reads NumPy's headers and raises its own errors; sizes beyond the limit of
+    # a memory map overflow; an encrypted member raises RuntimeError.
     except (
         ValueError, OverflowError, EOFError, OSError, SyntaxError, TypeError, RuntimeError,
         KeyError, tokenize.TokenError, zipfile.BadZipFile, zlib.error,
     ) as error:  # fmt: skip
         reason = str(error).partition("\n")[0]
         if "allow_pickle" in reason or "Python objects" in reason:
-            reason = "it holds Python objects, which are not loaded"
-        raise FileFormatError(f"{source} is torn or no NumPy file: {reason}") from error
+            reason = "it contains Python objects, which are not loaded"
+        raise FileFormatError(f"{source} is truncated or not a NumPy file: {reason}") from error
 
 
 def _from_table(
@@ -163,12 +167,14 @@ def _from_table(
     attributes: Sequence[str],
     source: str,
 ) -> PointSet:
-    """Take points from one array: (n, 2 or more), or records with named fields."""
+    """Extract points from one array: (n, 2 or more), or records with named fields."""
     named = table.dtype.names
     if named is None and (table.ndim != 2 or table.shape[1] < 2):
-        raise FileFormatError(f"{source} holds an array of shape {table.shape}, not (n, 2) or more")
+        raise FileFormatError(
+            f"{source} contains an array of shape {table.shape}, not (n, 2) or more"
+        )
     if named is not None and table.ndim != 1:
-        raise FileFormatError(f"{source} holds records of shape {table.shape}, not (n,)")
+        raise FileFormatError(f"{source} contains records of shape {table.shape}, not (n,)")
     names = list(named or map(str, range(table.shape[1])))
     chosen = choose_columns(names, columns, source, named=named is not None)
 
@@ -178,14 +184,16 @@ def _from_table(
     for i in chosen:
         if column(i).ndim != 1:
             shape = column(i).shape[1:]
-            raise FileFormatError(f"{source}: {names[i]!r} holds {shape} numbers a row, not one")
+            raise FileFormatError(
+                f"{source}: {names[i]!r} has shape {shape} in each row, not one number"
+            )
 
-    # Without names and choice, one slice keeps a wide table's rows from being touched twice.
+    # In the default case, one slice avoids reading the rows of a wide table twice.
     plain = named is None and chosen[:2] == [0, 1]
     xy = table[:, :2] if plain else np.column_stack([column(i) for i in chosen[:2]])
     z = as_values(column(chosen[2]), len(table)) if len(chosen) == 3 else None
     further = {name: np.array(column(find_column(names, name, source))) for name in attributes}
-    # A mapped file may be replaced while the points are in use: they are copied.
+    # Points are copied, as a mapped file may be replaced while they are in use.
     points = np.array(as_points(xy, ndim=2), subok=False)
     called = tuple(named[i] for i in chosen) if named else ()
     return PointSet(points=points, z=z, attributes=further, source=source, columns=called)
@@ -243,11 +251,11 @@ def _names(archive: zipfile.ZipFile) -> set[str]:
 
 
 def _listed(names: set[str]) -> str:
-    return "its arrays are " + ", ".join(sorted(names)) if names else "it holds no arrays"
+    return "its arrays are " + ", ".join(sorted(names)) if names else "it contains no arrays"
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
-    """Read one array after its header has been compared with the bytes that are there."""
+    """Read one array, after comparing its header with the size of the member."""
     try:
         entry = archive.getinfo(f"{name}.npy")
     except KeyError:
@@ -255,7 +263,9 @@ def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
             f"{archive.filename} has no array {name!r}: {_listed(_names(archive))}"
         ) from None
     if entry.file_size > _EXPANSION * entry.compress_size + _SLACK:
-        raise FileFormatError(f"{archive.filename}: array {name!r} claims more than is there")
+        raise FileFormatError(
+            f"{archive.filename}: array {name!r} declares more bytes than the file has"
+        )
     with archive.open(entry) as file:
         _check_claim(file, entry.file_size, f"{archive.filename}: array {name!r}")
     with archive.open(entry) as file:
@@ -264,20 +274,20 @@ def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
 
 
 def _check_claim(file: IO[bytes], size: int, what: str) -> None:
-    """Compare the shape in a header with the bytes that follow it."""
+    """Compare the shape in a header with the number of bytes that follow."""
     shape, dtype = _header(file)
     claimed, there = dtype.itemsize, size - file.tell()
     for length in shape:  # Python's integers do not overflow
         claimed *= length
     if not 0 <= claimed <= there:
         raise FileFormatError(
-            f"{what} announces shape {shape}, {claimed} bytes, and holds {there}: it is cut short"
+            f"{what} declares shape {shape}, {claimed} bytes, and contains {there}: it is truncated"
         )
-    # Pickled objects, which are refused later by that name, have a size of their own.
+    # Pickled objects have other sizes; they are rejected later, by name.
     if claimed < there and not dtype.hasobject:
         raise FileFormatError(
-            f"{what} announces shape {shape}, {claimed} bytes, and {there - claimed} more follow: "
-            "one array is read, and nothing is left out silently"
+            f"{what} declares shape {shape}, {claimed} bytes, and {there - claimed} more follow: "
+            "one array is read, and nothing is silently dropped"
         )
 
 

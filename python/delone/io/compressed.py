@@ -1,4 +1,4 @@
-"""Files as they are, or out of gzip, xz and bzip2; the last suffix tells which."""
+"""Plain files, and files compressed with gzip, xz or bzip2, by the last suffix."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["SUFFIXES", "Bounded", "opened", "torn_is_an_error"]
+__all__ = ["SUFFIXES", "Bounded", "corrupt_is_an_error", "opened"]
 
 _OPENERS: dict[str, Any] = {".gz": gzip.open, ".xz": lzma.open, ".bz2": bz2.open}
 _TORN = (EOFError, gzip.BadGzipFile, lzma.LZMAError, zlib.error)
 SUFFIXES = tuple(_OPENERS)
-# Tables of numbers become 3 to 20 times smaller, grids of one value 100 times; what a file of a few
-# bytes may hold in any case.
+# Tables of numbers compress by a factor of 3 to 20, and constant grids by 100. The second limit is
+# what a file of a few bytes may contain in any case.
 _EXPANSION, _ALWAYS = 200, 1 << 26
 
 
@@ -37,7 +37,7 @@ def opened(path: Path) -> IO[bytes]:
     Returns
     -------
     file object
-        What it holds, decompressed.
+        Its contents, decompressed.
     """
     opener = _OPENERS.get(path.suffix.lower(), open)
     file: IO[bytes] = opener(path, "rb")
@@ -45,22 +45,22 @@ def opened(path: Path) -> IO[bytes]:
 
 
 class Bounded(io.RawIOBase):
-    """A file of which no more is read than its size makes likely.
+    """A file that raises if it contains far more than its size makes likely.
 
     Parameters
     ----------
     file : file object
-        What `opened` returns; it is closed with this one.
+        The result of `opened`; it is closed with this one.
     path : Path
         The file.
     longest_line : int, optional
-        The largest number of bytes without the end of a line.
+        The greatest number of bytes in a line.
 
     Raises
     ------
     FileFormatError
-        While it is read: a line is longer, or what a compressed file holds is larger than 64 MiB
-        and 200 times as large as the file.
+        While reading: a line is longer; or the contents of a compressed file exceed 64 MiB and 200
+        times the size of the file.
     """
 
     def __init__(self, file: IO[bytes], path: Path, *, longest_line: int | None = None) -> None:
@@ -70,18 +70,18 @@ class Bounded(io.RawIOBase):
         self._read = self._line = 0
 
     def readable(self) -> bool:
-        """Tell that it is for reading."""
+        """Return True."""
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read some bytes, and look at how many they are."""
+        """Read some bytes and check the limits."""
         data = self._file.read(len(buffer))
         buffer[: len(data)] = data
         self._read += len(data)
         if self._most is not None and self._read > self._most:
             raise FileFormatError(
-                f"{self._path} is more than {_EXPANSION} times larger when it is decompressed, "
-                f"over {self._most:,} bytes; if that is right, decompress it first"
+                f"{self._path} is more than {_EXPANSION} times larger when decompressed, "
+                f"over {self._most:,} bytes; if this is expected, decompress it first"
             )
         self._look_at_lines(data)
         return len(data)
@@ -91,19 +91,19 @@ class Bounded(io.RawIOBase):
         self._line = len(data) - 1 - end if end >= 0 else self._line + len(data)
         if self._longest_line is not None and self._line > self._longest_line:
             raise FileFormatError(
-                f"{self._path} has a line of more than {self._longest_line:,} bytes: it is no "
-                "table of points"
+                f"{self._path} has a line of more than {self._longest_line:,} bytes: it is not "
+                "a table of points"
             )
 
     def close(self) -> None:
-        """Close the file, too."""
+        """Close the underlying file as well."""
         self._file.close()
         super().close()
 
 
 @contextmanager
-def torn_is_an_error(source: str) -> Iterator[None]:
-    """Take what decompression raises for an error of the file.
+def corrupt_is_an_error(source: str) -> Iterator[None]:
+    """Convert errors of decompression to `FileFormatError`.
 
     Parameters
     ----------
@@ -113,16 +113,16 @@ def torn_is_an_error(source: str) -> Iterator[None]:
     Raises
     ------
     FileFormatError
-        The file is cut short, damaged or not compressed.
+        The file is truncated, corrupt or not compressed.
     """
     try:
         yield
     except _TORN as error:
         raise FileFormatError(
-            f"{source} is torn or not compressed as its name says: {error}"
+            f"{source} is truncated or not compressed as its name says: {error}"
         ) from error
     except OSError as error:
         if error.errno is not None:
             raise
-        # bz2 has no class of its own for a stream that is none.
+        # bz2 raises a plain OSError for a stream that is not bzip2.
         raise FileFormatError(f"{source} is not compressed as its name says: {error}") from error

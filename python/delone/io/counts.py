@@ -1,4 +1,4 @@
-"""Whole numbers that a file announces, refused where no file can hold so many."""
+"""Counts that a file declares, rejected if no file can contain so many items."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from delone.errors import FileFormatError
 
 __all__ = ["announced"]
 
-# Any number of items or bytes has fewer digits. Python refuses to read very long numbers, too, with
-# an error that does not name the file.
+# Every count of items or bytes has fewer digits. Python also refuses to parse very long numbers,
+# with an error that does not name the file.
 _DIGITS = 18
 
 
 def announced(digits: str | bytes, source: str) -> int:
-    """Return a number that a file announces.
+    """Parse a count that a file declares.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def announced(digits: str | bytes, source: str) -> int:
     Raises
     ------
     FileFormatError
-        It has more than 18 digits.
+        The count has more than 18 digits.
 
     Examples
     --------
@@ -39,10 +39,10 @@ def announced(digits: str | bytes, source: str) -> int:
     >>> announced("9" * 5000, "survey.xyz")
     Traceback (most recent call last):
     ...
-    delone.errors.FileFormatError: survey.xyz is torn: it announces a number of 5000 digits
+    delone.errors.FileFormatError: survey.xyz is corrupt: it declares a number of 5000 digits
     """
     text = digits.decode("ascii") if isinstance(digits, bytes) else digits.strip()
     short = text.lstrip("0") or "0"
     if len(short) > _DIGITS:
-        raise FileFormatError(f"{source} is torn: it announces a number of {len(short)} digits")
+        raise FileFormatError(f"{source} is corrupt: it declares a number of {len(short)} digits")
     return int(short)

@@ -1,10 +1,10 @@
-"""What GDAL is given to read: one file, by the one driver that its suffix stands for.
+"""Safe opening of files with GDAL: only the given file, only with the driver of its suffix.
 
-GDAL chooses a driver by what a file holds. Some drivers read virtual datasets, pipelines and
-descriptions of services, which open other files and send requests; pyogrio has no option for the
-drivers that are allowed. So a binary file must begin as its suffix says, in a way that no other
-driver accepts, and JSON is opened under a prefix that leaves GDAL one driver. References that
-GeoJSON and GeoPackage themselves can hold are looked for before GDAL opens the file.
+GDAL chooses a driver by the contents of a file. Some drivers read virtual datasets, pipelines and
+descriptions of services, which open other files and send requests, and pyogrio has no option to
+restrict the drivers. Therefore a binary file must begin as its suffix says, in a way that no other
+driver accepts, and JSON is opened with a prefix that leaves GDAL one driver. References that
+GeoJSON and GeoPackage themselves can contain are checked before GDAL opens the file.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone.errors import FileFormatError
 from delone.extras import require
-from delone.io.compressed import SUFFIXES, Bounded, opened, torn_is_an_error
+from delone.io.compressed import SUFFIXES, Bounded, corrupt_is_an_error, opened
 from delone.io.systems import check_system
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DRIVERS", "admitted", "check_driver", "local_name"]
 
-# GDAL's names of the only drivers that may read what has these suffixes.
+# GDAL's names of the only drivers that may read files with these suffixes.
 DRIVERS = {
     ".geojson": "GeoJSON",
     ".json": "GeoJSON",
@@ -40,11 +40,11 @@ DRIVERS = {
 _SHAPEFILE, _SQLITE = b"\x00\x00\x27\x0a", b"SQLite format 3\x00"
 # "Application ids" of GeoPackage 1.0, 1.1 and later, at byte 68.
 _GEOPACKAGES = (b"GP10", b"GP11", b"GPKG")
-# GDAL takes longer headers of FlatGeobuf for damaged. Shorter ones have a zero byte in their size,
-# at which the search of other drivers for their words ends.
+# GDAL treats longer headers of FlatGeobuf as corrupt. Shorter ones have a zero byte in their size,
+# which ends the search of other drivers for their keywords.
 _LONGEST_HEADER = 10 << 20
 
-# The key "crs" in any way that JSON can spell it; what usually follows, where it is harmless.
+# The key "crs" in any spelling of JSON, and what usually follows if it is harmless.
 _KEY = re.compile(
     rb"[\"'](?:[cC]|\\u00[46]3)(?:[rR]|\\u00[57]2)(?:[sS]|\\u00[57]3)[\"']", re.DOTALL
 )
@@ -57,17 +57,17 @@ _KINDS = ("name", "epsg", "ogc")
 
 @contextmanager
 def admitted(path: Path) -> Iterator[str]:
-    """Give the name by which GDAL may read a file.
+    """Yield the name under which GDAL may read a file.
 
     Parameters
     ----------
     path : Path
-        A file that is there; GeoJSON also compressed.
+        An existing file; GeoJSON may be compressed.
 
     Yields
     ------
     str
-        An absolute path, with a prefix where that leaves one driver.
+        An absolute path, with a prefix if that restricts the driver.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def admitted(path: Path) -> Iterator[str]:
         with tempfile.TemporaryDirectory(prefix="delone-") as folder:
             plain = Path(folder) / "decompressed.geojson"
             with (
-                torn_is_an_error(str(path)),
+                corrupt_is_an_error(str(path)),
                 Bounded(opened(path), path) as file,
                 plain.open("wb") as copy,
             ):
@@ -97,38 +97,42 @@ def admitted(path: Path) -> Iterator[str]:
     if driver != "GPKG" or not os.path.lexists(notes):
         yield local_name(path)
         return
-    # GDAL follows what its own notes beside a file name; it does not find them in another folder.
+    # GDAL follows references in its .aux.xml files; it does not find them in another folder.
     with tempfile.TemporaryDirectory(prefix="delone-") as folder:
         alias = Path(folder) / f"alias{path.suffix}"
         try:
             alias.symlink_to(path.resolve())
         except OSError as error:
-            raise FileFormatError(f"{path}: remove {notes.name}, which GDAL follows") from error
+            raise FileFormatError(
+                f"{path}: remove {notes.name}, whose references GDAL follows"
+            ) from error
         yield local_name(alias)
 
 
 def check_driver(path: Path, driver: str) -> None:
-    """Refuse a file that another driver has taken.
+    """Reject a file that another driver opened.
 
     Parameters
     ----------
     path : Path
         The file.
     driver : str
-        GDAL's name of the driver that has opened it.
+        GDAL's name of the driver that opened it.
 
     Raises
     ------
     FileFormatError
-        It is not the one of the suffix.
+        It is not the driver of the suffix.
     """
     wanted = DRIVERS.get(path.suffix.lower(), "GeoJSON")
     if driver != wanted:
-        raise FileFormatError(f"{path} is no {path.suffix.lower()} file: GDAL reads it as {driver}")
+        raise FileFormatError(
+            f"{path} is not a {path.suffix.lower()} file: GDAL reads it as {driver}"
+        )
 
 
 def local_name(path: Path) -> str:
-    """Return the absolute path of a file, where pyogrio and GDAL take it for one.
+    """Return the absolute path of a file if pyogrio and GDAL treat it as a plain path.
 
     Parameters
     ----------
@@ -143,7 +147,7 @@ def local_name(path: Path) -> str:
     Raises
     ------
     FileFormatError
-        They would take it for an archive, an address or another file.
+        They would treat it as an archive, a URL or another file.
 
     Examples
     --------
@@ -156,7 +160,7 @@ def local_name(path: Path) -> str:
     taken = require("pyogrio.util", extra="geo", what=f"reading {path.suffix}").vsi_path(name)
     if taken != name:
         raise FileFormatError(
-            f"{path}: GDAL takes this name for {taken}; rename the file or its folder, "
+            f"{path}: GDAL reads this name as {taken}; rename the file or its folder, "
             "without !, ? and ;"
         )
     return name
@@ -165,15 +169,17 @@ def local_name(path: Path) -> str:
 def _absolute(path: Path) -> str:
     name = os.path.abspath(path)
     if os.sep == "/":
-        # Two slashes may begin a path, and begin a host in an address.
+        # Two slashes may begin a path, but in a URL they begin a host.
         name = "/" + name.lstrip("/")
     if name.startswith("/vsi"):
-        raise FileFormatError(f"{path}: names that begin with /vsi are GDAL's; move the file")
+        raise FileFormatError(
+            f"{path}: names that begin with /vsi are reserved by GDAL; move the file"
+        )
     return name
 
 
 def _check_beginning(path: Path) -> None:
-    """Refuse a file that does not begin as its suffix says."""
+    """Reject a file that does not begin as its suffix says."""
     with path.open("rb") as file:
         head = file.read(100)
     suffix = path.suffix.lower()
@@ -185,34 +191,34 @@ def _check_beginning(path: Path) -> None:
     else:
         right = head.startswith(_SQLITE) and head[68:72] in _GEOPACKAGES
     if not right:
-        raise FileFormatError(f"{path} is no {suffix} file: it does not begin like one")
+        raise FileFormatError(f"{path} is not a {suffix} file: it does not begin like one")
 
 
 def _check_tables(path: Path) -> None:
-    """Refuse a GeoPackage with tables and views that SQLite alone could not read.
+    """Reject a GeoPackage with tables or views that SQLite alone cannot read.
 
-    GDAL brings functions and virtual tables that open files. SQLite here has none of them: what it
-    can prepare needs none.
+    GDAL provides functions and virtual tables that open files. SQLite here has none of them, so
+    whatever it can prepare does not use them.
     """
     name = ""
     try:
         with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as base:
             query = "SELECT name, sql FROM sqlite_master WHERE type IN ('table', 'view')"
             for name, sql in base.execute(query).fetchall():
-                # An index of places is SQLite's own, but not built into every SQLite.
+                # The R-tree belongs to SQLite, but not every build of SQLite has it.
                 if not re.search(r"\bUSING\s+[\"']?rtree\b", str(sql), re.IGNORECASE):
                     quoted = str(name).replace('"', '""')
                     base.execute(f'EXPLAIN SELECT * FROM "{quoted}"').close()
     except sqlite3.Error as error:
-        what = f"its table or view {name!r} is refused" if name else "it cannot be read"
+        what = f"its table or view {name!r} is rejected" if name else "it cannot be read"
         raise FileFormatError(
-            f"{path}: {what}: {error}. Tables and views that need more than SQLite itself are not "
+            f"{path}: {what}: {error}. Tables and views that need more than plain SQLite are not "
             "opened; copy the rows into a plain table"
         ) from error
 
 
 def _json_name(path: Path, source: str) -> str:
-    """Return the name that leaves GDAL the driver of GeoJSON alone."""
+    """Return the name with which GDAL uses only its GeoJSON driver."""
     with path.open("rb") as file:
         if os.fstat(file.fileno()).st_size:
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
@@ -221,9 +227,9 @@ def _json_name(path: Path, source: str) -> str:
 
 
 def _check_systems(content: mmap.mmap, source: str) -> None:
-    """Refuse GeoJSON with reference systems that are links, addresses or files.
+    """Reject GeoJSON with reference systems that are links, URLs or files.
 
-    Only what is not spelled as usual makes it necessary to parse the file here, too.
+    The file is parsed here only if one is spelled in an unusual way.
     """
     for key in _KEY.finditer(content):
         usual = _USUAL.match(content, key.end())
@@ -235,11 +241,11 @@ def _check_systems(content: mmap.mmap, source: str) -> None:
 
 
 class _Members(list[tuple[str, Any]]):
-    """An object of JSON, with names that are there twice: GDAL may take either."""
+    """A JSON object that keeps repeated names: GDAL may use either."""
 
 
 def _parse(content: bytes, source: str) -> None:
-    """Look at all members ``crs``, however they are spelled and wherever they stand."""
+    """Check all members ``crs``, however spelled and wherever they are."""
 
     def look(members: list[tuple[str, Any]]) -> _Members:
         for key, value in members:
@@ -250,11 +256,11 @@ def _parse(content: bytes, source: str) -> None:
     try:
         json.loads(content.removeprefix(b"\xef\xbb\xbf"), object_pairs_hook=look)
     except (ValueError, RecursionError) as error:
-        raise FileFormatError(f"{source} is no JSON: {error}") from error
+        raise FileFormatError(f"{source} is not JSON: {error}") from error
 
 
 def _check_member(system: _Members, source: str) -> None:
-    """Refuse a member ``crs`` that is a link, or names a file in some way."""
+    """Reject a member ``crs`` that is a link, or refers to a file in any way."""
     for key, value in system:
         if key.casefold() == "type" and not str(value).casefold().startswith(_KINDS):
             raise FileFormatError(

@@ -1,4 +1,4 @@
-"""What a file of geometries holds, kept as geometries: lines and areas besides points."""
+"""The contents of a file of geometries: points, lines and areas."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ class HasSegments(Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GeometrySet:
-    """Geometries as a file holds them, one for each feature.
+    """The geometries of a file, one for each feature.
 
     Parameters
     ----------
     geometries : ndarray of shapely geometries, shape (g,)
-        None where a feature has no geometry.
+        None for a feature without a geometry.
     heights : ndarray of float64, shape (g,), optional
-        The height of each feature, from a column; None where the heights are those of the
-        coordinates, if there are any.
+        The height of each feature, from a column; None if the heights are those of the coordinates,
+        if any.
     crs : str, optional
-        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None where the file has none.
+        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
     source : str, optional
         The file.
 
@@ -103,13 +103,13 @@ class GeometrySet:
 
     @property
     def only_points(self) -> bool:
-        """Whether no line and no area is among the geometries."""
+        """Whether the geometries contain no lines and no areas."""
         kinds = _shapely().get_type_id(_parts(self.geometries))
         return not bool(np.isin(kinds, _LINES + _AREAS).any())
 
     @property
     def areas(self) -> NDArray[Any]:
-        """The polygons among the geometries, those of MultiPolygons one by one."""
+        """The polygons among the geometries, with MultiPolygons split into parts."""
         shapely = _shapely()
         parts = _parts(self.geometries)
         areas = parts[np.isin(shapely.get_type_id(parts), _AREAS)]
@@ -118,17 +118,17 @@ class GeometrySet:
         return full
 
     def as_points(self) -> PointSet:
-        """Return points, those of a MultiPoint one after the other.
+        """Return the points; those of a MultiPoint are consecutive.
 
         Returns
         -------
         PointSet
-            Without attributes.
+            The points, without attributes.
 
         Raises
         ------
         FileFormatError
-            A geometry is missing, empty or no point.
+            A geometry is missing, empty or not a point.
 
         Examples
         --------
@@ -146,7 +146,7 @@ class GeometrySet:
             kind = getattr(self.geometries[row], "geom_type", "no geometry")
             empty = "an empty " if kinds[row] in _POINTS else ""
             raise FileFormatError(
-                f"{self.source}: feature {row} is {empty}{kind}; delone reads points. "
+                f"{self.source}: feature {row} is {empty}{kind}; points are required. "
                 f"{int(other.sum())} of {counted(len(other), 'feature')} "
                 f"{agreed(int(other.sum()), 'is', 'are')} not points"
             )
@@ -158,7 +158,7 @@ class GeometrySet:
         Returns
         -------
         PointSet
-            In the order of the features; a closed ring has its first point twice.
+            In the order of the features; a closed ring repeats its first point.
 
         Examples
         --------
@@ -177,13 +177,14 @@ class GeometrySet:
         Parameters
         ----------
         mesh : ConstrainedDelaunay
-            What `delone.from_geometry` made of the geometries.
+            The result of `delone.from_geometry` for the geometries.
 
         Returns
         -------
         ndarray of float64, shape (n,), or None
-            The height of the first coordinate pair at each point; that of an added vertex follows
-            from the ends of the first segment that it lies on. None where there are no heights.
+            The height of the first coordinate pair at each point; the height of an added vertex is
+            interpolated between the ends of the first segment that it lies on. None if there are no
+            heights.
 
         Examples
         --------
@@ -198,7 +199,7 @@ class GeometrySet:
             return None
         own = mesh.points[: mesh.npoints - mesh.nadded]
         x, y = np.concatenate((own, coordinates)).T
-        # A point comes before the coordinates that are equal to it, the first of them next.
+        # A point sorts before the coordinates equal to it, followed by the first of them.
         order = np.lexsort((y, x))
         at = np.flatnonzero(order < len(own))
         z = np.full(mesh.npoints, np.nan)
@@ -224,7 +225,7 @@ def _shapely() -> Any:
 
 
 def _parts(geometries: NDArray[Any]) -> NDArray[Any]:
-    """Take collections apart."""
+    """Split collections into parts."""
     shapely = _shapely()
     while (shapely.get_type_id(geometries) == _COLLECTION).any():
         geometries = shapely.get_parts(geometries)

@@ -1,7 +1,8 @@
-"""Rasters as GeoTIFF by rasterio (extra ``raster``), row by row from the top, and read back.
+"""GeoTIFF output with rasterio (extra ``raster``), verified by reading it back.
 
-When it closes a file, GDAL does not tell whether the last blocks were written: on a full disk, a
-file that is cut short looks like a success. So each file is read again before it replaces another.
+When GDAL closes a file, it does not report whether the last blocks were written: on a full disk, a
+truncated file looks like a success. Each file is therefore read back before it replaces an existing
+one.
 """
 
 from __future__ import annotations
@@ -42,13 +43,13 @@ def write_geotiff(
     path : Path
         The file, written in place.
     values : ndarray of float64, shape (rows, columns)
-        The values, the lowest row first; a mapped file is read part by part.
+        The values, lowest row first; a memory map is read in parts.
     corner : tuple of float
-        The left and the upper edge.
+        The left and the upper edge of the raster.
     cell : tuple of float
         Width and height of a cell.
     name : str
-        What the values are called.
+        Name of the values.
     crs : str or None
         Coordinate reference system.
     units : str, optional
@@ -57,7 +58,7 @@ def write_geotiff(
     Raises
     ------
     OSError
-        The file cannot be written, or does not hold what was written to it.
+        The file cannot be written, or its contents are not what was written.
     """
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     profile = {
@@ -83,11 +84,11 @@ def write_geotiff(
     with rasterio.open(path) as file:
         for window, part in _parts(values):
             if not np.array_equal(file.read(1, window=window), part, equal_nan=True):
-                raise OSError("some of the values are missing in the file")
+                raise OSError("some of the values are missing from the file")
 
 
 def _parts(values: NDArray[np.float64]) -> Iterator[tuple[Any, NDArray[np.float64]]]:
-    """Give rows from the top, as many as a block has, and where they are."""
+    """Yield the window and the values of each block of rows, from the top."""
     height, width = values.shape
     for row in range(0, height, _ROWS):
         stop = min(row + _ROWS, height)

@@ -17,14 +17,14 @@ __all__ = ["split_attributes"]
 def split_attributes(
     attributes: dict[str, NDArray[np.generic]], npoints: int, ncells: int
 ) -> tuple[dict[str, NDArray[np.generic]], dict[str, NDArray[np.generic]]]:
-    """Tell values of points from values of cells by their number.
+    """Split values into those of points and those of cells, by their number.
 
     Parameters
     ----------
     attributes : dict of str to ndarray
         Values.
     npoints, ncells : int
-        Numbers of points and of triangles (or edges).
+        Number of points and of triangles (or edges).
 
     Returns
     -------
@@ -34,7 +34,7 @@ def split_attributes(
     Raises
     ------
     ShapeError
-        An array fits neither.
+        The length of an array matches neither.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def split_attributes(
             of_cells[name] = values
         else:
             raise ShapeError(
-                f"attribute {name!r} of shape {values.shape} fits neither {npoints} points nor "
+                f"attribute {name!r} of shape {values.shape} matches neither {npoints} points nor "
                 f"{ncells} cells"
             )
     return of_points, of_cells

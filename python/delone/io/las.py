@@ -1,7 +1,7 @@
-"""Airborne laser points: LAS and LAZ by laspy and lazrs (extra ``las``).
+"""Lidar points: LAS and LAZ with laspy and lazrs (extra ``las``).
 
-Records are read in blocks, and of each block only what is wanted is kept, so that memory beyond the
-coordinates is that of one block. Coordinates are scaled exactly as laspy scales them.
+Records are read in blocks, and only the requested part of each block is kept, so that the memory
+needed beyond the coordinates is that of one block. Coordinates are scaled exactly as laspy does.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 __all__ = ["describe", "look", "read_points", "read_range"]
 
 _BLOCK = 1 << 19
-# Writers put 50,000 points into a chunk; the decoder sets memory aside for the whole of it.
+# Writers put 50,000 points into a chunk; the decoder allocates memory for all of them.
 _LONGEST_CHUNK = 10_000_000
-# Layers of the kinds of items that LAZ has for formats from 6 on: points, colours, near infrared,
-# waves. Extra bytes have one layer each.
+# Number of layers of the item types of LAZ for point formats 6 and later: points, colors, near
+# infrared, waveforms. Extra bytes have one layer each.
 _LAYERED = 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
-# Sizes in bytes by the LAS specification 1.4, R15.
+# Sizes in bytes, from the LAS specification 1.4, R15.
 _LONGEST_HEADER, _RECORD_HEADER, _LONG_RECORD_HEADER = 375, 54, 60
-# The least size of a header by the minor version; before 1.3 it is 227.
+# The minimum size of a header for each minor version; before 1.3 it is 227.
 _HEADER, _HEADERS = 227, {3: 235, 4: 375}
 
 
@@ -47,25 +47,29 @@ def read_points(
 ) -> PointSet:
     """Read points from a LAS or LAZ file; see `delone.io.read_points`."""
     if columns is not None:
-        raise FileFormatError(f"{path}: coordinates in LAS files are x, y and z, not to be chosen")
+        raise FileFormatError(
+            f"{path}: LAS files always have the coordinates x, y and z; columns cannot be chosen"
+        )
     laspy = _laspy(path)
     _check_records(path)
-    with _torn_is_an_error(path), laspy.open(path) as file:
+    with _corrupt_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
         _check_names(path, file.header, attributes)
         points, z, further = _read(file, classes, attributes)
         crs = _crs(path, file.header)
     if not len(points) and classes is not None:
         wanted = ", ".join(map(str, classes))
-        raise FileFormatError(f"{path} holds no points of class {wanted}; delone info shows which")
+        raise FileFormatError(
+            f"{path} contains no points of class {wanted}; delone info lists its classes"
+        )
     return PointSet(points=points, z=z, attributes=further, crs=crs, source=str(path))
 
 
 def describe(path: Path) -> dict[str, Any]:
-    """Return what the header says: version, point format, scales, names of dimensions."""
+    """Return facts from the header: version, point format, scales, names of dimensions."""
     laspy = _laspy(path)
     _check_records(path)
-    with _torn_is_an_error(path), laspy.open(path) as file:
+    with _corrupt_is_an_error(path), laspy.open(path) as file:
         header = file.header
         return {
             "las_version": str(header.version),
@@ -76,22 +80,22 @@ def describe(path: Path) -> dict[str, Any]:
 
 
 def look(path: Path, *, attributes: Sequence[str]) -> tuple[int, str | None]:
-    """Return how many points a file has, as far as it has room for them, and its reference system.
+    """Return the number of points that a file has room for, and its reference system.
 
-    Attributes that it has not are refused.
+    Raises for attributes that the file does not have.
     """
     laspy = _laspy(path)
     _check_records(path)
-    with _torn_is_an_error(path), laspy.open(path) as file:
+    with _corrupt_is_an_error(path), laspy.open(path) as file:
         _check_claim(path, file)
         _check_names(path, file.header, attributes)
         return int(file.header.point_count), _crs(path, file.header)
 
 
 def read_range(path: Path, start: int, stop: int, *, attributes: Sequence[str]) -> PointSet:
-    """Read the records from `start` to before `stop` of a file that `look` has found whole."""
+    """Read the records from `start` to before `stop` of a file that `look` has checked."""
     laspy = _laspy(path)
-    with _torn_is_an_error(path), laspy.open(path) as file:
+    with _corrupt_is_an_error(path), laspy.open(path) as file:
         if _has_chunks_of_any_size(file.header):
             block = _from_chunks(path, file.header, start, stop)
         else:
@@ -105,13 +109,13 @@ def read_range(path: Path, start: int, stop: int, *, attributes: Sequence[str]) 
 
 
 def _scaled(block: Any) -> tuple[NDArray[np.float64], ...]:
-    """Coordinates of records; what scales of a header make infinite or NaN is refused later."""
+    """Coordinates of records; infinite or NaN results of bad scales are rejected later."""
     with np.errstate(over="ignore", invalid="ignore"):
         return np.asarray(block.x), np.asarray(block.y), np.asarray(block.z)
 
 
 def _has_chunks_of_any_size(header: Any) -> bool:
-    """Tell whether chunks have numbers of points of their own, as in COPC files."""
+    """Return whether the chunks have different numbers of points, as in COPC files."""
     if not header.are_points_compressed:
         return False
     lazrs = require("lazrs", extra="las", what="reading LAZ")
@@ -120,7 +124,7 @@ def _has_chunks_of_any_size(header: Any) -> bool:
 
 
 def _from_chunks(path: Path, header: Any, start: int, stop: int) -> Any:
-    """Decode the chunks that hold some records: the decoder's own search errs in such files."""
+    """Decode the chunks that contain given records; the decoder's own seek is wrong here."""
     laspy = _laspy(path)
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     record = header.vlrs.get("LasZipVlr")[0].record_data
@@ -158,29 +162,29 @@ def _check_names(path: Path, header: Any, names: Sequence[str]) -> None:
 
 
 @contextmanager
-def _torn_is_an_error(path: Path) -> Iterator[None]:
+def _corrupt_is_an_error(path: Path) -> Iterator[None]:
     try:
         yield
     except (DeloneError, FileNotFoundError, PermissionError, KeyboardInterrupt, MemoryError):
         raise
     except BaseException as error:
-        # A panic of the Rust decoder is no Exception; nothing else may be swallowed.
+        # A panic of the Rust decoder is not an Exception; everything else must propagate.
         if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
             raise
         reason = str(error).partition("\n")[0] or type(error).__name__
-        raise FileFormatError(f"{path} is torn or no LAS file: {reason}") from error
+        raise FileFormatError(f"{path} is truncated or not a LAS file: {reason}") from error
 
 
 def _check_records(path: Path) -> None:
-    """Compare the numbers of records before and behind the points with the room for them.
+    """Compare the numbers of records before and after the points with the space for them.
 
-    A reader that believes four billion records goes through nothing for minutes.
+    A reader that trusts a count of four billion records loops for minutes.
     """
     size = path.stat().st_size
     with path.open("rb") as file:
         head = file.read(_LONGEST_HEADER).ljust(_LONGEST_HEADER, b"\0")
         if head[:4] != b"LASF":
-            raise FileFormatError(f"{path} is no LAS file: it does not begin with LASF")
+            raise FileFormatError(f"{path} is not a LAS file: it does not begin with LASF")
         _check_version(path, head)
         before, count = struct.unpack_from("<II", head, 96)
         wrong = before > size or count * _RECORD_HEADER > before
@@ -188,11 +192,11 @@ def _check_records(path: Path) -> None:
             start, count = struct.unpack_from("<QI", head, 235)
             wrong = wrong or _end_of_records(file, start, count, size) > size
     if wrong:
-        raise FileFormatError(f"{path} is torn: it has no room for the records it announces")
+        raise FileFormatError(f"{path} is truncated: it has no room for the records it declares")
 
 
 def _check_version(path: Path, head: bytes) -> None:
-    """Refuse a header that is not of the version that it says, as its counts are elsewhere."""
+    """Reject a header whose version is wrong, because its counts would be elsewhere."""
     minor, (size,) = head[25], struct.unpack_from("<H", head, 94)
     least = _HEADERS.get(minor, _HEADER)
     if size < least:
@@ -201,7 +205,7 @@ def _check_version(path: Path, head: bytes) -> None:
             "the version or the size is wrong"
         )
     if struct.unpack_from("<I", head, 96)[0] < size:
-        raise FileFormatError(f"{path} is torn: its points begin within its header")
+        raise FileFormatError(f"{path} is corrupt: its points begin within its header")
 
 
 def _head(path: Path) -> bytes:
@@ -210,17 +214,17 @@ def _head(path: Path) -> bytes:
 
 
 def _check_both_counts(path: Path) -> None:
-    """Compare the counts of 32 and of 64 bits that headers have from version 1.4 on."""
+    """Compare the 32-bit and 64-bit counts that headers have from version 1.4 on."""
     head = _head(path)
     (old,), (count,) = struct.unpack_from("<I", head, 107), struct.unpack_from("<Q", head, 247)
     if head[25] >= 4 and old not in (0, count):
         raise FileFormatError(
-            f"{path} announces {old} points in one place of its header and {count} in another"
+            f"{path} declares {old} points in one field of its header and {count} in another"
         )
 
 
 def _end_of_points(path: Path) -> int:
-    """Return where the records of points end at the latest: where something else begins."""
+    """Return the last possible end of the point records: where something else begins."""
     size, head = path.stat().st_size, _head(path)
     begin, ends = int.from_bytes(head[96:100], "little"), [size]
     if head[25] >= 3:
@@ -231,7 +235,7 @@ def _end_of_points(path: Path) -> int:
 
 
 def _end_of_records(file: IO[bytes], start: int, count: int, size: int) -> int:
-    """Follow the long records behind the points, as far as they are in the file."""
+    """Follow the extended records after the points, as far as they are in the file."""
     for _ in range(count):
         if start + _LONG_RECORD_HEADER > size:
             return size + 1
@@ -241,87 +245,87 @@ def _end_of_records(file: IO[bytes], start: int, count: int, size: int) -> int:
 
 
 def _check_claim(path: Path, file: Any) -> None:
-    """Compare the number of records in the header with what the file can hold."""
+    """Compare the number of records in the header with what the file can contain."""
     header = file.header
     count = int(header.point_count)
     if header.are_points_compressed:
         least, held = _compressed_records(path, header)
         if count < least:
             raise FileFormatError(
-                f"{path} announces {count} points and holds {least} or more: its header is wrong"
+                f"{path} declares {count} points and contains {least} or more: its header is wrong"
             )
     else:
         record = int(header.point_format.size)
         held = (_end_of_points(path) - int(header.offset_to_point_data)) // record
         if count < held:
             raise FileFormatError(
-                f"{path} announces {count} points and holds {held}: its header is wrong"
+                f"{path} declares {count} points and contains {held}: its header is wrong"
             )
     if count > held:
         raise FileFormatError(
-            f"{path} announces {count} points and has room for {held}: it is cut short"
+            f"{path} declares {count} points and has room for {held}: it is truncated"
         )
     _check_both_counts(path)
 
 
 def _compressed_records(path: Path, header: Any) -> tuple[int, int]:
-    """Return how many records the chunks of a LAZ file hold at least and at most."""
+    """Return the least and the greatest number of records in the chunks of a LAZ file."""
     lazrs = require("lazrs", extra="las", what="reading LAZ")
     record = header.vlrs.get("LasZipVlr")[0].record_data
     vlr = lazrs.LazVlr(record)
     if not vlr.uses_variable_size_chunks() and vlr.chunk_size() > _LONGEST_CHUNK:
-        raise FileFormatError(f"{path} is torn: chunks of {vlr.chunk_size()} points")
+        raise FileFormatError(f"{path} is corrupt: chunks of {vlr.chunk_size()} points")
     with path.open("rb") as file:
         size = path.stat().st_size
         file.seek(int(header.offset_to_point_data))
         (table,) = struct.unpack("<q", file.read(8))
         if not header.offset_to_point_data < table <= size - 8:
-            raise FileFormatError(f"{path} is cut short: its table of chunks is missing")
+            raise FileFormatError(f"{path} is truncated: its chunk table is missing")
         file.seek(table)
         _, chunks = struct.unpack("<II", file.read(8))
-        # A chunk begins with one record as it is.
+        # A chunk begins with one uncompressed record.
         if chunks > size // vlr.item_size() + 1:
-            raise FileFormatError(f"{path} is torn: it announces {chunks} chunks")
+            raise FileFormatError(f"{path} is corrupt: it declares {chunks} chunks")
         file.seek(int(header.offset_to_point_data))
         held = lazrs.read_chunk_table(file, vlr)
-        # The decoder sets memory aside for these sizes.
+        # The decoder allocates memory for these sizes.
         if sum(int(length) for _, length in held) > size:
-            raise FileFormatError(f"{path} is torn: its chunks are longer than the file")
+            raise FileFormatError(f"{path} is truncated: its chunks are longer than the file")
         start = int(header.offset_to_point_data) + 8
-        # Writers that end a chunk where the file ends leave one behind that is empty.
+        # Writers that end a chunk at the end of the file add an empty one.
         _check_layers(file, record, start, [int(length) for points, length in held if points])
     if vlr.uses_variable_size_chunks():
         count = sum(int(points) for points, _ in held)
         return count, count
-    # The last chunk may be short, and writers leave one of nothing behind it.
+    # The last chunk may be short, and some writers add an empty one after it.
     full = sum(length > 0 for _, length in held) - 1
     return max(0, full * int(vlr.chunk_size()) + 1), int(chunks * vlr.chunk_size())
 
 
 def _check_layers(file: IO[bytes], record: bytes, start: int, lengths: Sequence[int]) -> None:
-    """Compare the sizes of layers at the head of each chunk with the chunk's length.
+    """Compare the sizes of the layers at the head of each chunk with the length of the chunk.
 
-    Formats from 6 on keep dimensions apart, in layers of which the decoder believes the sizes.
+    Formats 6 and later store dimensions in separate layers, whose sizes the decoder trusts.
     """
     compressor, items = struct.unpack_from("<H30xH", record)
     if compressor != _LAYERED:
         return
     kinds = [struct.unpack_from("<HH", record, 34 + 6 * i) for i in range(items)]
     layers = sum(_LAYERS.get(kind, size) for kind, size in kinds)
-    # One record as it is, the number of records, the sizes.
+    # One uncompressed record, the number of records, the sizes.
     before = sum(size for _, size in kinds) + 4
     for length in lengths:
         file.seek(start + before)
         sizes = np.frombuffer(file.read(4 * layers), dtype="<u4")
         if before + 4 * layers + int(sizes.sum(dtype=np.int64)) > length:
-            raise FileFormatError(f"{file.name} is torn: a chunk is shorter than its layers")
+            raise FileFormatError(f"{file.name} is corrupt: a chunk is shorter than its layers")
         start += length
 
 
 def _read(
     file: Any, classes: Sequence[int] | None, attributes: Sequence[str]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, NDArray[Any]]]:
-    # Pages of these arrays that are not written cost nothing, so that no second copy is needed.
+    # Unwritten pages of these arrays cost nothing, so no second copy is needed.
     count = int(file.header.point_count)
     points, z = np.empty((count, 2)), np.empty(count)
     further: dict[str, list[NDArray[Any]]] = {name: [] for name in attributes}
@@ -336,20 +340,20 @@ def _read(
         for name, parts in further.items():
             parts.append(np.array(block[name])[keep])
     if classes is None and end != count:
-        raise FileFormatError(f"the header announces {count} points, {end} are there")
+        raise FileFormatError(f"the header declares {count} points, but there are {end}")
     points.resize((end, 2), refcheck=False)
     z.resize(end, refcheck=False)
     return points, z, {name: np.concatenate(parts) for name, parts in further.items()}
 
 
 def _crs(path: Path, header: Any) -> str | None:
-    """Return the reference system as authority and code, or in WKT; None where there is none."""
+    """Return the reference system as authority and code, or as WKT; None if there is none."""
     for record in header.vlrs:
         if type(record).__name__ == "WktCoordinateSystemVlr":
             check_system(str(record.string).rstrip("\0"), str(path))
     try:
         crs = header.parse_crs()
-    except Exception:  # pyproj is not needed for the points, and records are often odd
+    except Exception:  # pyproj is not needed for the points, and records are often invalid
         crs = None
     if crs is not None:
         return str(crs.to_string())

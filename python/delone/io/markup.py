@@ -1,4 +1,4 @@
-"""XML that must stand alone: without a document type there are no entities, own or elsewhere."""
+"""Safe XML: without a document type there are no entities, internal or external."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ _BLOCK = 1 << 16
 
 
 class _RootError(Exception):
-    """The root element has begun; a document type comes before it or not at all."""
+    """The root element has begun; a document type could only precede it."""
 
 
 def refuse_document_type(path: Path) -> None:
-    """Refuse XML with a document type, which may define entities without end or name other files.
+    """Reject XML with a document type, which may define endless entities or name other files.
 
     Parameters
     ----------
     path : Path
-        The file; what is no XML is left to whoever reads it.
+        The file; errors in the XML are left to its reader.
 
     Raises
     ------
     FileFormatError
-        There is a document type.
+        The file has a document type.
     """
 
     def document_type(*_: object) -> None:
         raise FileFormatError(
-            f"{path} has a document type (DOCTYPE): such files may define entities that refer to "
-            "others, and are not read; remove it"
+            f"{path} has a document type (DOCTYPE), which may define entities that refer to "
+            "other files; such files are not read; remove it"
         )
 
     def root(*_: object) -> None:

@@ -1,6 +1,6 @@
-"""Points in tables: Parquet, GeoParquet, Arrow and Feather by pyarrow (extra ``geo``).
+"""Points in tables: Parquet, GeoParquet, Arrow and Feather with pyarrow (extra ``geo``).
 
-Only the columns of the coordinates are read. A Parquet file with geometries is read as such.
+Only the columns of the coordinates are read. A Parquet file with geometries is read as GeoParquet.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
     from delone.io.geometryset import GeometrySet
 
-# What every double tells from its neighbours, and the largest power of ten that is a double.
+# Decimal digits that every double keeps, and the largest power of ten that is a double.
 _DIGITS, _LARGEST_EXACT_POWER = 15, 22
-# Digits that 128 bits hold, and some more than 256 do.
+# Digits that fit into 128 bits, and some more than fit into 256.
 _WIDEST, _DIGITS_OF_DECIMALS = 38, 100
 
 __all__ = ["holds_geometries", "look", "read_geometries", "read_points", "read_range"]
@@ -41,15 +41,15 @@ def read_points(
     path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
 ) -> PointSet:
     """Read points from a table; see `delone.io.read_points`."""
-    with _torn_is_an_error(path):
+    with _corrupt_is_an_error(path):
         if path.suffix.lower() == ".parquet":
             return _parquet(path, columns, attributes)
         return _feather(path, columns, attributes)
 
 
 def holds_geometries(path: Path) -> bool:
-    """Tell whether a file is GeoParquet."""
-    with _torn_is_an_error(path):
+    """Return whether a file is GeoParquet."""
+    with _corrupt_is_an_error(path):
         if path.suffix.lower() != ".parquet":
             return False
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
@@ -65,18 +65,18 @@ def read_geometries(
         raise FileFormatError(f"{path}: {path.suffix} files have no layers")
     if not holds_geometries(path):
         raise FileFormatError(f"{path} is a table without geometries")
-    with _torn_is_an_error(path):
+    with _corrupt_is_an_error(path):
         return geometries_of(_frame(path), columns=columns, source=str(path))
 
 
 def look(
     path: Path, *, columns: Sequence[str | int] | None, attributes: Sequence[str]
 ) -> tuple[int, bool]:
-    """Return how many rows a Parquet file without geometries has, and whether it has heights.
+    """Return the number of rows of a Parquet file without geometries, and if it has heights.
 
-    Columns that it has not are refused.
+    Raises for columns that the file does not have.
     """
-    with _torn_is_an_error(path):
+    with _corrupt_is_an_error(path):
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
         with parquet.ParquetFile(path) as file:
             schema = file.schema_arrow
@@ -95,9 +95,9 @@ def read_range(
 ) -> PointSet:
     """Read the rows from `start` to before `stop` of a Parquet file without geometries.
 
-    Beside these, no more than a row group is held.
+    At most one row group is in memory beside them.
     """
-    with _torn_is_an_error(path):
+    with _corrupt_is_an_error(path):
         arrow = require("pyarrow", extra="geo", what="reading Parquet")
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
         with parquet.ParquetFile(path) as file:
@@ -117,7 +117,7 @@ def read_range(
 
 
 @contextmanager
-def _torn_is_an_error(path: Path) -> Iterator[None]:
+def _corrupt_is_an_error(path: Path) -> Iterator[None]:
     require("pyarrow", extra="geo", what=f"reading {path.suffix}")
     source = str(path)
     try:
@@ -127,11 +127,15 @@ def _torn_is_an_error(path: Path) -> Iterator[None]:
     except (DeloneError, FileNotFoundError, PermissionError):
         raise
     except MemoryError as error:
-        # Compressed columns begin with their size, which nothing in the file confirms.
-        raise MemoryError(f"{source} announces more than memory holds; it may be torn") from error
+        # Compressed columns begin with their size, which nothing in the file verifies.
+        raise MemoryError(
+            f"{source} declares more than fits into memory; it may be corrupt"
+        ) from error
     except Exception as error:
         reason = str(error).partition("\n")[0]
-        raise FileFormatError(f"{source} is torn or no {path.suffix} file: {reason}") from error
+        raise FileFormatError(
+            f"{source} is truncated or not a {path.suffix} file: {reason}"
+        ) from error
 
 
 def _parquet(
@@ -150,7 +154,7 @@ def _parquet(
 
 
 def _frame(path: Path) -> Any:
-    """Read GeoParquet whose reference systems name nothing else."""
+    """Read GeoParquet whose reference systems refer to nothing else."""
     parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
     geopandas = require("geopandas", extra="geo", what="reading GeoParquet")
     with path.open("rb") as file:
@@ -159,7 +163,7 @@ def _frame(path: Path) -> Any:
         for column in columns.values():
             check_system(column.get("crs"), str(path))
         file.seek(0)
-        # An open file, as geopandas looks for addresses in names.
+        # An open file, because geopandas looks for URLs in names.
         return geopandas.read_parquet(file)
 
 
@@ -206,7 +210,7 @@ def _from_table(table: Any, kept: list[str], attributes: list[str], source: str)
 
 
 def _column(table: Any, name: str) -> NDArray[Any]:
-    """Return a column as doubles; what is missing is NaN, so that it is refused by its row."""
+    """Return a column as doubles; missing values are NaN, so that errors name their rows."""
     column = table.column(name)
     _refuse_large_integers(column, name)
     types = require("pyarrow.types", extra="geo", what="reading tables")
@@ -217,9 +221,9 @@ def _column(table: Any, name: str) -> NDArray[Any]:
 
 
 def _nearest_doubles(column: Any, name: str) -> NDArray[np.float64]:
-    """Return what a text file with the same digits would hold; pyarrow's cast rounds twice.
+    """Return the doubles nearest to the decimals; pyarrow's cast would round twice.
 
-    Refuse digits that doubles do not tell from others: 15 they always do.
+    Raises for digits that doubles cannot distinguish; 15 digits always work.
     """
     arrow = require("pyarrow", extra="geo", what="reading tables")
     scale = column.type.scale
@@ -230,7 +234,7 @@ def _nearest_doubles(column: Any, name: str) -> NDArray[np.float64]:
         few, digits = _few_digits(arrow, chunk)
         few &= there
         if 0 <= scale <= _LARGEST_EXACT_POWER:
-            # Both are doubles, so that the quotient is rounded once.
+            # Both are doubles, so the quotient is rounded only once.
             found[few] = digits[few] / 10.0**scale
             there &= ~few
         for row in np.flatnonzero(there).tolist():
@@ -240,7 +244,7 @@ def _nearest_doubles(column: Any, name: str) -> NDArray[np.float64]:
 
 
 def _few_digits(arrow: Any, chunk: Any) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-    """Return which decimals have 15 digits at most, and their digits as integers."""
+    """Return which decimals have at most 15 digits, and their digits as integers."""
     none = np.zeros(len(chunk), dtype=bool), np.zeros(len(chunk), dtype=np.int64)
     if not len(chunk) or chunk.type.precision > _WIDEST:
         return none
@@ -258,19 +262,19 @@ def _nearest_double(value: Decimal, scale: int, name: str) -> float:
         back = Decimal(nearest).quantize(Decimal((0, (1,), -scale)))
     if back != value:
         raise InputError(
-            f"column {name!r} holds {value}, with more digits than a double keeps: round the "
-            "column to fewer digits, or subtract an offset"
+            f"column {name!r} has the value {value}, with more digits than a double keeps: round "
+            "the column to fewer digits, or subtract an offset"
         )
     return nearest
 
 
 def _refuse_large_integers(column: Any, name: str) -> None:
-    """Refuse integers beyond 2**53 where they become doubles: for coordinates, and beside gaps."""
+    """Reject integers beyond 2**53 that become doubles: coordinates, and columns with gaps."""
     types = require("pyarrow.types", extra="geo", what="reading tables")
     if not types.is_integer(column.type):
         return
     values = column.drop_null().to_numpy()
     if len(values) and (int(values.max()) > 1 << 53 or int(values.min()) < -(1 << 53)):
         raise InputError(
-            f"column {name!r} holds integers beyond the 2**53 up to which a float holds every one"
+            f"column {name!r} has integers beyond 2**53, which a double cannot represent"
         )

@@ -1,4 +1,4 @@
-"""Plots as a file format: PNG and SVG by `delone.plot`."""
+"""Plots as a file format: PNG and SVG with `delone.plot` (extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 __all__ = ["require_libraries", "write_mesh"]
 
-# With fewer triangles, light and shadow show the triangles instead of the terrain.
+# With fewer triangles, shading shows the triangles rather than the terrain.
 _MANY = 2000
 
 
 def require_libraries(suffix: str) -> None:
-    """Import what drawing needs."""
-    require("matplotlib.figure", extra="plot", what="drawing pictures")
+    """Import the plotting library."""
+    require("matplotlib.figure", extra="plot", what="plotting")
 
 
 def write_mesh(

@@ -1,6 +1,6 @@
-"""What a file of points holds, and which of its columns are the coordinates.
+"""The contents of a file of points, and recognition of its coordinate columns.
 
-A column is recognised by the usual words of surveying and mapping. Where a header names none of
+A column is recognized by the usual words of surveying and mapping. If a header contains none of
 them, nothing is guessed: two wrong columns would give a perfect triangulation of nonsense.
 """
 
@@ -34,36 +34,36 @@ _WORDS = {
         "topography", "zcoord", "coordz",
     },
 }  # fmt: skip
-# As much of the definition of a reference system as is shown.
+# Number of characters of a reference system that are shown.
 _SHORT = 40
-# The number of a column has fewer digits.
+# A column number has fewer digits.
 _DIGITS = 9
-_UNITS = {"m", "ft", "km", "mm", "cm", "deg", "degrees", "degree", "metres", "meters", "feet", "dd"}
+_UNITS = {"m", "ft", "km", "mm", "cm", "deg", "degrees", "degree", "meters", "metres", "feet", "dd"}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PointSet:
-    """Points as a file holds them, row for row.
+    """The points of a file, row by row.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
         Horizontal coordinates, in the units of the file.
     z : ndarray of float64, shape (n,), optional
-        Heights; None where the file has none.
+        Heights; None if the file has none.
     attributes : mapping of str to ndarray, optional
-        Further values of each point, those that were asked for.
+        Further values of each point, those that were requested.
     crs : str, optional
-        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None where the file has none.
+        Coordinate reference system, as ``"EPSG:28992"`` or in WKT; None if the file has none.
     source : str, optional
         The file.
     columns : tuple of str, optional
-        What the columns of x, y and z are called; empty where they have no names.
+        Names of the columns of x, y and z; empty if they have none.
 
     Notes
     -----
-    It can be given wherever points are wanted; arrays of NumPy are made of `points`. Then it is
-    known whether coordinates are longitudes and latitudes: see `delone.GeographicWarning`.
+    A PointSet can be passed wherever points are expected; NumPy converts it to `points`. delone
+    then knows whether the coordinates are longitudes and latitudes: see `delone.GeographicWarning`.
 
     Examples
     --------
@@ -106,24 +106,24 @@ class PointSet:
 
 
 def _span(column: NDArray[np.float64]) -> str:
-    """The least and the greatest number, passing over NaN."""
+    """The least and the greatest number, ignoring NaN."""
     low, high = (each.reduce(column) for each in (np.fmin, np.fmax))
     return "unknown" if np.isnan(low) else f"{low:.6g} to {high:.6g}"
 
 
 def _first_line(crs: str) -> str:
-    """The name of a reference system, or how its definition begins."""
+    """The name of a reference system, or the beginning of its definition."""
     line = crs.strip().partition("\n")[0]
     return line if len(line) <= _SHORT else line[:_SHORT] + "..."
 
 
 def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
-    """Return the position of a column that is given by name or by number from 0.
+    """Return the position of a column given by name or by number from 0.
 
     Parameters
     ----------
     names : sequence of str
-        Names of the columns; numbers, where the file has no header.
+        Names of the columns; numbers if the file has no header.
     wanted : str or int
         Name (any case) or number of a column. A string of digits is a number unless it is a name.
     source : str
@@ -162,7 +162,7 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
 
 
 def names_height(name: str) -> bool:
-    """Tell whether a name is one of the usual words for heights or depths.
+    """Return whether a name is one of the usual words for height or depth.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def names_height(name: str) -> bool:
     Returns
     -------
     bool
-        Whether values of this name are terrain.
+        Whether values with this name are terrain.
 
     Examples
     --------
@@ -186,18 +186,18 @@ def names_height(name: str) -> bool:
 def choose_columns(
     names: Sequence[str], columns: Sequence[Column] | None, source: str, *, named: bool
 ) -> list[int]:
-    """Return the positions of x, of y and, where there is one, of z.
+    """Return the positions of x, y and, if there is one, z.
 
     Parameters
     ----------
     names : sequence of str
-        Names of the columns that hold numbers.
+        Names of the numeric columns.
     columns : sequence of str or int or None
-        Two or three columns chosen by the caller; None to recognise them.
+        Two or three columns chosen by the caller; None to recognize them.
     source : str
         The file, for error messages.
     named : bool
-        Whether the names mean something. Otherwise the first columns are x, y and z.
+        Whether the names are meaningful. Otherwise the first columns are x, y and z.
 
     Returns
     -------
@@ -207,7 +207,7 @@ def choose_columns(
     Raises
     ------
     FileFormatError
-        A column is missing, x and y are not recognised, or one of them is named twice.
+        A column is missing, x and y are not recognized, or one of them is ambiguous.
 
     Examples
     --------
@@ -221,9 +221,9 @@ def choose_columns(
         return [find_column(names, column, source) for column in columns]
     if not named:
         if len(names) < 2:
-            raise FileFormatError(f"{source} has fewer than two columns of numbers")
+            raise FileFormatError(f"{source} has fewer than two numeric columns")
         return list(range(min(len(names), 3)))
-    found = {role: _recognised(names, role, source) for role in _WORDS}
+    found = {role: _recognized(names, role, source) for role in _WORDS}
     if found["x"] is None or found["y"] is None:
         raise FileFormatError(
             f"{source}: which columns are x and y? Choose them (--columns x,y or x,y,z) from "
@@ -232,9 +232,9 @@ def choose_columns(
     return [position for position in found.values() if position is not None]
 
 
-def _recognised(names: Sequence[str], role: str, source: str) -> int | None:
+def _recognized(names: Sequence[str], role: str, source: str) -> int | None:
     words = [_word(name) for name in names]
-    # The plain letter wins over every synonym.
+    # The single letter takes precedence over every synonym.
     wins = role if role in words else next((word for word in words if word in _WORDS[role]), None)
     if wins is None:
         return None

@@ -1,9 +1,9 @@
-"""Rasters to files: GeoTIFF, NetCDF, CSV and pictures.
+"""Raster output: GeoTIFF, NetCDF, CSV and plots.
 
-GeoTIFF needs rasterio (extra ``raster``), NetCDF xarray (extra ``xarray``), pictures matplotlib.
+GeoTIFF needs rasterio (extra ``raster``), NetCDF xarray (extra ``xarray``), plots matplotlib.
 
-A raster is anything with `values` (rows, columns), `x` and `y`, its rows from the lowest to the
-highest y, as `delone.interpolate.grid` makes it. What a format orders otherwise is turned here.
+A raster is any object with `values` (rows, columns), `x` and `y`, with rows from the lowest to the
+highest y, as `delone.interpolate.grid` returns it. Formats with another order are converted here.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 __all__ = ["raster_suffixes", "raster_writer", "write_raster"]
 
-# Differences of nodes that are the same but for rounding.
+# Node spacings whose relative difference is below this are equal up to rounding.
 _EVEN = 1e-6
 
 
 class Raster(Protocol):
-    """What is written."""
+    """The interface of a raster."""
 
     @property
     def values(self) -> NDArray[Any]:
@@ -44,11 +44,11 @@ class Raster(Protocol):
 
     @property
     def x(self) -> Floats:
-        """Abscissas, (columns,), ascending."""
+        """Coordinates of the columns, (columns,), ascending."""
 
     @property
     def y(self) -> Floats:
-        """Ordinates, (rows,), ascending."""
+        """Coordinates of the rows, (rows,), ascending."""
 
 
 def raster_suffixes() -> tuple[str, ...]:
@@ -57,7 +57,7 @@ def raster_suffixes() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        With the dot.
+        The suffixes, with the dot.
 
     Examples
     --------
@@ -76,49 +76,49 @@ def write_raster(
     crs: Any = None,
     units: str | None = None,
 ) -> None:
-    """Write a raster to a file; its suffix tells the format.
+    """Write a raster to a file; the suffix determines the format.
 
     Parameters
     ----------
     path : str or path-like
-        TIF or TIFF, NC, CSV (one line ``x,y,value`` for each node that has a value), PNG or SVG. A
-        file that is there is replaced when the new one is whole.
+        TIF or TIFF, NC, CSV (one line ``x,y,value`` for each node with a value), PNG or SVG. An
+        existing file is replaced only once the new one is complete.
     raster : Grid
         Real values of shape (rows, columns), as `delone.interpolate.grid` returns them.
     name : str, optional
-        What the values are called, in the formats that have names. In pictures, names of heights
-        (z, elevation, depth and the like) have light and shadow, which change the colors; others
-        have the colors of the color bar.
+        Name of the values, in formats that store names. In plots, names of heights (z, elevation,
+        depth and the like) are shaded, which changes the colors; others have the exact colors of
+        the color bar.
     crs : str, int or pyproj.CRS, optional
-        Coordinate reference system, for GeoTIFF, NetCDF and the labels of pictures. Nothing is
+        Coordinate reference system, for GeoTIFF, NetCDF and the labels of plots. Nothing is
         transformed.
     units : str, optional
-        The unit of the values, as ``"m"``, for GeoTIFF and NetCDF.
+        The units of the values, such as ``"m"``, for GeoTIFF and NetCDF.
 
     Warns
     -----
     CRSWarning
-        `crs` is given, and the format has no place for it.
+        `crs` is given, but the format cannot store it.
 
     Raises
     ------
     InputError
-        `raster` is no raster, as an array without nodes is none.
+        `raster` is not a raster; an array without nodes, for example.
     FileFormatError
-        Unknown suffix; complex or several values a node; cells that a GeoTIFF cannot have, because
-        nodes are not evenly spaced.
+        Unknown suffix; complex values, or several values per node; cells that a GeoTIFF cannot
+        represent because nodes are not evenly spaced.
     MissingExtraError
         The library for this format is not installed.
     OutputError
-        The file cannot be written; an OSError as well.
+        The file cannot be written; it is also an OSError.
 
     Notes
     -----
-    A GeoTIFF has its highest row first, as is customary; NaN marks cells without a value.
+    A GeoTIFF starts with the highest row, as is customary; NaN marks cells without a value.
 
-    NetCDF follows the CF conventions 1.8: nodes have axes and, where `crs` is given, the standard
+    NetCDF follows the CF conventions 1.8: nodes have axes and, if `crs` is given, the standard
     names and units of its coordinates; the values have a ``grid_mapping``, a variable with the
-    parameters and the WKT of the system, for which pyproj (extra ``geo``) is needed.
+    parameters and the WKT of the system, which requires pyproj (extra ``geo``).
 
     Examples
     --------
@@ -140,12 +140,12 @@ def write_raster(
     write = raster_writer(path)
     system = as_crs(crs)
     warn_if_left_out(path, system, WITH_CRS)
-    with replacing(path) as beside:
-        write(beside, raster, name=name, crs=system, units=units)
+    with replacing(path) as temporary:
+        write(temporary, raster, name=name, crs=system, units=units)
 
 
 def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
-    """Return the function that writes rasters to files of this suffix, its library at hand.
+    """Return the function that writes rasters with this suffix, after importing its library.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
     Returns
     -------
     callable
-        Takes what `write_raster` takes, and writes in place.
+        Takes the arguments of `write_raster` and writes in place.
 
     Raises
     ------
@@ -166,7 +166,9 @@ def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
     """
     file = Path(path)
     if file.suffix.lower() not in _WRITERS:
-        raise FileFormatError(f"{file}: cannot write rasters to it; known are {' '.join(_WRITERS)}")
+        raise FileFormatError(
+            f"{file}: cannot write rasters with this suffix; known are {' '.join(_WRITERS)}"
+        )
     module, extra, write = _WRITERS[file.suffix.lower()]
     if module is not None:
         require(module, extra=extra, what=f"writing {file.suffix} files")
@@ -174,12 +176,12 @@ def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
 
 
 def _require_raster(raster: Any) -> None:
-    """Refuse what has no nodes."""
+    """Reject objects without nodes."""
     if not all(hasattr(raster, each) for each in ("values", "x", "y")):
         kind = type(raster).__name__
         raise InputError(
-            f"a {kind} is no raster, as it does not say where its nodes are: give what "
-            "delone.interpolate.grid returns, or delone.interpolate.Grid(values, x, y) with the "
+            f"a {kind} is not a raster, because it has no nodes: pass the result of "
+            "delone.interpolate.grid, or delone.interpolate.Grid(values, x, y) with the "
             "nodes x and y, both ascending"
         )
 
@@ -187,21 +189,25 @@ def _require_raster(raster: Any) -> None:
 def _checked(path: Path, raster: Raster) -> Floats:
     values = np.asarray(raster.values)
     if values.dtype.kind == "c":
-        raise FileFormatError(f"{path}: complex values; write their real and imaginary parts apart")
+        raise FileFormatError(
+            f"{path}: complex values; write their real and imaginary parts separately"
+        )
     if values.shape != (len(raster.y), len(raster.x)):
-        raise FileFormatError(f"{path}: a raster has one value a node, this one {values.shape[2:]}")
+        raise FileFormatError(
+            f"{path}: a raster file has one value per node, not of shape {values.shape[2:]}"
+        )
     return values.astype(np.float64, copy=False)
 
 
 def _cell(nodes: Floats, path: Path) -> float:
-    """The distance of nodes, which a GeoTIFF wants to be the same everywhere."""
+    """The spacing of nodes, which must be constant in a GeoTIFF."""
     if len(nodes) < 2:
-        raise FileFormatError(f"{path}: a GeoTIFF needs two rows and two columns for its cells")
+        raise FileFormatError(f"{path}: a GeoTIFF needs at least two rows and two columns")
     steps = np.diff(nodes)
     step = float((nodes[-1] - nodes[0]) / (len(nodes) - 1))
     if np.abs(steps - step).max() > _EVEN * step:
         raise FileFormatError(
-            f"{path}: the cells of a GeoTIFF are all of one size; use .nc or .csv"
+            f"{path}: the cells of a GeoTIFF must have the same size; use .nc or .csv"
         )
     return step
 
@@ -226,7 +232,7 @@ def _write_netcdf(
     where = name if name != "crs" else "values"
     data: dict[str, Any] = {where: (("y", "x"), values, own)}
     if mapping is not None:
-        # A variable of no dimension, of which the attributes count alone.
+        # A variable without dimensions; only its attributes matter.
         data["crs"] = ((), np.int32(0), mapping)
         own["grid_mapping"] = "crs"
     nodes = {"y": ("y", raster.y, up), "x": ("x", raster.x, across)}
@@ -236,7 +242,7 @@ def _write_netcdf(
     try:
         file.to_netcdf(path, encoding=packed, engine="netcdf4")
     except RuntimeError as error:
-        # What HDF5 cannot write is no more than that to netCDF4.
+        # netCDF4 reports a failed write of HDF5 only as a RuntimeError.
         raise OSError(str(error)) from error
 
 

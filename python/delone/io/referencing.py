@@ -1,4 +1,4 @@
-"""Reference systems in files: what formats without a place for one lose, and what CF calls them."""
+"""Reference systems in files: warnings for formats that cannot store one, and CF names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["cf_attributes", "left_out", "warn_if_left_out"]
 
 
 def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> str | None:
-    """Say that a file will not have the reference system that was given.
+    """Return a warning that a file will not contain the given reference system.
 
     Parameters
     ----------
@@ -27,30 +27,30 @@ def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]
     crs : str or None
         The reference system, if one was given.
     known : sequence of str
-        The suffixes of files that have one.
+        The suffixes of formats that can store one.
 
     Returns
     -------
     str or None
-        One sentence; None where nothing is lost.
+        One sentence; None if nothing is lost.
 
     Examples
     --------
     >>> from delone.io.referencing import left_out
     >>> left_out("mesh.vtu", "EPSG:28992", [".gpkg"])
-    'mesh.vtu: .vtu files hold no reference system; EPSG:28992 is not in it. Use .gpkg'
+    'mesh.vtu: .vtu files cannot store a reference system; EPSG:28992 is not in the file. Use .gpkg'
     """
     suffix = Path(path).suffix.lower()
     if crs is None or suffix in known:
         return None
     return (
-        f"{path}: {suffix} files hold no reference system; {crs.partition(chr(10))[0]:.60} is not "
-        f"in it. Use {', '.join(known)}"
+        f"{path}: {suffix} files cannot store a reference system; "
+        f"{crs.partition(chr(10))[0]:.60} is not in the file. Use {', '.join(known)}"
     )
 
 
 def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> None:
-    """Warn that a file will not have the reference system that was given.
+    """Warn that a file will not contain the given reference system.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Seque
     Warns
     -----
     CRSWarning
-        The format has no place for it.
+        The format cannot store it.
     """
     message = left_out(path, crs, known)
     if message is not None:
@@ -70,7 +70,7 @@ def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Seque
 def cf_attributes(
     crs: str | None,
 ) -> tuple[dict[str, Any] | None, dict[str, Any], dict[str, Any]]:
-    """Return what the CF conventions say of a reference system.
+    """Return the attributes of a reference system in the CF conventions.
 
     Parameters
     ----------
@@ -82,14 +82,14 @@ def cf_attributes(
     mapping : dict or None
         Attributes of the grid mapping; None without a system.
     across, up : dict
-        Attributes of x and of y: axis, and with a system standard name and units.
+        Attributes of x and y: axis and, with a system, standard name and units.
 
     Raises
     ------
     FileFormatError
-        pyproj does not know the system.
+        The system is unknown to pyproj.
     MissingExtraError
-        pyproj is not installed, and a system is given.
+        A system is given, but pyproj is not installed.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""Which module reads or writes which suffix, and the three functions that ask it.
+"""Readers and writers by file suffix, and the public functions that use them.
 
-Modules are named here and imported on use, so that a format costs nothing until it is met.
+Modules are named here and imported on use, so an unused format costs nothing.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
     "tetrahedra": (_TETRAHEDRA, "tetrahedra"),
 }
 _GEOMETRIES = ("vector", "parquet")
-# What has a place for a reference system, or labels the axes by it.
+# Formats that can store a reference system, or label the axes with it.
 _LABELS = (".png", ".svg")
 WITH_CRS = (".gpkg", ".geojson", ".npz", *_LABELS)
 _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "triangle"}
@@ -84,18 +84,18 @@ _MESH_READERS = {".npz": "arrays", **dict.fromkeys(_MESHES, "mesh"), ".ele": "tr
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MeshFile:
-    """Triangles or tetrahedra as a file holds them, not checked.
+    """The triangles or tetrahedra of a file, not validated.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates; of tetrahedra all three, (n, 3).
+        Horizontal coordinates; for tetrahedra all three, (n, 3).
     simplices : ndarray of int32, shape (m, 3)
-        Triangles; tetrahedra, (m, 4).
+        Triangles; (m, 4) for tetrahedra.
     neighbors : ndarray of int32, of the same shape, optional
-        The simplex opposite each vertex; None where the format has no such thing.
+        The simplex opposite each vertex; None if the format does not store them.
     z : ndarray of float64, shape (n,), optional
-        Heights over the plane.
+        Heights.
     source : str, optional
         The file.
 
@@ -122,7 +122,7 @@ def input_suffixes() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        With the dot.
+        The suffixes, with the dot.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def mesh_suffixes() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        With the dot.
+        The suffixes, with the dot.
 
     Examples
     --------
@@ -156,7 +156,7 @@ def output_suffixes() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        With the dot.
+        The suffixes, with the dot.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def read_points(
     layer: str | None = None,
     attributes: Sequence[str] = (),
 ) -> PointSet:
-    r"""Read points from a file; its suffix tells the format.
+    r"""Read points from a file; the suffix determines the format.
 
     Parameters
     ----------
@@ -184,9 +184,9 @@ def read_points(
         GeoPackage, Shapefile, FlatGeobuf, Parquet, GeoParquet, Arrow, Feather, or the vertices of a
         mesh.
     columns : sequence of str or int, optional
-        Columns of x, y and (if wanted) z, by name or by number from 0. By default columns are
-        recognised by their names; without names the first two or three are taken, also where the
-        first has the numbers of the points. For files of geometries: the one attribute that is z.
+        Columns of x, y and (optionally) z, by name or by number from 0. By default columns are
+        recognized by their names; without names the first two or three are used, even if the first
+        contains point numbers. For files of geometries: the one attribute that is z.
     classes : sequence of int, optional
         Keep the points of these classes (LAS and LAZ).
     layer : str, optional
@@ -197,29 +197,29 @@ def read_points(
     Returns
     -------
     PointSet
-        Points row for row as they are in the file, NaN included.
+        The points, row by row as in the file, including NaN.
 
     Raises
     ------
     FileNotFoundError
         There is no such file.
     FileFormatError
-        Unknown suffix; the file is empty, torn or not what its suffix or header says; a column or
-        layer is missing.
+        Unknown suffix; the file is empty, truncated or not what its suffix or header says; a column
+        or layer is missing.
     MissingExtraError
         The library for this format is not installed.
     MemoryError
-        There is not enough memory for what the file holds.
+        There is not enough memory for the contents of the file.
 
     Notes
     -----
-    Coordinates are the doubles that the file denotes: of decimals the nearest ones. Integers beyond
-    2**53 and, in tables, decimals with more digits than a double tells from others are refused. No
-    memory is set aside for what a header claims before the size of the file has confirmed it.
-    Nothing that a file refers to is opened, apart from the parts of a Shapefile, the journals of a
-    GeoPackage and the NODE file beside ELE and POLY.
-    Compressed files that hold more than 64 MiB and more than 200 times their size are refused:
-    decompress them first. So are lines of text of more than 16 MiB.
+    Coordinates are the exact doubles of the file; decimals are rounded to the nearest double.
+    Integers beyond 2**53 and, in tables, decimals with more digits than a double can distinguish
+    are rejected. No memory is allocated for what a header declares before the size of the file
+    confirms it. Nothing that a file refers to is opened, except the parts of a Shapefile, the
+    journals of a GeoPackage, and the NODE file next to ELE and POLY. Compressed files that contain
+    more than 64 MiB and more than 200 times their size are rejected; decompress them first. Lines
+    of text longer than 16 MiB are rejected as well.
 
     Examples
     --------
@@ -253,26 +253,26 @@ def read_points(
 
 
 def line_numbers(path: str | os.PathLike[str], rows: Sequence[int]) -> list[int]:
-    r"""Return the lines of a text file that hold some rows of its points.
+    r"""Return the line numbers of rows of points in a text file.
 
     Parameters
     ----------
     path : str or path-like
         CSV, TSV, TXT, XYZ, PTS or DAT, also compressed.
     rows : sequence of int
-        Rows of what `read_points` returns, from 0.
+        Rows of the result of `read_points`, from 0.
 
     Returns
     -------
     list of int
-        Numbers of lines from 1, as editors show them. Headers, comments and blank lines count here.
+        Line numbers from 1, as in editors; headers, comments and blank lines count.
 
     Raises
     ------
     FileNotFoundError
         There is no such file.
     FileFormatError
-        The file is no text file of points, or has no such row.
+        The file is not a text file of points, or does not have such a row.
 
     Notes
     -----
@@ -291,7 +291,7 @@ def line_numbers(path: str | os.PathLike[str], rows: Sequence[int]) -> list[int]
     """
     file = _existing(path)
     if not is_text(file):
-        raise FileFormatError(f"{file} is no text file: its points are in no lines")
+        raise FileFormatError(f"{file} is not a text file: its points are not in lines")
     wanted = [as_count(row, name="rows") for row in rows]
     module = importlib.import_module("delone.io.text")
     found: list[int] = module.line_numbers(file, wanted)
@@ -299,7 +299,7 @@ def line_numbers(path: str | os.PathLike[str], rows: Sequence[int]) -> list[int]
 
 
 def is_text(path: str | os.PathLike[str]) -> bool:
-    """Tell by its suffix whether the points of a file are in lines of text.
+    """Return whether the suffix of a file is that of a text file of points.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ def is_text(path: str | os.PathLike[str]) -> bool:
     Returns
     -------
     bool
-        Whether `line_numbers` reads it.
+        Whether `line_numbers` can read it.
 
     Examples
     --------
@@ -324,7 +324,7 @@ def is_text(path: str | os.PathLike[str]) -> bool:
 
 
 def holds_geometries(path: str | os.PathLike[str]) -> bool:
-    """Tell whether a file is one of those that `read_geometries` reads.
+    """Return whether `read_geometries` can read a file.
 
     Parameters
     ----------
@@ -334,12 +334,12 @@ def holds_geometries(path: str | os.PathLike[str]) -> bool:
     Returns
     -------
     bool
-        By the suffix; Parquet files are asked whether they are GeoParquet.
+        From the suffix; Parquet files are opened to see if they are GeoParquet.
 
     Raises
     ------
     FileNotFoundError, FileFormatError, MissingExtraError
-        As for `read_geometries`; an unknown suffix is no error.
+        As for `read_geometries`; an unknown suffix is not an error.
 
     Examples
     --------
@@ -365,22 +365,22 @@ def read_geometries(
     columns: Sequence[str | int] | None = None,
     layer: str | None = None,
 ) -> GeometrySet:
-    """Read points, lines and areas from a file; its suffix tells the format.
+    """Read points, lines and areas from a file; the suffix determines the format.
 
     Parameters
     ----------
     path : str or path-like
         GeoJSON (also .gz, .xz, .bz2), GeoPackage, Shapefile, FlatGeobuf or GeoParquet.
     columns : sequence of str or int, optional
-        The one attribute that is the height of each feature, as contour lines have it. By default
-        heights are those of the coordinates, where there are any.
+        The one attribute that is the height of each feature, as for contour lines. By default
+        heights are those of the coordinates, if any.
     layer : str, optional
         The layer, for files that have several.
 
     Returns
     -------
     GeometrySet
-        One geometry for each feature, in the order of the file; `delone.from_geometry` takes it,
+        One geometry for each feature, in the order of the file. `delone.from_geometry` accepts it
         and keeps its reference system.
 
     Raises
@@ -408,26 +408,26 @@ def read_geometries(
 
 
 def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
-    """Read triangles or tetrahedra from a file, as they are.
+    """Read triangles or tetrahedra from a file, unchanged.
 
     Parameters
     ----------
     path : str or path-like
-        An npz file that a class of delone has saved, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE
-        with its NODE beside it. Tetrahedra come from npz, VTU and MSH.
+        An npz file that a class of delone saved, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE with
+        its NODE next to it. Tetrahedra are read from npz, VTU and MSH.
 
     Returns
     -------
     MeshFile
         Points and simplices in the order of the file. Indices are in range; nothing else has been
-        checked.
+        validated.
 
     Raises
     ------
     FileNotFoundError
         There is no such file.
     FileFormatError
-        Unknown suffix; the file is torn, or holds neither triangles nor tetrahedra.
+        Unknown suffix; the file is truncated, or contains neither triangles nor tetrahedra.
     MissingExtraError
         The library for this format is not installed.
 
@@ -457,7 +457,7 @@ def write_mesh(
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write a triangulation to a file; its suffix tells the format.
+    """Write a triangulation to a file; the suffix determines the format.
 
     Parameters
     ----------
@@ -470,36 +470,36 @@ def write_mesh(
         surface of a hull goes to VTU, MSH, PLY, OBJ, STL, XDMF, INP and PNG. Both are written
         without `z` and `crs`.
     z : array_like of float, shape (n,), optional
-        Heights, the third coordinate; in pictures the color, with light and shadow on it where
-        there are 2000 triangles or more, but never on a `Mesh`.
+        Heights, the third coordinate; in plots the color, with shading if there are 2000 triangles
+        or more, but never on a `Mesh`.
     crs : str, int or pyproj.CRS, optional
-        Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of pictures; by
+        Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of plots; by
         default that of the triangulation, which `delone.from_geometry` keeps. Nothing is
         transformed.
     edges : bool, optional
-        Write edges in place of triangles, to VTU, MSH, GeoPackage or GeoJSON; pictures show both.
+        Write edges instead of triangles, to VTU, MSH, GeoPackage or GeoJSON; plots show both.
     attributes : mapping of str to array_like, optional
         Values by point (n,) or by simplex (m,), for VTU, MSH, PLY, GeoPackage and GeoJSON.
 
     Raises
     ------
     FileFormatError
-        Unknown suffix, or something that the format cannot hold.
+        Unknown suffix, or data that the format cannot store.
     InputError
-        `z` or an attribute has the wrong length, or `triangulation` is none.
+        `z` or an attribute has the wrong length, or `triangulation` is not a triangulation.
     MissingExtraError
         The library for this format is not installed.
     OutputError
-        The file cannot be written; an OSError as well.
+        The file cannot be written; it is also an OSError.
 
     Warns
     -----
     CRSWarning
-        `crs` is given, and the format has no place for it.
+        `crs` is given, but the format cannot store it.
 
     Notes
     -----
-    Vertex numbers in the file are the rows of ``triangulation.points``; duplicates stay as points
+    Vertex numbers in the file are the rows of ``triangulation.points``; duplicates remain as points
     that no triangle uses. Coordinates are written as doubles, or with all their digits.
 
     Of a `ConstrainedDelaunay` the triangles that are kept are written. VTU, MSH, XDMF, GeoPackage
@@ -525,10 +525,10 @@ def write_mesh(
     lines = as_flag(edges, name="edges")
     if lines and not hasattr(triangulation, "edges"):
         name = type(triangulation).__name__
-        raise InputError(f"this {name} has no array of edges: write delone.Delaunay(points)")
+        raise InputError(f"this {name} has no edges to write; write delone.Delaunay(points)")
     flat = kind in ("triangles", "separate")
     if not flat and z is not None:
-        raise FileFormatError("3-D points have their heights already: z must be None")
+        raise FileFormatError("3-D points already have heights: z must be None")
     given = _plain(attributes, suffix)
     _require_place(path, triangulation, kind, edges=lines)
     write = _writer(path, kind)
@@ -536,8 +536,8 @@ def write_mesh(
     warn_if_left_out(path, system, WITH_CRS if flat else _LABELS)
     if system is None and flat:
         system = crs_of(triangulation)
-    with replacing(path) as beside:
-        write(beside, triangulation, z=z, crs=system, edges=lines, attributes=given)
+    with replacing(path) as temporary:
+        write(temporary, triangulation, z=z, crs=system, edges=lines, attributes=given)
 
 
 def _kind(triangulation: Any) -> str:
@@ -551,14 +551,14 @@ def _kind(triangulation: Any) -> str:
         if coordinates == 3 and corners in (3, 4):
             return "surface" if corners == 3 else "tetrahedra"
     name = type(triangulation).__name__
-    raise InputError(f"a {name} is no triangulation: there is nothing to write")
+    raise InputError(f"a {name} is not a triangulation; it cannot be written")
 
 
 def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges: bool) -> None:
     """Refuse what the format has no place for."""
     name, suffix = type(mesh).__name__, Path(path).suffix.lower()
     if suffix == ".npz" and not hasattr(mesh, "save"):
-        raise FileFormatError(f"{path}: .npz files hold no {name}; use .vtu")
+        raise FileFormatError(f"{path}: .npz files cannot store a {name}; use .vtu")
     if kind == "separate" and edges:
         raise FileFormatError(f"{path}: edges of a {name} are not written; write its triangles")
 
@@ -566,11 +566,11 @@ def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges:
 def _plain(
     attributes: Mapping[str, ArrayLike] | None, suffix: str
 ) -> dict[str, NDArray[Any]] | None:
-    """Attributes as arrays of what the format can hold."""
+    """Attributes as arrays of dtypes that the format can store."""
     if attributes is None:
         return None
     if not hasattr(attributes, "items"):
-        raise DtypeError(f"attributes must be arrays by name, got {attributes!r:.60}")
+        raise DtypeError(f"attributes must be a mapping of names to arrays, got {attributes!r:.60}")
     found = {}
     for name, values in attributes.items():
         array = as_plain_array(values, f"attribute {name!r}")
@@ -585,19 +585,19 @@ def _plain(
 
 
 def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:
-    """Return the function that writes files of this suffix, its library at hand.
+    """Return the function that writes files with this suffix, after importing its library.
 
     Parameters
     ----------
     path : str or path-like
         The file to be written.
     space : bool, optional
-        Whether tetrahedra are to be written.
+        Whether tetrahedra will be written.
 
     Returns
     -------
     callable
-        Takes what `write_mesh` takes, and writes in place.
+        Takes the arguments of `write_mesh` and writes in place.
 
     Raises
     ------
@@ -620,7 +620,8 @@ def _writer(path: str | os.PathLike[str], kind: str) -> Callable[..., None]:
     suffix = file.suffix.lower()
     holders, what = _HOLDERS[kind]
     if suffix in _WRITERS and suffix not in holders:
-        raise FileFormatError(f"{file}: {suffix} files hold no {what}; use {', '.join(holders)}")
+        others = ", ".join(holders)
+        raise FileFormatError(f"{file}: {suffix} files cannot store {what}; use {others}")
     module = _module(_WRITERS, suffix, file, "write")
     module.require_libraries(suffix)
     write: Callable[..., None] = module.write_mesh
@@ -633,7 +634,7 @@ def _suffix(file: Path) -> str:
         suffixes.pop()
         if suffixes and _READERS.get(suffixes[-1]) != "text" and suffixes[-1] not in _JSON:
             raise FileFormatError(
-                f"{file}: only text files and GeoJSON are read compressed; decompress it"
+                f"{file}: only text files and GeoJSON can be read compressed; decompress it"
             )
     return suffixes[-1] if suffixes else ""
 
@@ -641,7 +642,9 @@ def _suffix(file: Path) -> str:
 def _module(modules: Mapping[str, str], suffix: str, file: Path, verb: str) -> Any:
     if suffix not in modules:
         what = f"files that end in {suffix}" if suffix else "a file without a suffix"
-        raise FileFormatError(f"{file}: cannot {verb} {what}; known are {' '.join(modules)}")
+        raise FileFormatError(
+            f"{file}: cannot {verb} {what}; known suffixes are {' '.join(modules)}"
+        )
     return importlib.import_module(f"delone.io.{modules[suffix]}")
 
 
@@ -650,10 +653,10 @@ def _existing(path: str | os.PathLike[str]) -> Path:
     if not file.exists():
         raise FileNotFoundError(f"{file}: no such file")
     if file.is_dir():
-        raise FileFormatError(f"{file} is a folder; give the name of a file")
+        raise FileFormatError(f"{file} is a folder, not a file")
     if not file.is_file():
-        # Formats are recognised, and claims compared with sizes, before a file is read: twice over.
-        raise FileFormatError(f"{file} is a pipe or device; write what it gives to a file first")
+        # Files are read twice: their format and sizes are checked before they are read.
+        raise FileFormatError(f"{file} is a pipe or device; write its contents to a file first")
     if file.stat().st_size == 0:
         raise FileFormatError(f"{file} is empty")
     return file

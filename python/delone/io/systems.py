@@ -1,7 +1,7 @@
-"""Reference systems as text: those that would make a library open a file or ask a server.
+"""Checks of reference systems whose text would make a library open a file or a URL.
 
-PROJ takes ``+init=/some/file:1`` and grids by their path, GDAL takes paths and addresses. A file
-must not lead to another one, so such text is refused before any library sees it.
+PROJ accepts ``+init=/some/file:1`` and grids by path, and GDAL accepts paths and URLs. A file must
+not lead to another one, so such text is rejected before any library sees it.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from delone.errors import FileFormatError
 __all__ = ["check_system", "names_a_source", "plain_system"]
 
 _WKT = re.compile(r"\s*[A-Za-z]\w*\s*[\[(]")
-# What stands in WKT for parameters of PROJ and for files of grids, and its value.
+# The WKT nodes for PROJ parameters and grid files, with their values.
 _FILES = re.compile(
     r'(?:EXTENSION|PARAMETERFILE)\s*[\[(]\s*(?:"(?:[^"]|"")*"\s*,\s*"((?:[^"]|"")*)")?',
     re.IGNORECASE,
 )
 _INIT = re.compile(r"init\s*=\s*[\"']?(?!epsg:|esri:)", re.IGNORECASE)
 _SEPARATORS = re.compile(r"[/\\~]")
-# Identifiers that look like addresses; libraries take them apart and ask nobody.
+# Identifiers that look like URLs; libraries parse them without a request.
 _IDENTIFIER = re.compile(
     r"https?://(?:www\.)?opengis\.net/(?:def/crs|gml/srs)/[\w/.#-]*", re.IGNORECASE
 )
@@ -32,19 +32,19 @@ _PARAMETERS = {"init", "proj", "grids", "nadgrids", "geoidgrids", "file"}
 
 
 def check_system(system: Any, source: str) -> None:
-    """Refuse a reference system that names a file or an address.
+    """Reject a reference system that names a file or a URL.
 
     Parameters
     ----------
     system : str, dict or None
         An authority and a code, WKT, PROJJSON, parameters of PROJ or a name.
     source : str
-        Where it stands, for the message.
+        Where it was found, for the error message.
 
     Raises
     ------
     FileFormatError
-        A library would open what it names.
+        A library would open the file or URL that it names.
 
     Examples
     --------
@@ -53,13 +53,13 @@ def check_system(system: Any, source: str) -> None:
     """
     if system is not None and names_a_source(system):
         raise FileFormatError(
-            f"{source}: its reference system {str(system)!r:.100} names a file or an address, "
+            f"{source}: its reference system {str(system)!r:.100} names a file or a URL, "
             "which is not opened: give an authority and a code (EPSG:28992), or WKT without files"
         )
 
 
 def names_a_source(system: Any) -> bool:
-    """Tell whether a library would open a file or an address for a reference system.
+    """Return whether a library would open a file or a URL for a reference system.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def names_a_source(system: Any) -> bool:
     Returns
     -------
     bool
-        True also for what is no reference system and might be taken for a path.
+        Also True for text that is not a reference system and might be read as a path.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def _is_suspect_json(system: Any) -> bool:
 
 
 def _in_json(value: Any) -> bool:
-    """Look through PROJJSON for parameters of PROJ and for values that are paths."""
+    """Search PROJJSON for PROJ parameters and for values that are paths."""
     if isinstance(value, dict):
         return any(
             key in _PARAMETERS
@@ -112,24 +112,24 @@ def _in_json(value: Any) -> bool:
 
 
 def plain_system(system: Any, source: str) -> Any:
-    """Return a reference system that GDAL cannot take for the name of a file.
+    """Return a reference system that GDAL cannot mistake for a file name.
 
     Parameters
     ----------
     system : str or None
         A reference system; objects of other libraries are returned as they are.
     source : str
-        The file to be written, for the message.
+        The file to be written, for the error message.
 
     Returns
     -------
     str or None
-        The same.
+        The reference system, unchanged.
 
     Raises
     ------
     FileFormatError
-        It is neither an authority and a code nor WKT, PROJJSON or parameters of PROJ.
+        The system is neither an authority and a code nor WKT, PROJJSON or parameters of PROJ.
 
     Examples
     --------
@@ -144,6 +144,6 @@ def plain_system(system: Any, source: str) -> Any:
     if _CODE.fullmatch(form) or _WKT.match(form) or form.startswith(("{", "+")):
         return system
     raise FileFormatError(
-        f"{source} cannot hold the reference system {system!r:.100}: give an authority and a code "
+        f"{source} cannot store the reference system {system!r:.100}: give an authority and a code "
         "(EPSG:28992), or WKT"
     )

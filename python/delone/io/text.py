@@ -1,8 +1,9 @@
 """Points in text: CSV, TSV, TXT, XYZ, PTS, DAT, plain or compressed.
 
-The first lines tell the delimiter, the decimal mark and whether there is a header; NumPy's reader
-does the rest, in blocks, so that the memory needed is that of the columns kept. Numbers become the
-nearest doubles. Rows are numbered from 0, without header, comments and blank lines; lines from 1.
+The first lines determine the delimiter, the decimal mark and whether there is a header. NumPy's
+reader does the rest, in blocks, so that the memory needed is that of the columns kept. Numbers
+become the nearest doubles. Rows are numbered from 0, without header, comments and blank lines;
+lines are numbered from 1.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from delone.errors import FileFormatError
-from delone.io.compressed import Bounded, opened, torn_is_an_error
+from delone.io.compressed import Bounded, corrupt_is_an_error, opened
 from delone.io.counts import announced
 from delone.io.pointset import PointSet, choose_columns, find_column
 
@@ -36,20 +37,20 @@ _COMMENTS = ("#", "//", "%", "!")
 _SAMPLE_BYTES = 1 << 16
 _SAMPLE_ROWS = 50
 _BLOCK = 1 << 17
-# Bytes of a line: a row of numbers, and perhaps an outline beside it.
+# Bytes of a line: a row of numbers, and perhaps an outline in another column.
 _LONGEST_LINE = 1 << 24
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Layout:
-    """How the lines of one file are to be read."""
+    """The format of the lines of a file."""
 
-    delimiter: str | None  # None: any white space
+    delimiter: str | None  # None: any whitespace
     decimal: str
     names: tuple[str, ...]
     named: bool
     skip: int  # lines before the first row
-    claimed: int | None  # rows that a line of one integer at the top claims
+    claimed: int | None  # the number of rows declared by a first line with one integer
 
 
 def read_points(
@@ -65,7 +66,7 @@ def read_points(
             table = _table(lines, layout, chosen + extra, path)
     if layout.claimed is not None and len(table) < layout.claimed:
         raise FileFormatError(
-            f"{source} announces {layout.claimed} points and holds {len(table)}: it is cut short"
+            f"{source} declares {layout.claimed} points and contains {len(table)}: it is truncated"
         )
     z = np.ascontiguousarray(table[:, 2]) if len(chosen) == 3 else None
     further = dict(zip(attributes, table[:, len(chosen) :].T, strict=True))
@@ -86,7 +87,7 @@ def line_numbers(path: Path, rows: Sequence[int]) -> list[int]:
 
 
 def _line_numbers(path: Path, skip: int, rows: Sequence[int]) -> list[int]:
-    """Read a file again, as nobody counts its lines as long as all is well."""
+    """Read the file again; lines are counted only when an error message needs them."""
     found, last = {}, max(rows, default=-1)
     with _opened(path) as file:
         held = (n for n, line in enumerate(file, 1) if n > skip and _is_row(line))
@@ -95,7 +96,7 @@ def _line_numbers(path: Path, skip: int, rows: Sequence[int]) -> list[int]:
                 break
             found[row] = number
     if last >= len(found):
-        raise FileFormatError(f"{path} has {len(found)} rows, and no row {last}")
+        raise FileFormatError(f"{path} has only {len(found)} rows, and no row {last}")
     return [found[row] for row in rows]
 
 
@@ -106,7 +107,7 @@ def _is_row(line: str) -> bool:
 @contextmanager
 def _no_text_is_an_error(source: str) -> Iterator[None]:
     try:
-        with torn_is_an_error(source):
+        with corrupt_is_an_error(source):
             yield
     except UnicodeDecodeError as error:
         raise FileFormatError(f"{source} is not a text file: {error.reason}") from error
@@ -128,17 +129,17 @@ def _encoding(sample: bytes, path: Path) -> str:
     if sample[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
     if b"\0" in sample:
-        raise FileFormatError(f"{path} is not a text file: it holds zero bytes")
+        raise FileFormatError(f"{path} is not a text file: it contains zero bytes")
     try:
         # The sample may end within a character.
         sample[: sample.rfind(b"\n") + 1].decode("utf-8")
     except UnicodeDecodeError:
-        return "latin-1"  # names of columns in an old code page; numbers are the same in all
+        return "latin-1"  # column names in an old code page; numbers are the same in all
     return "utf-8-sig"
 
 
 def _layout(path: Path, source: str) -> _Layout:
-    """Look at the first lines."""
+    """Determine the layout from the first lines."""
     with _opened(path) as file:
         lines = [line.rstrip("\r\n") for line in itertools.islice(file, 200)]
     comment, start = "", 0
@@ -147,7 +148,7 @@ def _layout(path: Path, source: str) -> _Layout:
         start += 1
     rows = [line for line in lines[start:] if _is_row(line)]
     if not rows:
-        raise FileFormatError(f"{source} holds no rows of numbers")
+        raise FileFormatError(f"{source} contains no rows of numbers")
     claimed = None
     if len(rows) > 1 and rows[0].strip().isdecimal() and len(re.split(r"[\s,;]+", rows[1])) > 1:
         claimed = announced(rows[0], source)
@@ -162,7 +163,7 @@ def _layout(path: Path, source: str) -> _Layout:
 
 
 def _split(rows: list[str], source: str) -> _Layout:
-    """Find delimiter, decimal mark and header: those with which the rows become numbers."""
+    """Find the delimiter, decimal mark and header with which the rows become numbers."""
     body = rows[1:] if len(rows) > 1 else rows
     candidates = [(d, ".") for d in (",", ";", "\t", "|", None)] + [(";", ","), ("\t", ",")]
     best: tuple[tuple[int, int], str | None, str] | None = None
@@ -170,7 +171,7 @@ def _split(rows: list[str], source: str) -> _Layout:
         split = [_fields(row, delimiter) for row in body]
         usual = Counter(map(len, split)).most_common(1)[0][0]
         numbers = sum(_is_number(field, decimal) for fields in split for field in fields)
-        # More numbers win; a delimiter before white space, which is also beside delimiters.
+        # Prefer more numbers, then a delimiter over whitespace, which also surrounds delimiters.
         score = (numbers, usual)
         if usual > 1 and numbers and (best is None or score > best[0]):
             best = score, delimiter, decimal
@@ -243,17 +244,17 @@ def _block(
 
 
 def _refuse_long_rows(lines: list[str], layout: _Layout, before: int, path: Path) -> None:
-    """Refuse what NumPy would cut without a word: fields beyond those of the first line."""
+    """Reject fields beyond those of the first line, which NumPy would silently ignore."""
     width, delimiter = len(layout.names), layout.delimiter
     for row, line in enumerate(lines, before):
         if delimiter is not None and line.count(delimiter) < width:
             continue
         fields = line.split(delimiter)
-        # A delimiter at the end makes an empty field; one in quotes makes none.
+        # A trailing delimiter makes an empty field; one in quotes makes none.
         if any(field.strip() for field in fields[width:]) and '"' not in line:
             place = _place(row, layout, path)
             raise FileFormatError(
-                f"{path}: {place} has {len(fields)} columns, the first line {width}: are there "
+                f"{path}: {place} has {len(fields)} columns, but the first has {width}: are there "
                 "decimal commas, or another delimiter?"
             )
 
@@ -263,7 +264,7 @@ def _place(row: int, layout: _Layout, path: Path) -> str:
 
 
 def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
-    """Turn NumPy's complaint about a block into one about the file."""
+    """Convert NumPy's error message about a block to one about the file."""
     bad = re.search(r"string '(.*)' to float64 at row (\d+), column (\d+)", message)
     if bad:
         text, row, column = bad[1], int(bad[2]) + before, int(bad[3]) - 1
@@ -274,5 +275,5 @@ def _located(message: str, layout: _Layout, before: int, path: Path) -> str:
     if short:
         # NumPy counts this row from 1.
         place = _place(int(short[1]) + before - 1, layout, path)
-        return f"{place} has only {short[2]} columns: is the file cut short?"
+        return f"{place} has only {short[2]} columns: is the file truncated?"
     return message.partition("\n")[0]

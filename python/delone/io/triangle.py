@@ -1,7 +1,7 @@
-"""Files of Triangle: .node, .ele and .poly, read and written, no library needed.
+"""The formats of Triangle, .node, .ele and .poly, read and written without a library.
 
-Numbers that begin at 1 become rows from 0 when they are read; written are rows from 0, with all
-digits of coordinates. A .poly file without points takes them from the .node file beside it.
+Numbers that start at 1 become rows from 0. Files are written with rows from 0 and all digits of the
+coordinates. A .poly file without points takes them from the .node file next to it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["read_mesh", "read_points", "read_triangle", "require_libraries", "write_mesh"]
 
 
-# Numbers of points, and markers, have 32 bits.
+# Point numbers and markers have 32 bits.
 _LARGEST = 1 << 31
 
 
@@ -46,13 +46,15 @@ class _Numbers:
             words = " ".join(line.partition("#")[0] for line in text.splitlines()).split()
             self._values = np.array(words, dtype=np.float64)
         except (UnicodeDecodeError, ValueError) as error:
-            raise FileFormatError(f"{path} holds something else than numbers: {error}") from error
+            raise FileFormatError(
+                f"{path} contains something other than numbers: {error}"
+            ) from error
         self._at = 0
 
     def take(self, rows: int, columns: int) -> Floats:
         end = self._at + rows * columns
         if rows < 0 or columns < 0 or end > len(self._values):
-            raise FileFormatError(f"{self.path} is torn: it announces more than it holds")
+            raise FileFormatError(f"{self.path} is truncated: it declares more than it contains")
         found = self._values[self._at : end].reshape(rows, columns)
         self._at = end
         return found
@@ -60,7 +62,7 @@ class _Numbers:
     def head(self, count: int) -> list[int]:
         found = self.take(1, count)[0]
         if not np.isfinite(found).all() or (found != np.floor(found)).any() or (found < 0).any():
-            raise FileFormatError(f"{self.path} has no counts where they are due")
+            raise FileFormatError(f"{self.path} has no counts where they are expected")
         return [int(n) for n in found]
 
     @property
@@ -79,14 +81,14 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     Returns
     -------
     dict of ndarray
-        By the keys that `delone.compat.triangle.triangulate` takes.
+        Arrays with the keys of `delone.compat.triangle.triangulate`.
 
     Raises
     ------
     FileFormatError
-        The file is torn, or holds something else.
+        The file is truncated, or contains something else.
     FileNotFoundError
-        The file, or the .node file beside it, is missing.
+        The file, or the .node file next to it, is missing.
 
     Examples
     --------
@@ -102,7 +104,7 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     file = Path(path)
     suffix = file.suffix.lower()
     if suffix not in (".node", ".ele", ".poly"):
-        raise FileFormatError(f"{file} is no .node, .ele or .poly file")
+        raise FileFormatError(f"{file} is not a .node, .ele or .poly file")
     numbers = _Numbers(file)
     if suffix == ".node":
         return _vertices(numbers)[0]
@@ -118,7 +120,7 @@ def read_triangle(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 def _beside(file: Path) -> tuple[dict[str, NDArray[Any]], int]:
     node = file.with_suffix(".node")
     if not node.exists():
-        raise FileNotFoundError(f"{node}: no such file; {file.name} takes its points from there")
+        raise FileNotFoundError(f"{node}: no such file; {file.name} needs it for its points")
     return _vertices(_Numbers(node))
 
 
@@ -136,7 +138,7 @@ def _vertices(numbers: _Numbers) -> tuple[dict[str, NDArray[Any]], int]:
 
 
 def _first(numbers: Floats, path: Path) -> int:
-    """Return the number of the first point; the others follow it, one by one."""
+    """Return the number of the first point; the others follow consecutively."""
     if not len(numbers):
         return 0
     first = float(numbers[0])
@@ -146,7 +148,7 @@ def _first(numbers: Floats, path: Path) -> int:
     if len(wrong):
         row = int(wrong[0])
         raise FileFormatError(
-            f"{path}: points are not numbered one by one: row {row} has the number "
+            f"{path}: points are not numbered consecutively: row {row} has the number "
             f"{numbers[row]:.17g}, not {int(first) + row}"
         )
     return int(first)
@@ -157,7 +159,7 @@ def _markers(numbers: Floats, path: Path) -> NDArray[np.int32]:
     if not good.all():
         row = int(np.flatnonzero(~good.all(axis=1))[0])
         raise FileFormatError(
-            f"{path}: the marker in row {row} is {numbers[row, 0]:.17g}, not an integer of 32 bits"
+            f"{path}: the marker in row {row} is {numbers[row, 0]:.17g}, not a 32-bit integer"
         )
     return numbers.astype(np.int32)
 
@@ -165,7 +167,7 @@ def _markers(numbers: Floats, path: Path) -> NDArray[np.int32]:
 def _triangles(numbers: _Numbers, first: int, file: Path, n: int) -> dict[str, NDArray[Any]]:
     count, corners, attributes = numbers.head(3)
     if count and corners != 3:
-        raise FileFormatError(f"{file} holds triangles of {corners} nodes, not of three")
+        raise FileFormatError(f"{file} contains triangles of {corners} nodes, not three")
     table = numbers.take(count, 1 + corners + attributes)
     found: dict[str, NDArray[Any]] = {"triangles": _indices(table[:, 1:4], first, file, n)}
     if attributes:
@@ -192,7 +194,7 @@ def _segments(numbers: _Numbers, first: int, file: Path, n: int) -> dict[str, ND
 def _indices(numbers: Floats, first: int, file: Path, n: int) -> NDArray[np.int32]:
     rows = numbers - first
     if (rows != np.floor(rows)).any() or (rows < 0).any() or (rows >= n).any():
-        raise FileFormatError(f"{file} names points that there are not")
+        raise FileFormatError(f"{file} refers to points that do not exist")
     return rows.astype(np.int32)
 
 
@@ -201,7 +203,7 @@ def read_points(
 ) -> PointSet:
     """Read the points of a file; see `delone.io.read_points`."""
     if columns is not None or attributes:
-        raise FileFormatError(f"{path}: the columns of these files are not to be chosen")
+        raise FileFormatError(f"{path}: the columns of these files cannot be chosen")
     return PointSet(points=_points(read_triangle(path), path), source=str(path))
 
 
@@ -217,14 +219,14 @@ def read_mesh(path: Path) -> MeshFile:
     found = read_triangle(path)
     points = _points(found, path)
     if "triangles" not in found:
-        raise FileFormatError(f"{path} holds no triangles")
+        raise FileFormatError(f"{path} contains no triangles")
     return MeshFile(
         points=points, simplices=as_simplices(found["triangles"], len(points), 2), source=str(path)
     )
 
 
 def require_libraries(suffix: str) -> None:
-    """Nothing is needed."""
+    """Do nothing: no library is needed."""
 
 
 def write_mesh(
@@ -238,7 +240,7 @@ def write_mesh(
 ) -> None:
     """Write one of the files: points with heights as an attribute, triangles, or segments."""
     if edges or attributes:
-        raise FileFormatError(f"{path.suffix} files hold neither edges nor named attributes")
+        raise FileFormatError(f"{path.suffix} files can store neither edges nor named attributes")
     suffix = path.suffix.lower()
     found = content(triangulation, z=z)
     if suffix == ".ele":

@@ -1,8 +1,8 @@
 """Points, triangles and edges as geometries: GeoJSON, GeoPackage, Shapefile, FlatGeobuf.
 
-By pyogrio, geopandas and shapely (extra ``geo``). Only points are read as points: the vertices of
-lines and areas are another question, and to answer it silently would be wrong. Who wants those
-asks for geometries.
+The format libraries are pyogrio, geopandas and shapely (extra ``geo``). Only points are read as
+points: the vertices of lines and areas would be a silent reinterpretation. Use `read_geometries`
+for those.
 """
 
 from __future__ import annotations
@@ -44,11 +44,12 @@ __all__ = [
     "write_mesh",
 ]
 
-# Layers are written in parts, so that the geometries of one part are in memory at a time.
+# Layers are written in parts, so that only the geometries of one part are in memory.
 _PART = 1 << 18
-# When it closes files of these formats, GDAL does not tell whether the last part was written. So
-# their bytes are written here. Seventeen digits would bring back every double, but up to nineteen
-# GDAL takes a run of 0 or 9 near the end for a rounding error: 0.19999999999999996 becomes 0.2.
+# When GDAL closes files of these formats, it does not report whether the last part was written.
+# Therefore their bytes are written here. Seventeen digits would reproduce every double, but with up
+# to nineteen GDAL treats a run of 0 or 9 near the end as a rounding error: 0.19999999999999996
+# becomes 0.2.
 _IN_MEMORY: dict[str, dict[str, Any]] = {
     "GeoJSON": {"SIGNIFICANT_FIGURES": 20},
     "FlatGeobuf": {},
@@ -81,11 +82,11 @@ def _read(
     attributes: Sequence[str],
     layer: str | None,
 ) -> Any:
-    """Return a GeoDataFrame of all features and the columns that are wanted."""
+    """Return a GeoDataFrame of all features and the requested columns."""
     pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
     require("geopandas", extra="geo", what=f"reading {path.suffix}")
     source = str(path)
-    with _torn_is_an_error(source), admitted(path) as name:
+    with _corrupt_is_an_error(source), admitted(path) as name:
         layer = _layer(pyogrio, name, layer, path)
         facts = _facts(pyogrio, name, layer, path)
         fields = list(facts["fields"])
@@ -95,13 +96,13 @@ def _read(
     if len(frame) < facts["features"]:
         claimed = facts["features"]
         raise FileFormatError(
-            f"{source} announces {claimed} features and holds {len(frame)}: it is cut short"
+            f"{source} declares {claimed} features and contains {len(frame)}: it is truncated"
         )
     return frame
 
 
 def _facts(pyogrio: Any, name: str, layer: str | None, path: Path) -> dict[str, Any]:
-    """Return what pyogrio says of a layer, before its features are read."""
+    """Return pyogrio's description of a layer, before its features are read."""
     facts: dict[str, Any] = pyogrio.read_info(name, layer=layer, force_feature_count=True)
     check_driver(path, facts["driver"])
     check_system(facts["crs"], str(path))
@@ -109,19 +110,19 @@ def _facts(pyogrio: Any, name: str, layer: str | None, path: Path) -> dict[str, 
 
 
 def attribute_names(path: Path, *, layer: str | None) -> list[str]:
-    """Return the names of all attributes of a layer, none where the file cannot be read."""
+    """Return the names of all attributes of a layer, or none if the file cannot be read."""
     pyogrio = require("pyogrio", extra="geo", what=f"reading {path.suffix}")
     try:
-        with _torn_is_an_error(str(path)), admitted(path) as name:
+        with _corrupt_is_an_error(str(path)), admitted(path) as name:
             return [str(field) for field in _facts(pyogrio, name, layer, path)["fields"]]
     except FileFormatError:
-        return []  # Whoever reads the points says what is wrong with the file.
+        return []  # Reading the points reports what is wrong with the file.
 
 
 def from_frame(
     frame: Any, *, columns: Sequence[str | int] | None, attributes: Sequence[str], source: str
 ) -> PointSet:
-    """Take points from a GeoDataFrame.
+    """Extract points from a GeoDataFrame.
 
     Parameters
     ----------
@@ -137,12 +138,12 @@ def from_frame(
     Returns
     -------
     PointSet
-        The points; those of a MultiPoint one after the other.
+        The points; those of a MultiPoint are consecutive.
 
     Raises
     ------
     FileFormatError
-        A geometry is missing, empty or no point.
+        A geometry is missing, empty or not a point.
     """
     shapely = require("shapely", extra="geo", what="reading geometries")
     found = geometries_of(frame, columns=columns, source=source)
@@ -153,7 +154,7 @@ def from_frame(
 
 
 def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: str) -> GeometrySet:
-    """Take geometries from a GeoDataFrame.
+    """Extract geometries from a GeoDataFrame.
 
     Parameters
     ----------
@@ -175,7 +176,7 @@ def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: st
         There are no geometries.
     """
     if not hasattr(frame, "geometry") or not len(frame):
-        raise FileFormatError(f"{source} holds no points")
+        raise FileFormatError(f"{source} contains no points")
     heights = None
     for name in _height(columns):
         heights = np.asarray(frame[_same(frame, name, source)], dtype=np.float64)
@@ -214,12 +215,12 @@ def _layer(pyogrio: Any, name: str, layer: str | None, path: Path) -> str | None
 
 
 @contextmanager
-def _torn_is_an_error(source: str) -> Iterator[None]:
+def _corrupt_is_an_error(source: str) -> Iterator[None]:
     try:
         with warnings.catch_warnings():
-            # What GDAL merely remarks upon is no matter for whoever reads points.
+            # Warnings of GDAL do not matter for reading points.
             warnings.filterwarnings("ignore", category=RuntimeWarning, module="pyogrio")
-            # NaN is refused where it is used, by the number of its feature.
+            # NaN is rejected where it is used, with the number of its feature.
             warnings.filterwarnings("ignore", category=RuntimeWarning, module="shapely")
             yield
     except (DeloneError, FileNotFoundError, PermissionError, MemoryError):
@@ -230,7 +231,7 @@ def _torn_is_an_error(source: str) -> Iterator[None]:
 
 
 def require_libraries(suffix: str) -> None:
-    """Import what writing needs."""
+    """Import the libraries for writing."""
     for module in ("shapely", "pyogrio", "geopandas"):
         require(module, extra="geo", what="writing geometries")
 
@@ -248,7 +249,7 @@ def write_mesh(
     require_libraries(path.suffix.lower())
     parts = content(triangulation, z=z, edges=edges, attributes=attributes).whole()
     system = _system(crs, path.suffix.lower())
-    # GDAL's GeoJSON cannot be appended to cheaply; it is text, and for small things.
+    # Appending to GeoJSON is expensive in GDAL; it is a text format for small data.
     driver = "GeoJSON" if path.suffix.lower() == ".geojson" else "GPKG"
     count = len(parts.simplices)
     part = count if driver == "GeoJSON" else _PART
@@ -264,7 +265,7 @@ def write_mesh(
 
 
 def _system(crs: str | None, suffix: str) -> Any:
-    """Return a reference system that geopandas takes."""
+    """Return a reference system that geopandas accepts."""
     if not crs:
         return None
     check_system(crs, suffix)
@@ -273,12 +274,12 @@ def _system(crs: str | None, suffix: str) -> Any:
         return pyproj.CRS.from_user_input(crs)
     except (pyproj.exceptions.CRSError, ValueError) as error:
         raise FileFormatError(
-            f"{suffix} files cannot hold the reference system {crs!r}: pyproj does not know it"
+            f"{suffix} files cannot store the reference system {crs!r}: it is unknown to pyproj"
         ) from error
 
 
 def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: Any) -> None:
-    """Write a layer of geometries, and make sure that all of it is in the file.
+    """Write a layer of geometries, and verify that all of it is in the file.
 
     Parameters
     ----------
@@ -289,9 +290,9 @@ def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: A
     layer : str
         The name of the layer.
     driver : str
-        The name that GDAL has for the format.
+        GDAL's name of the format.
     **options
-        As `pyogrio.write_dataframe` takes them.
+        Options of `pyogrio.write_dataframe`.
 
     Raises
     ------
@@ -300,7 +301,7 @@ def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: A
     """
     pyogrio = require("pyogrio", extra="geo", what="writing geometries")
     with warnings.catch_warnings():
-        # A survey without a reference system is common, and nothing to warn of.
+        # A survey without a reference system is common and needs no warning.
         warnings.filterwarnings("ignore", message=".*crs.*")
         if driver not in _IN_MEMORY:
             name = _plain_name(path)
@@ -316,7 +317,7 @@ def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: A
 
 
 def _plain_name(path: Path) -> str:
-    """Return the name by which pyogrio writes a file and no other."""
+    """Return a name that pyogrio cannot read as anything but this file."""
     try:
         return local_name(path)
     except FileFormatError as error:
@@ -324,9 +325,9 @@ def _plain_name(path: Path) -> str:
 
 
 def _require_index(pyogrio: Any, name: str, layer: str) -> None:
-    """Make sure that a GeoPackage has its spatial index, which is written last.
+    """Verify that a GeoPackage has its spatial index, which is written last.
 
-    GDAL does not tell where it fails.
+    GDAL does not report a failure.
     """
     facts = pyogrio.read_info(name, layer=layer)
     if not facts["capabilities"]["fast_spatial_filter"]:

@@ -1,10 +1,10 @@
-"""Delaunay triangulation as a textbook shows it: short, slow and exact.
+"""Reference implementations of Delaunay triangulation: short, slow and exact.
 
-Everything here computes with Python's unbounded integers and `fractions.Fraction`, so that no
-answer depends on rounding, and follows the textbook word for word where the fast core does not. It
-is the oracle of the package's tests and a place to read; no other module of the package uses it.
-`bowyer_watson` also triangulates space, with the signs of `space`, and `natural_weights` knows
-Laplace's weights there; the rest is two-dimensional.
+Everything here uses Python's arbitrary-precision integers and `fractions.Fraction`, so that no
+result depends on rounding, and follows the textbook literally where the fast core does not. It is
+the oracle of the tests of the package, and meant to be read; no other module of the package uses
+it. `bowyer_watson` also triangulates in 3-D, with the predicates of `space`, and `natural_weights`
+supports Laplace weights in 3-D; the rest is 2-D.
 
 The five points that every textbook draws, a rectangle and one point inside:
 
@@ -15,7 +15,7 @@ The five points that every textbook draws, a rectangle and one point inside:
 [(0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4)]
 >>> a, b, c = (points[vertex] for vertex in triangles[0])
 >>> circle = circumcircle(a, b, c)
->>> circle.centre
+>>> circle.center
 (Fraction(2, 1), Fraction(-3, 2))
 >>> float(circle.squared_radius) ** 0.5
 2.5

@@ -1,9 +1,9 @@
-"""Bowyer-Watson: insert one point after the other, digging the cavity that each one sees.
+"""Bowyer-Watson: insert points one by one, each into the cavity that it sees.
 
 There is no super-triangle. A triangle that is merely large is wrong for some input, so the outside
 of the hull is covered by *ghost* triangles instead: one for each hull edge, with a third vertex at
-infinity. A ghost's "circle" is the open half plane beyond its edge, and the loop below treats both
-kinds of triangle alike.
+infinity. The "circle" of a ghost is the open half-plane beyond its edge, and the loop below treats
+both kinds of triangle alike.
 
 Bowyer, A. (1981), "Computing Dirichlet tessellations", The Computer Journal 24 (2), 162-166.
 Watson, D. F. (1981), "Computing the n-dimensional Delaunay tessellation with application to Voronoi
@@ -39,14 +39,14 @@ def bowyer_watson(
     Parameters
     ----------
     points : sequence of pairs or triples of numbers, length n
-        Integers, floats, fractions or decimals, all taken exactly.
+        Integers, floats, fractions or decimals, all used exactly.
 
     Returns
     -------
     list of tuple of int
-        Triangles as counter-clockwise triples of row numbers, each beginning with its smallest, in
-        ascending order. In space tetrahedra, positively oriented, their row numbers ascending but
-        for the last two, which are exchanged where orientation wants it. Of equal points only the
+        Triangles as counter-clockwise triples of row numbers, each starting with its smallest, in
+        ascending order. In 3-D positively oriented tetrahedra, with ascending row numbers except
+        that the last two are exchanged if the orientation requires it. Of equal points only the
         first appears.
 
     Raises
@@ -54,16 +54,17 @@ def bowyer_watson(
     NonFiniteError
         A coordinate is NaN or infinite.
     DegenerateInputError
-        Fewer than three points are distinct, or all lie on one line. In space, fewer than four, or
-        all on one line or in one plane.
+        Fewer than three points are distinct, or all lie on one line. In 3-D, fewer than four are
+        distinct, or all lie on one line or in one plane.
     ShapeError
-        A point has another number of coordinates than the first one, or than two or three.
+        A point has a different number of coordinates than the first one, or not two or three.
 
     Notes
     -----
-    Every triangle is tested against every point: O(n²) tests, each exact. Cocircular points are
-    triangulated canonically, as `incircle_canonical` says, so the answer does not depend on the
-    order of the points. Points on the hull's edges are vertices. Bowyer (1981), Watson (1981).
+    Every triangle is tested against every point: O(n²) exact tests. Cocircular points are
+    triangulated canonically, as defined by `incircle_canonical`, so the result does not depend on
+    the order of the points. Points on the edges of the hull are vertices. Bowyer (1981), Watson
+    (1981).
 
     Examples
     --------
@@ -93,7 +94,7 @@ def bowyer_watson(
 
 
 def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> bool:
-    """Tell whether a point lies inside the circle of a triangle, ghost or not.
+    """Return whether a point lies inside the circle of a triangle, which may be a ghost.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> b
     triangle : tuple of int
         Counter-clockwise; one of the vertices may be `INFINITE`.
     row : int
-        The point in question.
+        The point to test.
 
     Returns
     -------
@@ -112,7 +113,7 @@ def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> b
     if INFINITE not in triangle:
         a, b, c = (points[vertex] for vertex in triangle)
         return incircle_canonical(a, b, c, points[row]) > 0
-    # Turn the triangle so that infinity comes last: u, v is the hull edge, the outside on its left.
+    # Rotate the triangle so that infinity is last: u, v is the hull edge, the outside is left.
     k = triangle.index(INFINITE)
     u, v, p = points[triangle[k - 2]], points[triangle[k - 1]], points[row]
     side = orient(u, v, p)
@@ -130,14 +131,14 @@ def boundary(cavity: Iterable[Triangle]) -> set[tuple[int, int]]:
     Returns
     -------
     set of tuple of int
-        Edges u, v with the cavity on their left: those whose reverse is not in the cavity, too.
+        Edges u, v with the cavity on their left: those whose reverse is not in the cavity.
     """
     edges = {(t[k - 1], t[k]) for t in cavity for k in range(3)}
     return {(u, v) for u, v in edges if (v, u) not in edges}
 
 
 def exact_rows(points: Sequence[Sequence[Any]]) -> list[ExactPoint]:
-    """Return points as integers, exactly, up to one common factor.
+    """Return points as exact integers, up to one common factor.
 
     Parameters
     ----------
@@ -147,15 +148,15 @@ def exact_rows(points: Sequence[Sequence[Any]]) -> list[ExactPoint]:
     Returns
     -------
     list of tuple of int
-        The points times the least common multiple of all their denominators. That changes no
-        orientation and no circle test, and integers are several times faster than fractions.
+        The points times the least common multiple of all their denominators. That does not change
+        any orientation or circle test, and integers are several times faster than fractions.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError
-        A point has not two coordinates.
+        A point does not have two coordinates.
     """
     exact, bad = [], []
     for row, point in enumerate(points):
@@ -196,7 +197,7 @@ def first_rows(points: Sequence[ExactPoint]) -> list[int]:
 
 
 def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangle:
-    """Return the first two distinct points and the first one off their line.
+    """Return the first two distinct points and the first one that is not on their line.
 
     Parameters
     ----------
@@ -213,7 +214,7 @@ def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangl
     Raises
     ------
     DegenerateInputError
-        There is no such triangle.
+        No such triangle exists.
     """
     chain = sorted(rows, key=lambda row: points[row])
     if len(rows) < 3:
@@ -233,7 +234,7 @@ def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangl
 
 
 def smallest_first(triangle: Triangle) -> Triangle:
-    """Return the same triangle, turned so that its smallest vertex comes first.
+    """Return the same triangle, rotated so that its smallest vertex is first.
 
     Parameters
     ----------
@@ -243,7 +244,7 @@ def smallest_first(triangle: Triangle) -> Triangle:
     Returns
     -------
     tuple of int
-        In the same cyclic order.
+        The vertices in the same cyclic order.
     """
     a, b, c = triangle
     return min((a, b, c), (b, c, a), (c, a, b))

@@ -1,11 +1,11 @@
 """The Clough-Tocher interpolant on one triangle, ordinate by ordinate, in exact arithmetic.
 
-The triangle is split at its centroid; each part carries a cubic in Bernstein-Bézier form. Values
-and gradients at the corners fix the ordinates on and beside the edges, smoothness inside fixes the
-rest but one for each edge: there the derivative across, in the direction that joins the triangle's
-centroid with that of the triangle beyond, is made linear along the edge (P. Alfeld, "A trivariate
-Clough-Tocher scheme for tetrahedral data", 1984). At the boundary the direction is that to the
-middle of the edge.
+The triangle is split at its centroid, and each part has a cubic in Bernstein-Bézier form. Values
+and gradients at the corners determine the ordinates on and next to the edges. Smoothness inside
+determines the rest except one for each edge: there the derivative across the edge, in the direction
+that joins the centroid of the triangle with that of the adjacent triangle, is made linear along the
+edge (P. Alfeld, "A trivariate Clough-Tocher scheme for tetrahedral data", 1984). At the boundary
+the direction is that to the midpoint of the edge.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def clough_tocher(
     gradients : sequence of three pairs of numbers
         Derivatives by x and y at the corners.
     beyond : sequence of three points or None
-        The far corner of the triangle across the edge opposite each corner; None at the boundary.
+        The opposite vertex across the edge opposite each corner; None at the boundary.
     query : sequence of two numbers
         A point of the triangle, its boundary included.
 
@@ -52,11 +52,11 @@ def clough_tocher(
     Raises
     ------
     InputError
-        The query is outside of the triangle.
+        The query is outside the triangle.
 
     Examples
     --------
-    The hat that is 1 at one corner, flat at all three:
+    The function that is 1 at one corner, with gradient 0 at all three:
 
     >>> from delone.reference import clough_tocher
     >>> flat = [(0, 0)] * 3
@@ -69,7 +69,7 @@ def clough_tocher(
     far = [None if point is None else exact_point(point) for point in beyond]
     share = _barycentric(v, exact_point(query))
     if min(share) < 0:
-        raise InputError("the query is outside of the triangle")
+        raise InputError("the query is outside the triangle")
     k = share.index(min(share))
     i, j = (k + 1) % 3, (k + 2) % 3
     net = _net(v, f, g, far)
@@ -81,25 +81,25 @@ def clough_tocher(
         + t**3 * f[j]
         + 3 * u * (s * s * net["spoke", i] + 2 * s * t * net["middle", k] + t * t * net["spoke", j])
         + 3 * u * u * (s * net["inner", i] + t * net["inner", j])
-        + u**3 * net["centre",]
+        + u**3 * net["center",]
     )
 
 
 def _net(
     v: list[ExactPoint], f: list[Fraction], g: list[ExactPoint], far: list[ExactPoint | None]
 ) -> dict[tuple[Any, ...], Fraction]:
-    """The ordinates, by where they are.
+    """The ordinates by position.
 
     ``edge, i, j``: on the edge from corner i to corner j, a third of the way; ``spoke, i``: as much
     from corner i to the centroid; ``middle, k``: within the part opposite corner k; ``inner, i``:
-    two thirds from corner i to the centroid; ``centre``: there.
+    two thirds from corner i to the centroid; ``center``: there.
     """
     net: dict[tuple[Any, ...], Fraction] = {}
     for i in range(3):
         for j in {0, 1, 2} - {i}:
             rise = g[i][0] * (v[j][0] - v[i][0]) + g[i][1] * (v[j][1] - v[i][1])
             net["edge", i, j] = f[i] + Fraction(rise) / 3
-        # In the tangent plane, whose third point is the corner's own value.
+        # In the tangent plane through the value at the corner.
         net["spoke", i] = (f[i] + sum(net["edge", i, j] for j in {0, 1, 2} - {i})) / 3
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -111,12 +111,12 @@ def _net(
     for i in range(3):
         beside = [net["middle", k] for k in range(3) if k != i]
         net["inner", i] = (net["spoke", i] + sum(beside)) / 3
-    net["centre",] = (net["inner", 0] + net["inner", 1] + net["inner", 2]) / 3
+    net["center",] = (net["inner", 0] + net["inner", 1] + net["inner", 2]) / 3
     return net
 
 
 def _crossing(v: list[ExactPoint], k: int, far: ExactPoint | None) -> Fraction:
-    """Where the line of the centroids meets the edge: the weight of the corner after k."""
+    """Where the line through the centroids meets the edge: the weight of the corner after k."""
     if far is None:
         return Fraction(1, 2)
     share = _barycentric(v, far)

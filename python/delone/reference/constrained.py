@@ -1,15 +1,15 @@
 """The constrained Delaunay triangulation: segments as edges, all other edges locally Delaunay.
 
-Start from the Delaunay triangulation. Cut each segment at the vertices on it. Insert one piece
-after the other by flipping the edges that cross it, then flip every edge that is no piece by the
-canonical circle test, until none is left to flip. Segments that cross are refused.
+Start from the Delaunay triangulation. Split each segment at the vertices on it. Insert one piece at
+a time by flipping the edges that cross it, then flip every edge that is not a piece by the
+canonical circle test, until no flip is possible. Crossing segments are rejected.
 
 Sloan, S. W. (1993), "A fast algorithm for generating constrained Delaunay triangulations",
-Computers & Structures 47 (3), 441-450. He takes the crossing edges in turn and puts back those
-whose quadrilateral is not convex; here the next edge is chosen so that it always is (see
+Computers & Structures 47 (3), 441-450. Sloan processes the crossing edges in turn and postpones
+those whose quadrilateral is not convex; here the next edge is chosen so that it always is (see
 `insert_segment`), and so the loop provably ends.
 
-That the result is unique is shown by Chew, L. P. (1989), "Constrained Delaunay triangulations",
+Uniqueness of the result is proved by Chew, L. P. (1989), "Constrained Delaunay triangulations",
 Algorithmica 4, 97-108.
 """
 
@@ -32,12 +32,12 @@ if TYPE_CHECKING:
 
 
 class ConstrainedTriangulation(NamedTuple):
-    """Triangles and the edges that were demanded.
+    """Triangles and subsegments.
 
     Parameters
     ----------
     triangles : list of tuple of int
-        Counter-clockwise triples of row numbers, each beginning with its smallest, in ascending
+        Counter-clockwise triples of row numbers, each starting with its smallest, in ascending
         order.
     sources : dict of tuple of int to list of int
         Each subsegment, the smaller vertex first, in ascending order, with the rows of the segments
@@ -63,36 +63,36 @@ def constrained_delaunay(
     Parameters
     ----------
     points : sequence of pairs of numbers, length n
-        Integers, floats, fractions or decimals, all taken exactly.
+        Integers, floats, fractions or decimals, all used exactly.
     segments : iterable of pairs of int
-        Rows of `points`. They may share ends, overlap, repeat, pass through points, or have no
+        Rows of `points`. They may share ends, overlap, repeat, pass through points, or have zero
         length; they must not cross.
 
     Returns
     -------
     ConstrainedTriangulation
-        The triangles, and the subsegments into which points cut the segments, with their sources.
+        The triangles, and the subsegments into which points split the segments, with their sources.
         Of equal points only the first appears.
 
     Raises
     ------
     CrossingSegmentsError
-        Two segments have a point in common that is a vertex of neither; it names all such pairs.
+        Two segments meet in a point that is an end of neither; it names all such pairs.
     InputError
-        A segment names a row that is not there.
+        A segment refers to a row that does not exist.
     NonFiniteError, DegenerateInputError, ShapeError
-        As `bowyer_watson` raises them.
+        As in `bowyer_watson`.
 
     Notes
     -----
-    Every edge that is no subsegment is locally Delaunay, ties broken canonically as
-    `incircle_canonical` says, so the answer depends on coordinates alone. O(n²) tests for the
-    Delaunay triangulation, O(n) for each segment, O(s²) for s subsegments that might cross and
-    O(k²) flips for each that crosses k edges. Sloan (1993), Chew (1989).
+    Every edge that is not a subsegment is locally Delaunay, with ties broken canonically as defined
+    by `incircle_canonical`, so the result depends only on coordinates. O(n²) tests for the Delaunay
+    triangulation, O(n) for each segment, O(s²) for s subsegments that might cross and O(k²) flips
+    for each that crosses k edges. Sloan (1993), Chew (1989).
 
     Examples
     --------
-    The longer diagonal of a kite, which a Delaunay triangulation would not draw:
+    The longer diagonal of a kite, which is not an edge of the Delaunay triangulation:
 
     >>> from delone.reference import bowyer_watson, constrained_delaunay
     >>> kite = [(0, 0), (2, -1), (4, 0), (2, 1)]
@@ -116,7 +116,7 @@ def constrained_delaunay(
 def pieces(
     points: Sequence[ExactPoint], segments: Iterable[Sequence[int]]
 ) -> dict[Edge, list[int]]:
-    """Cut segments at all points on them.
+    """Split segments at all points on them.
 
     Parameters
     ----------
@@ -129,13 +129,12 @@ def pieces(
     -------
     dict of tuple of int to list of int
         The pieces, the smaller vertex first, in ascending order, with the rows of the segments that
-        cover them. Vertices are the first rows of their points; a segment without length has no
-        piece.
+        cover them. Vertices are the first rows of their points; a zero-length segment has no piece.
 
     Raises
     ------
     InputError
-        A segment names a row that is not there.
+        A segment refers to a row that does not exist.
     """
     first: dict[ExactPoint, int] = {}
     for row, point in enumerate(points):
@@ -144,8 +143,8 @@ def pieces(
     for row, segment in enumerate(segments):
         ends = [int(end) for end in segment]
         if not all(0 <= end < len(points) for end in ends):
-            raise InputError(f"segment {row} names a row that is not there: {ends}")
-        # In lexicographic order points on one line are in order along it.
+            raise InputError(f"segment {row} refers to a row that does not exist: {ends}")
+        # Lexicographic order sorts points on one line along it.
         low, high = sorted(points[end] for end in ends)
         inner = [p for p in first if low < p < high and orient(low, high, p) == 0]
         for a, b in pairwise(sorted({low, high, *inner})):
@@ -162,7 +161,7 @@ def refuse_crossings(
     Parameters
     ----------
     points : sequence of pairs of numbers
-        All points, as they were given.
+        All points, as given.
     exact : sequence of exact points
         The same, scaled to integers.
     sources : dict of tuple of int to list of int
@@ -171,8 +170,8 @@ def refuse_crossings(
     Raises
     ------
     CrossingSegmentsError
-        Two of them cross. It names the rows of each pair once, the smaller first, ascending, and
-        the points in which they meet.
+        Two of them cross. It names the rows of each pair once, the smaller first, in ascending
+        order, and the points in which they meet.
     """
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for one, other in combinations(sources, 2):
@@ -213,7 +212,7 @@ def meeting(
 
 
 def cross(a: ExactPoint, b: ExactPoint, c: ExactPoint, d: ExactPoint) -> bool:
-    """Tell whether ab and cd have one point in common that is an end of neither.
+    """Return whether ab and cd have one common point that is an end of neither.
 
     Parameters
     ----------
@@ -228,37 +227,37 @@ def cross(a: ExactPoint, b: ExactPoint, c: ExactPoint, d: ExactPoint) -> bool:
     apart = any(
         max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)
     )
-    if apart:  # that decides most pairs
+    if apart:  # this decides most pairs
         return False
     return orient(a, b, c) * orient(a, b, d) < 0 and orient(c, d, a) * orient(c, d, b) < 0
 
 
 def insert_segment(points: Sequence[ExactPoint], apex: dict[Edge, int], a: int, b: int) -> None:
-    """Flip the edges that cross ab until there is none and ab is an edge.
+    """Flip the edges that cross ab until none is left and ab is an edge.
 
     Parameters
     ----------
     points : sequence of exact points
         All points.
     apex : dict of tuple of int to int
-        A triangulation, as `apexes` gives it; it is changed in place.
+        A triangulation, as returned by `apexes`; it is modified in place.
     a, b : int
         Vertices with no other vertex between them.
 
     Notes
     -----
-    Of the crossing edges, those are next which end in the vertex w that is farthest to the left of
-    ab, and of these the one whose other end is farthest to the right; of several that are equally
-    far, the one farthest along ab. So w is a corner of the convex hull of all triangles that ab
-    crosses, and the other end is a corner of the hull of those among them that meet in w: at both
-    ends the two triangles of the edge make an angle below 180 degrees, so they form a strictly
-    convex quadrilateral. A flip takes an edge from w and gives it none, and what is new ends in
-    vertices that had crossing edges before or in a and b; so each vertex on the left is done
-    with once, and all k edges are gone after O(k²) flips.
+    The next crossing edges to flip are those that end in the vertex w farthest to the left of ab;
+    of these, the one whose other end is farthest to the right is flipped first; among equally far
+    ones, the one farthest along ab. Therefore w is a corner of the convex hull of all triangles
+    that ab crosses, and the other end is a corner of the hull of those among them that meet in w:
+    at both ends the two triangles of the edge form an angle below 180 degrees, so together they
+    form a strictly convex quadrilateral. A flip removes an edge from w and adds none to it, and the
+    new edge ends in vertices that had crossing edges before, or in a and b. Each vertex on the left
+    is therefore finished once, and all k edges are removed after O(k²) flips.
     """
 
     def far(w: int, side: int) -> tuple[ExactNumber, ExactNumber]:
-        """The distance from ab to one side, and that along ab, both times the length of ab."""
+        """The distances from ab to one side and along ab, both times the length of ab."""
         (ax, ay), (bx, by), (x, y) = points[a], points[b], points[w]
         dx, dy = bx - ax, by - ay
         return side * (dx * (y - ay) - dy * (x - ax)), dx * (x - ax) + dy * (y - ay)
@@ -286,7 +285,7 @@ def edges_across(
     points : sequence of exact points
         All points.
     apex : collection of tuple of int
-        Directed edges, of an inner edge both directions.
+        Directed edges, with both directions of inner edges.
     a, b : int
         Vertices.
 

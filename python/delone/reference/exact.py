@@ -1,8 +1,8 @@
 """Signs and circles of exact points.
 
-A float denotes one rational number exactly, so arithmetic on `fractions.Fraction` (or on integers)
-gives the true sign of any polynomial in the coordinates. Signs follow the package: `orient` is
-positive for a left turn, `incircle` is positive inside a counter-clockwise circle.
+A float is exactly one rational number, so arithmetic on `fractions.Fraction` (or on integers) gives
+the true sign of any polynomial in the coordinates. Signs follow the package: `orient` is positive
+for a left turn, `incircle` is positive inside a counter-clockwise circle.
 
 The empty-circle test is due to Delaunay, B. (1934), "Sur la sphère vide", Bulletin de l'Académie
 des Sciences de l'URSS, Classe des sciences mathématiques et naturelles 6, 793-800.
@@ -24,24 +24,24 @@ ExactPoint: TypeAlias = tuple[ExactNumber, ExactNumber]
 
 
 class Circle(NamedTuple):
-    """A circle with rational centre.
+    """A circle with rational center.
 
     Parameters
     ----------
-    centre : tuple of Fraction
-        Its centre.
+    center : tuple of Fraction
+        Its center.
     squared_radius : Fraction
-        The square of its radius, which is rational where the radius itself need not be.
+        The square of its radius, which is rational even if the radius is not.
 
     Examples
     --------
     >>> from delone.reference import circumcircle
     >>> circle = circumcircle((0, 0), (2, 0), (0, 2))
-    >>> str(circle.centre[0]), str(circle.squared_radius)
+    >>> str(circle.center[0]), str(circle.squared_radius)
     ('1', '2')
     """
 
-    centre: tuple[Fraction, Fraction]
+    center: tuple[Fraction, Fraction]
     squared_radius: Fraction
 
 
@@ -51,7 +51,7 @@ def exact_point(point: Sequence[Any]) -> ExactPoint:
     Parameters
     ----------
     point : sequence of two numbers
-        Integers, floats of any width, fractions or decimals.
+        Integers, floats of any precision, fractions or decimals.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def exact_point(point: Sequence[Any]) -> ExactPoint:
     Raises
     ------
     ValueError, OverflowError
-        NaN or infinity denotes no number.
+        The value is NaN or infinity.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def exact_point(point: Sequence[Any]) -> ExactPoint:
 
 
 def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
-    """Tell on which side of the line from a to b the point c lies.
+    """Return on which side of the line from a to b the point c lies.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
     Returns
     -------
     int
-        1 when c lies to the left (a, b, c turn counter-clockwise), -1 to the right, 0 on the line.
+        1 if c lies to the left (a, b, c turn counter-clockwise), -1 to the right, 0 on the line.
 
     Examples
     --------
@@ -99,14 +99,14 @@ def orient(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> int:
 
 
 def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]) -> int:
-    """Tell whether d lies inside the circle through a, b and c.
+    """Return whether d lies inside the circle through a, b and c.
 
     Parameters
     ----------
     a, b, c : sequence of two numbers
-        Points on the circle, counter-clockwise; clockwise, the sign is turned round.
+        Points on the circle, counter-clockwise; clockwise, the sign is reversed.
     d : sequence of two numbers
-        The point in question.
+        The point to test.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
     Notes
     -----
     The sign of a determinant: each point is lifted to the paraboloid z = x² + y², and d is inside
-    the circle exactly when its lifted image lies below the plane through the other three.
+    the circle if and only if its lifted image lies below the plane through the other three.
 
     Examples
     --------
@@ -137,27 +137,27 @@ def incircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
 def incircle_canonical(
     a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]
 ) -> int:
-    """Tell whether d lies inside the circle through a, b and c, with every tie broken.
+    """Return whether d lies inside the circle through a, b and c, with every tie broken.
 
     Parameters
     ----------
     a, b, c : sequence of two numbers
-        Points on the circle, counter-clockwise; clockwise, the sign is turned round.
+        Points on the circle, counter-clockwise; clockwise, the sign is reversed.
     d : sequence of two numbers
-        The point in question.
+        The point to test.
 
     Returns
     -------
     int
-        1 inside, -1 outside; 0 only when all four are on one line or two of them coincide.
+        1 inside, -1 outside; 0 only if all four are on one line or two of them coincide.
 
     Notes
     -----
-    The lifted point of each vertex is lowered by an amount that is infinitely small, and infinitely
-    larger for the lexicographically smaller of any two points. Where the four are cocircular, only
-    the amount of the smallest of them counts: lowering d brings it inside, lowering a corner of the
-    triangle tilts the plane by that corner's barycentric coordinate at d. The result depends on
-    coordinates alone, never on the order in which points come.
+    The lifted point of each vertex is lowered by an infinitesimal amount, which is infinitely
+    larger for the lexicographically smaller of any two points. If the four are cocircular, only the
+    amount of the smallest of them matters: lowering d moves it inside, and lowering a corner of the
+    triangle tilts the plane by the barycentric coordinate of that corner at d. The result depends
+    only on coordinates, never on the order of the points.
 
     Examples
     --------
@@ -189,12 +189,12 @@ def circumcircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Circle
     Parameters
     ----------
     a, b, c : sequence of two numbers
-        Points, not on one line.
+        Points that are not on one line.
 
     Returns
     -------
     Circle
-        Its centre and squared radius, exactly.
+        Its center and squared radius, exactly.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def circumcircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Circle
     --------
     >>> from delone.reference import circumcircle
     >>> circumcircle((0, 0), (4, 0), (2, 1))
-    Circle(centre=(Fraction(2, 1), Fraction(-3, 2)), squared_radius=Fraction(25, 4))
+    Circle(center=(Fraction(2, 1), Fraction(-3, 2)), squared_radius=Fraction(25, 4))
     """
     (ax, ay), (bx, by), (cx, cy) = map(exact_point, (a, b, c))
     bx, by, cx, cy = bx - ax, by - ay, cx - ax, cy - ay
@@ -221,12 +221,12 @@ def circumcircle(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Circle
 
 
 def exact_number(value: Any) -> ExactNumber:
-    """Return a number as an exact one.
+    """Convert a number to an exact one.
 
     Parameters
     ----------
     value : number
-        An integer, a float of any width, a fraction or a decimal.
+        An integer, a float of any precision, a fraction or a decimal.
 
     Returns
     -------
@@ -236,7 +236,7 @@ def exact_number(value: Any) -> ExactNumber:
     Raises
     ------
     ValueError, OverflowError
-        NaN or infinity denotes no number.
+        The value is NaN or infinity.
     """
     if isinstance(value, int | Fraction):
         return value

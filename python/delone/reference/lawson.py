@@ -28,14 +28,14 @@ def lawson(
     Parameters
     ----------
     points : sequence of pairs of numbers, length n
-        Integers, floats, fractions or decimals, all taken exactly.
+        Integers, floats, fractions or decimals, all used exactly.
     triangles : iterable of triples of int
         A triangulation of the points' convex hull, counter-clockwise.
 
     Returns
     -------
     triangles : list of tuple of int
-        Counter-clockwise, each beginning with its smallest vertex, in ascending order.
+        Counter-clockwise, each starting with its smallest vertex, in ascending order.
     flips : int
         The number of edges that were flipped.
 
@@ -48,15 +48,15 @@ def lawson(
 
     Notes
     -----
-    A flip replaces the diagonal uv of the quadrilateral u, q, v, p by pq. It is made only where q
-    is inside the circle of u, v, p, and then the quadrilateral is strictly convex: what the circle
-    holds beyond uv lies within the angle at p. Each flip lowers the surface of the lifted (and
-    symbolically perturbed) triangles, so no triangulation comes twice and the loop ends, after
-    O(n²) flips. Lawson (1977).
+    A flip replaces the diagonal uv of the quadrilateral u, q, v, p by pq. It is made only if q is
+    inside the circle of u, v, p, and then the quadrilateral is strictly convex: the part of the
+    circle beyond uv lies within the angle at p. Each flip lowers the surface of the lifted (and
+    symbolically perturbed) triangles, so no triangulation repeats and the loop ends, after O(n²)
+    flips. Lawson (1977).
 
     Examples
     --------
-    A square of which the wrong diagonal is drawn (the smallest point, (0, 0), should be on it):
+    A square with the wrong diagonal (the smallest point, (0, 0), should be on it):
 
     >>> from delone.reference import lawson
     >>> lawson([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 3), (1, 2, 3)])
@@ -78,9 +78,9 @@ def make_delaunay(
     points : sequence of exact points
         All points.
     apex : dict of tuple of int to int
-        The triangulation, as `apexes` gives it; it is changed in place.
+        The triangulation, as returned by `apexes`; it is modified in place.
     fixed : collection of tuple of int, optional
-        Edges that stay, the smaller vertex first.
+        Edges that are kept, the smaller vertex first.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def make_delaunay(
     while waiting:
         u, v = waiting.pop()
         if (u, v) not in apex or (v, u) not in apex or (min(u, v), max(u, v)) in fixed:
-            continue  # flipped away in the meantime, an edge of the hull, or one to keep
+            continue  # already flipped, an edge of the hull, or one to keep
         p, q = apex[u, v], apex[v, u]
         if incircle_canonical(points[u], points[v], points[p], points[q]) <= 0:
             continue
@@ -108,7 +108,7 @@ def flip(apex: dict[Edge, int], u: int, v: int) -> Edge:
     Parameters
     ----------
     apex : dict of tuple of int to int
-        The triangulation, as `apexes` gives it; it is changed in place.
+        The triangulation, as returned by `apexes`; it is modified in place.
     u, v : int
         The ends of an inner edge whose two triangles form a strictly convex quadrilateral.
 
@@ -134,12 +134,12 @@ def triangles_of(apex: dict[Edge, int]) -> list[Triangle]:
     Parameters
     ----------
     apex : dict of tuple of int to int
-        The triangulation, as `apexes` gives it.
+        The triangulation, as returned by `apexes`.
 
     Returns
     -------
     list of tuple of int
-        Counter-clockwise, each beginning with its smallest vertex, in ascending order.
+        Counter-clockwise, each starting with its smallest vertex, in ascending order.
     """
     return sorted({smallest_first((u, v, p)) for (u, v), p in apex.items()})
 
@@ -157,7 +157,7 @@ def apexes(points: Sequence[ExactPoint], triangles: Iterable[Sequence[int]]) -> 
     Returns
     -------
     dict of tuple of int to int
-        Three entries a triangle. That is all the topology which flips need.
+        Three entries per triangle. Flips need no other topology.
 
     Raises
     ------

@@ -1,11 +1,11 @@
-"""Natural neighbour weights by their definition: Voronoi cells, clipped in exact arithmetic.
+"""Natural neighbor weights from their definition: Voronoi cells, clipped in exact arithmetic.
 
-The cell that a query would have in the Voronoi diagram is cut out of a square by half-planes, one
-for each site; what a site loses to it is cut out of the cell by the half-planes of that site. The
-share of the area lost is Sibson's weight (R. Sibson, "A vector identity for the Dirichlet
-tessellation", 1980). The length of the edge between query and site over their distance is Laplace's
-(N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random lattice",
-1982). Both are rational. Time is O(n²) for each query. In space see `natural_space`.
+The cell that a query would have in the Voronoi diagram is clipped from a square by half-planes, one
+for each site; the area that a site loses to it is clipped from the cell by the half-planes of that
+site. The fraction of the area lost is Sibson's weight (R. Sibson, "A vector identity for the
+Dirichlet tessellation", 1980). The length of the edge between query and site over their distance is
+Laplace's (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random
+lattice", 1982). Both are rational. Time is O(n²) for each query. For 3-D see `natural_space`.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ __all__ = ["natural_weights"]
 def natural_weights(
     points: Sequence[Sequence[Any]], query: Sequence[Any], *, kind: str = "sibson"
 ) -> dict[int, Fraction]:
-    """Return how much each natural neighbour of a query counts.
+    """Return the weights of the natural neighbors of a query.
 
     Parameters
     ----------
     points : sequence of points, shape (n, 2) or (n, 3)
         Distinct sites.
     query : sequence of two or three numbers
-        A point strictly inside of their convex hull.
+        A point strictly inside their convex hull.
     kind : {"sibson", "laplace"}, optional
-        Shares of area, or of length over distance; in space ``"laplace"``: of area over distance.
+        Fractions of area, or of length over distance; in 3-D ``"laplace"``: area over distance.
 
     Returns
     -------
@@ -48,8 +48,8 @@ def natural_weights(
     Raises
     ------
     InputError
-        The query is not strictly inside of the hull, so that its cell has no end; or `kind` is
-        unknown, or ``"sibson"`` in space.
+        The query is not strictly inside the hull, so its cell is unbounded; or `kind` is unknown,
+        or ``"sibson"`` in 3-D.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def natural_weights(
         raise InputError(f"kind must be 'sibson' or 'laplace', got {kind!r}")
     if len(query) == 3:
         if kind != "laplace":
-            raise InputError("in space natural neighbours count by kind='laplace'")
+            raise InputError("kind='sibson' is only available in 2-D; in 3-D use kind='laplace'")
         return laplace_in_space(points, query)
     sites = [_fractions(point) for point in points]
     q = _fractions(query)
@@ -84,13 +84,13 @@ def _cell(sites: list[Point], q: Point) -> Polygon:
     """The Voronoi cell of the query among the sites."""
     spread = max(abs(x - q[0]) + abs(y - q[1]) for x, y in sites)
     size = 4 * spread
-    # A cell that ends does so within some square; a square that does not grow it any more has it.
+    # A bounded cell fits into some square; grow the square until the cell does not change.
     for _ in range(64):
         square = _clipped([(q[0] + i * size, q[1] + j * size) for i, j in _CORNERS], sites, q)
         if all(max(abs(x - q[0]), abs(y - q[1])) < size for x, y in square):
             return square
         size *= 1024
-    raise InputError("the query is not strictly inside of the convex hull of the points")
+    raise InputError("the query is not strictly inside the convex hull of the points")
 
 
 _CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
@@ -124,7 +124,7 @@ def _half(polygon: Polygon, near: Point, far: Point) -> Polygon:
 
 
 def _nearer(corner: Point, near: Point, far: Point) -> Fraction:
-    """How much the square of the distance to the first point is below that to the second."""
+    """The squared distance to the second point minus that to the first."""
     return _squared(corner, far) - _squared(corner, near)
 
 
@@ -145,7 +145,7 @@ def _shared(sites: list[Point], row: int, q: Point, cell: Polygon) -> Fraction:
     """The length of the edge between the cells of a site and the query, over their distance."""
     site = sites[row]
     on_edge = [corner for corner in cell if _nearer(corner, q, site) == 0]
-    # The edge is perpendicular to the way from query to site; so is this, of the same length.
+    # The edge is perpendicular to the vector from query to site; so is this one, equally long.
     turned = (q[1] - site[1], site[0] - q[0])
     places = [x * turned[0] + y * turned[1] for x, y in on_edge]
     if len(places) < 2:

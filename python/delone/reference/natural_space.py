@@ -1,10 +1,10 @@
-"""Laplace weights in space by their definition: the faces of a Voronoi cell, in exact arithmetic.
+"""Laplace weights in 3-D from their definition: faces of a Voronoi cell, in exact arithmetic.
 
-The face between the cells of a query and a site is cut out of a rectangle in the plane half-way
+The face between the cells of a query and a site is clipped from a rectangle in the plane half-way
 between them, by one half-space for each other site. Its area over the distance of the two is the
 weight (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random
-lattice", 1982). An area on an inclined plane is not rational, but with legs u and v x u for the
-rectangle the area over |v| is. Time is O(n³) for each query at most.
+lattice", 1982). An area in an inclined plane is not rational, but if the rectangle has the sides u
+and v x u, the area divided by |v| is. Time is at most O(n³) for each query.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ __all__ = ["laplace_in_space"]
 
 
 def laplace_in_space(points: Sequence[Sequence[Any]], query: Sequence[Any]) -> dict[int, Fraction]:
-    """Return how much each natural neighbour of a query in space counts by Laplace's weights.
+    """Return the Laplace weights of the natural neighbors of a query in 3-D.
 
     Parameters
     ----------
     points : sequence of points, shape (n, 3)
         Distinct sites.
     query : sequence of three numbers
-        A point strictly inside of their convex hull.
+        A point strictly inside their convex hull.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def laplace_in_space(points: Sequence[Sequence[Any]], query: Sequence[Any]) -> d
     Raises
     ------
     InputError
-        The query is not strictly inside of the hull, so that its cell has no end.
+        The query is not strictly inside the hull, so its cell is unbounded.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def laplace_in_space(points: Sequence[Sequence[Any]], query: Sequence[Any]) -> d
 
 
 def _seen_from(query: Sequence[Any], points: Sequence[Sequence[Any]]) -> list[Vector]:
-    """Points as seen from the query, as integers, exactly, up to one common factor."""
+    """Points relative to the query, as exact integers, up to one common factor."""
     q = [exact_number(x) for x in query]
     rows = [[exact_number(x) - o for x, o in zip(p, q, strict=True)] for p in points]
     scale = lcm(*(Fraction(x).denominator for row in rows for x in row))
@@ -73,11 +73,11 @@ def _seen_from(query: Sequence[Any], points: Sequence[Sequence[Any]]) -> list[Ve
 def _shared(seen: list[Vector], row: int) -> Fraction:
     """The area of the face between the cells of the query and a site, over their distance."""
     v = seen[row]
-    # A leg across v, from the axis that is least along it, and one across both.
+    # A side perpendicular to v, from the axis least parallel to it, and one to both.
     axis = min(range(3), key=lambda k: abs(v[k]))
     u = _cross(v, tuple(int(k == axis) for k in range(3)))
     w = _cross(v, u)
-    # Corners of the cell are quotients of determinants, and nearer than this.
+    # Corners of the cell are quotients of determinants, within this distance.
     size = Fraction(1 + 100 * max(abs(x) for p in seen for x in p) ** 6)
     face = [(-size, -size), (size, -size), (size, size), (-size, size)]
     for other in seen:
@@ -86,12 +86,12 @@ def _shared(seen: list[Vector], row: int) -> Fraction:
             room = Fraction(_dot(other, other) - _dot(v, other), 2)
             face = _half(face, _dot(u, other), _dot(w, other), room)
     if any(abs(x) == size for place in face for x in place):
-        raise InputError("the query is not strictly inside of the convex hull of the points")
+        raise InputError("the query is not strictly inside the convex hull of the points")
     return _dot(u, u) * _area(face)
 
 
 def _half(polygon: list[Place], a: int, b: int, room: Fraction) -> list[Place]:
-    """The part of a convex polygon where a s + b t is at most what there is room for."""
+    """The part of a convex polygon where a s + b t is at most `room`."""
     depths = [room - a * s - b * t for s, t in polygon]
     kept: list[Place] = []
     for i, (corner, depth) in enumerate(zip(polygon, depths, strict=True)):

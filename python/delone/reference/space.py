@@ -1,8 +1,8 @@
-"""Bowyer-Watson in space, and the signs that it asks for: exact, slow and readable.
+"""Bowyer-Watson in 3-D, and the predicates that it needs: exact, slow and readable.
 
-As in the plane, the outside of the hull is covered by ghosts: one for each hull face, with a fourth
-vertex at infinity. A ghost's "sphere" is the open half space beyond its face, together with the
-open disc of the face's own circle in the plane between.
+As in 2-D, the outside of the hull is covered by ghosts: one for each hull face, with a fourth
+vertex at infinity. The "sphere" of a ghost is the open half-space beyond its face, together with
+the open disk of the face's own circle in the plane between.
 
 Devillers, O. and Teillaud, M. (2011), "Perturbations for Delaunay and weighted Delaunay 3D
 triangulations", Computational Geometry 44 (3), 160-168, for points on one sphere.
@@ -31,7 +31,7 @@ INFINITE = -1
 
 
 def orient3d(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]) -> int:
-    """Tell on which side of the plane through a, b and c the point d lies.
+    """Return on which side of the plane through a, b and c the point d lies.
 
     Parameters
     ----------
@@ -40,9 +40,8 @@ def orient3d(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
 
     Returns
     -------
-    int
-        1 when the vectors from a to b, c and d are a right-handed frame, -1 when they are a
-        left-handed one, 0 when all four points lie in one plane.
+    1 if the vectors from a to b, c and d form a right-handed frame, -1 if they form a left-handed
+    one, 0 if all four points lie in one plane.
 
     Examples
     --------
@@ -57,14 +56,14 @@ def orient3d(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[A
 def insphere(
     a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any], e: Sequence[Any]
 ) -> int:
-    """Tell whether e lies inside the sphere through a, b, c and d.
+    """Return whether e lies inside the sphere through a, b, c and d.
 
     Parameters
     ----------
     a, b, c, d : sequence of three numbers
-        Points on the sphere, positively oriented; otherwise the sign is turned round.
+        Points on the sphere, positively oriented; otherwise the sign is reversed.
     e : sequence of three numbers
-        The point in question.
+        The point to test.
 
     Returns
     -------
@@ -80,7 +79,7 @@ def insphere(
     """
     e = _exact_vector(e)
     p, q, r, s = (_minus(_exact_vector(x), e) for x in (a, b, c, d))
-    # The determinant of the lifted points, developed along the column of heights.
+    # The determinant of the lifted points, expanded along the column of heights.
     return sign(
         _square(p) * _determinant(q, r, s)
         - _square(q) * _determinant(p, r, s)
@@ -92,26 +91,26 @@ def insphere(
 def insphere_canonical(
     a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any], e: Sequence[Any]
 ) -> int:
-    """Tell whether e lies inside the sphere through a, b, c and d, with every tie broken.
+    """Return whether e lies inside the sphere through a, b, c and d, with every tie broken.
 
     Parameters
     ----------
     a, b, c, d : sequence of three numbers
-        Points on the sphere, positively oriented; otherwise the sign is turned round.
+        Points on the sphere, positively oriented; otherwise the sign is reversed.
     e : sequence of three numbers
-        The point in question.
+        The point to test.
 
     Returns
     -------
     int
-        1 inside, -1 outside; 0 only when all five are in one plane, or two of them coincide.
+        1 inside, -1 outside; 0 only if all five are in one plane, or two of them coincide.
 
     Notes
     -----
-    The lifted point of each vertex is lowered by an amount that is infinitely small, and infinitely
-    larger for the lexicographically smaller of any two points. Lowering e brings it inside.
-    Lowering a corner moves the sphere by that corner's barycentric coordinate at e, which is 0
-    where the other three and e are in one plane: then the next point in order decides.
+    The lifted point of each vertex is lowered by an infinitesimal amount, which is infinitely
+    larger for the lexicographically smaller of any two points. Lowering e moves it inside. Lowering
+    a corner moves the sphere by the barycentric coordinate of that corner at e, which is 0 if the
+    other three and e are in one plane: then the next point in order decides.
 
     Examples
     --------
@@ -138,18 +137,18 @@ def insphere_canonical(
 
 
 def tetrahedra(points: Sequence[Sequence[Any]]) -> list[Tetrahedron]:
-    """Triangulate points in space by the algorithm of Bowyer and Watson.
+    """Triangulate 3-D points by the algorithm of Bowyer and Watson.
 
     Parameters
     ----------
     points : sequence of triples of numbers, length n
-        Integers, floats, fractions or decimals, all taken exactly.
+        Integers, floats, fractions or decimals, all used exactly.
 
     Returns
     -------
     list of tuple of int
-        Positively oriented tetrahedra as row numbers, ascending but for the last two, which are
-        exchanged where orientation wants it; in ascending order. Of equal points only the first
+        Positively oriented tetrahedra as row numbers, ascending except that the last two are
+        exchanged if the orientation requires it; in ascending order. Of equal points only the first
         appears.
 
     Raises
@@ -159,7 +158,7 @@ def tetrahedra(points: Sequence[Sequence[Any]]) -> list[Tetrahedron]:
     DegenerateInputError
         Fewer than four points are distinct, or all lie on one line or in one plane.
     ShapeError
-        A point has not three coordinates.
+        A point does not have three coordinates.
 
     Examples
     --------
@@ -183,7 +182,7 @@ def tetrahedra(points: Sequence[Sequence[Any]]) -> list[Tetrahedron]:
 
 
 def _in_conflict(points: Sequence[Vector], t: Tetrahedron, row: int, first: Tetrahedron) -> bool:
-    """Whether a point lies inside the sphere of a tetrahedron, ghost or not."""
+    """Whether a point lies inside the sphere of a tetrahedron, which may be a ghost."""
     if INFINITE not in t:
         a, b, c, d = (points[vertex] for vertex in t)
         return insphere_canonical(a, b, c, d, points[row]) > 0
@@ -192,13 +191,13 @@ def _in_conflict(points: Sequence[Vector], t: Tetrahedron, row: int, first: Tetr
     side = orient3d(u, v, w, points[row])
     if side != 0:
         return side > 0
-    # In the plane of the face: any sphere through its circle tells whether the point is in it.
+    # In the plane of the face, any sphere through its circle decides if the point is inside.
     apex = next(points[e] for e in first if orient3d(u, v, w, points[e]) != 0)
     return orient3d(u, v, w, apex) * insphere_canonical(u, v, w, apex, points[row]) > 0
 
 
 def _face_opposite(t: Tetrahedron, k: int) -> tuple[int, int, int]:
-    """The face opposite a corner, turned so that the corner is on its positive side."""
+    """The face opposite a corner, oriented so that the corner is on its positive side."""
     a, b, c, d = t
     return [(d, c, b), (a, c, d), (d, b, a), (a, b, c)][k]
 
@@ -218,14 +217,14 @@ def _boundary(cavity: Iterable[Tetrahedron]) -> list[tuple[int, int, int]]:
 
 
 def _ascending(t: Tetrahedron) -> Tetrahedron:
-    """The same tetrahedron with the same orientation, in ascending order but for the last two."""
+    """The same tetrahedron with the same orientation, ascending except for the last two."""
     odd = sum(t[i] > t[j] for i, j in combinations(range(4), 2)) % 2
     a, b, c, d = sorted(t)
     return (a, b, d, c) if odd else (a, b, c, d)
 
 
 def _exact_rows(points: Sequence[Sequence[Any]]) -> list[Vector]:
-    """Points as integers, exactly, up to one common factor."""
+    """Points as exact integers, up to one common factor."""
     exact, bad = [], []
     for row, point in enumerate(points):
         if len(point) != 3:
@@ -253,10 +252,10 @@ def _first_rows(points: Sequence[Vector]) -> list[int]:
 
 
 def _first_tetrahedron(points: Sequence[Vector], rows: Sequence[int]) -> Tetrahedron:
-    """The first two distinct points, the first off their line, the first off their plane."""
+    """The first two distinct points, the first not on their line, the first not in their plane."""
     chain = sorted(rows, key=lambda row: points[row])
     if len(rows) < 4:
-        message = f"a triangulation of space needs four distinct points, got {len(rows)}"
+        message = f"a 3-D triangulation needs four distinct points, got {len(rows)}"
         raise DegenerateInputError(message, reason="too few points", chain=chain)
     a, b, *others = rows
     off = [c for c in others if any(_cross(points, a, b, c))]

@@ -1,10 +1,9 @@
-"""Exact assertions about triangulations, for the tests of this package and of others.
+"""Exact assertions about triangulations, for the tests of this and other packages.
 
 Nothing here uses the compiled core: coordinates become Python integers at one common power of two,
-which no arithmetic on them can round, and every test is a few lines of textbook geometry over NumPy
-arrays of such integers. What passes is the Delaunay triangulation of the real numbers that the
-doubles denote. `assert_delaunay` takes points in space, too, and `same_tetrahedra` is for them; the
-rest is of the plane.
+so that no arithmetic on them is rounded, and every check is a few lines of textbook geometry on
+NumPy arrays of such integers. The checks are exact for the given doubles. `assert_delaunay` also
+accepts 3-D points, and `same_tetrahedra` is for them; the rest is 2-D.
 """
 
 from delone.testing.constrained import ConstrainedArrays, assert_constrained_delaunay

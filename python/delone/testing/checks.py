@@ -1,4 +1,4 @@
-"""The parts of an exact check, each of which names its culprits."""
+"""The parts of an exact check, each of which names its faults."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def assert_vertices(mesh: Mesh) -> None:
-    """Every distinct point is a vertex, and of equal points only the first."""
+    """Assert that the vertices are all distinct points, and of equal points only the first."""
     used = np.zeros(len(mesh.points), dtype=bool)
     used[mesh.triangles] = True
     is_first = mesh.first == np.arange(len(mesh.points))
@@ -33,20 +33,20 @@ def assert_vertices(mesh: Mesh) -> None:
     assert_none(
         [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
         len(repeats),
-        "is used in spite of an earlier equal row",
+        "is used although an earlier row is equal",
         "row",
     )
     lost = np.flatnonzero(is_first & ~used)
     assert_none(
         [mesh.name([row]) for row in lost[:SHOWN].tolist()],
         len(lost),
-        "is no vertex of any triangle",
+        "is not a vertex of any triangle",
         "point",
     )
 
 
 def assert_counter_clockwise(mesh: Mesh) -> None:
-    """Triangles turn left, and each edge has one triangle on its left."""
+    """Assert that triangles turn left, and each edge has one triangle on its left."""
     a, b, c = mesh.triangles.T
     turned = np.flatnonzero(orient(mesh, a, b, c) <= 0)
     assert_none(
@@ -67,7 +67,7 @@ def assert_counter_clockwise(mesh: Mesh) -> None:
 
 
 def assert_hull_and_area(mesh: Mesh) -> None:
-    """The boundary is that of the convex hull; count and area agree."""
+    """Assert that the boundary is that of the convex hull, and count and area agree."""
     n, hull = len(mesh.points), hull_of(mesh)
     found = set(directed_edges(mesh)[opposite_corners(mesh) < 0].tolist())
     wanted = {u * n + v for u, v in zip(hull, hull[1:] + hull[:1], strict=True)}
@@ -81,7 +81,7 @@ def assert_hull_and_area(mesh: Mesh) -> None:
             fault,
             "edge",
         )
-    # Count and area follow from what was asserted so far: they check the checks.
+    # Count and area follow from the assertions above: they test the checks.
     distinct, m = len(np.unique(mesh.first)), len(mesh.triangles)
     expected = 2 * distinct - len(hull) - 2
     require(
@@ -92,13 +92,13 @@ def assert_hull_and_area(mesh: Mesh) -> None:
     corners = np.array(hull)
     area = orient(mesh, *mesh.triangles.T).sum()
     hull_area = orient(mesh, corners[0], corners[:-1], corners[1:]).sum()
-    require(area == hull_area, "the triangles have not the area of the hull")
+    require(area == hull_area, "the triangles do not have the area of the hull")
 
 
 def assert_locally_delaunay(
     mesh: Mesh, canonical: bool, fixed: NDArray[np.bool_] | None = None
 ) -> None:
-    """Inner edges are locally Delaunay, unless they are opposite a corner that is fixed, (m, 3)."""
+    """Assert that inner edges are locally Delaunay, unless they are `fixed`, (m, 3)."""
     opposite = opposite_corners(mesh)
     once = opposite > np.arange(len(opposite))  # each inner edge once
     corner = np.flatnonzero(once if fixed is None else once & ~fixed.ravel())
@@ -125,7 +125,7 @@ def assert_locally_delaunay(
 
 
 def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
-    """Neighbours are those across the edges."""
+    """Assert that neighbors are those across the edges."""
     array = np.asarray(neighbors)
     if array.size == 0:
         array = array.astype(np.int64).reshape(-1, 3)
@@ -142,6 +142,6 @@ def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
     assert_none(
         [f"triangle {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
         len(wrong),
-        "has wrong neighbours",
+        "has wrong neighbors",
         "triangle",
     )

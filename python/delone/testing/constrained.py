@@ -1,8 +1,8 @@
 """The exact check of constrained Delaunay triangulations.
 
-A triangulation is the constrained Delaunay triangulation of its points and segments when the
-segments are chains of edges, and every other edge is locally Delaunay: Chew, L. P. (1989),
-"Constrained Delaunay triangulations", Algorithmica 4, 97-108.
+A triangulation is the constrained Delaunay triangulation of its points and segments if the segments
+are chains of edges, and every other edge is locally Delaunay: Chew, L. P. (1989), "Constrained
+Delaunay triangulations", Algorithmica 4, 97-108.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _ULPS = 4
 
 
 class ConstrainedMesh(Protocol):
-    """What is looked at of a constrained triangulation; `delone.ConstrainedDelaunay` has it."""
+    """The attributes that are checked; `delone.ConstrainedDelaunay` has them."""
 
     @property
     def points(self) -> ArrayLike:
@@ -75,12 +75,12 @@ class ConstrainedMesh(Protocol):
 
 
 class ConstrainedArrays(NamedTuple):
-    """A constrained triangulation that has come from anywhere, to be checked.
+    """A constrained triangulation from any source, to be checked.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        Finite coordinates; vertices that were added are among them.
+        Finite coordinates, including those of added vertices.
     simplices, neighbors : array_like of int, shape (m, 3)
         Vertices of the triangles, and the triangle opposite each vertex, -1 outside.
     segments : array_like of int, shape (q, 2)
@@ -106,7 +106,7 @@ class ConstrainedArrays(NamedTuple):
         simplices: ArrayLike,
         sources: Mapping[tuple[int, int], Sequence[int]],
     ) -> ConstrainedArrays:
-        """Fill in what follows from triangles and the sources of subsegments.
+        """Derive the other fields from triangles and the sources of subsegments.
 
         Parameters
         ----------
@@ -121,7 +121,7 @@ class ConstrainedArrays(NamedTuple):
         Returns
         -------
         ConstrainedArrays
-            With neighbours and flags, which then cannot be wrong.
+            The arrays, with neighbors and flags, which are then correct by construction.
 
         Examples
         --------
@@ -168,16 +168,16 @@ def assert_constrained_delaunay(
     ----------
     mesh : ConstrainedDelaunay, ConstrainedArrays or the like
         Its attributes `points`, `simplices`, `neighbors`, `segments`, `segment_source` and
-        `constrained` are looked at, see `ConstrainedArrays`.
+        `constrained` are checked, see `ConstrainedArrays`.
     segments : array_like of int, shape (s, 2)
-        The segments that were given, as rows of the points.
+        The given segments, as rows of the points.
     complete : bool, optional
-        Whether the triangles cover the convex hull. False where some have been removed: then
-        points need not be vertices, the boundary may consist of subsegments as well as of
-        hull edges, and subsegments need not be edges; they are listed all the same.
+        Whether the triangles cover the convex hull. Pass False if some have been removed: then
+        points need not be vertices, the boundary may consist of subsegments as well as hull edges,
+        and subsegments need not be edges; they are still listed.
     split : bool, optional
-        Whether vertices were added where segments cross, at places that had to be rounded. Then a
-        segment may be a chain of edges that leaves its line by `tolerance`.
+        Whether vertices were added where segments cross, at points that had to be rounded. A
+        segment may then be a chain of edges that deviates from its line by `tolerance`.
     tolerance : float, optional
         The largest distance between a vertex and a segment that passes through it, with `split`.
         By default four times the distance from the largest absolute coordinate to the next double.
@@ -188,24 +188,24 @@ def assert_constrained_delaunay(
     Raises
     ------
     AssertionError
-        Names what is wrong and the first culprits, with their coordinates.
+        Names the fault and the first elements that have it, with their coordinates.
     InputError
-        The points are no array of finite points.
+        The points are not an array of finite points.
 
     Notes
     -----
-    Checked are, as by `assert_delaunay`, indices, orientation, edges, vertices, hull, count, area
-    and neighbours; that each subsegment is listed once, is an edge, and is flagged on both of its
-    sides, and no other edge is; that the subsegments of each given row follow one another from
-    end to end without turning back, all on its line; and that every inner edge that is no
-    subsegment is locally Delaunay. With `split` all vertices of a row are near it instead.
-    Where the triangles tile the hull, no two subsegments cross.
+    The checks include those of `assert_delaunay`: indices, orientation, edges, vertices, hull,
+    count, area and neighbors. In addition, each subsegment is listed once, is an edge, and is
+    flagged on both sides, and no other edge is flagged; the subsegments of each given row form a
+    chain from end to end without turning back, all on its line; and every inner edge that is not a
+    subsegment is locally Delaunay. With `split`, all vertices of a row are near it instead. If the
+    triangles tile the hull, no two subsegments cross.
 
     O(n log n) exact operations for n points and subsegments. Chew (1989).
 
     Examples
     --------
-    A kite whose longer diagonal is demanded:
+    A kite whose longer diagonal is a segment:
 
     >>> from delone.testing import ConstrainedArrays, assert_constrained_delaunay
     >>> mesh = ConstrainedArrays(
@@ -269,7 +269,7 @@ def _flags(mesh: ConstrainedMesh, exact: Mesh) -> Bools:
 
 
 class _Pieces(NamedTuple):
-    """Subsegments, and what covers what: entry i says that `row[i]` covers `piece[i]`."""
+    """Subsegments and their sources: entry i says that `row[i]` covers `piece[i]`."""
 
     ends: Indices  # (q, 2)
     given: Indices  # (s, 2), the lexicographically smaller end first; of equal points the first row
@@ -284,9 +284,9 @@ class _Pieces(NamedTuple):
         indptr, row = (np.asarray(array) for array in mesh.segment_source)
         count = len(ends)
         shaped = indptr.shape == (count + 1,) and row.ndim == 1
-        require(shaped, f"segment_source does not fit {count} subsegments")
+        require(shaped, f"segment_source does not match {count} subsegments")
         ends_fit = indptr[0] == 0 and indptr[-1] == len(row) and (np.diff(indptr) > 0).all()
-        require(bool(ends_fit), "segment_source does not give each subsegment a row")
+        require(bool(ends_fit), "segment_source has a subsegment without a row")
         in_range = len(row) == 0 or bool(row.min() >= 0 and row.max() < len(given))
         require(in_range, f"segment_source names rows outside 0 to {len(given) - 1}")
         piece = np.repeat(np.arange(count), np.diff(indptr))
@@ -294,7 +294,7 @@ class _Pieces(NamedTuple):
         assert_none(
             [f"subsegment {piece[i]}: {row[piece == piece[i]]}" for i in unsorted[:SHOWN]],
             len(unsorted),
-            "has rows in segment_source that do not ascend",
+            "has rows in segment_source that are not ascending",
             "subsegment",
         )
         own = exact.first[given]
@@ -304,7 +304,7 @@ class _Pieces(NamedTuple):
 
 
 def _assert_flagged(exact: Mesh, pieces: _Pieces, flags: Bools, complete: bool) -> None:
-    """Subsegments are edges, once in the list, and flagged; other edges are not flagged."""
+    """Assert that subsegments are edges, listed once, and flagged, and other edges are not."""
     n = len(exact.points)
 
     def undirected(u: Indices, v: Indices) -> Indices:
@@ -319,11 +319,11 @@ def _assert_flagged(exact: Mesh, pieces: _Pieces, flags: Bools, complete: bool) 
     directed = directed_edges(exact)
     edges = undirected(directed // n, directed % n)
     lost = wanted[~np.isin(wanted, edges)] if complete else wanted[:0]
-    assert_none(names(lost), len(lost), "is no edge of a triangle", "subsegment")
+    assert_none(names(lost), len(lost), "is not an edge of a triangle", "subsegment")
     right = np.isin(edges, wanted)
     for wrong, fault in (
         (right & ~flags.ravel(), "is a subsegment, but not flagged as constrained"),
-        (~right & flags.ravel(), "is flagged as constrained, but no subsegment"),
+        (~right & flags.ravel(), "is flagged as constrained, but is not a subsegment"),
     ):
         corners = np.flatnonzero(wrong)
         culprits = names(edges[corners])
@@ -332,7 +332,7 @@ def _assert_flagged(exact: Mesh, pieces: _Pieces, flags: Bools, complete: bool) 
 
 
 def _assert_boundary(exact: Mesh, flags: Bools) -> None:
-    """Where triangles have been removed, the boundary is flagged or on the hull."""
+    """Assert that the boundary is flagged or on the hull, if triangles have been removed."""
     n, hull = len(exact.points), hull_of(exact)
     on_hull = [u * n + v for u, v in zip(hull, hull[1:] + hull[:1], strict=True)]
     keys = directed_edges(exact)
@@ -346,7 +346,7 @@ def _assert_boundary(exact: Mesh, flags: Bools) -> None:
 
 
 def _named(exact: Mesh, pieces: _Pieces) -> Callable[[int], str]:
-    """How to name an entry: the row and the subsegment."""
+    """Return a function that names an entry: the row and the subsegment."""
 
     def name(i: int) -> str:
         ends = exact.name(pieces.ends[pieces.piece[i]].tolist())
@@ -356,7 +356,7 @@ def _named(exact: Mesh, pieces: _Pieces) -> Callable[[int], str]:
 
 
 def _assert_on_line(exact: Mesh, pieces: _Pieces) -> None:
-    """Both ends of each subsegment are on the lines of all rows that it belongs to."""
+    """Assert that both ends of each subsegment are on the lines of all its rows."""
     (a, b), (u, v) = pieces.given[pieces.row].T, pieces.ends[pieces.piece].T
     off = (orient(exact, a, b, u) != 0) | (orient(exact, a, b, v) != 0) | (a == b)
     wrong = np.flatnonzero(off)
@@ -365,10 +365,10 @@ def _assert_on_line(exact: Mesh, pieces: _Pieces) -> None:
 
 
 def _assert_chains(exact: Mesh, pieces: _Pieces) -> None:
-    """The subsegments of each row lead from one end to the other, and never turn back.
+    """Assert that the subsegments of each row lead from end to end and never turn back.
 
-    In the order in which a segment runs from its smaller end, x does not fall, and y does not rise
-    or does not fall; rounding keeps that.
+    In the order in which a segment runs from its smaller end, x does not decrease, and y is
+    monotonic; rounding preserves that.
     """
     low, high = pieces.given.T
     entries = pieces.ends[pieces.piece]
@@ -395,7 +395,7 @@ def _assert_chains(exact: Mesh, pieces: _Pieces) -> None:
 
 
 def _tolerance(exact: Mesh, tolerance: float | None) -> Fraction:
-    """The tolerance in the unit of the integer coordinates."""
+    """The tolerance in units of the integer coordinates."""
     if tolerance is None:
         largest = float(np.abs(exact.points).max(initial=0.0))
         tolerance = _ULPS * math.ulp(largest)
@@ -403,7 +403,7 @@ def _tolerance(exact: Mesh, tolerance: float | None) -> Fraction:
 
 
 def _assert_near(exact: Mesh, pieces: _Pieces, tolerance: Fraction) -> None:
-    """Both ends of each subsegment are near all rows that it belongs to."""
+    """Assert that both ends of each subsegment are near all its rows."""
     a, b = pieces.given[pieces.row].T
     far = np.zeros(len(a), dtype=bool)
     for w in pieces.ends[pieces.piece].T:
@@ -415,7 +415,7 @@ def _assert_near(exact: Mesh, pieces: _Pieces, tolerance: Fraction) -> None:
 
 
 def _beyond(exact: Mesh, a: Indices, b: Indices, w: Indices, tolerance: Fraction) -> Any:
-    """Tell which points w are farther from the segments ab than the tolerance."""
+    """Return which points w are farther from the segments ab than the tolerance."""
     x, y = exact.x, exact.y
     dx, dy = x[b] - x[a], y[b] - y[a]
     along = dx * (x[w] - x[a]) + dy * (y[w] - y[a])

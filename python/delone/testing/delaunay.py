@@ -35,7 +35,7 @@ def assert_delaunay(
     simplices : array_like of int, shape (m, d + 1)
         Vertices of the triangles or tetrahedra, as rows of `points`.
     neighbors : array_like of int, shape (m, d + 1), optional
-        The simplex opposite each vertex, -1 outside. By default neighbours are not looked at.
+        The simplex opposite each vertex, -1 outside. By default neighbors are not checked.
     canonical : bool, optional
         Whether cocircular vertices must be fanned from their lexicographically smallest one, as
         delone does. False accepts every Delaunay triangulation.
@@ -43,26 +43,26 @@ def assert_delaunay(
     Raises
     ------
     AssertionError
-        Names what is wrong and the first culprits, with their coordinates.
+        Names the fault and the first elements that have it, with their coordinates.
     InputError
-        `points` is no array of finite points.
+        `points` is not an array of finite points.
 
     Notes
     -----
-    Checked are: the type and range of indices; that all triangles are counter-clockwise, no
-    directed edge is used twice, every distinct point is a vertex, and of equal points only the
-    first; that the boundary is the exact convex hull, with the points on its edges as vertices;
-    that there are 2n - h - 2 triangles, of the same area as the hull; that each inner edge is
-    locally Delaunay, and canonical where four points share a circle; that neighbours are those
-    across the edges. Of points which span no area, only the empty triangulation passes.
+    The following is checked: the dtype and range of indices; all triangles are counter-clockwise,
+    no directed edge is used twice, and the vertices are all distinct points, of equal points only
+    the first; the boundary is the exact convex hull, with the points on its edges as vertices;
+    there are 2n - h - 2 triangles, with the total area of the hull; each inner edge is locally
+    Delaunay, and canonical if four points share a circle; neighbors are those across the edges. For
+    points that span no area, only the empty triangulation passes.
 
-    In space: that tetrahedra are positively oriented, and each face is used once from either side;
-    that the boundary is one closed surface, convex at each edge; Euler's formula and the volume;
-    that each inner face is locally Delaunay, and canonical where five points share a sphere; for up
-    to 64 points also that no sphere has any point inside.
+    In 3-D: tetrahedra are positively oriented, and each face is used once from either side; the
+    boundary is one closed surface, convex at each edge; Euler's formula and the volume hold; each
+    inner face is locally Delaunay, and canonical if five points share a sphere; for up to 64
+    points, also no sphere contains a point.
 
-    O(n log n) exact operations, for 10,000 points well below a second. That the local test suffices
-    is shown by Delaunay, B. (1934), "Sur la sphère vide".
+    O(n log n) exact operations; 10,000 points take well below a second. The local test suffices by
+    a theorem of Delaunay, B. (1934), "Sur la sphère vide".
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Triangles over unbounded integers: exact coordinates, signs, edges, the hull, and how to fail.
+"""Triangles with exact integer coordinates: signs, edges, the hull, and assertions.
 
-All coordinates are multiplied by one power of two, which makes each of them an integer; NumPy holds
-them as Python's own, so that no product of them is ever rounded.
+All coordinates are multiplied by one power of two that makes each of them an integer. NumPy stores
+them as Python integers, so that no product of them is ever rounded.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SHOWN = 5
 
 
 class Mesh(NamedTuple):
-    """Triangles with exact coordinates and what every check needs of them."""
+    """Triangles with exact coordinates and the data that every check needs."""
 
     points: NDArray[np.float64]
     triangles: Indices
@@ -30,12 +30,12 @@ class Mesh(NamedTuple):
     y: Integers
     order: Indices  # rows sorted by x, then y, then row
     rank: Indices  # equal for equal points, ascending lexicographically
-    first: Indices  # of each row, the first row with the same coordinates
+    first: Indices  # for each row, the first row with the same coordinates
     exponent: int  # coordinates are x and y times two to this power
 
     @classmethod
     def of(cls, points: NDArray[np.float64], triangles: Indices) -> Mesh:
-        """Take points that are finite and triangles whose indices are in range."""
+        """Convert finite points and triangles whose indices are in range."""
         x, y, exponent = scaled_to_integers(points)
         flat = points + 0.0  # makes -0.0 the same as 0.0
         order = np.lexsort((flat[:, 1], flat[:, 0]))
@@ -111,7 +111,7 @@ def as_rows(
     noun: str = "triangle",
     width: int = 3,
 ) -> Indices:
-    """Rows of vertices as an array, whose type, shape and range are asserted."""
+    """Convert rows of vertices to an array; assert its dtype, shape and range."""
     array = np.asarray(rows)
     if array.size == 0:
         array = array.astype(np.int64).reshape(-1, width)
@@ -131,13 +131,13 @@ def as_rows(
 
 
 def require(condition: bool, message: str) -> None:
-    """Assert, also where Python runs with -O and drops assert statements."""
+    """Assert a condition, even if Python runs with -O, which removes assert statements."""
     if not condition:
         raise AssertionError(message)
 
 
 def assert_none(culprits: list[str], count: int, fault: str, noun: str) -> None:
-    """Fail if there are culprits, listing the first of them below one sentence."""
+    """Fail if there are culprits, and list the first of them."""
     if count == 0:
         return
     if count > 1:
@@ -149,10 +149,10 @@ def assert_none(culprits: list[str], count: int, fault: str, noun: str) -> None:
 
 
 def hull_of(mesh: Mesh) -> list[int]:
-    """Counter-clockwise hull from the smallest point on, with the points on its edges.
+    """The counter-clockwise hull, starting at the smallest point, with the points on its edges.
 
-    Andrew, A. M. (1979), "Another efficient algorithm for convex hulls in two dimensions": one
-    chain below and one above, here popping right turns only, so that collinear points stay.
+    Andrew, A. M. (1979), "Another efficient algorithm for convex hulls in two dimensions": a lower
+    chain and an upper chain, popping only right turns, so that collinear points are kept.
     """
     rows = mesh.order[mesh.first[mesh.order] == mesh.order].tolist()
 
@@ -168,24 +168,24 @@ def hull_of(mesh: Mesh) -> list[int]:
 
 
 def spans_no_area(mesh: Mesh) -> bool:
-    """Tell whether all points lie on one line."""
+    """Return whether all points lie on one line."""
     rows = np.unique(mesh.first)
     if len(rows) < 3:
         return True
-    # The smallest and the largest point differ, so they span the line, if there is one.
+    # The smallest and the largest point are different, so they span the line, if any.
     low, high = int(mesh.order[0]), int(mesh.order[-1])
     return not (orient(mesh, low, high, rows) != 0).any()
 
 
 def directed_edges(mesh: Mesh) -> Indices:
-    """Edges opposite the vertices, as one number u * n + v each, of shape (3 m,)."""
+    """Edges opposite the vertices, each as one number u * n + v, of shape (3 m,)."""
     u, v = mesh.triangles[:, [1, 2, 0]].ravel(), mesh.triangles[:, [2, 0, 1]].ravel()
     keys: Indices = u * len(mesh.points) + v
     return keys
 
 
 def opposite_corners(mesh: Mesh) -> Indices:
-    """Of each corner 3 t + k, the corner beyond the edge opposite it, or -1 on the boundary."""
+    """For each corner 3 t + k, the corner beyond the edge opposite it, or -1 on the boundary."""
     n, keys = len(mesh.points), directed_edges(mesh)
     order = np.argsort(keys)
     reverse = keys % n * n + keys // n

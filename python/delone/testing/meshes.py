@@ -1,7 +1,7 @@
 """The exact check of meshes: tiling, segments, Delaunay, angles.
 
-Angles are compared by the squares of their cosines, which are quotients of integers: no root and no
-arc is taken.
+Angles are compared by the squares of their cosines, which are quotients of integers, without square
+roots or inverse functions.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ __all__ = ["assert_mesh"]
 
 
 class RefinedMesh(ConstrainedMesh, Protocol):
-    """What is looked at of a mesh; `delone.Mesh` has it."""
+    """The attributes that are checked; `delone.Mesh` has them."""
 
     @property
     def point_source(self) -> ArrayLike:
-        """The row of the input that each point is, (n,); -1 where it was added."""
+        """The input row of each point, (n,); -1 if it was added."""
 
 
 def assert_mesh(
@@ -44,34 +44,34 @@ def assert_mesh(
     spoilt: ArrayLike = (),
     tolerance: float | None = None,
 ) -> None:
-    """Assert, exactly, that a mesh tiles its domain, keeps segments and has no small angle.
+    """Assert, exactly, that a mesh tiles its domain, preserves segments and has no small angle.
 
     Parameters
     ----------
     mesh : Mesh or the like
-        What is checked.
+        The mesh to check.
     points : array_like, shape (n, 2)
         The points of the input.
     segments : array_like of int, shape (s, 2)
-        Segments of the input, as rows of these; those that have an end outside are passed over.
+        Segments of the input, as rows of `points`; those with an end outside are ignored.
     squared_cosine : Fraction, optional
-        The square of the cosine of the smallest angle that is allowed: 3/4 for 30 degrees.
+        The squared cosine of the minimum angle: 3/4 for 30 degrees.
     spoilt : array_like of int, optional
         Triangles that may have smaller angles.
     tolerance : float, optional
-        How far vertices may lie beside their segment, as in `assert_constrained_delaunay`.
+        Maximum distance of vertices from their segment, as in `assert_constrained_delaunay`.
 
     Raises
     ------
     AssertionError
-        Names what is wrong and the first culprits.
+        Names the fault and the first elements that have it.
 
     Notes
     -----
-    Checked are: points of the input are where they were; triangles are counter-clockwise,
-    neighbours mutual; the area of the triangles is that inside of the boundary, which consists of
-    subsegments; each segment is a chain of edges; each other edge is locally Delaunay, ties broken
-    by coordinates; every point is a vertex; angles.
+    The following is checked: input points are unchanged; triangles are counter-clockwise, neighbors
+    mutual; the area of the triangles is that inside the boundary, which consists of subsegments;
+    each segment is a chain of edges; each other edge is locally Delaunay, with ties broken by
+    coordinates; every point is a vertex; angles.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def assert_mesh(
     old = source >= 0
     require(
         bool((own[old] == given[source[old]]).all()),
-        "points of the input are not where they were",
+        "points of the input have moved",
     )
     row = np.full(len(given), -1)
     row[source[old]] = np.flatnonzero(old)
@@ -103,13 +103,13 @@ def assert_mesh(
     _assert_area(exact)
     used = np.zeros(len(own), dtype=bool)
     used[exact.triangles] = True
-    require(bool(used.all()), "a point is no vertex")
+    require(bool(used.all()), "a point is not a vertex")
     if squared_cosine is not None:
         _assert_angles(exact, squared_cosine, np.asarray(spoilt, dtype=np.int64))
 
 
 def _with_rows_for_all(mesh: RefinedMesh, rows: Integers) -> tuple[ConstrainedArrays, Integers]:
-    """Leave out the rows that have an end outside, and give edges of hulls rows of their own."""
+    """Remove rows with an end outside, and add rows for edges of hulls."""
     inside: NDArray[np.bool_] = np.asarray((rows >= 0).all(axis=1), dtype=bool)
     number = np.cumsum(inside) - 1
     pieces = np.asarray(mesh.segments)
@@ -137,7 +137,7 @@ def _assert_area(mesh: Mesh) -> None:
     boundary = (mesh.x[u] * mesh.y[v] - mesh.x[v] * mesh.y[u]).sum()
     require(
         orient(mesh, *mesh.triangles.T).sum() == boundary,
-        "the triangles have not the area inside of their boundary",
+        "the triangles do not have the area inside their boundary",
     )
 
 

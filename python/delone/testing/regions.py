@@ -1,4 +1,4 @@
-"""The check of regions: areas that segments bound, found once more by a flood."""
+"""The check of regions: areas bounded by segments, found independently by a flood fill."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class BoundedMesh(Protocol):
-    """What is looked at of a triangulation with regions; `delone.ConstrainedDelaunay` has it."""
+    """The attributes that are checked; `delone.ConstrainedDelaunay` has them."""
 
     @property
     def points(self) -> ArrayLike:
@@ -48,19 +48,19 @@ def assert_regions(
     seeds: ArrayLike | None = None,
     seed_labels: ArrayLike | None = None,
 ) -> None:
-    """Assert that labels of triangles tell apart the areas that segments bound.
+    """Assert that labels of triangles correspond to the areas bounded by segments.
 
     Parameters
     ----------
     mesh : ConstrainedDelaunay, ConstrainedArrays or the like
-        Its attributes `points`, `simplices` and `constrained` are looked at.
+        Its attributes `points`, `simplices` and `constrained` are used.
     labels : array_like of int, shape (m,)
         The label of each triangle.
     seeds : array_like, shape (k, 2), optional
-        Points whose areas have been labelled. By default each area has a label of its own.
+        Points whose areas are labeled. By default each area has its own label.
     seed_labels : array_like of int, shape (k,), optional
-        The labels given to the areas of the seeds, by default their rows. The first seed in an area
-        counts; those outside and those on a segment, its ends included, do not. An area without a
+        The labels of the areas of the seeds, by default their rows. The first seed in an area is
+        used; seeds outside and on a segment, including its ends, are ignored. An area without a
         seed has label -1.
 
     Raises
@@ -68,13 +68,13 @@ def assert_regions(
     AssertionError
         Names the triangles whose labels are wrong.
     InputError
-        The points or the seeds are no array of finite points.
+        The points or the seeds are not an array of finite points.
 
     Notes
     -----
-    Areas are found by a flood in plain Python, from triangle to triangle across edges that are not
-    constrained; which triangles share an edge is found from the triangles themselves. O(m log m),
-    and O(m) exact tests for each seed.
+    Areas are found by a flood fill in plain Python, from triangle to triangle across edges that are
+    not constrained; adjacency is computed from the triangles themselves. O(m log m), and O(m) exact
+    tests for each seed.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def assert_regions(
 
 
 def _areas(exact: Mesh, flags: Bools) -> Indices:
-    """The area of each triangle, numbered from 0 on in the order of their first triangles."""
+    """The area of each triangle, numbered from 0 in the order of their first triangles."""
     opposite = opposite_corners(exact)
     beyond = np.where((opposite < 0) | flags.ravel(), -1, opposite // 3).reshape(-1, 3).tolist()
     area = [-1] * len(beyond)
@@ -145,14 +145,14 @@ def _areas(exact: Mesh, flags: Bools) -> Indices:
 
 
 def _assert_told_apart(area: Indices, found: NDArray[np.integer]) -> None:
-    """Two triangles have one label exactly where they are in one area."""
+    """Assert that two triangles have the same label if and only if they are in the same area."""
     _, first = np.unique(area, return_index=True)
     of_area = found[first]
     mixed = np.flatnonzero(found != of_area[area])
     assert_none(
         [f"triangle {t}: {found[t]}, not {of_area[area[t]]}" for t in mixed[:SHOWN].tolist()],
         len(mixed),
-        "has not the label of its area",
+        "does not have the label of its area",
         "triangle",
     )
     _, kept = np.unique(of_area, return_index=True)
@@ -166,7 +166,7 @@ def _assert_told_apart(area: Indices, found: NDArray[np.integer]) -> None:
 
 
 def _holding(exact: Mesh, flags: Bools, seed: int) -> int | None:
-    """A triangle that holds a seed; None outside and on segments."""
+    """A triangle that contains a seed; None outside and on segments."""
     a, b, c = exact.triangles.T
     sides = np.stack([orient(exact, u, v, seed) for u, v in ((b, c), (c, a), (a, b))], axis=1)
     holding = np.flatnonzero((sides >= 0).all(axis=1))

@@ -1,4 +1,4 @@
-"""Triangles as sets, for comparison whatever their order."""
+"""Triangles as sets, for comparison in any order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def triangle_set(simplices: ArrayLike) -> set[tuple[int, int, int]]:
-    """Return triangles as a set of triples, each turned so that its smallest vertex is first.
+    """Return triangles as a set of triples, each rotated so that its smallest vertex is first.
 
     Parameters
     ----------
@@ -23,13 +23,13 @@ def triangle_set(simplices: ArrayLike) -> set[tuple[int, int, int]]:
     Returns
     -------
     set of tuple of int
-        Two arrays give the same set when they hold the same triangles with the same orientation,
-        in whatever order and from whichever vertex on.
+        Two arrays have equal sets if they contain the same triangles with the same orientation, in
+        any order and starting at any vertex.
 
     Raises
     ------
     ShapeError, DtypeError
-        `simplices` is no array of integers of shape (m, 3), nor empty.
+        `simplices` is neither an integer array of shape (m, 3) nor empty.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def triangle_set(simplices: ArrayLike) -> set[tuple[int, int, int]]:
 
 
 def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
-    """Tell whether two arrays hold the same triangles with the same orientation.
+    """Return whether two arrays contain the same triangles with the same orientation.
 
     Parameters
     ----------
@@ -51,12 +51,12 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
     Returns
     -------
     bool
-        False also where one of them holds a triangle more often than the other.
+        Also False if one of them contains a triangle more often than the other.
 
     Raises
     ------
     ShapeError, DtypeError
-        `a` or `b` is no array of integers of shape (m, 3), nor empty.
+        `a` or `b` is neither an integer array of shape (m, 3) nor empty.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def same_triangles(a: ArrayLike, b: ArrayLike) -> bool:
 
 
 def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
-    """Tell whether two arrays hold the same tetrahedra with the same orientation.
+    """Return whether two arrays contain the same tetrahedra with the same orientation.
 
     Parameters
     ----------
@@ -78,12 +78,12 @@ def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
     Returns
     -------
     bool
-        False also where one of them holds a tetrahedron more often than the other.
+        Also False if one of them contains a tetrahedron more often than the other.
 
     Raises
     ------
     ShapeError, DtypeError
-        `a` or `b` is no array of integers of shape (m, 4), nor empty.
+        `a` or `b` is neither an integer array of shape (m, 4) nor empty.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
 
 
 def _even(simplices: ArrayLike, name: str) -> list[tuple[int, ...]]:
-    """Tetrahedra in ascending order, but for the last two where that is an odd permutation."""
+    """Tetrahedra with ascending vertices; an odd permutation exchanges the last two."""
     array = np.asarray(simplices)
     if array.shape in ((0,), (0, 4)):
         return []
@@ -113,7 +113,7 @@ def _even(simplices: ArrayLike, name: str) -> list[tuple[int, ...]]:
 
 
 def _turned(simplices: ArrayLike, name: str) -> list[tuple[int, int, int]]:
-    """Triangles as triples, each from its smallest vertex on."""
+    """Triangles as triples, each starting at its smallest vertex."""
     try:
         triangles = np.asarray(simplices)
     except ValueError as error:

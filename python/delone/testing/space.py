@@ -1,4 +1,4 @@
-"""The exact check of Delaunay triangulations in space, over unbounded integers."""
+"""The exact check of 3-D Delaunay triangulations, over arbitrary-precision integers."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 # The face opposite each corner, with the corner on its inner side: counter-clockwise from outside.
 _FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
-# Up to so many points every tetrahedron is tested against every point.
+# Up to this number of points, every tetrahedron is tested against every point.
 _FEW = 64
 
 
 class SpaceMesh(NamedTuple):
-    """Tetrahedra with exact coordinates and what every check needs of them."""
+    """Tetrahedra with exact coordinates and the data that every check needs."""
 
     points: NDArray[np.float64]
     tetrahedra: Indices
     at: Integers  # (n, 3)
     rank: Indices  # equal for equal points, ascending lexicographically
-    first: Indices  # of each row, the first row with the same coordinates
+    first: Indices  # for each row, the first row with the same coordinates
 
     @classmethod
     def of(cls, points: NDArray[np.float64], tetrahedra: Indices) -> SpaceMesh:
-        """Take points that are finite and tetrahedra whose indices are in range."""
+        """Convert finite points and tetrahedra whose indices are in range."""
         flat = points + 0.0  # makes -0.0 the same as 0.0
         order = np.lexsort(flat.T[::-1])
         fresh = np.ones(len(points), dtype=bool)
@@ -48,7 +48,7 @@ class SpaceMesh(NamedTuple):
         return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
 
     def names(self, which: Indices) -> list[str]:
-        """Tetrahedra with their corners, the first few."""
+        """The first few tetrahedra with their corners."""
         return [
             f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
             for t in which[:SHOWN].tolist()
@@ -73,7 +73,7 @@ def insphere(mesh: SpaceMesh, corners: Indices, e: Any) -> Any:
 
 
 def insphere_of_tie(mesh: SpaceMesh, corners: Indices, e: int) -> int:
-    """The sign for five points of one sphere: that of the smallest point that matters."""
+    """The sign for five cospherical points, determined by the smallest point that matters."""
     five = [*corners.tolist(), e]
     for k in np.argsort(mesh.rank[five]).tolist():
         if k == 4:
@@ -113,7 +113,7 @@ def _determinant(u: Any, v: Any, w: Any) -> Any:
 
 
 def _spans_no_volume(mesh: SpaceMesh) -> bool:
-    """Tell whether all points lie in one plane."""
+    """Return whether all points lie in one plane."""
     rows = np.unique(mesh.first)
     if len(rows) < 4:
         return True
@@ -132,11 +132,11 @@ def _assert_vertices(mesh: SpaceMesh) -> None:
     assert_none(
         [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
         len(repeats),
-        "is used in spite of an earlier equal row",
+        "is used although an earlier row is equal",
         "row",
     )
     names = [mesh.name([row]) for row in lost[:SHOWN].tolist()]
-    assert_none(names, len(lost), "is no vertex of any tetrahedron", "point")
+    assert_none(names, len(lost), "is not a vertex of any tetrahedron", "point")
 
 
 def _assert_positive(mesh: SpaceMesh) -> None:
@@ -145,7 +145,7 @@ def _assert_positive(mesh: SpaceMesh) -> None:
 
 
 def _opposites(mesh: SpaceMesh) -> Indices:
-    """Of each corner 4 t + k, the corner beyond the face opposite it, or -1 on the boundary."""
+    """For each corner 4 t + k, the corner beyond the face opposite it, or -1 on the boundary."""
     faces = mesh.tetrahedra[:, _FACES].reshape(-1, 3)
     # With the smallest vertex first, the two sides of a face differ by the order of the others.
     start = faces.argmin(axis=1)[:, None]
@@ -163,13 +163,13 @@ def _opposites(mesh: SpaceMesh) -> Indices:
 
 
 def _assert_hull(mesh: SpaceMesh, beyond: Indices) -> None:
-    """The boundary is one closed surface, convex at each edge: so it is the convex hull."""
+    """Assert that the boundary is a closed surface, convex at each edge: the convex hull."""
     t, k = np.divmod(np.flatnonzero(beyond < 0), 4)
     faces = np.take_along_axis(mesh.tetrahedra[t], np.array(_FACES)[k], axis=1)
     edges: dict[tuple[int, int], int] = {}
     for i, (a, b, c) in enumerate(faces.tolist()):
         for edge in ((a, b), (b, c), (c, a)):
-            require(edge not in edges, f"boundary edge {mesh.name(edge)} is there twice")
+            require(edge not in edges, f"boundary edge {mesh.name(edge)} occurs twice")
             edges[edge] = i
     met, open_faces = {0}, [0]
     while open_faces:
@@ -188,11 +188,13 @@ def _assert_hull(mesh: SpaceMesh, beyond: Indices) -> None:
                 open_faces.append(j)
     require(len(met) == len(faces), "the boundary is more than one surface")
     vertices = len(np.unique(faces))
-    require(vertices - len(edges) // 2 + len(faces) == 2, "the boundary is no sphere")
+    require(
+        vertices - len(edges) // 2 + len(faces) == 2, "the boundary is not a topological sphere"
+    )
 
 
 def _assert_count_and_volume(mesh: SpaceMesh, beyond: Indices) -> None:
-    """Euler's formula and the volume; both follow from what was asserted: they check the checks."""
+    """Assert Euler's formula and the volume; both follow from the above and test the checks."""
     t, k = np.divmod(np.flatnonzero(beyond < 0), 4)
     faces = np.take_along_axis(mesh.tetrahedra[t], np.array(_FACES)[k], axis=1)
     pairs = [mesh.tetrahedra[:, [i, j]] for i in range(4) for j in range(i)]
@@ -204,11 +206,11 @@ def _assert_count_and_volume(mesh: SpaceMesh, beyond: Indices) -> None:
     volume = orient3d(mesh, *mesh.tetrahedra.T).sum()
     a, b, c = faces.T
     hull = -orient3d(mesh, a, b, c, faces[0, 0]).sum()
-    require(volume == hull, "the tetrahedra have not the volume of the hull")
+    require(volume == hull, "the tetrahedra do not have the volume of the hull")
 
 
 def _assert_empty_spheres(mesh: SpaceMesh, beyond: Indices, canonical: bool) -> None:
-    """Inner faces are locally Delaunay."""
+    """Assert that inner faces are locally Delaunay."""
     corner = np.flatnonzero(beyond > np.arange(len(beyond)))
     t, far = corner // 4, mesh.tetrahedra.ravel()[beyond[corner]]
     inside = insphere(mesh, mesh.tetrahedra[t], far)
@@ -230,7 +232,7 @@ def _assert_empty_spheres(mesh: SpaceMesh, beyond: Indices, canonical: bool) -> 
 
 
 def _assert_all_spheres_empty(mesh: SpaceMesh, canonical: bool) -> None:
-    """No tetrahedron has any point inside its sphere."""
+    """Assert that no tetrahedron has any point inside its sphere."""
     for e in np.unique(mesh.first).tolist():
         inside = insphere(mesh, mesh.tetrahedra, e)
         held = np.flatnonzero(inside > 0)
@@ -259,6 +261,6 @@ def _assert_neighbors(mesh: SpaceMesh, neighbors: ArrayLike) -> None:
     assert_none(
         [f"tetrahedron {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
         len(wrong),
-        "has wrong neighbours",
+        "has wrong neighbors",
         "tetrahedron",
     )

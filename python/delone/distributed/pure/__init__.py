@@ -1,1 +1,1 @@
-"""What tiles are, what is certain about them and how answers change them: no files, no tasks."""
+"""Tiles, certain triangles and updates by answers, as pure functions: no files, no tasks."""

@@ -1,9 +1,10 @@
-"""Which triangles are certain, and whom the others are to be asked of.
+"""Which triangles are certain, and which tiles to query about the others.
 
-A triangle of what a tile knows is one of the whole set where no point at all is in conflict with
-it: inside its circle, or on it where the tie goes that way. Points of other tiles that a tile does
-not know lie outside of its box, so a closed circumdisk in the box, rounded outward by the core, is
-proof. Every other disk is put to the tiles whose points it may meet beyond the box.
+A triangle of the points that a tile knows belongs to the whole set if no point at all is in
+conflict with it: inside its circle, or on it where the tie is broken that way. Unknown points of
+other tiles lie outside the box of the tile, so a closed circumdisk inside the box, rounded outward
+by the core, is a proof. Every other disk is sent as a query to the tiles whose points it may meet
+beyond the box.
 """
 
 from __future__ import annotations
@@ -32,20 +33,20 @@ __all__ = ["Known", "corners_of"]
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What one tile knows of where points are.
+    """The region in which a tile knows all points.
 
     Parameters
     ----------
     tile : int
         The tile, all of whose points are known.
     box : ndarray of float64, shape (4,)
-        Left, bottom, right and top of a closed box in which all points of all tiles are known;
+        Left, bottom, right and top of a closed box in which the points of all tiles are known;
         infinite where there are no points beyond.
     tiles : Tiles
-        The cells.
+        The cells of the tiles.
     extents : ndarray of float64, shape (tiles, 4)
-        The box of the points of each tile, inside out where it has none. Corners of the hull, which
-        all tiles know, do not count.
+        The bounding box of the points of each tile, inside out if it has none. Corners of the hull,
+        which all tiles know, are ignored.
     """
 
     tile: int
@@ -54,7 +55,7 @@ class Known:
     extents: Floats
 
     def certain(self, points: Floats, simplices: Indices, own: int, *, threads: int = 1) -> Bools:
-        """Return which triangles have their corners among the first `own` points, and certainty.
+        """Return which triangles are certain and have a corner among the first `own` points.
 
         That is, their disks lie in the box.
         """
@@ -64,10 +65,10 @@ class Known:
     def questions(
         self, points: Floats, simplices: Indices, rows: Numbers, among: Sequence[int] | None = None
     ) -> tuple[Numbers, Numbers]:
-        """Return all pairs of a row of `simplices` and another tile that it must be put to.
+        """Return all pairs of a row of `simplices` and a tile to query about it.
 
-        These are the tiles, if need be among some, whose points its disk may meet. What lies in the
-        box is left out: there all points are known.
+        These are the tiles (restricted to `some` if given) whose points its disk may meet. The part
+        in the box is ignored: there all points are known.
         """
         disks = _core.disks2(points, simplices.take(rows, axis=0))
         low, high = disks[:, :2] - disks[:, 2:], disks[:, :2] + disks[:, 2:]
@@ -75,7 +76,7 @@ class Known:
         other = tile != self.tile if among is None else np.isin(tile, among)
         triangle, tile = triangle[other], tile[other]
         extent = self.extents[tile]
-        # What a disk and a tile have in common lies in the box that their boxes have in common.
+        # The intersection of a disk and a tile lies in the intersection of their boxes.
         left = np.maximum(low[triangle], extent[:, :2])
         right = np.minimum(high[triangle], extent[:, 2:])
         meets = (left <= right).all(axis=1) & self._reaches(disks[triangle], extent)
@@ -85,7 +86,7 @@ class Known:
 
     @staticmethod
     def _reaches(disks: Floats, extent: Floats) -> Bools:
-        """Whether a disk may meet a box: yes, where rounding leaves a doubt."""
+        """Whether a disk may meet a box; True if rounding leaves a doubt."""
         center, radius = disks[:, :2], disks[:, 2]
         with np.errstate(over="ignore"):
             off = np.maximum(np.maximum(extent[:, :2] - center, center - extent[:, 2:]), 0.0)

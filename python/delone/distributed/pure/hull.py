@@ -1,4 +1,4 @@
-"""The strictly extreme points of a set, piece by piece: the hull of hulls is the hull."""
+"""Strictly extreme points of a set, computed piece by piece: the hull of hulls is the hull."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["extreme_rows"]
 
 
 def extreme_rows(rows: Rows) -> Rows:
-    """Return the rows that are strictly extreme, of equal ones the first.
+    """Return the strictly extreme rows; the first of equal ones.
 
     They are the corners of the hull; the two ends of a line; one row where all are equal.
     """

@@ -1,4 +1,4 @@
-"""What all tasks of a run share: the cells, the strips, the hull and the type of rows."""
+"""Data shared by all tasks of a run: the cells, the strips, the hull and the dtype of rows."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ __all__ = ["Layout"]
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """The division of the plane.
+    """The partition of the plane.
 
     Parameters
     ----------
     tiles : Tiles
         The cells.
     strips : ndarray of float64, shape (tiles, 4)
-        The box that each tile knows from the beginning.
+        The box in which each tile knows all points initially.
     hull : ndarray of records
         The corners of the convex hull of all points, in the order of the source.
     """
@@ -35,5 +35,5 @@ class Layout:
 
     @property
     def type(self) -> np.dtype[np.void]:
-        """The type of rows."""
+        """The dtype of rows."""
         return self.hull.dtype

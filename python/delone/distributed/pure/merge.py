@@ -1,10 +1,11 @@
-"""What of a tile is still open, and how answers of other tiles close it.
+"""The open region of a tile, and how answers of other tiles close it.
 
-After its first triangulation most of a tile is certain and never looked at again. The rest is a
+After the first triangulation, most of a tile is certain and never processed again. The rest is a
 region bounded by certain edges and by the hull. `Border` holds its vertices and those edges. New
-points lie in the region, so that a triangulation of the region's vertices and of the new points
-has the bounding edges, and between them the same triangles as one of all that the tile knows: what
-is inserted costs as much as the border is long, however many points the tile has.
+points lie in the region, so a triangulation of its vertices and the new points contains the
+bounding edges, and between them the same triangles as one of all points that the tile knows. An
+insertion therefore costs time proportional to the length of the border, however many points the
+tile has.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def belongs(simplices: Indices, owner: Indices, tile: int) -> Bools:
 def cut_out(
     rows: Rows, owner: Indices, simplices: Indices, neighbors: Indices, certain: Bools
 ) -> Border:
-    """Return the triangles that are not certain: their vertices, and their edges against others."""
+    """Return the uncertain triangles: their vertices, and their edges to certain triangles."""
     left = np.flatnonzero(~certain)
     some, beside = simplices[left], neighbors[left]
     t, k = np.nonzero((beside >= 0) & certain[beside])
@@ -75,39 +76,39 @@ def cut_out(
 
 
 def advance(
-    border: Border, known: Known, news: Rows, secretive: Sequence[int]
+    border: Border, known: Known, news: Rows, partial: Sequence[int]
 ) -> tuple[Border | None, Rows, Indices, Floats, NDArray[np.int64]]:
-    """Take in the answers to all questions about a border.
+    """Insert the answers to all queries about a border.
 
     Parameters
     ----------
     border : Border
-        What was open.
+        The open region.
     known : Known
-        What the tile knew at first.
+        The initial knowledge of the tile.
     news : ndarray of records
-        The points in conflict that other tiles have told, each once.
-    secretive : sequence of int
-        The tiles that have told less than all of theirs.
+        The points in conflict that other tiles returned, each once.
+    partial : sequence of int
+        The tiles that returned only some of their points.
 
     Returns
     -------
     Border or None
-        What is open now; None where nothing is.
+        The region that is still open; None if nothing is.
     ndarray of records
-        The vertices of the triangles that follow.
+        The vertices of the following triangles.
     ndarray of int32, shape (k, 3)
         Triangles that have become certain and have a vertex of the tile.
     ndarray of float64, shape (m, 6)
-        Corners of the triangles to ask about.
+        Corners of the triangles to query about.
     ndarray of int64, shape (m,)
-        Whom to ask.
+        The tiles to query.
 
     Notes
     -----
-    A triangle without a new corner was there before, nobody has refuted it, and it is certain.
-    In conflict with one that has a new corner are only points that were in conflict with one that
-    was asked about: who has told all of those is not asked again.
+    A triangle without a new corner existed before, no answer refuted it, and it is certain. Points
+    in conflict with a triangle that has a new corner were in conflict with one of the queried
+    triangles: a tile that gave a complete answer is not queried again.
     """
     rows = np.concatenate([border.rows, news])
     owner = np.concatenate([border.owner, known.tiles.locate(coordinates(news))])
@@ -119,17 +120,17 @@ def advance(
     inside = _within(simplices, neighbors, border.edges)
     certain = inside & (owner[simplices] == known.tile).any(axis=1)
     fresh = (simplices >= len(border.rows)).any(axis=1)
-    triangle, tile = known.questions(points, simplices, np.flatnonzero(certain & fresh), secretive)
+    triangle, tile = known.questions(points, simplices, np.flatnonzero(certain & fresh), partial)
     certain[triangle] = False
     left = None
     if len(triangle):
-        # What lies beyond the bounding edges is certain as well.
+        # Everything beyond the bounding edges is certain as well.
         left = cut_out(rows, owner, simplices, neighbors, certain | ~inside)
     return left, rows, simplices[certain], corners_of(points, simplices[triangle]), tile
 
 
 def _within(simplices: Indices, neighbors: Indices, edges: Indices) -> Bools:
-    """Which triangles lie in the region left of the edges that bound it; all without edges."""
+    """Which triangles lie in the region left of its bounding edges; all if there are none."""
     if not len(edges):
         return np.ones(len(simplices), dtype=bool)
     sides = np.stack([np.roll(simplices, -1, axis=1), np.roll(simplices, -2, axis=1)], axis=2)
@@ -137,7 +138,7 @@ def _within(simplices: Indices, neighbors: Indices, edges: Indices) -> Bools:
     key = sides[..., 0] * n + sides[..., 1]
     mine = np.isin(key, edges[:, 0] * n + edges[:, 1])
     if np.count_nonzero(mine) != len(edges):
-        raise InternalError("a certain edge has gone from a border")
+        raise InternalError("a certain edge is missing from a border")
     beyond = np.isin(key, edges[:, 1] * n + edges[:, 0])
     label = _core.components2(neighbors, np.ascontiguousarray(mine | beyond))
     return np.isin(label, label[mine.any(axis=1)])

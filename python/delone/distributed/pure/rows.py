@@ -1,8 +1,7 @@
-"""Rows of points: what goes from the source through the tiles to the output.
+"""Records of points, as they pass from the source through the tiles to the output.
 
-A row is a record of its number in the source, coordinates, and whatever attributes are carried
-along. Of rows with equal coordinates the one with the least number is the vertex, wherever they
-meet.
+A row is a record of its number in the source, its coordinates and its attributes. Of rows with
+equal coordinates, the one with the smallest number is the vertex, wherever they meet.
 """
 
 from __future__ import annotations
@@ -23,12 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["coordinates", "first_of_each", "make_rows", "record", "widen", "widened"]
 
 _FIXED = ("id", "x", "y", "z")
-# Up to here a double holds every integer.
+# Doubles represent every integer up to here.
 _EXACT = 1 << 53
 
 
 def record(attributes: Mapping[str, str], *, heights: bool) -> np.dtype[np.void]:
-    """Return the type of rows with these attributes, given as names and dtypes."""
+    """Return the dtype of rows with these attributes, given as names and dtypes."""
     fields: list[tuple[str, str]] = [("id", "<u8"), ("x", "<f8"), ("y", "<f8")]
     if heights:
         fields.append(("z", "<f8"))
@@ -54,7 +53,7 @@ def make_rows(
 
 
 def widened(types: Sequence[np.dtype[np.void]]) -> np.dtype[np.void]:
-    """Return the type of rows that holds the attributes of all `types`, whose names are equal."""
+    """Return a dtype that can store the attributes of all `types`, whose names are equal."""
     names = types[0].names or ()
     kinds = {
         name: np.result_type(*{t[name] for t in types}).str for name in names if name not in _FIXED
@@ -63,13 +62,13 @@ def widened(types: Sequence[np.dtype[np.void]]) -> np.dtype[np.void]:
 
 
 def widen(rows: Rows, kind: np.dtype[np.void]) -> Rows:
-    """Return rows of a type that `widened` has found.
+    """Convert rows to a dtype found by `widened`.
 
     Raises
     ------
     DtypeError
         An attribute is an integer in some files and a float in others, or has gaps, and a value is
-        no double.
+        not representable as a double.
     """
     for name in kind.names or ():
         if rows.dtype[name].kind in "iu" and kind[name].kind == "f":
@@ -77,9 +76,9 @@ def widen(rows: Rows, kind: np.dtype[np.void]) -> Rows:
             lost = np.flatnonzero((values > _EXACT) | (values.astype(np.float64) < -_EXACT))
             if len(lost):
                 raise DtypeError(
-                    f"attribute {name!r} holds integers in some files and floats or gaps in "
+                    f"attribute {name!r} has integers in some files and floats or gaps in "
                     f"others; {values[lost[0]]} of row {rows['id'][lost[0]]} is beyond the 2**53 "
-                    "up to which a float holds every integer"
+                    "up to which a double can represent every integer"
                 )
     return rows.astype(kind)
 
@@ -92,5 +91,5 @@ def coordinates(rows: Rows) -> NDArray[np.float64]:
 
 
 def first_of_each(rows: Rows) -> Rows:
-    """Return rows without those whose number is there already, by number."""
+    """Return rows sorted by number, without repeated numbers."""
     return rows[np.unique(rows["id"], return_index=True)[1]]

@@ -1,4 +1,4 @@
-"""From pieces of the source to tiles: each point goes to its own, and copies to first halos."""
+"""Distribution of the source: each point goes to its tile, and copies go to first halos."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ __all__ = ["scatter"]
 
 
 def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
-    """Return the rows of a piece by tile, own ones first, then copies for halos; and where.
+    """Sort the rows of a piece by tile, own rows first, then copies for halos; and the ranges.
 
     Returns
     -------
     ndarray of records
         The rows, within each run in the order of the source.
-    dict
-        ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top
-        of each run of own rows but for corners of the hull, which all tiles know; None where it has
+    ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top of
+    each run of own rows, ignoring corners of the hull, which all tiles know; None if there are no
+    others.
         no others.
     """
     if rows.dtype != layout.type:
         rows = widen(rows, layout.type)
     corner = _corners(rows, layout.hull)
     tile = layout.tiles.locate(coordinates(rows))
-    # A radix sort, for as long as numbers of tiles fit in 16 bits.
+    # A radix sort, as long as tile numbers fit into 16 bits.
     narrow = tile.astype(np.uint16) if len(layout.tiles) <= 1 << 16 else tile
     order = np.argsort(narrow, kind="stable")
     own, tile, corner = rows.take(order), tile.take(order), corner.take(order)
@@ -79,7 +79,7 @@ def _corners(rows: Rows, hull: Rows) -> Bools:
 
 
 def _box(x: Floats, y: Floats, counts: Bools) -> list[float] | None:
-    """Left, bottom, right and top of the points that count."""
+    """Left, bottom, right and top of the points selected by `counts`."""
     if not counts.any():
         return None
     if not counts.all():

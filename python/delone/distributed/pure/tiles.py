@@ -1,9 +1,9 @@
 """Tiles: the half-open cells of a k-d tree over a sample, and the first halo of each.
 
-A cell takes its lower sides and leaves its upper ones to its neighbours, so that each point of the
-plane lies in one cell and equal points meet in one tile. Cuts are coordinates of sampled points
-(J. L. Bentley, "Multidimensional binary search trees", 1975); cells at the margin reach to
-infinity.
+A cell includes its lower sides and leaves its upper ones to its neighbors, so each point of the
+plane lies in exactly one cell, and equal points are in the same tile. Cuts are coordinates of
+sampled points (J. L. Bentley, "Multidimensional binary search trees", 1975); cells at the margin
+extend to infinity.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["HALO", "Tiles", "plant", "strips"]
 
-# Points in the first halo of a tile, in units of the square root of the points in it. Half of it
-# leaves several times as many triangles to be asked about, twice of it hardly fewer.
+# Points in the first halo of a tile, in units of the square root of the number of its points. Half
+# as many leave several times as many triangles to query about, twice as many hardly fewer.
 HALO = 11.0
 
 
@@ -36,7 +36,7 @@ class Tiles:
     axis : ndarray of int8, shape (nodes,)
         The axis that a node cuts.
     cut : ndarray of float64, shape (nodes,)
-        Where; points below go left.
+        The coordinate of the cut; points below it are on the left.
     children : ndarray of int64, shape (nodes, 2)
         Left and right: the number of a node, or ``~tile``.
     cells : ndarray of float64, shape (tiles, 4)
@@ -57,7 +57,7 @@ class Tiles:
             return np.zeros(len(points), dtype=np.int32)
         tile = np.empty(len(points), dtype=np.int32)
         columns = points[:, 0].copy(), points[:, 1].copy()
-        # A list of rows for each node, so that a cell's points are looked at together.
+        # A list of rows for each node, so that the points of a cell are processed together.
         open_nodes: list[tuple[int, Numbers | None]] = [(0, None)]
         while open_nodes:
             node, rows = open_nodes.pop()
@@ -92,9 +92,9 @@ class Tiles:
 
 
 def plant(sample: Floats, tiles: int) -> Tiles:
-    """Return a tree that cuts the sample, (n, 2), into up to as many parts of about equal size.
+    """Return a tree that splits the sample, (n, 2), into up to `tiles` parts of similar size.
 
-    There are fewer where too few points of the sample are distinct.
+    There are fewer if too few points of the sample are distinct.
     """
     axes: list[int] = []
     cuts: list[float] = []
@@ -128,7 +128,7 @@ def plant(sample: Floats, tiles: int) -> Tiles:
 
 
 def _cut(points: Floats, count: int) -> tuple[int, float] | None:
-    """Where to cut: the longer axis first, about the middle, with points on both sides."""
+    """Choose a cut: the longer axis first, near the middle, with points on both sides."""
     if not len(points):
         return None
     with np.errstate(over="ignore"):
@@ -137,21 +137,21 @@ def _cut(points: Floats, count: int) -> tuple[int, float] | None:
         values = np.sort(points[:, axis])
         cut = values[len(values) * (count // 2) // count]
         if cut == values[0]:
-            # As many equal coordinates as that: the next one, if there is another.
+            # Many equal coordinates: use the next larger one, if there is one.
             cut = values[min(np.searchsorted(values, cut, side="right"), len(values) - 1)]
         if cut > values[0]:
             return int(axis), float(cut)
     return None
 
 
-# Beyond the range of doubles a strip is infinite, and holds what it says all the same.
+# Beyond the range of doubles a strip is infinite, which is still correct.
 @np.errstate(over="ignore")
 def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
-    """Return the box that each tile knows at first: its cell, and a strip along each side.
+    """Return the box that each tile knows initially: its cell, and a strip along each side.
 
-    A strip is as wide as the one inside the cell that holds the share of one side in the halo, by
-    the sample of `count` points, but not so wide that it holds far more than that itself: on the
-    other side of a cut there may be a crowd.
+    A strip is as wide as the one inside the cell that contains one side's share of the halo, by the
+    sample of `count` points, but not so wide that it contains far more than that: the density on
+    the other side of a cut may be much higher.
     """
     owner = tiles.locate(sample)
     order = np.argsort(owner, kind="stable")
@@ -178,7 +178,7 @@ def strips(tiles: Tiles, sample: Floats, count: int) -> Floats:
 def _beyond(  # noqa: PLR0917
     tiles: Tiles, by_tile: Floats, starts: Numbers, cell: Floats, side: int, width: float
 ) -> Floats:
-    """How far sampled points lie beyond a side of a cell, those within a strip of this width."""
+    """Distances of sampled points beyond a side of a cell, within a strip of this width."""
     axis, high = side % 2, side >= 2
     box = cell.copy()
     box[side] = cell[side] + (width if high else -width)

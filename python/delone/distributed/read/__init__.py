@@ -1,1 +1,1 @@
-"""A finished output: one tile, the whole, its proof, tables and rasters of it."""
+"""Reading a finished output: tiles, validation, tables and rasters."""

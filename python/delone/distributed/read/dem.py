@@ -1,7 +1,8 @@
-"""A raster of a triangulation in tiles: linear interpolation into a file, tile by tile.
+"""Rasters from tiled triangulations: linear interpolation into a file, tile by tile.
 
-Each node gets its value from the triangle of the whole set that holds it, whichever tile has it: no
-seam can show. Values wait in a file beside the target, so that memory is that of one tile.
+Each node gets its value from the triangle of the whole set that contains it, whichever tile has it,
+so there are no seams. Values are stored in a temporary file next to the target, so that the memory
+needed is that of one tile.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_dem"]
 
-# Nodes at a time.
+# Nodes per block.
 _BLOCK = 1 << 18
 
 
@@ -51,7 +52,7 @@ def write_dem(
     tin.require(value)
     target = as_path(out, name="out")
     if target.suffix.lower() not in (".tif", ".tiff"):
-        raise FileFormatError(f"{target}: rasters of tiles are written as .tif")
+        raise FileFormatError(f"{target}: rasters of tiles can only be written as .tif")
     left, bottom, right, top = tin.bounds
     x, y = raster_nodes(
         ([left, bottom], [right, top]),
@@ -59,7 +60,7 @@ def write_dem(
         room=lambda columns, rows: _require_room(target, columns, rows),
     )
     sides = np.broadcast_to(np.asarray(resolution, dtype=np.float64), (2,)).tolist()
-    # The system takes a file without a name from a process that is killed.
+    # The system removes a file without a name when its process is killed.
     with replacing(target) as beside, TemporaryFile(dir=beside.parent) as waiting:
         values = _empty_values(waiting, len(x), len(y))
         for number, known in enumerate(tin.manifest["tiles"]):
@@ -74,21 +75,21 @@ def write_dem(
 
 
 def _require_room(target: Path, columns: int, rows: int) -> None:
-    """Refuse a raster whose values the disk has no room for while they wait."""
+    """Reject a raster whose temporary values do not fit on the disk."""
     needed, free = 8 * columns * rows, shutil.disk_usage(target.absolute().parent).free
     if needed > free:
         raise OSError(
             errno.ENOSPC,
             f"a raster of {grouped(columns)} x {grouped(rows)} cells needs {gigabytes(needed)} "
-            f"on disk while it is made, and {gigabytes(free)} are free; choose larger cells",
+            f"on disk while it is computed, but {gigabytes(free)} is free; choose larger cells",
             str(target),
         )
 
 
 def _empty_values(file: IO[bytes], columns: int, rows: int) -> NDArray[np.float64]:
-    """Fill a file with no values and map it.
+    """Fill a file with NaN and map it into memory.
 
-    Written, not mapped at once: where the disk is full a mapping ends the process.
+    The file is written before it is mapped: on a full disk, a mapping kills the process.
     """
     nothing = np.full((max(1, _BLOCK // columns), columns), np.nan)
     for start in range(0, rows, len(nothing)):
@@ -106,7 +107,7 @@ def _fill(  # noqa: PLR0917
     values: Any,
     value: str,
 ) -> None:
-    """Give the nodes that lie in triangles of the tile, and have no value yet, theirs."""
+    """Set the values of nodes that lie in triangles of the tile and have no value yet."""
     columns = slice(*np.searchsorted(x, [extent[0], np.nextafter(extent[2], np.inf)]).tolist())
     first, last = np.searchsorted(y, [extent[1], np.nextafter(extent[3], np.inf)]).tolist()
     width = columns.stop - columns.start

@@ -37,7 +37,7 @@ class TileFolder:
     @classmethod
     def at(cls, output: str | os.PathLike[str]) -> Self:
         """Open a finished output; see `delone.distributed.open`."""
-        # Tiles are read later, from whatever the working directory is then.
+        # Tiles are read later, when the working directory may be different.
         folder = as_path(output, name="output").absolute()
         store = Store(folder)
         if not folder.is_dir():
@@ -46,7 +46,7 @@ class TileFolder:
         for tile in range(len(manifest["tiles"])):
             for name in tile_names(tile):
                 if not store.exists(name):
-                    raise FileFormatError(f"{output} has lost {name}")
+                    raise FileFormatError(f"{output} is missing {name}")
         return cls(store, manifest)
 
     @property
@@ -72,7 +72,7 @@ class TileFolder:
 
     @property
     def crs(self) -> str | None:
-        """Coordinate reference system, None where the source has none."""
+        """Coordinate reference system, None if the source has none."""
         crs: str | None = self.manifest["crs"]
         return crs
 
@@ -97,7 +97,7 @@ class TileFolder:
         Parameters
         ----------
         number : int
-            From 0 to ``ntiles - 1``.
+            Number of the tile, from 0 to ``ntiles - 1``.
 
         Returns
         -------
@@ -109,7 +109,7 @@ class TileFolder:
         InputError
             There is no such tile.
         FileFormatError
-            Its files are lost or torn, lack a column, or hold something else.
+            Its files are missing or truncated, lack a column, or have other contents.
 
         Examples
         --------
@@ -123,7 +123,7 @@ class TileFolder:
         """
         number = as_count(number, name="number")
         if not 0 <= number < self.ntiles:
-            raise InputError(f"there are tiles 0 to {self.ntiles - 1}, not {number}")
+            raise InputError(f"tile must be from 0 to {self.ntiles - 1}, got {number}")
         tile = read_tile(self.store, self.manifest, number)
         known = self.manifest["tiles"][number]
         wanted = known["points"] + known["foreign"], known["triangles"]
@@ -137,20 +137,20 @@ class TileFolder:
         return tile
 
     def locator(self, tile: Tile) -> _core.Locator2:
-        """Return the index over a tile; where its triangles are no mesh, name its file."""
+        """Return the point location index of a tile; raise an error with its file if invalid."""
         try:
             return tile.locator()
         except InputError as error:
             path = self.store.path(tile_names(tile.number)[1])
-            raise FileFormatError(f"{path} holds no mesh: {error}") from error
+            raise FileFormatError(f"{path} does not contain a mesh: {error}") from error
 
     def tiles(self) -> Iterator[Tile]:
-        """Read all tiles, one after another.
+        """Read all tiles, one by one.
 
         Returns
         -------
         iterator of Tile
-            In the order of their numbers; each is read when it is asked for.
+            The tiles by number; each is read when requested.
 
         Examples
         --------
@@ -164,7 +164,7 @@ class TileFolder:
         return (self.tile(number) for number in range(self.ntiles))
 
     def require(self, value: str) -> None:
-        """Refuse a value that vertices do not have."""
+        """Reject a value that vertices do not have."""
         has = ["z"] if self.manifest["heights"] else []
         has += self.manifest["attributes"]
         if value not in has:

@@ -1,4 +1,4 @@
-"""Reading back: a finished output, of which nothing is in memory but the manifest."""
+"""A finished output, of which only the manifest is in memory."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ __all__ = ["TiledDelaunay", "open"]
 
 
 def open(output: str | os.PathLike[str]) -> TiledDelaunay:
-    """Open a triangulation in tiles.
+    """Open a tiled triangulation.
 
     Parameters
     ----------
     output : str or path-like
-        The folder that `triangulate` has written.
+        The folder that `triangulate` wrote.
 
     Returns
     -------
     TiledDelaunay
-        It reads tiles when they are needed.
+        The triangulation, which reads tiles when they are needed.
 
     Raises
     ------
     FileNotFoundError
-        There is none, or it is not finished.
+        There is no such folder, or the run is not finished.
     FileFormatError
-        The manifest is torn, of another kind, or wrong in some field; files of tiles are missing.
+        The manifest is truncated, of another kind, or has a wrong field; tile files are missing.
 
     Examples
     --------
@@ -63,14 +63,14 @@ def open(output: str | os.PathLike[str]) -> TiledDelaunay:
 
 
 class TiledDelaunay(TileFolder):
-    """A triangulation in tiles on disk, made by `open`.
+    """A tiled triangulation on disk, returned by `open`.
 
     Attributes
     ----------
     manifest : dict
-        What the manifest says.
+        The contents of the manifest.
     npoints, nsimplex, ntiles : int
-        Numbers of points (duplicates included), of triangles and of tiles.
+        Numbers of points (including duplicates), triangles and tiles.
     bounds : tuple of four floats
         Left, bottom, right and top of the points.
     crs : str or None
@@ -78,9 +78,9 @@ class TiledDelaunay(TileFolder):
 
     Notes
     -----
-    A triangle is numbered by its place: those of tile 0 come first, then those of tile 1, and so
-    on. One tile at a time is in memory, except where a method says otherwise. Whatever reads tiles
-    raises `FileFormatError` where their files are lost or torn.
+    Triangles are numbered tile by tile: those of tile 0 come first, then those of tile 1, and so
+    on. One tile at a time is in memory, unless a method says otherwise. Methods that read tiles
+    raise `FileFormatError` if files are missing or truncated.
 
     Examples
     --------
@@ -100,7 +100,7 @@ class TiledDelaunay(TileFolder):
         )
 
     def simplices(self) -> Numbers:
-        """Return all triangles, (m, 3), as rows of the source, for what fits into memory.
+        """Return all triangles, (m, 3), as rows of the source; they must fit into memory.
 
         Returns
         -------
@@ -109,7 +109,7 @@ class TiledDelaunay(TileFolder):
 
         Notes
         -----
-        Memory is 24 bytes a triangle, and one tile.
+        Memory is 24 bytes per triangle, plus one tile.
 
         Examples
         --------
@@ -127,7 +127,7 @@ class TiledDelaunay(TileFolder):
         return found
 
     def _near(self, queries: Floats) -> Iterator[tuple[int, Numbers]]:
-        """Tiles whose triangles may hold queries, in the order of their numbers, and which."""
+        """The tiles whose triangles may contain queries, by number, with those queries."""
         for number, tile in enumerate(self.manifest["tiles"]):
             if tile["extent"] is not None:
                 box = np.array(tile["extent"])
@@ -138,7 +138,7 @@ class TiledDelaunay(TileFolder):
                     yield number, rows
 
     def find_simplex(self, xi: ArrayLike) -> Numbers:
-        """Tell which triangles hold points, reading only tiles that may.
+        """Find the triangles that contain points, reading only the tiles that may.
 
         Parameters
         ----------
@@ -148,13 +148,13 @@ class TiledDelaunay(TileFolder):
         Returns
         -------
         ndarray of int64, shape (...)
-            The number of a triangle that has the point inside or on its boundary, of several one of
-            the lowest tile; -1 outside.
+            The number of a triangle with the point inside or on its boundary, in the first tile
+            that has one; -1 outside.
 
         Raises
         ------
         ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
+            `xi` is not a real array of shape (..., 2).
 
         Examples
         --------
@@ -176,30 +176,30 @@ class TiledDelaunay(TileFolder):
         return found.reshape(shape)
 
     def interpolate(self, xi: ArrayLike, *, value: str = "z") -> Floats:
-        """Interpolate linearly, reading only tiles that may hold the points.
+        """Interpolate linearly, reading only the tiles that may contain the points.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
-            Where.
+            Query points.
         value : str, optional
             The attribute; by default heights.
 
         Returns
         -------
         ndarray of float64, shape (...)
-            Values; NaN outside of the hull.
+            Values; NaN outside the hull.
 
         Raises
         ------
         InputError
             There is no such attribute.
         ShapeError, DtypeError
-            `xi` is no array of real points in the plane.
+            `xi` is not a real array of shape (..., 2).
 
         Notes
         -----
-        Triangles are those of the whole set, so that there are no seams between tiles.
+        The triangles are those of the whole set, so there are no seams between tiles.
 
         Examples
         --------
@@ -232,11 +232,11 @@ class TiledDelaunay(TileFolder):
         Returns
         -------
         TiledReport
-            True where all is right; else it names the tiles and what is wrong.
+            True if everything is correct; otherwise it names the tiles and their faults.
 
         Notes
         -----
-        Exact, from the files alone, one tile at a time; what the manifest says is compared.
+        The check is exact and reads only the files, one tile at a time; the manifest is compared.
 
         Examples
         --------
@@ -261,7 +261,7 @@ class TiledDelaunay(TileFolder):
         Returns
         -------
         dask.dataframe.DataFrame
-            Lazy.
+            A lazy data frame.
 
         Raises
         ------
@@ -293,7 +293,7 @@ class TiledDelaunay(TileFolder):
         Raises
         ------
         InputError
-            The folder is there already.
+            The folder already exists.
         MissingExtraError
             geopandas is not installed.
 
@@ -325,7 +325,7 @@ class TiledDelaunay(TileFolder):
         resolution : float or pair of float
             Width and height of a cell, in the units of the points.
         out : str or path-like, optional
-            The file; it appears when it is whole.
+            The file; it is created atomically.
         value : str, optional
             The attribute; by default heights.
         crs : str, int or pyproj.CRS, optional
@@ -367,11 +367,11 @@ def _queries(xi: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
 def _linear(
     locator: _core.Locator2, tile: Tile, queries: Floats, value: str
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Values of queries in a tile, and which of them a triangle of it holds."""
+    """Values of queries in a tile, and which of them lie in its triangles."""
     values = np.ascontiguousarray(tile.attributes[value], dtype=np.float64)
     some = np.ascontiguousarray(queries)
     found: Floats = locator.linear(values[:, None].copy(), some, 0, 1).reshape(-1)
     held = ~np.isnan(found)
-    # Outside, or inside of a triangle that has no value at a corner.
+    # Outside, or inside a triangle without a value at some corner.
     held[~held] = locator.find(some[~held], 1) >= 0
     return found, held

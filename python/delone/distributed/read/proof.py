@@ -1,13 +1,13 @@
-"""The exact check of a triangulation in tiles, one tile in memory at a time.
+"""Exact validation of a tiled triangulation, with one tile in memory at a time.
 
 Triangles are counter-clockwise; each edge has one triangle on either side or lies on the boundary;
-the boundary is one convex cycle: so the triangles tile the hull. There are 2 n - 2 - h of them for
-n distinct points and h on the boundary: so each point is a vertex. Each inner edge is locally
-Delaunay with ties by coordinates: so all is Delaunay and canonical (B. Delaunay, "Sur la sphère
-vide", 1934). Beside one tile, memory is needed for the edges and vertices that tiles have in
-common, and a byte for each row of a window of all rows.
+the boundary is one convex cycle: therefore the triangles tile the hull. There are 2 n - 2 - h of
+them for n distinct points and h on the boundary: therefore each point is a vertex. Each inner edge
+is locally Delaunay with ties by coordinates: therefore the triangulation is Delaunay and canonical
+(B. Delaunay, "Sur la sphère vide", 1934). Besides one tile, memory is needed for the edges and
+vertices that tiles have in common, and a byte for each row in a window of all rows.
 
-What the manifest says is compared with what the files hold: hashes, counts, boxes, numbers.
+The manifest is compared with the files: hashes, counts, boxes, numbers.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ _WINDOW = 1 << 28
 
 @dataclass(frozen=True)
 class TiledReport:
-    """What the check of a triangulation in tiles has found.
+    """The result of the check of a tiled triangulation.
 
     Parameters
     ----------
     faults : tuple of str
-        What is wrong and where; empty where all is right.
+        The faults and where they are; empty if everything is correct.
 
     Examples
     --------
@@ -58,7 +58,7 @@ class TiledReport:
 
     @property
     def ok(self) -> bool:
-        """Whether all is right."""
+        """Whether everything is correct."""
         return not self.faults
 
     def __bool__(self) -> bool:
@@ -132,19 +132,19 @@ def prove(tin: TileFolder) -> TiledReport:
     faults += _owned_twice(tin, spans)
     faults += _copies(tin, _Vertices(*map(np.concatenate, zip(*foreign, strict=True))))
     if not all_read:
-        # Nothing follows from what the others sum up to.
+        # The sums of the other tiles prove nothing.
         return TiledReport(tuple(faults))
     h, corners = _around(boundary, faults)
     if sums.triangles != 2 * sums.distinct - 2 - h:
         right = 2 * sums.distinct - 2 - h
-        faults.append(f"{sums.triangles} triangles in place of {right}: a point is missing")
+        faults.append(f"{sums.triangles} triangles instead of {right}: a point is missing")
     faults += _totals(tin.manifest, sums, corners)
     return TiledReport(tuple(faults))
 
 
 @dataclass
 class _Sums:
-    """What all tiles have together."""
+    """Totals of all tiles."""
 
     points: int
     triangles: int
@@ -152,19 +152,19 @@ class _Sums:
 
 
 def _hashes(tin: TileFolder, number: int) -> list[str]:
-    """Which files of a tile are not those that were written."""
+    """Find the files of a tile that are not those that were written."""
     faults = []
     for name, key in zip(tile_names(number), ("vertices", "triangles"), strict=True):
         try:
             if digest(tin.store.path(name)) != tin.manifest["tiles"][number][f"{key}_sha256"]:
                 faults.append(f"{name} is not the file that was written")
         except FileNotFoundError:
-            faults.append(f"{name} is lost")
+            faults.append(f"{name} is missing")
     return faults
 
 
 def _figures(tile: Tile, known: dict[str, Any]) -> list[str]:
-    """What the manifest says of a tile that its files do not."""
+    """Compare the manifest's figures of a tile with its files."""
     own = tile.points[tile.owned]
     found = {
         "points": len(own),
@@ -174,14 +174,14 @@ def _figures(tile: Tile, known: dict[str, Any]) -> list[str]:
         "extent": box_of(tile.points) if len(tile.simplices) else None,
     }
     return [
-        f"tile {tile.number}: {name} is {value} in place of {known[name]} in the manifest"
+        f"tile {tile.number}: {name} is {value} instead of {known[name]} in the manifest"
         for name, value in found.items()
         if value != known[name]
     ]
 
 
 def _totals(manifest: dict[str, Any], sums: _Sums, corners: int) -> list[str]:
-    """What the manifest says of all tiles that they do not."""
+    """Compare the manifest's totals with the tiles."""
     boxes = np.array([tile["box"] for tile in manifest["tiles"]])
     found = {
         "points": sums.points,
@@ -193,14 +193,14 @@ def _totals(manifest: dict[str, Any], sums: _Sums, corners: int) -> list[str]:
     if manifest["run"]["classes"] is None:
         found["rows"] = sums.points + manifest["dropped"]
     return [
-        f"the manifest says {name} {manifest[name]} in place of {value}"
+        f"the manifest says {name} {manifest[name]} instead of {value}"
         for name, value in found.items()
         if value != manifest[name]
     ]
 
 
 def _owned_twice(tin: TileFolder, spans: dict[int, tuple[int, int]]) -> list[str]:
-    """Whether two points are the same row, looking at a window of all rows at a time."""
+    """Find rows that two tiles own, in one window of rows at a time."""
     faults = []
     last = max((high for _, high in spans.values()), default=-1)
     for start in range(0, last + 1, _WINDOW):
@@ -212,13 +212,13 @@ def _owned_twice(tin: TileFolder, spans: dict[int, tuple[int, int]]) -> list[str
             ids = ids[(ids >= 0) & (ids < len(seen))]
             if seen[ids].any():
                 row = start + int(ids[seen[ids]][0])
-                faults.append(f"row {row} is a point of tile {number} and of another one")
+                faults.append(f"row {row} is a point of tile {number} and of another tile")
             seen[ids] = True
     return faults
 
 
 def _inner(tile: Tile, owner: Numbers) -> list[str]:
-    """What can be seen in one tile: turns, owners, edges inside of it."""
+    """Check a single tile: orientation, owners, inner edges."""
     found = []
     points, simplices = tile.points, tile.simplices
     a, b, c = (np.ascontiguousarray(points[simplices[:, k]]) for k in range(3))
@@ -237,8 +237,8 @@ def _inner(tile: Tile, owner: Numbers) -> list[str]:
     t, k, beyond = t[once], k[once], beyond[once]
     u, v = simplices[t, (k + 1) % 3], simplices[t, (k + 2) % 3]
     other = simplices[beyond]
-    # One corner each: a triangle with a corner twice would have the edge in both senses, and so one
-    # of them as its neighbour has it, which makes no neighbours.
+    # One corner of each is enough: a triangle with a repeated corner would have the edge in both
+    # directions, one of them as its neighbor has it, which is not a valid neighborhood.
     q = other[(other != u[:, None]) & (other != v[:, None])]
     a, b, c, d = (np.ascontiguousarray(points[w]) for w in (u, v, simplices[t, k], q))
     wrong = np.flatnonzero(_core.incircle(a, b, c, d, True) > 0)
@@ -303,16 +303,16 @@ def _around(boundary: _Edges, faults: list[str]) -> tuple[int, int]:
         cycle.append(v)
         v = after[v]
     if v != start or len(cycle) != len(after):
-        faults.append("the boundary is no single cycle: there is a hole")
+        faults.append("the boundary is not a single cycle: there is a hole")
         return count, 0
     points = np.array([at[v] for v in cycle])
     ahead, beyond = np.roll(points, -1, axis=0), np.roll(points, -2, axis=0)
-    # One turn in all: x rises once and falls once.
+    # A total turn of 360 degrees: x increases once and decreases once.
     order = np.lexsort((np.arange(len(points)), points[:, 1], points[:, 0]))
     top = int(order[-1])
     rises = [tuple(p) < tuple(q) for p, q in zip(points, ahead, strict=True)]
     if rises != [i < top for i in range(len(points))]:
-        faults.append("the boundary turns more than once")
+        faults.append("the boundary winds more than once")
     turns = _core.orient2d(points, ahead, beyond)
     if (turns < 0).any():
         faults.append("the boundary is not convex")
@@ -332,7 +332,7 @@ def _copies(tin: TileFolder, foreign: _Vertices) -> list[str]:
         try:
             tile = read_tile(tin.store, tin.manifest, number)
         except FileFormatError:
-            # That has been said.
+            # Already reported.
             continue
         copies = foreign.at(foreign.owner == number)
         ids, points = tile.ids[tile.owned], tile.points[tile.owned]
@@ -344,6 +344,6 @@ def _copies(tin: TileFolder, foreign: _Vertices) -> list[str]:
         if wrong.any():
             k = np.flatnonzero(wrong)[0]
             faults.append(
-                f"vertex {copies.id[k]} of tile {copies.tile[k]} is not that of tile {number}"
+                f"vertex {copies.id[k]} of tile {copies.tile[k]} differs from that of tile {number}"
             )
     return faults

@@ -29,7 +29,7 @@ def dask_frame(tin: TileFolder, table: str) -> Any:
 
 
 def partition(number: int, folder: str, table: str) -> Any:
-    """Return what one tile has of a table, as a pandas data frame."""
+    """Return the part of a table in one tile, as a pandas data frame."""
     pandas = require("pandas", extra="dask", what="a Dask data frame")
     tile = TileFolder.at(folder).tile(number)
     if table == "triangles":
@@ -46,9 +46,9 @@ def write_geoparquet(tin: TileFolder, folder: str | os.PathLike[str]) -> None:
     shapely = require("shapely", extra="geo", what="writing GeoParquet")
     target = as_path(folder, name="folder")
     if target.exists():
-        raise InputError(f"{target} is there already: choose another folder")
+        raise InputError(f"{target} already exists: choose another folder")
     target.parent.mkdir(parents=True, exist_ok=True)
-    beside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
     try:
         for tile in tin.tiles():
             corners = tile.points[tile.simplices]
@@ -56,8 +56,8 @@ def write_geoparquet(tin: TileFolder, folder: str | os.PathLike[str]) -> None:
             ids = tile.ids[tile.simplices]
             columns = {name: ids[:, k] for k, name in enumerate("abc")}
             frame = geopandas.GeoDataFrame(columns, geometry=shapely.polygons(rings), crs=tin.crs)
-            frame.to_parquet(beside / f"tile={tile.number:06}.parquet")
-        beside.chmod(0o755)
-        os.replace(beside, target)
+            frame.to_parquet(temporary / f"tile={tile.number:06}.parquet")
+        temporary.chmod(0o755)
+        os.replace(temporary, target)
     finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        shutil.rmtree(temporary, ignore_errors=True)

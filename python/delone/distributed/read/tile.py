@@ -1,7 +1,7 @@
 """One tile in memory, read from its two files.
 
-Parquet tells names and types of its columns; that those are the ones of a tile is checked here, and
-that corners, numbers and coordinates are in their ranges. What tiles say together is for `proof`.
+Parquet declares the names and types of columns; this module checks that they are those of a tile,
+and that corners, numbers and coordinates are in range. `proof` checks consistency between tiles.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["Tile", "read_columns", "read_tile"]
 
 _WHAT = "reading tiles"
-# Columns that are not attributes, and the kinds of NumPy's types that they have.
+# Columns that are not attributes, with the kinds of their NumPy dtypes.
 _VERTICES = {"id": "iu", "x": "f", "y": "f", "owned": "b"}
 _TRIANGLES = dict.fromkeys("abc", "iu")
 
@@ -48,7 +48,7 @@ class Tile:
     ids : ndarray of int64, shape (n,)
         Their rows in the source.
     owned : ndarray of bool, shape (n,)
-        Which are own points.
+        Whether each is an own point.
     simplices : ndarray of int32, shape (m, 3)
         Its triangles as rows of `points`, counter-clockwise.
     attributes : dict of str to ndarray
@@ -73,18 +73,18 @@ class Tile:
     attributes: dict[str, NDArray[Any]]
 
     def locator(self) -> _core.Locator2:
-        """Return what finds the triangles that hold points."""
+        """Return the point location index of the triangles."""
         neighbors = _core.neighbors2(self.simplices, len(self.points))
         return _core.Locator2(self.points, self.simplices, neighbors)
 
 
 def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
-    """Read a tile, whatever the manifest says of its figures.
+    """Read a tile, without comparing its figures with the manifest.
 
     Raises
     ------
     FileFormatError
-        A file is lost or torn, lacks a column, or holds what no tile holds; it is named.
+        A file, which is named, is missing or truncated, lacks a column, or has invalid contents.
     """
     of_vertices, of_triangles = (store.path(name) for name in tile_names(number))
     names = [*(["z"] if manifest["heights"] else []), *manifest["attributes"]]
@@ -93,10 +93,10 @@ def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
     points = np.stack([vertices["x"], vertices["y"]], axis=1).astype(np.float64, copy=False)
     _require(np.isfinite(points), of_vertices, "x or y", "is not finite")
     ids = vertices["id"]
-    _require((ids >= 0) & (ids < manifest["rows"]), of_vertices, "id", "is no row of the source")
+    _require((ids >= 0) & (ids < manifest["rows"]), of_vertices, "id", "is not a row of the source")
     simplices = np.stack([triangles[name] for name in "abc"], axis=1)
     held = (simplices >= 0) & (simplices < len(points))
-    _require(held, of_triangles, "a, b or c", "is no row of the vertices")
+    _require(held, of_triangles, "a, b or c", "is not a row of the vertices")
     return Tile(
         number,
         points,
@@ -108,12 +108,12 @@ def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
 
 
 def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[str, NDArray[Any]]:
-    """Read columns of a Parquet file of the output, each of a kind that NumPy has a letter for.
+    """Read columns of a Parquet file of the output, each of a given NumPy kind.
 
     Raises
     ------
     FileFormatError
-        The file is lost or torn; a column is missing, of another kind or has gaps.
+        The file is missing or truncated; a column is missing, has another type or has gaps.
     """
     arrow = require("pyarrow", extra="dask", what=_WHAT)
     parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
@@ -126,21 +126,21 @@ def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[
             columns = {name: table[name].to_numpy() for name in wanted}
             gaps = [name for name in wanted if table[name].null_count]
     except FileNotFoundError:
-        raise FileFormatError(f"{path} is lost") from None
+        raise FileFormatError(f"{path} is missing") from None
     except (FileFormatError, PermissionError):
         raise
     except (OSError, ValueError, arrow.ArrowException) as error:
         reason = str(error).partition("\n")[0]
-        raise FileFormatError(f"{path} is torn: {reason}") from error
+        raise FileFormatError(f"{path} is truncated: {reason}") from error
     for name, kinds in wanted.items():
         if name in gaps or columns[name].dtype.kind not in kinds:
-            found = "has gaps" if name in gaps else f"holds {columns[name].dtype}"
-            raise FileFormatError(f"{path}: column {name!r} {found}, which no tile does")
+            found = "has gaps" if name in gaps else f"has dtype {columns[name].dtype}"
+            raise FileFormatError(f"{path}: column {name!r} {found}, which is invalid in a tile")
     return columns
 
 
 def _require(right: NDArray[np.bool_], path: Path, column: str, fault: str) -> None:
-    """Refuse a file by its first row that is not right."""
+    """Reject a file with the first row that is invalid."""
     if not right.all():
         rows = np.flatnonzero(~right.reshape(len(right), -1).all(axis=1))
         raise FileFormatError(f"{path}: {column} of row {rows[0]} {fault}")

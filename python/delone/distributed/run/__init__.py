@@ -1,1 +1,1 @@
-"""A run: the source in pieces, the tasks in their order, and who performs them."""
+"""A run: the pieces of the source, the order of the tasks, and the executors."""

@@ -1,4 +1,4 @@
-"""What a run costs: a model of few constants, each measured.
+"""Cost model of a run, with a few measured constants.
 
 The constants are those of ``benchmarks/tiles.py``; the page on planning in the guide shows
 how well they fit.
@@ -14,41 +14,41 @@ from delone.distributed.run.sources import PIECE
 
 __all__ = ["Plan", "estimate"]
 
-# Bytes of a worker that imports the package and pyarrow, and beyond that for each point of a tile
-# or of a piece.
+# Bytes of a worker process that imported the package and pyarrow, and additional bytes for each
+# point of a tile or of a piece.
 _BASE, _MEMORY, _PIECE = 150e6, 190.0, 80.0
-# Bytes on disk for each point: of a row as it waits, of two triangles as they wait, of the output.
+# Bytes on disk for each point: of a temporary row, of two temporary triangles, of the output.
 _ROW, _WAITING, _OUTPUT = 32.0, 24.0, 62.0
-# Seconds of one core for each point, without the reading of compressed files.
+# Seconds of one core for each point, without the decompression of files.
 _SECONDS = 1.2e-6
-# Questions are put in this many rounds.
+# Number of rounds of queries.
 _ROUNDS = 3
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a run will need.
+    """The estimated resources of a run.
 
     Parameters
     ----------
     points : int
-        Points of the source.
+        Number of points of the source.
     tiles : int
-        Tiles.
+        Number of tiles.
     pieces : int
-        Pieces in which the source is read.
+        Number of pieces in which the source is read.
     tasks : int
-        Tasks in all.
+        Total number of tasks.
     foreign : int
-        Points that a tile gets of other tiles.
+        Points that a tile receives from other tiles.
     worker_memory : int
-        Bytes for each worker.
+        Bytes per worker.
     disk : int
-        Bytes on disk while the run lasts.
+        Bytes on disk during the run.
     output : int
-        Bytes that stay.
+        Bytes on disk after the run.
     seconds : float
-        With all workers, without the decompression of the source.
+        Time with all workers, without the decompression of the source.
 
     Examples
     --------
@@ -70,7 +70,7 @@ class Plan:
 
 
 def estimate(points: int, tile_points: int, workers: int, attributes: int) -> Plan:
-    """Return what so many points will need; see `plan`."""
+    """Estimate the resources for a number of points; see `plan`."""
     tiles = max(1, math.ceil(points / tile_points))
     pieces = max(1, math.ceil(points / PIECE))
     size = points / tiles

@@ -1,8 +1,8 @@
 """Tasks on a Dask cluster (extra ``dask``): local processes, or machines that share a file system.
 
-Dask starts the workers, spreads the tasks and gives those of a worker that has died to others. What
-tasks exchange lies in the files of the run, so that a task can be done again by anybody, and the
-scheduler holds names and small summaries alone.
+Dask starts the workers, distributes the tasks and reassigns those of a worker that died. Tasks
+exchange data in the files of the run, so that any worker can repeat a task, and the scheduler holds
+only names and small summaries.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["DaskExecutor"]
 
-# Tasks that are handed out for each worker before one of them has come back.
+# Tasks submitted per worker before one of them returns.
 _AHEAD = 3
-# Seconds that a client may be without a scheduler, and between two looks at it.
+# Seconds that a client may be without a scheduler, and between two checks.
 _PATIENCE, _GLANCE = 5.0, 0.005
-# Seconds for tasks at work to end, when one has failed: those of large tiles take some.
+# Seconds to wait for running tasks after one has failed; those of large tiles take long.
 _LONGEST = 120.0
 
 
@@ -51,28 +51,28 @@ class DaskExecutor:
 
     @property
     def workers(self) -> int:
-        """How many tasks can be done at a time."""
+        """Number of concurrent tasks."""
         try:
             return max(1, sum(map(int, self.client.nthreads().values())))
         except AttributeError as error:
-            # What a client says that has lost its scheduler.
+            # The error of a client that lost its scheduler.
             raise ConnectionError("no answer") from error
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
-        """Do all tasks of a stage; those of workers that die are done again by others."""
+        """Perform all tasks of a stage; those of workers that die are repeated by others."""
         try:
             yield from self._run(root, stage, tasks)
         except self._distributed.KilledWorker as error:
             raise DeloneError(
-                f"a task of the stage {stage!r} has ended worker after worker: is there enough "
-                "memory for tiles of this size? What is done is kept; run the same again to go on"
+                f"a task of the stage {stage!r} killed worker after worker: is there enough "
+                "memory for tiles of this size? Finished work is kept; run the same again to resume"
             ) from error
         except self._lost() as error:
             raise DeloneError(
-                f"the Dask scheduler is gone ({type(error).__name__}); what is done is kept: run "
-                "the same again, with another client or executor, to go on"
+                f"the Dask scheduler is gone ({type(error).__name__}); finished work is kept: run "
+                "the same again, with another client or executor, to resume"
             ) from error
 
     def _run(
@@ -100,7 +100,7 @@ class DaskExecutor:
                 key, _ = keys.pop(future.key)
                 yield key, future.result()
         except DeloneError:
-            # What others are at is let end, so that nobody writes when the run is over.
+            # Wait for the other tasks, so that nothing is written after the run.
             with contextlib.suppress(*self._lost()):
                 others = [future for _, future in keys.values()]
                 self._distributed.wait(others, timeout=_LONGEST)
@@ -109,7 +109,7 @@ class DaskExecutor:
             waiting.clear()
 
     def _wait(self, waiting: Any) -> None:
-        """Wait until a task has come back, for as long as there is a scheduler."""
+        """Wait until a task returns, as long as there is a scheduler."""
         left = time.monotonic()
         while not waiting.has_ready():
             if self.client.status == "running":
@@ -119,7 +119,7 @@ class DaskExecutor:
             time.sleep(_GLANCE)
 
     def _submit(self, root: str, stage: str, key: int, arguments: Sequence[Any]) -> Any:
-        """Hand a task to the scheduler."""
+        """Submit a task to the scheduler."""
         if self.client.status != "running":
             raise ConnectionError(f"the client is {self.client.status}")
         return self.client.submit(perform, root, stage, key, arguments, pure=False)

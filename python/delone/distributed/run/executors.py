@@ -1,7 +1,7 @@
-"""Who does the tasks of a stage: this process, or others on this machine.
+"""Executors of the tasks of a stage: this process, or worker processes on this machine.
 
-An executor takes tasks by their keys and hands back summaries as they come. It hands out a few
-for each worker at a time, however many a stage has.
+An executor takes tasks by their keys and yields summaries as they are completed. It submits only a
+few tasks per worker at a time, however many a stage has.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 
 __all__ = ["Executor", "Processes", "Serial"]
 
-# How often a worker may die before it is taken for the tasks' fault.
+# Number of worker deaths after which the tasks are assumed to be the cause.
 _DEATHS = 3
 
 
 class Executor(Protocol):
-    """What does tasks."""
+    """The interface of an executor."""
 
     @property
     def workers(self) -> int:
-        """How many tasks can be done at a time."""
+        """Number of concurrent tasks."""
 
     @property
     def threads(self) -> int:
-        """How many threads a task may use."""
+        """Number of threads per task."""
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
-        """Do all tasks of a stage; hand back their summaries as they come."""
+        """Perform all tasks of a stage; yield their summaries as they are completed."""
 
 
 class Serial:
@@ -51,7 +51,7 @@ class Serial:
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
-        """Do all tasks of a stage."""
+        """Perform all tasks of a stage."""
         for key, arguments in tasks.items():
             yield key, perform(root, stage, key, arguments)
 
@@ -62,7 +62,7 @@ class Processes:
     Parameters
     ----------
     workers : int, optional
-        How many; by default one for each core.
+        Number of processes; by default one per core.
     """
 
     threads = 1
@@ -72,14 +72,14 @@ class Processes:
         self._idle: list[Worker] = []
 
     def close(self) -> None:
-        """End the processes."""
+        """Stop the processes."""
         while self._idle:
             self._idle.pop().close()
 
     def run(
         self, root: str, stage: str, tasks: Mapping[int, Sequence[Any]]
     ) -> Iterator[tuple[int, dict[str, Any]]]:
-        """Do all tasks of a stage; where a process dies, another one does its task again."""
+        """Perform all tasks of a stage; if a process dies, another one repeats its task."""
         queue, deaths = deque(tasks.items()), 0
         running: dict[Future[dict[str, Any]], tuple[int, Sequence[Any]]] = {}
         # Each of these waits for a process.
@@ -104,7 +104,7 @@ class Processes:
         if queue:
             raise DeloneError(
                 f"worker processes died {deaths} times in the stage {stage!r}: is there enough "
-                "memory for tiles of this size? What is done is kept; run the same again to go on"
+                "memory for tiles of this size? Finished work is kept; run the same again to resume"
             )
 
     def _perform(self, *task: Any) -> dict[str, Any]:

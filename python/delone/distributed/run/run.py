@@ -1,4 +1,4 @@
-"""A run from a source to tiles: the stages in their order, what is kept of an interrupted one."""
+"""A run from a source to tiles: the order of the stages, and resuming an interrupted run."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Progress", "Run"]
 
-# Sampled points of a tile, and of all tiles: 64 MB of coordinates.
+# Sampled points per tile, and in total: 64 MB of coordinates.
 _SAMPLE, _SAMPLES = 4096, 1 << 22
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is.
+    """Progress of a run.
 
     Parameters
     ----------
@@ -54,15 +54,15 @@ class Progress:
     done, total : int
         Tasks of the stage.
     tiles : int
-        How many tiles there are; 0 while that is not known.
+        Number of tiles; 0 until it is known.
     open : int
-        How many tiles still ask.
+        Number of tiles that still have queries.
     turn : int
-        The round of questions.
+        The round of queries.
     foreign : int
-        Points that tiles have been given of other tiles.
+        Points that tiles received from other tiles.
     memory : int
-        The greatest memory of a process, in bytes.
+        The peak memory of a process in bytes.
 
     Examples
     --------
@@ -96,17 +96,17 @@ class Run:
     store : Store
         The output.
     source : Source
-        What to triangulate.
+        The source to triangulate.
     choice : Choice
-        What is wanted of its files.
+        Which data to read from its files.
     tile_points : int
         Points in a tile.
     nan : str
         ``"raise"`` or ``"drop"``.
     executor : Executor
-        Who does the tasks.
+        Performs the tasks.
     tell : callable
-        Is told of progress.
+        Called with the progress.
     """
 
     store: Store
@@ -119,10 +119,10 @@ class Run:
     progress: Progress = field(default_factory=Progress)
 
     def go(self, resume: bool) -> None:
-        """Do all that is not done yet."""
+        """Perform all tasks that are not done yet."""
         self._refuse_others()
         if self.store.exists("manifest.json") and not self.store.exists("work"):
-            # Nothing is left to do, not even where nothing can be written.
+            # Nothing is left to do; this also works if nothing can be written.
             self._enter(resume)
             return
         with locked(self.store.root):
@@ -130,14 +130,14 @@ class Run:
             try:
                 self._go()
             except (InputError, FileFormatError):
-                # No call with these arguments gets further: nothing is kept for one.
+                # No run with these arguments can succeed, so nothing is kept.
                 if not self.store.exists("work/done/begin"):
                     self.store.remove("work")
                 raise
 
     def _go(self) -> None:
         if self.store.exists("manifest.json"):
-            # An earlier run was stopped after its last word.
+            # An earlier run was stopped before cleanup.
             self.store.remove("work")
             return
         looks = self._look()
@@ -146,7 +146,7 @@ class Run:
         dealt = self._stage("deal", self._pieces())
         slices, counts = collect(self.store, len(layout.tiles), sorted(dealt.items()))
         self._check_sizes(slices)
-        # What is dealt is not looked at again.
+        # Distributed points are not scanned again.
         self.store.remove("work/pieces")
         threads = self.executor.threads
         begun = self._stage("begin", {t: (runs, threads) for t, runs in enumerate(slices)})
@@ -170,20 +170,20 @@ class Run:
         self.store.remove("work")
 
     def _refuse_others(self) -> None:
-        """Refuse what is no folder of a run, before anything is written."""
+        """Reject anything but the folder of a run, before anything is written."""
         root = self.store.root
         if root.exists() and not root.is_dir():
-            raise InputError(f"{root} is there and is no folder")
+            raise InputError(f"{root} exists and is not a folder")
         if self.store.exists("manifest.json") or self.store.exists("work/run.json"):
             return
-        # A run that ended before its first word has left a lock and the beginning of that word.
+        # A run that stopped before its first note left a lock and a partial note.
         others = [p for p in root.glob("*") if p.name not in ("work", LOCK)]
         others += [p for p in root.glob("work/*") if not p.name.startswith(".run-")]
         if others:
-            raise InputError(f"{root} is there and holds something else: choose another output")
+            raise InputError(f"{root} exists and does not contain a run: choose another output")
 
     def _enter(self, resume: bool) -> None:
-        """Begin in an empty folder, or go on with the same run in its own."""
+        """Start in an empty folder, or resume the same run in its folder."""
         root = self.store.root
         settings = self._settings()
         if self.store.exists("manifest.json"):
@@ -194,16 +194,16 @@ class Run:
             self.store.remove("work")
             self.store.note("work/run.json", settings)
         elif not resume:
-            raise InputError(f"{root} holds a run already: remove it, or go on with resume=True")
+            raise InputError(f"{root} already contains a run: remove it, or use resume=True")
         elif before != json.loads(json.dumps(settings)):
             wrong = [name for name in settings if before.get(name) != settings[name]]
             raise InputError(
-                f"{root} holds a run of another kind ({', '.join(wrong)} differ); nothing is "
+                f"{root} contains a different run ({', '.join(wrong)} differ); runs are not "
                 "mixed: choose another output, or remove this one"
             )
 
     def _settings(self) -> dict[str, Any]:
-        """What makes two runs the same."""
+        """The settings that two runs must share to be the same."""
         choice = self.choice
         return json.loads(  # type: ignore[no-any-return]
             json.dumps(
@@ -220,7 +220,7 @@ class Run:
         )
 
     def _look(self) -> Summaries:
-        """Look at all pieces; an array is written down by this process."""
+        """Scan all pieces; an array is written to disk by this process."""
         pieces = self.source.pieces
         share = min(1.0, _SAMPLE * self._tiles() / max(self.source.count, 1))
         share = min(share, _SAMPLES / max(self.source.count, 1))
@@ -239,7 +239,7 @@ class Run:
             worst = [row for key in sorted(looks) for row in looks[key]["bad"]]
             raise NonFiniteError(
                 f"{bad} {agreed(bad, 'point has', 'points have')} NaN or infinity for x, y or "
-                f"height; nan='drop' leaves {agreed(bad, 'it', 'them')} out",
+                f"height; nan='drop' drops {agreed(bad, 'it', 'them')}",
                 rows=worst,
                 count=bad,
             )
@@ -275,16 +275,16 @@ class Run:
         return layout
 
     def _refuse_nothing(self, bad: int) -> None:
-        """Say why there are no points at all."""
+        """Raise an error that says why there are no points."""
         words = "there are no points"
         if self.choice.classes is not None:
             words += f" of class {' or '.join(map(str, self.choice.classes))}"
         if bad:
-            words += f" but {bad} with NaN or infinity, which are left out"
+            words += f" but {bad} with NaN or infinity, which are dropped"
         raise DegenerateInputError(words, reason="too few points", chain=[])
 
     def _check_sizes(self, slices: Sequence[Slices]) -> None:
-        """Refuse a tile whose vertices 32 bits cannot number: more equal points than that."""
+        """Reject a tile with too many points for 32-bit numbers, because of many equal points."""
         for tile, runs in enumerate(slices):
             size = sum(stop - start for part in runs for _, start, stop in part)
             if size > 1 << 28:
@@ -293,10 +293,10 @@ class Run:
                 )
 
     def _ask(self, begun: Summaries) -> tuple[int, int]:
-        """Rounds of questions and answers, until no tile asks; how many, and how many points.
+        """Run rounds of queries until no tile has any; return the numbers of rounds and points.
 
-        Each question is answered for good: its triangle is certain from then on, or a point more is
-        known. So there are no more rounds than points.
+        Each query is settled for good: either its triangle is certain from then on, or another
+        point is known. Therefore there are no more rounds than points.
         """
         asked = {key: s["asked"] for key, s in sorted(begun.items()) if s["asked"]}
         self._say(foreign=sum(s["foreign"] for s in begun.values()))
@@ -319,7 +319,7 @@ class Run:
         return turn, told
 
     def _stage(self, stage: str, tasks: Mapping[int, Sequence[Any]]) -> Summaries:
-        """Do the tasks of a stage that are not done yet; return all summaries."""
+        """Perform the tasks of a stage that are not done yet; return all summaries."""
         found: Summaries = {}
         for key in tasks:
             name = note_of(stage, key)

@@ -1,7 +1,7 @@
-"""Where points come from: arrays, LAS and LAZ, Parquet, npy, and whatever `delone.io` reads.
+"""Sources of points: arrays, LAS and LAZ, Parquet, npy, and any file that `delone.io` reads.
 
-A source is cut into pieces of about a million rows, by what files say of themselves, before any
-point is read. Rows are numbered through all files in their order.
+A source is split into pieces of about a million rows, based on the headers of files, before any
+point is read. Rows are numbered consecutively through all files.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 __all__ = ["PIECE", "Choice", "Piece", "Source", "find"]
 
-# Rows of a piece: its records are some 32 MB.
+# Rows of a piece: its records take about 32 MB.
 PIECE = 1 << 20
 _LAS = (".las", ".laz")
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What is wanted of each file; see `delone.io.read_points`."""
+    """Which data to read from each file; see `delone.io.read_points`."""
 
     columns: tuple[str | int, ...] | None = None
     classes: tuple[int, ...] | None = None
@@ -47,7 +47,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Piece:
-    """Some rows of a file, which had a size and a time when it was looked at."""
+    """A range of rows of a file, with the size and time of the file when it was scanned."""
 
     path: str
     kind: str
@@ -70,7 +70,7 @@ class Piece:
     def _check(self) -> None:
         path = Path(self.path)
         if not path.exists() or _stamp(path) != self.stamp:
-            raise FileFormatError(f"{path} has changed since it was looked at")
+            raise FileFormatError(f"{path} has changed since it was scanned")
 
     def _points(self, choice: Choice) -> PointSet:
         path = Path(self.path)
@@ -97,13 +97,13 @@ class Source:
     Parameters
     ----------
     pieces : tuple of Piece
-        In the order of rows.
+        The pieces, in the order of their rows.
     count : int
-        Rows, as files announce them.
+        Number of rows that the files declare.
     crs : str or None
         The reference system of all files.
     identity : dict
-        What must be the same for a run to go on: names, sizes and times of files, or a hash.
+        What must not change if a run is resumed: names, sizes and times of files, or a hash.
     array : ndarray of float64, optional
         The points themselves, with heights in a third column.
     """
@@ -116,12 +116,12 @@ class Source:
 
 
 def find(source: Given, choice: Choice) -> Source:
-    """Look at a source without reading its points.
+    """Examine a source without reading its points.
 
     Raises
     ------
     InputError
-        Nothing matches a pattern, a file is there twice, or reference systems differ.
+        Nothing matches a pattern, a file is repeated, or reference systems differ.
     FileFormatError, FileNotFoundError, MissingExtraError
         As for `delone.io.read_points`.
     """
@@ -136,7 +136,7 @@ def find(source: Given, choice: Choice) -> Source:
     for path in paths:
         if not path.exists():
             raise FileNotFoundError(f"{path}: no such file")
-        # Before the look: what changes during it is found later.
+        # Before the scan, so that changes during it are detected later.
         stamp = _stamp(path)
         files.append([os.path.abspath(path), *stamp])
         kind, rows, crs, heights = _look(path, choice)
@@ -150,7 +150,7 @@ def find(source: Given, choice: Choice) -> Source:
         (one, first), (other, second), *_ = systems.items()
         raise InputError(
             f"mixed reference systems: {first} has {one or 'none'}, {second} has "
-            f"{other or 'none'}; bring all files into one"
+            f"{other or 'none'}; transform all files to one system"
         )
     if len(flat) > 1:
         raise InputError(f"{flat[True]} has heights and {flat[False]} has none: choose columns")
@@ -158,13 +158,13 @@ def find(source: Given, choice: Choice) -> Source:
 
 
 def _stamp(path: Path) -> tuple[int, int]:
-    """Size and time of a file."""
+    """Size and modification time of a file."""
     stat = path.stat()
     return stat.st_size, stat.st_mtime_ns
 
 
 def _paths(source: Given) -> list[Path] | None:
-    """Files in their order; None where the source is no file."""
+    """Files in order; None if the source is not made of files."""
     if isinstance(source, str | os.PathLike):
         found = _matching(source)
     elif isinstance(source, list | tuple) and source:
@@ -177,7 +177,7 @@ def _paths(source: Given) -> list[Path] | None:
     for path in found:
         name = os.path.realpath(path)
         if name in seen:
-            raise InputError(f"{path} is in the source twice")
+            raise InputError(f"{path} occurs twice in the source")
         seen.add(name)
     return found
 
@@ -187,7 +187,9 @@ def _matching(part: str | os.PathLike[str]) -> list[Path]:
     if path.is_dir():
         found = sorted(p for p in path.rglob("*.parquet") if not p.name.startswith((".", "_")))
         if not found:
-            raise InputError(f"{path} holds no Parquet files; name files of other kinds by a glob")
+            raise InputError(
+                f"{path} contains no Parquet files; use a glob for files of other formats"
+            )
         return found
     if glob.has_magic(str(path)) and not path.exists():
         found = sorted(Path(name) for name in glob.glob(str(path), recursive=True))
@@ -201,12 +203,12 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
     """Kind, rows and reference system of a file, and whether it has heights."""
     suffix = path.suffix.lower()
     if not path.is_file():
-        raise FileFormatError(f"{path} is a pipe or device; write what it gives to a file first")
+        raise FileFormatError(f"{path} is a pipe or device; write its contents to a file first")
     if path.stat().st_size == 0:
         raise FileFormatError(f"{path} is empty")
     if suffix in _LAS:
         if choice.columns is not None:
-            raise FileFormatError(f"{path}: coordinates in LAS files are x, y and z")
+            raise FileFormatError(f"{path}: LAS files always have the coordinates x, y and z")
         return "las", *las.look(path, attributes=choice.attributes), True
     if choice.classes is not None:
         raise FileFormatError(f"{path}: only LAS and LAZ files have classes")
@@ -220,7 +222,7 @@ def _look(path: Path, choice: Choice) -> tuple[str, int, str | None, bool]:
 
 
 def _mappable(path: Path, choice: Choice) -> tuple[int, int] | None:
-    """The shape of an array of which parts can be read; None where there is more to it, or less."""
+    """The shape of an array that can be read in parts; None if it is not a plain table."""
     if choice.columns is not None or choice.attributes:
         return None
     try:
@@ -246,12 +248,14 @@ def _of_array(source: Any, choice: Choice) -> Source:
 
 
 def _number(found: PointSet, name: str) -> NDArray[Any]:
-    """An attribute, whose values must be numbers: records are of fixed size."""
+    """An attribute, whose values must be numbers, because records have a fixed size."""
     names = [other for other in found.attributes if other.casefold() == name.casefold()]
     if name not in found.attributes and len(names) != 1:
-        raise FileFormatError(f"{found.source} has no column {name!r}; attributes go by name")
+        raise FileFormatError(
+            f"{found.source} has no column {name!r}; attributes are given by name"
+        )
     values = np.asarray(found.attributes[name if name in found.attributes else names[0]])
     if values.dtype.kind not in "biuf" or values.ndim != 1:
-        what = f"{values.dtype}, several a row" if values.ndim > 1 else values.dtype
-        raise FileFormatError(f"{found.source}: {name!r} holds no single numbers ({what})")
+        what = f"{values.dtype}, several per row" if values.ndim > 1 else values.dtype
+        raise FileFormatError(f"{found.source}: {name!r} is not one number per row ({what})")
     return values

@@ -1,9 +1,9 @@
 """The tasks of a run.
 
-Each reads files of earlier ones and writes its own; the summary that it returns is small, and noted
-last: a task that has its note is done.
+Each task reads files of earlier ones and writes its own. Its summary is small and stored in a note,
+which is written last: a task with a note is done.
 
-Every task may be done again, by whom ever, at any time, and writes the same.
+Every task is idempotent: any worker may repeat it at any time, and it writes the same files.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST", "TASKS", "note_of", "perform"]
 
-# Points that a tile tells of each circle. One makes rounds, many are sent in vain.
+# Points that a tile returns per circle: one makes more rounds, many are sent in vain.
 MOST = 16
 
 
 def note_of(stage: str, key: int) -> str:
-    """Return the name of the note that a task leaves."""
+    """Return the name of the note of a task."""
     return f"work/done/{stage}/{key:06}.json"
 
 
 def perform(root: str, stage: str, key: int, arguments: Sequence[Any]) -> Summary:
-    """Do a task, unless its note is there, and return its summary."""
+    """Perform a task, unless its note exists, and return its summary."""
     store = Store(root)
     found: Summary | None = store.noted(note_of(stage, key))
     if found is None:
@@ -56,9 +56,9 @@ def perform(root: str, stage: str, key: int, arguments: Sequence[Any]) -> Summar
 
 
 def look(store: Store, key: int, piece: Piece, choice: Choice, share: float) -> Summary:
-    """Look at a piece: its box, its extreme points, a sample, rows that are not finite.
+    """Scan a piece: its box, its extreme points, a sample, rows that are not finite.
 
-    What is slow to read is written down for the next look.
+    Data that are slow to read are stored for the next stage.
     """
     staged = f"work/pieces/{key:06}.npy"
     rows = store.load(staged) if piece.kind == "array" else piece.read(choice)
@@ -82,7 +82,7 @@ def _finite(rows: Any) -> tuple[Any, Any]:
 
 
 def deal(store: Store, key: int, piece: Piece, choice: Choice) -> Summary:
-    """Deal the points of a piece to the tiles; see `scatter`."""
+    """Distribute the points of a piece to the tiles; see `scatter`."""
     layout = load_layout(store)
     staged = f"work/pieces/{key:06}.npy"
     rows = piece.read(choice) if piece.kind == "npy" else store.load(staged)
@@ -93,7 +93,7 @@ def deal(store: Store, key: int, piece: Piece, choice: Choice) -> Summary:
 
 
 def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
-    """Triangulate what a tile knows; keep what is certain, and ask about the rest."""
+    """Triangulate the points that a tile knows; keep the certain triangles, query the rest."""
     layout = load_layout(store)
     known = known_to(store, layout, key)
     rows, own = gather(store, slices, layout, key)
@@ -102,19 +102,19 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
     simplices, neighbors, twins = made.simplices, made.neighbors, made.duplicates
     owner = np.full(len(rows), key, dtype=np.int32)
     owner[own:] = layout.tiles.locate(points[own:])
-    # Nearly all triangles are certain and have own corners alone; what follows looks at the rest.
+    # Nearly all triangles are certain and have only own corners; the following is for the rest.
     certain = known.certain(points, simplices, own, threads=threads)
     rest = np.flatnonzero(~certain)
     some = simplices.take(rest, axis=0)
     triangle, tile = known.questions(points, simplices, rest[(some < own).any(axis=1)])
     certain[rest] = (some < own).any(axis=1)
     certain[triangle] = False
-    # Who may be in conflict with a triangle of another tile: vertices that are not closed, and
-    # neighbours of points of others.
+    # Vertices that may be in conflict with a triangle of another tile: those that are not closed,
+    # and neighbors of points of other tiles.
     told = np.zeros(len(rows), dtype=bool)
     told[some[(some >= own).any(axis=1)]] = told[simplices[triangle]] = True
     store.save(f"work/told/{key:06}.npy", rows.take(np.flatnonzero(told[:own])))
-    # Without foreign corners a triangle is the tile's.
+    # A triangle without foreign corners belongs to the tile.
     mine = certain.copy()
     mine[rest] &= belongs(some, owner, key)
     written = simplices.take(np.flatnonzero(mine), axis=0)
@@ -124,7 +124,7 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
         kept = np.empty((0, 3), dtype=np.uint64)
         _ask(store, 0, key, border, corners_of(points, simplices[triangle]), tile, kept, rows[:0])
     else:
-        # Who asks nobody is finished.
+        # A tile without queries is finished.
         del points, simplices, neighbors
         summary = write_tile(store, key, rows, own, written, None, threads)
         store.note(note_of("finish", key), summary | {"memory": peak_memory()})
@@ -136,7 +136,7 @@ def begin(store: Store, key: int, slices: Slices, threads: int) -> Summary:
 
 
 def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
-    """Answer what other tiles have asked a tile in a round."""
+    """Answer the queries of other tiles to a tile in a round."""
     told = store.load(f"work/told/{key:06}.npy")
     points = coordinates(told)
     numbers, is_all = [], []
@@ -157,20 +157,20 @@ def answer(store: Store, key: int, turn: int, askers: Sequence[int]) -> Summary:
 
 
 def proceed(store: Store, key: int, turn: int, asked: Sequence[int]) -> Summary:
-    """Take in the answers of a round, and ask about what is new."""
+    """Insert the answers of a round, and query about new triangles."""
     layout = load_layout(store)
     found = store.load_all(f"work/border/{turn:04}/{key:06}.npz")
     border = Border(found["rows"], found["owner"], found["edges"])
-    news, secretive = [], []
+    news, partial = [], []
     for tile in asked:
         told = store.load_all(f"work/answers/{turn:04}/{tile:06}.npz")
         place = int(np.flatnonzero(told["askers"] == key)[0])
         news.append(told["rows"][slice(*told["ends"][place : place + 2])])
         if not told["all"][place]:
-            secretive.append(tile)
+            partial.append(tile)
     known = known_to(store, layout, key)
     fresh = np.concatenate(news)
-    left, rows, certain, corners, tiles = advance(border, known, fresh, secretive)
+    left, rows, certain, corners, tiles = advance(border, known, fresh, partial)
     owner = known.tiles.locate(coordinates(rows))
     mine = certain[belongs(certain, owner, key)]
     kept = np.concatenate([found["kept"], rows["id"][mine]])
@@ -192,7 +192,7 @@ def _ask(  # noqa: PLR0917
     kept: Any,
     seen: Any,
 ) -> None:
-    """Write down a border and the questions about it."""
+    """Store a border and the queries about it."""
     arrays = {
         "rows": border.rows,
         "owner": border.owner,
@@ -206,7 +206,7 @@ def _ask(  # noqa: PLR0917
 
 
 def finish(store: Store, key: int, slices: Slices, threads: int) -> Summary:
-    """Write the vertices and triangles of a tile that has asked others."""
+    """Write the vertices and triangles of a tile that queried others."""
     layout = load_layout(store)
     rows, own = gather(store, slices, layout, key)
     certain = store.load(f"work/certain/{key:06}.npy")

@@ -1,4 +1,4 @@
-"""How much memory a process has needed at most."""
+"""Peak memory of a process."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ __all__ = ["peak_memory"]
 
 
 def peak_memory() -> int:
-    """Return the greatest resident memory of this process so far, in bytes.
+    """Return the peak resident memory of this process in bytes.
 
-    It is 0 where the system does not tell.
+    It is 0 if the system does not report it.
     """
     try:
-        # On Linux `getrusage` begins with the memory of the process that started this one.
+        # On Linux `getrusage` starts with the memory of the parent process.
         for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
             if line.startswith("VmHWM:"):
                 return 1024 * int(line.split()[1])

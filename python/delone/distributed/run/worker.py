@@ -1,8 +1,8 @@
-"""A worker process: takes tasks from its standard input until that ends, and hands back summaries.
+"""A worker process: reads tasks from its standard input until it ends, and returns summaries.
 
-It is a fresh interpreter, as a fork of one that has threads may never wake up, and knows nothing of
-the program that started it: that need not guard its main module. When that program ends, however it
-does, so does the input.
+It is a fresh interpreter, because a fork of a process with threads may deadlock. It knows nothing
+of the program that started it, so that program need not guard its main module. When that program
+ends, however it does, so does the input.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _BEGIN = (
 
 
 class WorkerDiedError(Exception):
-    """The process has ended in a task."""
+    """The process died during a task."""
 
 
 class Worker:
-    """A process that waits for tasks."""
+    """A process that performs tasks."""
 
     def __init__(self) -> None:
         # Not from the working folder (-P): a file there may have the name of a module.
@@ -40,7 +40,7 @@ class Worker:
         pickle.dump(sys.path, self._tasks)
 
     def perform(self, *task: Any) -> Any:
-        """Let it do a task; raise what the task raises."""
+        """Perform a task in the process; raise its exception."""
         try:
             pickle.dump(task, self._tasks)
             self._tasks.flush()
@@ -52,8 +52,8 @@ class Worker:
         raise found
 
     def close(self) -> None:
-        """Let it end after its task, and wait for that."""
-        # Who has ended has left the rest of a task unread.
+        """Stop the process after its task, and wait for it."""
+        # A process that died left the rest of a task unread.
         with contextlib.suppress(OSError):
             self._tasks.close()
         self._process.wait()
@@ -61,9 +61,9 @@ class Worker:
 
 
 def serve() -> None:
-    """Do what comes."""
+    """Perform tasks until the input ends."""
     tasks, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    # Whatever a library prints is no answer.
+    # Output that a library prints must not mix with the answers.
     os.dup2(2, 1)
     try:
         while True:
@@ -74,7 +74,7 @@ def serve() -> None:
             answers.write(_answer(task))
             answers.flush()
     except (KeyboardInterrupt, BrokenPipeError):
-        # Whoever started this is told as well, or gone.
+        # The parent process is interrupted as well, or gone.
         os._exit(1)
 
 

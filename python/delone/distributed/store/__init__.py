@@ -1,1 +1,1 @@
-"""The folder of a run: files that appear whole, one run at a time, and what they must hold."""
+"""The folder of a run: atomic files, a lock, and the schema of their contents."""

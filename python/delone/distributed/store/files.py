@@ -1,7 +1,7 @@
-"""Files of a run: each appears whole or not at all, and a note tells which task is done.
+"""Files of a run: writes are atomic, and notes record which tasks are done.
 
-Every change of the file system is one step of `Store`; between any two of them a run may end, by
-whatever cause, and another one goes on from there. Data come first, the note of a task last.
+Every change of the file system is one step of `Store`. A run may be stopped between any two steps,
+for any reason, and another one resumes it. Data are written first, the note of a task last.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ __all__ = ["Store", "digest", "step"]
 
 
 def step(what: str) -> None:
-    """Stand between two changes of the file system; tests stop a run here."""
+    """Mark a point between two changes of the file system; tests stop a run here."""
 
 
 @contextmanager
 def _explained(path: Path) -> Iterator[None]:
-    """Say of a full disk what to do about it."""
+    """Explain what to do about a full disk."""
     try:
         yield
     except OSError as error:
@@ -44,24 +44,24 @@ def _explained(path: Path) -> Iterator[None]:
             raise
         raise OutputError(
             error.errno,
-            "the disk is full; make room and run the same again: it goes on where it stopped",
+            "the disk is full; make room and run the same again: it resumes where it stopped",
             str(path),
         ) from error
 
 
 @contextmanager
-def _torn_is_an_error(path: Path) -> Iterator[None]:
-    """Call an array that cannot be read a fault of its file."""
+def _corrupt_is_an_error(path: Path) -> Iterator[None]:
+    """Convert errors of reading an array to `FileFormatError`."""
     try:
         yield
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise FileFormatError(
-            f"{path} is torn: {error}; remove the folder of the output and begin again"
+            f"{path} is truncated: {error}; remove the output folder and start again"
         ) from error
 
 
 class Store:
-    """A folder of files that are written at once.
+    """A folder of files that are written atomically.
 
     Parameters
     ----------
@@ -77,73 +77,73 @@ class Store:
         return self.root / name
 
     def exists(self, name: str) -> bool:
-        """Tell whether a file is there."""
+        """Return whether a file exists."""
         return self.path(name).exists()
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """Give a temporary name beside a file, which becomes the file at the end."""
+        """Yield a temporary name next to a file, which is renamed to it at the end."""
         target = self.path(name)
         with _explained(target):
             step(f"before the folder of {name}")
             target.parent.mkdir(parents=True, exist_ok=True)
             step(f"before {name}")
-            # No look at the folder, which may have a million files.
-            beside = target.with_name(f".{target.stem}-{secrets.token_hex(6)}{target.suffix}")
+            # Without listing the folder, which may have a million files.
+            temporary = target.with_name(f".{target.stem}-{secrets.token_hex(6)}{target.suffix}")
             try:
-                yield beside
+                yield temporary
                 step(f"before the renaming of {name}")
-                os.replace(beside, target)
+                os.replace(temporary, target)
             finally:
-                beside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
             step(f"after {name}")
 
     def save(self, name: str, array: NDArray[Any]) -> None:
         """Write one array."""
-        with self.writing(name) as beside, beside.open("wb") as file:
+        with self.writing(name) as temporary, temporary.open("wb") as file:
             _write_array(file, array)
 
     def load(self, name: str, *, mapped: bool = False) -> NDArray[Any]:
-        """Read one array, or map it."""
-        with _torn_is_an_error(self.path(name)):
+        """Read one array, or map it into memory."""
+        with _corrupt_is_an_error(self.path(name)):
             array: NDArray[Any] = np.load(self.path(name), mmap_mode="r" if mapped else None)
         return array
 
     def save_all(self, name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write arrays by name."""
-        with self.writing(name) as beside, beside.open("wb") as file:
+        with self.writing(name) as temporary, temporary.open("wb") as file:
             np.savez(file, allow_pickle=False, **arrays)
 
     def load_all(self, name: str, *wanted: str) -> dict[str, NDArray[Any]]:
         """Read arrays by name: some, or all."""
-        with _torn_is_an_error(self.path(name)), np.load(self.path(name)) as found:
+        with _corrupt_is_an_error(self.path(name)), np.load(self.path(name)) as found:
             return {key: found[key] for key in wanted or found.files}
 
     def note(self, name: str, content: Mapping[str, Any]) -> None:
-        """Write what JSON can say."""
-        with self.writing(name) as beside:
-            beside.write_text(json.dumps(content, indent=1), encoding="utf-8")
+        """Write a JSON note."""
+        with self.writing(name) as temporary:
+            temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
 
     def noted(self, name: str) -> Any:
-        """Read a note; None where there is none."""
+        """Read a note; None if there is none."""
         try:
             found = json.loads(self.path(name).read_text(encoding="utf-8"))
         except FileNotFoundError:
             return None
         except (ValueError, RecursionError) as error:
-            raise FileFormatError(f"{self.path(name)} is torn: {error}") from error
+            raise FileFormatError(f"{self.path(name)} is truncated: {error}") from error
         if found is None:
-            raise FileFormatError(f"{self.path(name)} is torn: it says null")
+            raise FileFormatError(f"{self.path(name)} is corrupt: it contains null")
         return found
 
     def sweep(self, pattern: str) -> None:
-        """Remove what killed processes have left beside files."""
+        """Remove temporary files of killed processes."""
         step(f"before the sweep of {pattern}")
         for left in self.root.glob(pattern):
             left.unlink(missing_ok=True)
 
     def remove(self, name: str) -> None:
-        """Remove a folder with all that is in it, if it is there."""
+        """Remove a folder and its contents, if it exists."""
         step(f"before the removal of {name}")
         if self.exists(name):
             shutil.rmtree(self.path(name))
@@ -151,7 +151,7 @@ class Store:
 
 
 def _write_array(file: Any, array: NDArray[Any]) -> None:
-    """Write an array as npy by plain writes, whose errors say what is wrong."""
+    """Write an array as npy with plain writes, whose errors are informative."""
     array = np.ascontiguousarray(array)
     np.lib.format.write_array_header_2_0(file, np.lib.format.header_data_from_array_1_0(array))
     if array.nbytes:

@@ -1,4 +1,4 @@
-"""The layout of a run on disk, the extents of its tiles, and the rows that a tile starts from."""
+"""The layout of a run on disk, the extents of its tiles, and the initial rows of a tile."""
 
 from __future__ import annotations
 
@@ -50,16 +50,16 @@ def load_layout(store: Store) -> Layout:
 
 
 def known_to(store: Store, layout: Layout, tile: int) -> Known:
-    """Return what a tile knows of the others."""
+    """Return what a tile knows about the other tiles."""
     return Known(tile, layout.strips[tile], layout.tiles, store.load(_EXTENTS))
 
 
 def collect(
     store: Store, tiles: int, dealt: Iterable[tuple[int, dict[str, Any]]]
 ) -> tuple[list[Slices], NDArray[np.int64]]:
-    """Turn what pieces say of tiles round: the runs of each tile, and how many points it has.
+    """Regroup the summaries of pieces by tile: the runs of each tile, and its number of points.
 
-    The boxes of the points of all tiles, but for corners of the hull, are written down on the way.
+    The boxes of the points of all tiles, without corners of the hull, are stored as well.
     """
     slices: list[Slices] = [([], []) for _ in range(tiles)]
     counts = np.zeros(tiles, dtype=np.int64)
@@ -80,10 +80,10 @@ def collect(
 
 
 def gather(store: Store, slices: Slices, layout: Layout, tile: int) -> tuple[Rows, int]:
-    """Return what a tile knows at first, its own rows in front, and how many these are.
+    """Return the initial rows of a tile, its own first, and the number of its own.
 
-    Own rows come in the order of the source, then halo and hull in theirs: whichever row of equal
-    coordinates comes first is the first of the source.
+    Own rows are in the order of the source, then halo and hull in theirs: of rows with equal
+    coordinates, the first is the first of the source.
     """
     own, halo = slices
     hull = layout.hull
@@ -92,7 +92,7 @@ def gather(store: Store, slices: Slices, layout: Layout, tile: int) -> tuple[Row
     count = sum(stop - start for _, start, stop in own)
     rows = np.empty(count + len(beside), dtype=layout.type)
     end = 0
-    # One file at a time is mapped: its pages count as memory.
+    # One file at a time is mapped, because its pages count as memory.
     for run in own:
         some = _run(store, *run)
         rows[end : end + len(some)] = some

@@ -1,7 +1,7 @@
-"""One run at a time in an output: a lock that the system takes from a process when it ends.
+"""A lock for one run at a time in an output; the system releases it when a process ends.
 
-The file says who has it. As the system holds the lock, none is left by a killed process, whatever
-stands in the file, and two runs that find such a file cannot both take it.
+The file says who holds it. As the system holds the lock, a killed process leaves none, whatever the
+file contains, and two runs that find such a file cannot both acquire it.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ LOCK = "delone.lock"
 
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
-    """Have a folder, which is made if need be, for oneself.
+    """Lock a folder, which is created if necessary.
 
     Raises
     ------
     BusyError
-        Another run is at work there.
+        Another run is using the folder.
     """
     made = not root.exists()
     path = root / LOCK
@@ -45,27 +45,27 @@ def locked(root: Path) -> Iterator[None]:
         file.flush()
         yield
     finally:
-        # Removed while it is held: who waits for this file sees that it is not there any more.
+        # Removed while the lock is held, so that waiting processes see that it is gone.
         path.unlink(missing_ok=True)
         file.close()
         if made:
-            # Nothing has come of it, if it is empty still.
+            # Remove the folder if it is still empty.
             with contextlib.suppress(OSError):
                 root.rmdir()
 
 
 def _taken(path: Path) -> IO[str]:
-    """Make the folder, open the file and lock it."""
+    """Create the folder, open the file and lock it."""
     while True:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             file = path.open("a+", encoding="utf-8")
         except FileNotFoundError:
-            # Whoever made the folder has just removed it.
+            # The process that created the folder just removed it.
             continue
         try:
             _lock(file)
-            # Between opening and locking, the run that had it may have ended and removed it.
+            # Between opening and locking, the run that held the lock may have removed the file.
             if os.path.samestat(os.fstat(file.fileno()), path.stat()):
                 return file
         except BlockingIOError:
@@ -94,26 +94,26 @@ def _lock(file: IO[str]) -> None:
             raise
         except OSError:
             warnings.warn(
-                f"{file.name}: the file system has no locks; see to it that no other run is at "
-                "work in this output",
+                f"{file.name}: the file system has no locks; make sure that no other run is "
+                "using this output",
                 RuntimeWarning,
                 stacklevel=2,
             )
 
 
 def _busy(path: Path, file: IO[str]) -> BusyError:
-    """Say who has a lock."""
+    """Return the error that says who holds a lock."""
     file.seek(0)
     try:
         owner = json.load(file)
         pid, host = int(owner["pid"]), str(owner["host"])
     except (ValueError, KeyError, TypeError):
-        # It has only just been taken.
+        # It was acquired just now.
         pid, host = 0, ""
     file.close()
     who = f"process {pid} on {host}" if host else "another process"
     return BusyError(
-        f"{path.parent} is being written by {who}: wait for it, or end it and run the same again",
+        f"{path.parent} is being written by {who}: wait for it, or stop it and run the same again",
         pid=pid,
         host=host,
     )

@@ -1,4 +1,4 @@
-"""The manifest: what a finished output holds. It is written last; without it there is no output."""
+"""The manifest of a finished output. It is written last; without it there is no output."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def assemble(
     figures: Mapping[str, int],
     finished: Mapping[int, Mapping[str, Any]],
 ) -> dict[str, Any]:
-    """Return the manifest of tiles that are all written."""
+    """Return the manifest of tiles that have all been written."""
     boxes = [finished[tile]["box"] for tile in sorted(finished)]
     tiles = []
     for tile in sorted(finished):
@@ -56,7 +56,7 @@ def assemble(
     }
 
 
-# What summaries say of a task, not of a tile.
+# Fields of summaries about the task, not the tile.
 _PASSING = ("seconds", "memory")
 
 
@@ -68,7 +68,7 @@ def manifest_of(store: Store) -> dict[str, Any]:
     FileNotFoundError
         There is no output, or it is not finished.
     FileFormatError
-        The manifest is torn, of another kind, or wrong in some field.
+        The manifest is truncated, of another kind, or has a wrong field.
     """
     found = store.noted("manifest.json")
     if found is None:
@@ -76,7 +76,7 @@ def manifest_of(store: Store) -> dict[str, Any]:
             raise FileNotFoundError(
                 f"{store.root} is not finished: run triangulate again with the same arguments"
             )
-        raise FileNotFoundError(f"{store.root} holds no triangulation in tiles")
+        raise FileNotFoundError(f"{store.root} does not contain a tiled triangulation")
     check_manifest(found, store.path("manifest.json"))
     manifest: dict[str, Any] = found
     return manifest

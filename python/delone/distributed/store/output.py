@@ -1,4 +1,4 @@
-"""The files of a tile: its vertices and its triangles, as Parquet by pyarrow (extra ``dask``)."""
+"""The files of a tile: its vertices and its triangles, as Parquet with pyarrow (extra ``dask``)."""
 
 from __future__ import annotations
 
@@ -39,25 +39,25 @@ def write_tile(  # noqa: PLR0917
     late: dict[str, NDArray[Any]] | None,
     threads: int,
 ) -> dict[str, Any]:
-    """Write what has become certain of a tile.
+    """Write the certain triangles of a tile.
 
     Parameters
     ----------
     store : Store
-        Where.
+        The output.
     tile : int
         The number of the tile.
     rows : ndarray of records
-        What the tile knew at first, its own rows in front.
+        The initial rows of the tile, its own first.
     own : int
-        How many these are.
+        Number of own rows.
     certain : ndarray of int32, shape (m, 3)
-        Triangles of the first round, as positions in `rows`; spoiled.
+        Triangles of the first round, as positions in `rows`; overwritten.
     late : dict or None
         Triangles of later rounds, ``kept``, as numbers in the source, and the ``seen`` rows of
         their vertices.
     threads : int
-        How many threads may write.
+        Number of threads.
     """
     vertices, triangles = _joined(rows, own, certain, late)
     points = coordinates(vertices)
@@ -71,7 +71,7 @@ def write_tile(  # noqa: PLR0917
         "points": own,
         "foreign": len(vertices) - own,
         "triangles": len(triangles),
-        # The vertices of triangles may lie far out of the box of the tile's points.
+        # Vertices of triangles may lie far outside the box of the points of the tile.
         "box": box_of(points[:own]),
         "extent": box_of(points) if len(triangles) else None,
         "vertices_sha256": vertices_hash,
@@ -84,7 +84,7 @@ def _joined(
 ) -> tuple[Rows, Indices]:
     """All vertices, own rows first, foreign ones in the order of the source; all triangles."""
     used = np.zeros(len(rows), dtype=bool)
-    # Corners of other tiles are few, and own ones stay where they are.
+    # Corners of other tiles are few, and own ones keep their positions.
     corners = certain.reshape(-1)
     other = np.flatnonzero(corners >= own)
     used[corners[other]] = True
@@ -101,16 +101,16 @@ def _joined(
 
 
 def _numbered(ids: NDArray[np.uint64], known: NDArray[np.uint64], own: int) -> Indices:
-    """The positions of numbers among known ones, which ascend up to `own` and again from there."""
+    """The positions of numbers among known ones, which ascend up to `own` and again after it."""
     mine = _places(known[:own], ids)
     found: Indices = np.where(mine >= 0, mine, own + np.searchsorted(known[own:], ids))
     return found.astype(np.int32)
 
 
 def _places(known: NDArray[np.uint64], ids: NDArray[np.uint64]) -> NDArray[np.int64]:
-    """The positions of numbers among known ones, which ascend; -1 of those that are not there.
+    """The positions of numbers among known ones, which ascend; -1 for missing ones.
 
-    Looked up, not sorted or hashed: numbers are few, and known are all points of a tile.
+    Binary search, not sorting or hashing: few numbers are looked up among all of a tile.
     """
     at = np.searchsorted(known, ids)
     return np.where(known[np.minimum(at, len(known) - 1)] == ids, at, -1)
@@ -127,16 +127,16 @@ def _write_table(store: Store, name: str, columns: dict[str, NDArray[Any]]) -> s
     arrow = require("pyarrow", extra="dask", what=_WHAT)
     parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
     table = arrow.table({name: _as_arrow(arrow, column) for name, column in columns.items()})
-    with store.writing(name) as beside:
-        # Coordinates and numbers hardly ever come again: a dictionary of them is lost work.
+    with store.writing(name) as temporary:
+        # Coordinates and numbers rarely repeat, so dictionary encoding would be useless.
         parquet.write_table(
-            table, beside, use_dictionary=False, compression="lz4", row_group_size=1 << 20
+            table, temporary, use_dictionary=False, compression="lz4", row_group_size=1 << 20
         )
     return digest(store.path(name))
 
 
 def _as_arrow(arrow: Any, column: NDArray[Any]) -> Any:
-    """A column in place: `arrow.array` would import pandas, which takes longer than a tile."""
+    """Wrap a column in place: `arrow.array` would import pandas, which takes longer than a tile."""
     kind = arrow.from_numpy_dtype(column.dtype)
     bits = np.packbits(column, bitorder="little") if column.dtype == bool else column
     return arrow.Array.from_buffers(kind, len(column), [None, arrow.py_buffer(bits)])

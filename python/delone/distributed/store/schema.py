@@ -1,8 +1,8 @@
-"""What a manifest and the notes of a run must hold, field by field.
+"""Schema of the manifest and the notes of a run, field by field.
 
-JSON that is whole may still say anything: somebody has edited it, or another program has written
-it. All that is read of it is checked here, once, before anybody relies on it; what the files of
-tiles say against it is for `TiledDelaunay.validate`.
+Valid JSON may still say anything: it may have been edited, or written by another program.
+Everything that is read from it is checked here, once, before it is used. `TiledDelaunay.validate`
+compares it with the files of the tiles.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ __all__ = ["FORMAT", "TIES", "check_manifest", "check_settings", "check_summary"
 FORMAT = "delone tiles 1"
 TIES = "cocircular points are fanned from the lexicographically smallest"
 
-# What refuses a value by the name of its field.
+# Rejects a value, with the name of its field.
 Check: TypeAlias = Callable[[Any, str], None]
 
-# Rows are numbered by 64 bits with a sign, vertices and triangles of a tile by 32.
+# Rows have signed 64-bit numbers, vertices and triangles of a tile 32-bit numbers.
 _ROWS, _PLACES = (1 << 63) - 1, (1 << 31) - 1
 
 
 class _WrongFieldError(Exception):
-    """A field does not hold what it must."""
+    """A field has an invalid value."""
 
 
 def _refuse(value: Any, field: str, wanted: str) -> None:
@@ -41,13 +41,13 @@ def _refuse(value: Any, field: str, wanted: str) -> None:
 def _whole(most: int = _ROWS, *, least: int = 0) -> Check:
     def check(value: Any, field: str) -> None:
         if type(value) is not int or not least <= value <= most:
-            _refuse(value, field, f"a whole number from {least} to {most}")
+            _refuse(value, field, f"an integer from {least} to {most}")
 
     return check
 
 
 def _number(value: Any, field: str) -> None:
-    # Doubles; integers that one holds.
+    # Doubles, and integers that a double can represent.
     largest = sys.float_info.max if type(value) is float else 1 << 53
     if type(value) not in (int, float) or not -largest <= value <= largest:
         _refuse(value, field, "a finite number")
@@ -61,13 +61,13 @@ def _box(value: Any, field: str) -> None:
 
 def _text(value: Any, field: str) -> None:
     if not isinstance(value, str):
-        _refuse(value, field, "a text")
+        _refuse(value, field, "a string")
 
 
 def _system(value: Any, field: str) -> None:
     _text(value, field)
     if names_a_source(value):
-        _refuse(value, field, "a reference system that names no file and no address")
+        _refuse(value, field, "a reference system that names no file and no URL")
 
 
 def _hash(value: Any, field: str) -> None:
@@ -124,11 +124,11 @@ def _listed(check: Check, length: int | None = None) -> Check:
 
 
 def _record(fields: Mapping[str, Check]) -> Check:
-    """What has these fields; others are for later versions to add."""
+    """An object with these fields; later versions may add others."""
 
     def each(value: Any, field: str) -> None:
         if not isinstance(value, dict):
-            _refuse(value, field or "the whole", "an object of fields")
+            _refuse(value, field or "the root", "an object of fields")
         for name, check in fields.items():
             inner = f"{field}.{name}" if field else name
             if name not in value:
@@ -161,7 +161,7 @@ _TILE: dict[str, Check] = {
 
 
 def _tile(value: Any, field: str) -> None:
-    """What is said of a tile; where it has no triangles their box is null."""
+    """The entry of a tile; if it has no triangles, their box is null."""
     _record(_TILE)(value, field)
     if (value["extent"] is None) != (value["triangles"] == 0):
         _refuse(value["extent"], f"{field}.extent".lstrip("."), "the box of its triangles")
@@ -186,17 +186,17 @@ _MANIFEST = _record(
 
 
 def check_manifest(found: Any, path: Path) -> None:
-    """Refuse a manifest that does not hold what it must.
+    """Reject an invalid manifest.
 
     Raises
     ------
     FileFormatError
-        It names the file and the first field that is wrong.
+        The message names the file and the first invalid field.
     """
     try:
-        # Of another kind everything may be different.
+        # In another format everything may be different.
         if not isinstance(found, dict) or found.get("format") != FORMAT:
-            raise _WrongFieldError(f"it is none of {FORMAT!r}")
+            raise _WrongFieldError(f"it is not {FORMAT!r}")
         _MANIFEST(found, "")
         _check_tiles(found["tiles"])
         _check_tree(found["tree"], len(found["tiles"]))
@@ -205,7 +205,7 @@ def check_manifest(found: Any, path: Path) -> None:
 
 
 def _check_tiles(tiles: Sequence[Mapping[str, Any]]) -> None:
-    """The numbers of tiles and the names of their files are their places."""
+    """Check that numbers and file names of tiles correspond to their positions."""
     if not tiles:
         raise _WrongFieldError("tiles is empty")
     for number, tile in enumerate(tiles):
@@ -215,7 +215,7 @@ def _check_tiles(tiles: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _check_tree(tree: Mapping[str, Any], tiles: int) -> None:
-    """Cuts make a tree: children come after their parents, each node and tile once."""
+    """Check that cuts form a tree: children follow their parents, each node and tile once."""
     nodes = tiles - 1
     _listed(_one_of(0, 1), nodes)(tree["axis"], "tree.axis")
     _listed(_number, nodes)(tree["cut"], "tree.cut")
@@ -224,23 +224,23 @@ def _check_tree(tree: Mapping[str, Any], tiles: int) -> None:
     for node, pair in enumerate(tree["children"]):
         for child in pair:
             if 0 <= child <= node or child in seen:
-                _refuse(child, f"tree.children[{node}]", "a node further down, or a tile, once")
+                _refuse(child, f"tree.children[{node}]", "a later node, or a tile, once")
             seen.add(child)
 
 
 def check_settings(found: Any, path: Path) -> None:
-    """Refuse the settings of a run that do not hold what they must.
+    """Reject invalid settings of a run.
 
     Raises
     ------
     FileFormatError
-        It names the file and the first field that is wrong.
+        The message names the file and the first invalid field.
     """
     _checked(_SETTINGS, found, path)
 
 
 def check_summary(stage: str, found: Any, tiles: int, path: Path) -> None:
-    """Refuse the note of a task that does not hold what it must.
+    """Reject an invalid note of a task.
 
     Parameters
     ----------
@@ -249,14 +249,14 @@ def check_summary(stage: str, found: Any, tiles: int, path: Path) -> None:
     found : object
         The note.
     tiles : int
-        How many tiles there are; any number before that is known.
+        Number of tiles; any number until it is known.
     path : Path
         The file.
 
     Raises
     ------
     FileFormatError
-        It names the file and the first field that is wrong.
+        The message names the file and the first invalid field.
     """
     tile, place = _whole(tiles - 1), _whole(_PLACES)
 
