@@ -41,12 +41,9 @@ from delone.errors import (
     OutputError,
     ShapeError,
 )
+from delone.flips import LawsonResult, lawson
 from delone.georeference import CRSWarning, GeographicWarning
 from delone.hull import ConvexHull
-from delone.improve import improve
-from delone.improve.report import ImproveReport
-from delone.improve.tetmesh import TetMesh
-from delone.lawson import LawsonResult, lawson
 from delone.periodic import PeriodicDelaunay
 from delone.plane.quality import Quality
 from delone.refine.meshed import Mesh
@@ -54,6 +51,9 @@ from delone.refine.refine import mesh
 from delone.refine.report import MeshReport
 from delone.regular import RegularTriangulation
 from delone.space.quality import TetQuality
+from delone.tetmesh import improve
+from delone.tetmesh.report import ImproveReport
+from delone.tetmesh.tetmesh import TetMesh
 from delone.validation import ValidationReport
 from delone.voronoi import LloydResult, Voronoi, lloyd
 

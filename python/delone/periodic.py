@@ -424,7 +424,7 @@ def _circles(
 ) -> tuple[Floats, Floats] | None:
     """Circles, a little larger, outside of which no site has to do with a triangle.
 
-    None where a centre lies beyond the range of doubles.
+    None where a center lies beyond the range of doubles.
     """
     corners = points[simplices] + offsets * lengths
     if weights is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import pkgutil
 import re
 import subprocess
 import sys
@@ -196,3 +197,15 @@ print([name for name in late if name in set(sys.modules) - before])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split("\n")[:2] == ["[]", "[]"]
+
+
+def test_no_function_hides_a_module() -> None:
+    """``delone.x.y`` is the module wherever there is a file of that name."""
+    hidden = []
+    for each in pkgutil.walk_packages(delone.__path__, "delone."):
+        folder, _, name = each.name.rpartition(".")
+        if name != "__main__":
+            module = importlib.import_module(each.name)
+            found = getattr(importlib.import_module(folder), name, module)
+            hidden += [each.name] if found is not module else []
+    assert hidden == []

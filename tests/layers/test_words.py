@@ -29,7 +29,7 @@ CONVERTED = (
     "python/delone/counting.py",
     "python/delone/errors.py",
     "python/delone/georeference.py",
-    "python/delone/lawson.py",
+    "python/delone/flips.py",
     "python/delone/location.py",
     "python/delone/predicates.py",
     "python/delone/validation.py",

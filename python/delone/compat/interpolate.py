@@ -22,6 +22,7 @@ import numpy as np
 
 from delone import delaunay
 from delone.compat.qhull import DimensionError, QhullError, as_low_points, unboxed, unmasked
+from delone.compat.scipy_delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError, MissingExtraError, ShapeError
 from delone.interpolate import CloughTocher, Linear
 from delone.interpolate.values import as_field
@@ -71,8 +72,6 @@ class _Triangulated:
 
     def _set(self, points: Any, values: ArrayLike, fill_value: Any, rescale: bool) -> None:
         """Triangulate, and set SciPy's attributes."""
-        from delone.compat.scipy import Delaunay
-
         self.tri = None
         if hasattr(points, "simplices"):
             if rescale:

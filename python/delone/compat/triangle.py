@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 import warnings
 from collections import abc
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._arrays import as_points, as_segments
-from delone.compat.triangle_input import again, interpolated, not_reached, rows_of
+from delone.compat.triangle_input import Switches, again, interpolated, not_reached, rows_of
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
@@ -55,16 +55,6 @@ _REFUSED = {
     "O": "ignored holes; leave out the key holes",
 }
 _DEFAULT_ANGLE = 20.0
-
-
-class Switches(NamedTuple):
-    """The parsed switches."""
-
-    on: frozenset[str]
-    angle: float
-    area: float | None
-    steiner: int | None
-    frozen: bool | str
 
 
 def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,12 +23,20 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from delone.compat.triangle import Switches
-
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["again", "interpolated", "not_reached", "rows_of"]
+__all__ = ["Switches", "again", "interpolated", "not_reached", "rows_of"]
+
+
+class Switches(NamedTuple):
+    """The parsed switches."""
+
+    on: frozenset[str]
+    angle: float
+    area: float | None
+    steiner: int | None
+    frozen: bool | str
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:

@@ -142,7 +142,7 @@ def _read(path: Path) -> Any:
         raise
     except (Exception, SystemExit) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
-        raise FileFormatError(f"{path} is torn or no {suffix} file: {reason}") from error
+        raise FileFormatError(f"{path} is truncated or not a {suffix} file: {reason}") from error
     found = {"vertex": len(mesh.points), "face": sum(len(block.data) for block in mesh.cells)}
     for item, count in found.items():
         if count != announced.get(item, count):
@@ -156,12 +156,12 @@ def _read(path: Path) -> Any:
 def _announced(path: Path) -> dict[str, int]:
     """Return how many elements of each type a PLY file announces.
 
-    meshio looks for the end of a header for ever.
+    meshio never stops looking for the end of a header.
     """
     with path.open("rb") as file:
         head, end, _ = file.read(_HEAD).partition(b"end_header")
     if not (head.startswith(b"ply") and end):
-        raise FileFormatError(f"{path} is torn or no .ply file: it has no whole header")
+        raise FileFormatError(f"{path} is truncated or not a .ply file: its header is incomplete")
     items = re.findall(rb"^element +(\w+) +(\d+) *\r?$", head, re.MULTILINE)
     return {name.decode("ascii"): announced(count, str(path)) for name, count in items}
 

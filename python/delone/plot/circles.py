@@ -24,7 +24,7 @@ _CIRCLE = "#d98b2b"
 
 
 def require_few(mesh: Triangles) -> None:
-    """Refuse more triangles than circles can be told apart.
+    """Refuse more triangles than circles can be distinguished.
 
     Parameters
     ----------

@@ -21,9 +21,8 @@ The five points that every textbook draws, a rectangle and one point inside:
 2.5
 """
 
-from delone.reference.bowyer_watson import bowyer_watson
-from delone.reference.clough_tocher import clough_tocher
 from delone.reference.constrained import ConstrainedTriangulation, constrained_delaunay
+from delone.reference.cubic import clough_tocher
 from delone.reference.exact import (
     Circle,
     circumcircle,
@@ -32,7 +31,8 @@ from delone.reference.exact import (
     incircle_canonical,
     orient,
 )
-from delone.reference.lawson import lawson
+from delone.reference.flips import lawson
+from delone.reference.insertion import bowyer_watson
 from delone.reference.natural import natural_weights
 from delone.reference.space import insphere, insphere_canonical, orient3d
 

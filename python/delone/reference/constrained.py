@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from delone.counting import agreed
 from delone.errors import CrossingSegmentsError, InputError
-from delone.reference.bowyer_watson import Triangle, bowyer_watson, exact_rows
 from delone.reference.exact import exact_point, orient
-from delone.reference.lawson import Edge, apexes, flip, make_delaunay, triangles_of
+from delone.reference.flips import Edge, apexes, flip, make_delaunay, triangles_of
+from delone.reference.insertion import Triangle, bowyer_watson, exact_rows
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

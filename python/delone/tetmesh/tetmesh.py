@@ -9,7 +9,7 @@ import numpy as np
 from delone import _core
 from delone.counting import counted
 from delone.errors import DtypeError
-from delone.improve.report import CAUSES, COUNTS, ImproveReport
+from delone.tetmesh.report import CAUSES, COUNTS, ImproveReport
 from delone.triangulation import Triangulation
 from delone.validation import SpaceReport
 

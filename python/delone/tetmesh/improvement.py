@@ -23,9 +23,9 @@ from delone._arrays import (
 )
 from delone.counting import counted
 from delone.errors import DtypeError, InputError, ShapeError
-from delone.improve import report
-from delone.improve.tetmesh import TetMesh
 from delone.space import quality
+from delone.tetmesh import report
+from delone.tetmesh.tetmesh import TetMesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.errors import InputError
-from delone.reference.bowyer_watson import Triangle, exact_rows, smallest_first
 from delone.reference.exact import incircle_canonical, orient
+from delone.reference.insertion import Triangle, exact_rows, smallest_first
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

@@ -1,0 +1,10 @@
+"""Improvement of tetrahedral meshes: vertices move and tetrahedra are replaced.
+
+`improvement` has the function `improve`, `tetmesh` the class TetMesh, `report` its result.
+"""
+
+from delone.tetmesh.improvement import improve
+from delone.tetmesh.report import ImproveReport
+from delone.tetmesh.tetmesh import TetMesh
+
+__all__ = ["ImproveReport", "TetMesh", "improve"]
