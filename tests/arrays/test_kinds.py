@@ -48,7 +48,7 @@ def test_rows_are_of_equal_length(points: Any) -> None:
         lambda: interpolate.Linear(points, points[:, 0])(points[:1], values=RAGGED),
         lambda: improve(Delaunay(SPACE), fixed=RAGGED),
         lambda: improve(Delaunay(SPACE), region=RAGGED),
-        lambda: mesh(SQUARE, frozen=RAGGED),
+        lambda: mesh(SQUARE, fixed=RAGGED),
         lambda: mesh(SQUARE, segment_markers=RAGGED),
         lambda: io.write_mesh("never.csv.vtu", Delaunay(FLAT), z=RAGGED),
     ):

@@ -143,13 +143,13 @@ def test_conforming(tmp_path, figures, command):
     found = figures("triangulate", file, "--conforming", "-o", out)
     assert found["constraints"]["added"] == found["constraints"]["steiner"] > 0
     assert command("check", out)[0] == 0
-    code, _, err = command("triangulate", file, "--conforming", "--max-vertices", 0)
+    code, _, err = command("triangulate", file, "--conforming", "--max-points", 0)
     assert code == 4
     assert "limit of 0 vertices" in err
 
 
 @pytest.mark.parametrize(
-    "option", [("--outline",), ("--conforming",), ("--crossing", "split"), ("--max-vertices", "5")]
+    "option", [("--outline",), ("--conforming",), ("--crossing", "split"), ("--max-points", "5")]
 )
 def test_options_of_lines_are_refused_for_points(survey, tmp_path, command, option):
     towns = save(tmp_path / "a.geojson", shapely.points(np.eye(3)[:, :2]))

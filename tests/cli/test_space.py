@@ -143,12 +143,12 @@ def test_slivers_are_removed_on_request(tmp_path, command, figures):
 
 def test_the_limit_on_passes_is_reported(tmp_path, command, figures):
     source = ply(tmp_path / "cloud.ply", cloud(300))
-    found = figures("triangulate", source, "--improve", "--max-passes", "1")["improvement"]
+    found = figures("triangulate", source, "--improve", "--max-iter", "1")["improvement"]
     assert (found["passes"], found["exhausted"]) == (1, True)
     assert found["below"]["budget"] > 0
-    out = command("triangulate", source, "--improve", "--max-passes", "1")[1]
-    assert "--max-passes 1: more passes may improve further" in out
-    code, _, err = command("triangulate", source, "--max-passes", "1")
+    out = command("triangulate", source, "--improve", "--max-iter", "1")[1]
+    assert "--max-iter 1: more passes may improve further" in out
+    code, _, err = command("triangulate", source, "--max-iter", "1")
     assert (code, "--improve" in err) == (2, True)
 
 

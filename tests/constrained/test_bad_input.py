@@ -78,12 +78,12 @@ class TestCrossings:
     @pytest.mark.parametrize("most", [0, 4])
     def test_the_budget_is_kept(self, most: int) -> None:
         with pytest.raises(errors.BudgetExceededError) as caught:
-            ConstrainedDelaunay(*self.STAR, crossing="split", max_vertices=most)
+            ConstrainedDelaunay(*self.STAR, crossing="split", max_points=most)
         assert caught.value.limit == most
         assert caught.value.found > most
 
     def test_the_budget_may_be_used_up(self) -> None:
-        mesh = ConstrainedDelaunay(*self.STAR, crossing="split", max_vertices=5)
+        mesh = ConstrainedDelaunay(*self.STAR, crossing="split", max_points=5)
         assert mesh.nadded == 5
         assert mesh.validate()
 
@@ -151,8 +151,8 @@ class TestOptions:
 
     @pytest.mark.parametrize("most", [-1, 1.5, "3", True])
     def test_max_vertices_is_a_count(self, most: Any) -> None:
-        with pytest.raises(errors.InputError, match="max_vertices"):
-            ConstrainedDelaunay(SQUARE, [], max_vertices=most)
+        with pytest.raises(errors.InputError, match="max_points"):
+            ConstrainedDelaunay(SQUARE, [], max_points=most)
 
     def test_workers_are_checked(self) -> None:
         with pytest.raises(errors.InputError, match="workers"):

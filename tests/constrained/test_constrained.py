@@ -270,7 +270,7 @@ class TestConforming:
     def test_the_budget_holds_here_too(self) -> None:
         points = [(0, 0), (1000, 0), *((x, 0.001) for x in range(1, 1000))]
         with pytest.raises(delone.BudgetExceededError) as caught:
-            ConstrainedDelaunay(points, [(0, 1)], conforming=True, max_vertices=10)
+            ConstrainedDelaunay(points, [(0, 1)], conforming=True, max_points=10)
         assert caught.value.limit == 10
         assert caught.value.segments == (0,)
         assert caught.value.place is not None
@@ -283,7 +283,7 @@ class TestConforming:
         points += [(x, 3 + 5e-5 * (x - 3)) for x in range(4, 13)]
         segments = [(0, 4), (1, 2), (3, 1)]
         with pytest.raises(delone.BudgetExceededError) as caught:
-            ConstrainedDelaunay(points, segments, conforming=True, max_vertices=8)
+            ConstrainedDelaunay(points, segments, conforming=True, max_points=8)
         assert set(caught.value.segments) == {1, 2}
         assert caught.value.place == (3, 3)
         assert "the first two of which meet at (3, 3)" in str(caught.value)

@@ -39,11 +39,11 @@ def test_pairs_that_cross_in_one_point_are_one_vertex(lines: int) -> None:
     a = np.arange(lines) + 1.0
     points = np.concatenate((np.c_[a, lines + 1 - a], np.c_[-a, a - lines - 1]))
     segments = np.c_[np.arange(lines), np.arange(lines) + lines]
-    mesh = ConstrainedDelaunay(points, segments, crossing="split", max_vertices=1)
+    mesh = ConstrainedDelaunay(points, segments, crossing="split", max_points=1)
     assert mesh.nadded == 1
     assert len(mesh.report.crossings) == lines * (lines - 1) // 2
     with pytest.raises(BudgetExceededError) as error:
-        ConstrainedDelaunay(points, segments, crossing="split", max_vertices=0)
+        ConstrainedDelaunay(points, segments, crossing="split", max_points=0)
     assert (error.value.limit, error.value.found) == (0, 1)
 
 
@@ -84,4 +84,4 @@ def test_too_many_crossings_end_before_memory_does() -> None:
     segments = np.arange(8000).reshape(-1, 2)
     for crossing in ("error", "split"):
         with pytest.raises(BudgetExceededError, match="crossing"):
-            ConstrainedDelaunay(points, segments, crossing=crossing, max_vertices=10)
+            ConstrainedDelaunay(points, segments, crossing=crossing, max_points=10)

@@ -134,5 +134,5 @@ def test_each_row_joined_to_the_one_before(corpus_case: Any) -> None:
     points = corpus_case.points[:120]
     rows = np.arange(1, len(points))
     segments = np.column_stack((rows, rows - 1))
-    mesh = ConstrainedDelaunay(points, segments, crossing="split", max_vertices=100_000)
+    mesh = ConstrainedDelaunay(points, segments, crossing="split", max_points=100_000)
     assert_constrained_delaunay(mesh, segments, split=True)

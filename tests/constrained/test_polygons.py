@@ -141,7 +141,7 @@ class TestFromGeometry:
     def test_crossings_may_be_refused(self) -> None:
         lines = shapely.MultiLineString([[(0, 0), (1, 1)], [(0, 1), (1, 0)]])
         with pytest.raises(errors.CrossingSegmentsError):
-            from_geometry(lines, crossing="error")
+            from_geometry(lines, crossing="raise")
 
     def test_options_are_those_of_the_class(self) -> None:
         mesh = from_geometry(FRAME, holes=[(3, 3)], regions=[(1, 1, 5)], boundary="outline")

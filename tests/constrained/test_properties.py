@@ -62,7 +62,7 @@ def spans_no_area(points: np.ndarray) -> bool:
 
 def triangulated(drawing: Drawing, **options: Any) -> ConstrainedDelaunay:
     """The triangulation; what crosses is split, and splits without an end are cut off."""
-    options = {"max_vertices": 100_000} | options
+    options = {"max_points": 100_000} | options
     return ConstrainedDelaunay(*drawing, crossing="split", **options)
 
 
@@ -257,7 +257,7 @@ def test_splitting_ends_where_one_axis_is_coarser(turned: bool) -> None:
     points = np.array([(0, 0), (11, 7), (7, 7), (7, 8), (2, 0)]) + np.array((2.0**51, 0))
     segments = np.array([(3, 4), (4, 2), (1, 0)])
     drawing = Drawing(points[:, ::-1] if turned else points, segments)
-    mesh = triangulated(drawing, max_vertices=1000)
+    mesh = triangulated(drawing, max_points=1000)
     assert_constrained_delaunay(mesh, segments, split=True)
 
 

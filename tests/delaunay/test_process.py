@@ -194,7 +194,7 @@ def test_memory_that_runs_out_on_the_way() -> None:
         tasks = [
             (cells, lambda cells: cells.cell_areas),
             (cells, lambda cells: cells.neighbors),
-            (lambda: None, lambda _: lloyd(points, (0, 0, 1, 1), iterations=1)),
+            (lambda: None, lambda _: lloyd(points, (0, 0, 1, 1), max_iter=1)),
             (lambda: None, lambda _: mesh(square, max_area=4e-6)),
         ]
         for before, task in tasks:

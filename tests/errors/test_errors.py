@@ -113,7 +113,7 @@ def one_is_one() -> dict[str, Callable[[], object]]:
         "1 duplicate has a different value": lambda: interpolate.Linear(survey, [0, 1, 2, 3]),
         "values: 1 of 3 rows holds NaN": lambda: interpolate.Linear(three, [0, nan, 0]),
         "xi: 1 of 1 query is outside the hull: row 0;": lambda: interpolate.Linear(
-            three, [0, 1, 2], extrapolate="error"
+            three, [0, 1, 2], extrapolate="raise"
         )([(5, 5)]),
         "1 weight is NaN": lambda: delone.RegularTriangulation(three, [0, nan, 0]),
         "1 geometry holds NaN": lambda: delone.from_geometry(line),

@@ -50,7 +50,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "Quality": lambda: delone.Delaunay(FLAT).quality(),
     "TetQuality": lambda: delone.Delaunay(SOLID).quality(),
     "LawsonResult": lambda: lawson(FLAT, delone.Delaunay(FLAT).simplices, record=True),
-    "LloydResult": lambda: delone.lloyd(FLAT, BOX, iterations=2),
+    "LloydResult": lambda: delone.lloyd(FLAT, BOX, max_iter=2),
     "PolygonTriangles": lambda: delone.triangulate_polygon([(0, 0), (4, 0), (4, 3)]),
     "PlaneTriangulation": coplanar,
     "CrossingSegmentsError": lambda: errors.CrossingSegmentsError(pairs=[(0, 1)], points=[(1, 2)]),

@@ -90,7 +90,7 @@ def test_outside_of_nothing_is_refused_where_that_is_asked() -> None:
     mesh = nothing_left()
     for kind in (Linear, NaturalNeighbor, Nearest):
         with pytest.raises(ValueError, match="1 of 1 query is outside"):
-            made = kind(mesh, np.zeros(4), extrapolate="error", respect_constraints=True)
+            made = kind(mesh, np.zeros(4), extrapolate="raise", respect_constraints=True)
             made([(1, 1)])
 
 
@@ -98,7 +98,7 @@ def test_outside_of_nothing_is_refused_where_that_is_asked() -> None:
 @pytest.mark.parametrize("method", sorted(METHODS))
 def test_infinity_is_outside_and_nan_is_nowhere(method: str, count: int) -> None:
     square = [(0, 0), (4, 0), (4, 4), (0, 4)]
-    made = interpolator(method, square, np.zeros(4), extrapolate="error")
+    made = interpolator(method, square, np.zeros(4), extrapolate="raise")
     queries = np.ones((count, 2))
     assert (made(queries) == 0).all()
     for far in (np.inf, -np.inf):

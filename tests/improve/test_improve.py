@@ -226,15 +226,15 @@ def test_exudation_alone_makes_a_regular_triangulation() -> None:
 
 def test_nothing_is_done_without_leave() -> None:
     given = uniform(100)
-    for options in ({"flips": False, "smooth": False}, {"max_passes": 0}, {"min_angle": 0}):
+    for options in ({"flips": False, "smooth": False}, {"max_iter": 0}, {"min_angle": 0}):
         mesh = delone.improve(given, **options)
         assert np.array_equal(mesh.points, given[0])
         assert len(mesh.simplices) == len(given[1])
 
 
 def test_a_second_run_starts_where_the_first_ended() -> None:
-    first = delone.improve(uniform(300), max_passes=1000)
-    again = checked((first.points, first.simplices), max_passes=1000)
+    first = delone.improve(uniform(300), max_iter=1000)
+    again = checked((first.points, first.simplices), max_iter=1000)
     assert len(again.report.below) <= 1.2 * len(first.report.below)
     assert again.report.smallest_before == first.report.smallest_after
     done = delone.improve(ball(400, 200), min_angle=15)
@@ -327,7 +327,7 @@ def test_what_is_left_has_its_cause() -> None:
     assert set(left.cause.tolist()) <= {"angle", "boundary"}
     assert len(left.below)
     assert "boundary" in str(left)
-    cut = delone.improve(uniform(300), max_passes=1).report
+    cut = delone.improve(uniform(300), max_iter=1).report
     assert cut.exhausted
     assert "budget" in cut.cause.tolist()
     assert "the limit on passes ended the work" in str(cut)
@@ -409,8 +409,8 @@ def test_what_is_no_mesh_is_refused(given: Any, error: type[Exception], message:
         ({"min_angle": np.nan}, InputError),
         ({"min_angle": "steep"}, DtypeError),
         ({"boundary": "any"}, InputError),
-        ({"max_passes": -1}, InputError),
-        ({"max_passes": 1.5}, DtypeError),
+        ({"max_iter": -1}, InputError),
+        ({"max_iter": 1.5}, DtypeError),
         ({"region": [0.5]}, DtypeError),
         ({"region": [1, 2]}, ShapeError),
         ({"region": [2**40]}, InputError),
@@ -432,7 +432,7 @@ def test_options_are_checked(options: dict[str, Any], error: type[Exception]) ->
 
 def test_passes_may_be_any_number() -> None:
     given = (CORNER, [(0, 1, 2, 3)])
-    assert delone.improve(given, max_passes=10**30).report.passes == (
+    assert delone.improve(given, max_iter=10**30).report.passes == (
         delone.improve(given).report.passes
     )
     assert delone.improve(given, flips=np.False_).nsimplex == 1

@@ -49,7 +49,7 @@ def test_values_are_those_of_the_definition(gradients: str) -> None:
 def test_global_gradients_bend_edges_least() -> None:
     mesh = Delaunay(datasets.uniform(60, seed=5))
     values = bumps(mesh.points)
-    made = CloughTocher(mesh, values, tol=1e-13, maxiter=2000)
+    made = CloughTocher(mesh, values, tol=1e-13, max_iter=2000)
 
     def energy(slopes: Any) -> float:
         u, v = mesh.edges.T
@@ -68,7 +68,7 @@ def test_global_gradients_bend_edges_least() -> None:
 
 def test_local_gradients_are_exact_for_quadratic_functions() -> None:
     points = datasets.uniform(200, seed=7)
-    made = CloughTocher(points, bowl(points), gradients="local", extrapolate="error")
+    made = CloughTocher(points, bowl(points), gradients="local", extrapolate="raise")
     queries = 0.2 + 0.6 * np.random.default_rng(8).random((200, 2))
     x, y = queries.T
     np.testing.assert_allclose(made(queries), bowl(queries), rtol=1e-11)
@@ -120,7 +120,7 @@ def test_order_of_accuracy() -> None:
 def test_too_few_sweeps_are_told() -> None:
     points = datasets.uniform(200)
     with pytest.warns(GradientWarning, match="1 iterations"):
-        CloughTocher(points, bumps(points), tol=1e-14, maxiter=1)((0.5, 0.5))
+        CloughTocher(points, bumps(points), tol=1e-14, max_iter=1)((0.5, 0.5))
 
 
 def test_agrees_with_scipy() -> None:
@@ -176,7 +176,7 @@ def test_the_tolerance_holds_in_any_unit(unit: float) -> None:
 
 def test_values_without_a_slope_need_one_sweep() -> None:
     points = datasets.uniform(50, seed=17)
-    made = CloughTocher(points, np.full((50, 2), [3.0, 0.0]), maxiter=1)
+    made = CloughTocher(points, np.full((50, 2), [3.0, 0.0]), max_iter=1)
     assert not made.site_gradients().any()
 
 

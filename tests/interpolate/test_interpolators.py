@@ -181,7 +181,7 @@ def test_extrapolation(method: str) -> None:
         expected = on(at_hull) + ((far - at_hull) * slope).sum(axis=1)
         np.testing.assert_allclose(on(far), expected, rtol=1e-12)
     with pytest.raises(InputError, match=r"xi: 2 of 3 queries are outside.*rows 0, 2"):
-        refused = interpolator(method, points, values, extrapolate="error")
+        refused = interpolator(method, points, values, extrapolate="raise")
         refused([(9, 9), (2, 2), (-1, 0)])
     assert np.isfinite(refused([(2, 2), (4, 4)])).all()
     with pytest.raises(InputError, match="outside"):

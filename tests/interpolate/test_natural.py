@@ -93,7 +93,7 @@ def test_on_hull_edges_the_two_ends_count(kind: str) -> None:
 def test_with_gradients_round_functions_are_reproduced(kind: str) -> None:
     points = datasets.uniform(150, seed=6)
     values = ((points - 0.4) ** 2).sum(axis=1)
-    made = NaturalNeighbor(points, values, kind=kind, extrapolate="error")
+    made = NaturalNeighbor(points, values, kind=kind, extrapolate="raise")
     queries = 0.2 + 0.6 * np.random.default_rng(7).random((100, 2))
     np.testing.assert_allclose(made(queries), ((queries - 0.4) ** 2).sum(axis=1), atol=1e-11)
     some = points[:10]

@@ -150,7 +150,7 @@ def test_what_lies_beyond_the_hull() -> None:
         assert near.min() >= values.min() - 1e-12
         assert near.max() <= values.max() + 1e-12
         with pytest.raises(InputError, match="outside the hull"):
-            interpolator(method, points, values, extrapolate="error")(queries)
+            interpolator(method, points, values, extrapolate="raise")(queries)
     assert np.isnan(Linear(points, values, extrapolate="nearest")((np.nan, 0, 0)))
 
 

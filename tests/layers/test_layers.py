@@ -80,7 +80,7 @@ CORE: dict[str, set[str]] = {
     "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
-    "tetmesh": {"delone_predicates"} | GROUND,
+    "improve": {"delone_predicates"} | GROUND,
     "locate": {"order", "points", "parallel", "wide", "delone_predicates"} | GROUND,
     "hull": {"order", "wide", "num_bigint", "delone_predicates"} | GROUND,
     "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,

@@ -39,7 +39,7 @@ QUICK = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(fixed=True)
 class Mutant:
     """A bug: `old`, which `file` has once, becomes `new`; arguments of pytest or of cargo test."""
 

@@ -19,7 +19,7 @@ SEGMENTS = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7,
 def mesh() -> delone.Mesh:
     frozen = np.arange(8) == 2
     return delone.mesh(
-        (POINTS, SEGMENTS), max_area=0.1, segment_markers=np.arange(8), frozen=frozen, min_angle=25
+        (POINTS, SEGMENTS), max_area=0.1, segment_markers=np.arange(8), fixed=frozen, min_angle=25
     )
 
 

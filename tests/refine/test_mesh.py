@@ -276,17 +276,17 @@ def test_delaunay_across_segments() -> None:
 
 def test_frozen_segments_are_not_split() -> None:
     points, segments = loops(wavy(60, 5), wavy(30, 3, 0.4))
-    mesh = delone.mesh((points, segments), frozen="boundary", max_area=0.002)
+    mesh = delone.mesh((points, segments), fixed="boundary", max_area=0.002)
     boundary = mesh.point_source[mesh.boundary]
     assert len(boundary) == 60
     assert (boundary >= 0).all()
     assert len(mesh.segments) > 90
-    whole = delone.mesh((points, segments), frozen=True)
+    whole = delone.mesh((points, segments), fixed=True)
     assert len(whole.segments) == 90
     assert whole.report.on_segments == 0
     some = np.zeros(90, dtype=bool)
     some[::2] = True
-    part = delone.mesh((points, segments), frozen=some, max_area=0.001)
+    part = delone.mesh((points, segments), fixed=some, max_area=0.001)
     _start, source = part.segment_source
     counts = np.bincount(source, minlength=90)
     assert (counts[some] == 1).all()
@@ -294,7 +294,7 @@ def test_frozen_segments_are_not_split() -> None:
 
 
 def test_sizes_are_kept_between_frozen_segments() -> None:
-    mesh = delone.mesh((SQUARE, RING), frozen=True, max_area=0.001)
+    mesh = delone.mesh((SQUARE, RING), fixed=True, max_area=0.001)
     assert_mesh(mesh, SQUARE, RING)
     assert len(mesh.segments) == 4
     assert mesh.areas.max() <= 0.001

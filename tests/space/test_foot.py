@@ -52,7 +52,7 @@ def check_part(points: Any, kept: Any, queries: NDArray[np.float64]) -> None:
     """The same of some of the tetrahedra: of several faces that are nearest, the first one."""
     whole = Delaunay(np.unique(np.array(points, dtype=float) + 0.0, axis=0))
     rows = np.flatnonzero(np.resize(np.array(kept), whole.nsimplex))
-    mesh = improve((whole.points, whole.simplices[rows]), max_passes=0)
+    mesh = improve((whole.points, whole.simplices[rows]), max_iter=0)
     place = mesh.locate(queries)
     assert (mesh.locate(queries[::-1]).facet[::-1] == place.facet).all()
     assert (place.simplex == mesh.find_simplex(queries)).all()

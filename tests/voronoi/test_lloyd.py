@@ -27,7 +27,7 @@ def test_energy_falls_with_each_step() -> None:
 
 
 def test_sites_come_to_rest_at_the_centroids_of_their_cells() -> None:
-    result = lloyd(uniform(20, seed=2), BOX, iterations=2000, tol=1e-9)
+    result = lloyd(uniform(20, seed=2), BOX, max_iter=2000, tol=1e-9)
     assert result.converged
     assert result.displacements[-1] <= 1e-9 < result.displacements[-2]
     assert np.allclose(result.points, result.diagram.cell_centroids, atol=1e-8)
@@ -36,16 +36,16 @@ def test_sites_come_to_rest_at_the_centroids_of_their_cells() -> None:
 def test_the_energy_is_that_of_known_cells() -> None:
     # Four quarters of a square, sites at their centres: 4 * (h^4 / 6) with h = 1 / 2.
     points = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)]
-    result = lloyd(points, BOX, iterations=1, tol=0.0)
+    result = lloyd(points, BOX, max_iter=1, tol=0.0)
     assert result.energies.tolist() == pytest.approx([4 * 0.5**4 / 6] * 2)
     assert result.converged and result.displacements[0] < 1e-15
 
 
 def test_a_density_draws_sites_where_it_is_large() -> None:
-    flat = lloyd(uniform(200, seed=3), BOX, iterations=60)
-    steep = lloyd(uniform(200, seed=3), BOX, iterations=60, density=lambda p: np.exp(4 * p[:, 0]))
+    flat = lloyd(uniform(200, seed=3), BOX, max_iter=60)
+    steep = lloyd(uniform(200, seed=3), BOX, max_iter=60, density=lambda p: np.exp(4 * p[:, 0]))
     assert steep.points[:, 0].mean() > flat.points[:, 0].mean() + 0.05
-    one = lloyd([(0.1, 0.4)], BOX, iterations=1, density=lambda p: p[:, 0])
+    one = lloyd([(0.1, 0.4)], BOX, max_iter=1, density=lambda p: p[:, 0])
     # The centroid of the unit square under the density x.
     assert one.points.tolist() == [pytest.approx([2 / 3, 1 / 2])]
 
@@ -53,9 +53,9 @@ def test_a_density_draws_sites_where_it_is_large() -> None:
 def test_outlines_with_holes_and_notches() -> None:
     shapely = pytest.importorskip("shapely")
     outline = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 2, 2) - shapely.box(3, 3, 5, 5)
-    one = lloyd([(0.5, 0.5)], outline, iterations=1)
+    one = lloyd([(0.5, 0.5)], outline, max_iter=1)
     assert np.allclose(one.points, shapely.get_coordinates(outline.centroid))
-    result = lloyd(uniform(60, seed=4) * 4, outline, iterations=25)
+    result = lloyd(uniform(60, seed=4) * 4, outline, max_iter=25)
     assert (np.diff(result.energies) < 0).all()
     # Who starts in the hole or the notch may have no cell, and stays.
     assert not shapely.contains_xy(outline, result.points[result.empty]).any()
@@ -63,7 +63,7 @@ def test_outlines_with_holes_and_notches() -> None:
 
 
 def test_a_site_without_a_cell_stays_where_it_is() -> None:
-    result = lloyd([(0.5, 0.5), (9, 9), (9, 9)], BOX, iterations=3)
+    result = lloyd([(0.5, 0.5), (9, 9), (9, 9)], BOX, max_iter=3)
     assert result.points.tolist() == [[0.5, 0.5], [9.0, 9.0], [9.0, 9.0]]
     assert result.empty.tolist() == [1, 2]
 
@@ -72,7 +72,7 @@ def test_a_site_without_a_cell_stays_where_it_is() -> None:
 @pytest.mark.parametrize("scale", [2.0**-600, 2.0**600])
 def test_domains_of_any_size(scale: float, method: str) -> None:
     sites, told = uniform(30, seed=8), []
-    plain = lloyd(sites, BOX, iterations=5, method=method, density=lambda p: 1 + p[:, 0])
+    plain = lloyd(sites, BOX, max_iter=5, method=method, density=lambda p: 1 + p[:, 0])
     with np.errstate(all="raise"):
         scaled = lloyd(
             sites * scale,
@@ -90,14 +90,14 @@ def test_domains_of_any_size(scale: float, method: str) -> None:
 
 
 def test_the_box_of_the_sites_stays_that_of_the_first_ones() -> None:
-    result = lloyd([(0, 0), (1, 1), (0.3, 0.6)], "box", iterations=5)
+    result = lloyd([(0, 0), (1, 1), (0.3, 0.6)], "box", max_iter=5)
     assert result.diagram.clip == (0.0, 0.0, 1.0, 1.0)
 
 
 def test_quasi_newton_steps_come_to_rest_sooner() -> None:
     sites = uniform(150, seed=5)
-    slow = lloyd(sites, BOX, iterations=3000, tol=1e-6)
-    fast = lloyd(sites, BOX, iterations=3000, tol=1e-6, method="l-bfgs")
+    slow = lloyd(sites, BOX, max_iter=3000, tol=1e-6)
+    fast = lloyd(sites, BOX, max_iter=3000, tol=1e-6, method="l-bfgs")
     assert slow.converged and fast.converged
     assert fast.evaluations < slow.evaluations / 2
     assert slow.evaluations == slow.iterations + 1 <= 3001

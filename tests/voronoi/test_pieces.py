@@ -182,7 +182,7 @@ def test_the_energy_in_an_outline_is_that_of_a_density_of_one(outline: str) -> N
         else shapely.box(0, 0, 1, 1) - shapely.box(0.25, 0.25, 0.5, 0.5)
     )
     points = rng.random((20, 2)) if outline == "jagged" else rng.integers(0, 8, (20, 2)) / 8
-    plain = lloyd(points, domain, iterations=4)
-    weighed = lloyd(points, domain, iterations=4, density=lambda places: np.ones(len(places)))
+    plain = lloyd(points, domain, max_iter=4)
+    weighed = lloyd(points, domain, max_iter=4, density=lambda places: np.ones(len(places)))
     assert plain.energies == pytest.approx(weighed.energies, rel=1e-12)
     assert plain.points == pytest.approx(weighed.points, abs=1e-12)

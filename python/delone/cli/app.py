@@ -153,7 +153,7 @@ def triangulate(
         bool,
         typer.Option("--conforming", help="Add vertices until all segments are Delaunay edges."),
     ] = False,
-    max_vertices: Annotated[
+    max_points: Annotated[
         int | None, typer.Option(help="Maximum number of vertices added to lines and polygons.")
     ] = None,
     space: Annotated[
@@ -176,7 +176,7 @@ def triangulate(
     ] = None,
     crs: Crs = None,
     planar: Planar = False,
-    max_passes: Annotated[
+    max_iter: Annotated[
         int | None,
         typer.Option(
             min=0,
@@ -196,8 +196,8 @@ def triangulate(
     if min_angle is not None and not better:
         raise Failure("--min-angle is the goal of --improve: give --improve as well", Exit.USAGE)
     require_known(crs)
-    if max_passes is not None and not better:
-        raise Failure("--max-passes is the limit of --improve: give --improve as well", Exit.USAGE)
+    if max_iter is not None and not better:
+        raise Failure("--max-iter is the limit of --improve: give --improve as well", Exit.USAGE)
     with writing():
         protect_inputs(output or (), source)
         writers = {path: _ready(path) for path in output or ()}
@@ -212,7 +212,7 @@ def triangulate(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
         )
         say(f"triangulating {len(survey):,} {_what(survey)}")
-        constraints = Constraints(crossing, outline, conforming, max_vertices)
+        constraints = Constraints(crossing, outline, conforming, max_points)
         solid = is_space(source, space, survey)
         if solid and isinstance(survey, PointSet):
             constraints.require_none(survey.source)
@@ -234,7 +234,7 @@ def triangulate(
             if not (solid and isinstance(mesh, Delaunay)):
                 raise Failure("--improve is for tetrahedra: give --3d", Exit.USAGE)
             with watch.stage("improve"):
-                tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_passes)
+                tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
         _write(writers, written, {"z": z, "crs": survey.crs, "edges": edges}, watch, say)
         say("reporting")

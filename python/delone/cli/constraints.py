@@ -36,14 +36,14 @@ class Constraints(NamedTuple):
         How to treat crossing segments; None if not given.
     outline, conforming : bool
         Remove triangles outside; add vertices until all segments are Delaunay edges.
-    max_vertices : int or None
+    max_points : int or None
         Maximum number of added vertices.
     """
 
     crossing: str | None
     outline: bool
     conforming: bool
-    max_vertices: int | None
+    max_points: int | None
 
     def require_none(self, source: str) -> None:
         """Reject options that do not apply to points.
@@ -125,7 +125,7 @@ def triangulated(
     options |= {
         "crossing": constraints.crossing or "split",
         "conforming": constraints.conforming,
-        "max_vertices": constraints.max_vertices,
+        "max_points": constraints.max_points,
         "boundary": _boundary(survey, constraints.outline),
     }
     try:

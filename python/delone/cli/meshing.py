@@ -88,7 +88,7 @@ def make_mesh(
         "max_points": max_points,
         "smooth": smooth,
         "delaunay": delaunay,
-        "frozen": "boundary" if freeze else False,
+        "fixed": "boundary" if freeze else False,
     }
     with _bar(quiet or as_json) as tell:
         found = _meshed(survey, options, tell)

@@ -151,7 +151,7 @@ def improved(
         say(f"improving: {counted(below, 'tetrahedron')} below the goal after pass {number}")
 
     goal = _GOAL if min_angle is None else min_angle
-    return improve(mesh, min_angle=goal, max_passes=most, progress=told)
+    return improve(mesh, min_angle=goal, max_iter=most, progress=told)
 
 
 def improvement_figures(report: ImproveReport) -> dict[str, Any]:
@@ -211,7 +211,7 @@ def _ended(figures: dict[str, Any]) -> list[Row]:
     """Return a note if the limit on passes stopped an improvement that was still progressing."""
     if not figures["exhausted"]:
         return []
-    return [("stopped by", f"--max-passes {figures['passes']}: more passes may improve further")]
+    return [("stopped by", f"--max-iter {figures['passes']}: more passes may improve further")]
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:

@@ -247,7 +247,7 @@ class CloughTocher2DInterpolator(_Triangulated):
     ) -> None:
         self._set(points, values, fill_value, rescale)
         self._interpolator = _GivenGradients(
-            self._mesh, self.values, tol=tol, maxiter=maxiter, duplicates="first", nan="propagate"
+            self._mesh, self.values, tol=tol, max_iter=maxiter, duplicates="first", nan="propagate"
         )
         found = self._interpolator.site_gradients()
         self.grad = np.ascontiguousarray(found.reshape(len(found), -1, 2))

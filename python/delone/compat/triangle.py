@@ -167,8 +167,8 @@ def _parsed(opts: str) -> Switches:
     rest = _SWITCH.sub("", opts).strip()
     if rest:
         raise InputError(f"switches {opts!r} contain {rest!r}, which belongs to no switch")
-    frozen: bool | str = on.count("Y") > 1 or ("boundary" if "Y" in on else False)
-    return Switches(frozenset(on), angle, area, steiner, frozen)
+    fixed: bool | str = on.count("Y") > 1 or ("boundary" if "Y" in on else False)
+    return Switches(frozenset(on), angle, area, steiner, fixed)
 
 
 def _meshed(
@@ -207,7 +207,7 @@ def _meshed(
         base.region,
         limits,
         sizes=(area, None),
-        frozen=switches.frozen,
+        fixed=switches.fixed,
         markers=markers,
         stages={},
     )

@@ -36,7 +36,7 @@ class Switches(NamedTuple):
     angle: float
     area: float | None
     steiner: int | None
-    frozen: bool | str
+    fixed: bool | str
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
@@ -155,7 +155,7 @@ def _domain(
     on_rim = topology.among(
         topology.edge_keys(ends[:, 0], ends[:, 1], n), topology.edge_keys(rim[:, 0], rim[:, 1], n)
     )
-    frozen = np.full(len(ends), switches.frozen is True) | (bool(switches.frozen) & on_rim)
+    frozen = np.full(len(ends), switches.fixed is True) | (bool(switches.fixed) & on_rim)
     lines = Lines(
         ends,
         np.concatenate(([0], np.cumsum(counts))),
@@ -214,7 +214,7 @@ def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switch
         Numbers of triangles that are too large or have too small an angle; None if there are none,
         or no switch forbids splitting segments.
     """
-    if not switches.frozen:
+    if not switches.fixed:
         return None
     # The refinement compared areas with different rounding.
     large = int(np.count_nonzero(found.areas > (1 + 1e-12) * _allowed(tri, found, base, switches)))

@@ -47,7 +47,7 @@ __all__ = ["ConstrainedDelaunay"]
 _MOST_ADDED = 4_000_000
 # The third is for polygons alone.
 _BOUNDARIES = ("hull", "outline", "polygons")
-_CROSSINGS = ("error", "split")
+_CROSSINGS = ("raise", "split")
 
 
 class ConstrainedDelaunay(Segmented):
@@ -68,13 +68,13 @@ class ConstrainedDelaunay(Segmented):
     boundary : {"hull", "outline"}, optional
         What is triangulated: the convex hull, or only what cannot be reached from outside of it
         without crossing a segment.
-    crossing : {"error", "split"}, optional
+    crossing : {"raise", "split"}, optional
         Whether segments that cross are an error, or get a vertex where they do.
     conforming : bool, optional
         Add vertices on segments until the circle over each subsegment holds no vertex in its
         inside, so that each is an edge of a plain Delaunay triangulation of all vertices. (On a
         circle with other vertices it may not be that of the canonical one.)
-    max_vertices : int, optional
+    max_points : int, optional
         How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing
         segments that are looked at, too, at 8 for each vertex and a million more.
     method, workers, planar : optional
@@ -97,10 +97,10 @@ class ConstrainedDelaunay(Segmented):
     Raises
     ------
     CrossingSegmentsError
-        Segments cross, and `crossing` is ``"error"``; ``error.pairs`` names all pairs of rows,
+        Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` names all pairs of rows,
         ``error.points`` where they cross.
     BudgetExceededError
-        More than `max_vertices` would have to be added, or more segments cross than it allows for;
+        More than `max_points` would have to be added, or more segments cross than it allows for;
         ``error.found`` of them were found.
     InputError
         A segment has an end that is no row of `points`, a label is no integer of at least 0, or an
@@ -159,9 +159,9 @@ class ConstrainedDelaunay(Segmented):
         holes: ArrayLike | None = None,
         regions: ArrayLike | None = None,
         boundary: str = "hull",
-        crossing: str = "error",
+        crossing: str = "raise",
         conforming: bool = False,
-        max_vertices: int | None = None,
+        max_points: int | None = None,
         method: str = "auto",
         workers: int | None = None,
         planar: bool = False,
@@ -170,7 +170,7 @@ class ConstrainedDelaunay(Segmented):
             boundary=as_choice(boundary, _BOUNDARIES[:2], name="boundary"),
             crossing=as_choice(crossing, _CROSSINGS, name="crossing"),
             conforming=as_flag(conforming, name="conforming"),
-            max_vertices=_budget(max_vertices),
+            max_points=_budget(max_points),
             method=as_choice(method, tuple(_core.methods2()), name="method"),
             workers=workers,
             labelled=False,
@@ -196,7 +196,7 @@ class ConstrainedDelaunay(Segmented):
         as_choice(choices["boundary"], _BOUNDARIES, name="boundary")
         as_choice(choices["crossing"], _CROSSINGS, name="crossing")
         as_choice(choices["method"], tuple(_core.methods2()), name="method")
-        choices["max_vertices"] = _budget(choices["max_vertices"])
+        choices["max_points"] = _budget(choices["max_points"])
         mesh = cls.__new__(cls)
         given = _given(segments, origin, holes, regions)
         mesh._compute(points, given, Options(labelled=len(given.regions) > 0, **choices))
@@ -210,7 +210,7 @@ class ConstrainedDelaunay(Segmented):
                 given.segments,
                 options.crossing == "split",
                 options.conforming,
-                options.max_vertices,
+                options.max_points,
                 options.method,
                 as_workers(options.workers),
             )
@@ -392,7 +392,7 @@ class ConstrainedDelaunay(Segmented):
             _CROSSINGS.index(options.crossing),
             options.labelled,
             options.conforming,
-            options.max_vertices,
+            options.max_points,
         )
         crs = {} if self.crs is None else {"crs": np.array(self.crs)}
         return self._columns() | {"options": np.array(choices, dtype=np.int64)} | crs
@@ -431,7 +431,7 @@ class ConstrainedDelaunay(Segmented):
             boundary=_BOUNDARIES[boundary],
             crossing=_CROSSINGS[crossing],
             conforming=bool(conforming),
-            max_vertices=most,
+            max_points=most,
             method="auto",
             workers=None,
             labelled=bool(labelled),
@@ -470,10 +470,10 @@ def _given(
     )
 
 
-def _budget(max_vertices: int | None) -> int:
-    if max_vertices is None:
+def _budget(max_points: int | None) -> int:
+    if max_points is None:
         return _MOST_ADDED
-    return min(as_count(max_vertices, name="max_vertices"), 2**31 - 1)
+    return min(as_count(max_points, name="max_points"), 2**31 - 1)
 
 
 def _own(array: Indices, given: ArrayLike) -> Indices:

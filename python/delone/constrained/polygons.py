@@ -42,7 +42,7 @@ def from_geometry(
     boundary: str = "hull",
     crossing: str = "split",
     conforming: bool = False,
-    max_vertices: int | None = None,
+    max_points: int | None = None,
     method: str = "auto",
     workers: int | None = None,
     crs: Any = None,
@@ -56,12 +56,12 @@ def from_geometry(
         Geometries of shapely, tables and series of geopandas, a `delone.io.GeometrySet`, objects
         with ``__geo_interface__``, mappings of that form (GeoJSON), and iterables of these, in any
         mixture. Rows of tables and features of collections are geometries each.
-    holes, regions, conforming, max_vertices, method, workers : optional
+    holes, regions, conforming, max_points, method, workers : optional
         As for `ConstrainedDelaunay`.
     boundary : {"hull", "outline", "polygons"}, optional
         What is triangulated: as for `ConstrainedDelaunay`; or only what is inside of polygons,
         without their holes.
-    crossing : {"split", "error"}, optional
+    crossing : {"split", "raise"}, optional
         As for `ConstrainedDelaunay`, but by default crossings are split: the boundaries of real
         data do cross.
     crs : str, int or pyproj.CRS, optional
@@ -139,7 +139,7 @@ def from_geometry(
         boundary=boundary,
         crossing=crossing,
         conforming=as_flag(conforming, name="conforming"),
-        max_vertices=max_vertices,
+        max_points=max_points,
         method=method,
         workers=workers,
         crs=system,

@@ -36,7 +36,7 @@ class Options(NamedTuple):
     boundary: str
     crossing: str
     conforming: bool
-    max_vertices: int
+    max_points: int
     method: str
     workers: int | None
     labelled: bool

@@ -88,7 +88,7 @@ class ArrayInterpolation:
             As in `interpolator`.
         **options
             Options of the interpolator: ``extrapolate``, ``respect_constraints``, ``workers``,
-            ``planar`` and so on. NaN among the values propagates unless ``nan="error"`` is given.
+            ``planar`` and so on. NaN among the values propagates unless ``nan="raise"`` is given.
             With ``max_distance``, targets farther than this from the nearest point get NaN.
 
         Returns

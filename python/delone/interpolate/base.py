@@ -74,7 +74,7 @@ class Interpolator:
     True
     """
 
-    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "error")
+    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nan", "nearest", "linear", "raise")
 
     def __init__(
         self,
@@ -82,8 +82,8 @@ class Interpolator:
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nan",
-        duplicates: str = "error",
-        nan: str = "error",
+        duplicates: str = "raise",
+        nan: str = "raise",
         respect_constraints: bool = False,
         workers: int | None = None,
         planar: bool = False,
@@ -155,7 +155,7 @@ class Interpolator:
         Parameters
         ----------
         xi : array_like, shape (..., d)
-            Queries. NaN gives NaN; so does infinity, unless ``extrapolate="error"`` rejects it.
+            Queries. NaN gives NaN; so does infinity, unless ``extrapolate="raise"`` rejects it.
         values : array_like, shape (n,) or (n, ...), optional
             Another field on the same sites; by default the values given to the constructor.
         max_distance : float, optional
@@ -171,10 +171,10 @@ class Interpolator:
         ShapeError, DtypeError
             `xi` or `values` have the wrong shape, or are not numeric.
         NonFiniteError
-            A value is not finite and ``nan="error"``.
+            A value is not finite and ``nan="raise"``.
         InputError
             No values were given; duplicates have different values; a query (infinity included) is
-            outside the hull and ``extrapolate="error"``; `max_distance` is negative or NaN.
+            outside the hull and ``extrapolate="raise"``; `max_distance` is negative or NaN.
 
         Examples
         --------
@@ -287,7 +287,7 @@ class Interpolator:
         ShapeError, DtypeError
             `xi` is not a real array of points with the dimension of the sites.
         InputError
-            A query is outside the hull and ``extrapolate="error"``.
+            A query is outside the hull and ``extrapolate="raise"``.
 
         Examples
         --------
@@ -369,7 +369,7 @@ class Interpolator:
         """
         if self._kept is not None:
             field = field.at(self._kept)
-        if self._nan == "error":
+        if self._nan == "raise":
             require_finite_values(field)
         if self._repeated is not None:
             # Duplicates are those of the sites: rounding may make copies of different sites equal.
@@ -444,7 +444,7 @@ class Interpolator:
 
     def _sloped(self, queries: Floats, columns: Floats) -> Floats:
         found = self._derived(queries, columns, 1)
-        if self._extrapolate in ("linear", "error"):
+        if self._extrapolate in ("linear", "raise"):
             rows, place = self._outside(queries, found[..., 0])
             for axis, step in enumerate(np.eye(self._ndim)) if rows.size else ():
                 terms = self._terms(place, np.tile(step, (len(rows), 1)), False)
@@ -470,7 +470,7 @@ class Interpolator:
         if found is not None and found.shape[1]:
             suspects = np.flatnonzero(np.isnan(found[:, 0]))
         place = self._located(queries[suspects])
-        if self._extrapolate == "error":
+        if self._extrapolate == "raise":
             # Not by `beside`, which is -1 for infinite queries and for meshes without triangles.
             missed = (place.simplex < 0) & ~np.isnan(queries[suspects]).any(axis=1)
             self._refuse(suspects[missed], len(queries))
@@ -482,7 +482,7 @@ class Interpolator:
             return
         first = ", ".join(map(str, rows[:_NAMED].tolist()))
         more = ", ..." if len(rows) > _NAMED else ""
-        *most, last = (f"'{each}'" for each in self.EXTRAPOLATE if each != "error")
+        *most, last = (f"'{each}'" for each in self.EXTRAPOLATE if each != "raise")
         raise InputError(
             f"xi: {len(rows)} of {count} {agreed(count, 'query', 'queries')} "
             f"{agreed(len(rows), 'is', 'are')} outside the hull: "

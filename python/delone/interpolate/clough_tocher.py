@@ -49,9 +49,9 @@ class CloughTocher(Smooth):
         Change at which the global estimation stops, relative to the gradient, or to the range of
         the values divided by the longer side of the bounding box of the sites if that is larger.
         The result is therefore independent of the units of length and of the values.
-    maxiter : int, optional
+    max_iter : int, optional
         Maximum number of sweeps; if it is reached, a `GradientWarning` is issued.
-    extrapolate : {"nan", "nearest", "linear", "error"}, optional
+    extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there with the gradients of its sites; an error.
     duplicates, nan : str, optional
@@ -102,10 +102,10 @@ class CloughTocher(Smooth):
         *,
         gradients: str = "global",
         tol: float = 1e-6,
-        maxiter: int = 400,
+        max_iter: int = 400,
         extrapolate: str = "nan",
-        duplicates: str = "error",
-        nan: str = "error",
+        duplicates: str = "raise",
+        nan: str = "raise",
         respect_constraints: bool = False,
         workers: int | None = None,
         planar: bool = False,
@@ -115,7 +115,7 @@ class CloughTocher(Smooth):
             values,
             gradients=gradients,
             tol=tol,
-            maxiter=maxiter,
+            max_iter=max_iter,
             extrapolate=extrapolate,
             duplicates=duplicates,
             nan=nan,

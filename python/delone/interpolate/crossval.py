@@ -157,8 +157,8 @@ def cross_validate(
     folds: int | None = None,
     leave_one_out: bool | None = None,
     seed: int = 0,
-    duplicates: str = "error",
-    nan: str = "error",
+    duplicates: str = "raise",
+    nan: str = "raise",
     progress: Callable[[float], None] | None = None,
     workers: int | None = None,
     planar: bool = False,
@@ -183,7 +183,7 @@ def cross_validate(
         Seed of the random parts.
     duplicates : str, optional
         As in `Linear`. Points that coincide are left out together.
-    nan : {"error", "drop"}, optional
+    nan : {"raise", "drop"}, optional
         Whether sites without a finite value raise an error or are removed first.
     progress : callable, optional
         Called from time to time with the fraction of the work that is done, from 0 to 1.

@@ -30,13 +30,13 @@ class Linear(Interpolator):
         one, ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
-    extrapolate : {"nan", "nearest", "linear", "error"}, optional
+    extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there, with the gradients of the planes that best fit its sites and their
         neighbors; an error.
-    duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
+    duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of points that coincide but have different values.
-    nan : {"error", "drop", "propagate"}, optional
+    nan : {"raise", "drop", "propagate"}, optional
         How to treat sites whose value is NaN or infinite: raise an error that names them; remove
         them from the triangulation (an error if a constraint needs them); keep them, so that the
         triangles at them have no value.
@@ -51,9 +51,9 @@ class Linear(Interpolator):
     Raises
     ------
     InputError
-        An argument is not one of its choices; values differ at a point with ``duplicates="error"``.
+        An argument is not one of its choices; values differ at a point with ``duplicates="raise"``.
     NonFiniteError
-        A coordinate, or with ``nan="error"`` a value, is NaN or infinite.
+        A coordinate, or with ``nan="raise"`` a value, is NaN or infinite.
     DegenerateInputError
         The sites span no area.
     ShapeError, DtypeError

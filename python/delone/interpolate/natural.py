@@ -52,9 +52,9 @@ class NaturalNeighbor(Smooth):
         and faster; Sibson's and Farin's interpolants from values and gradients, C1 everywhere.
     gradients : {"local", "plane", "global"}, optional
         How ``"sibson1"`` and ``"farin"`` estimate gradients at the sites; as in `CloughTocher`.
-    tol, maxiter : optional
+    tol, max_iter : optional
         As in `CloughTocher`.
-    extrapolate : {"nan", "nearest", "linear", "error"}, optional
+    extrapolate : {"nan", "nearest", "linear", "raise"}, optional
         Behavior outside the hull: NaN; the value at the nearest point of the hull; linear
         extrapolation from there, as in `Linear` or with the gradients of the kind; an error.
     duplicates, nan : str, optional
@@ -104,10 +104,10 @@ class NaturalNeighbor(Smooth):
         kind: str = "sibson",
         gradients: str = "local",
         tol: float = 1e-6,
-        maxiter: int = 400,
+        max_iter: int = 400,
         extrapolate: str = "nan",
-        duplicates: str = "error",
-        nan: str = "error",
+        duplicates: str = "raise",
+        nan: str = "raise",
         respect_constraints: bool = False,
         workers: int | None = None,
         planar: bool = False,
@@ -118,7 +118,7 @@ class NaturalNeighbor(Smooth):
             values,
             gradients=gradients,
             tol=tol,
-            maxiter=maxiter,
+            max_iter=max_iter,
             extrapolate=extrapolate,
             duplicates=duplicates,
             nan=nan,

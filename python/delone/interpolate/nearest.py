@@ -32,11 +32,11 @@ class Nearest(Interpolator):
         Sites.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
-    extrapolate : {"nearest", "nan", "error"}, optional
+    extrapolate : {"nearest", "nan", "raise"}, optional
         Behavior outside the hull: the value of the nearest site, as inside; NaN; an error.
-    duplicates : {"error", "mean", "first", "last", "min", "max"}, optional
+    duplicates : {"raise", "mean", "first", "last", "min", "max"}, optional
         The value of points that coincide but have different values.
-    nan : {"error", "drop", "propagate"}, optional
+    nan : {"raise", "drop", "propagate"}, optional
         How to treat sites whose value is NaN or infinite; as in `Linear`.
     respect_constraints : bool, optional
         On a constrained triangulation, use the nearest site that is visible from the query, not
@@ -66,7 +66,7 @@ class Nearest(Interpolator):
     array([20., 30., nan])
     """
 
-    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nearest", "nan", "error")
+    EXTRAPOLATE: ClassVar[tuple[str, ...]] = ("nearest", "nan", "raise")
 
     def __init__(
         self,
@@ -74,8 +74,8 @@ class Nearest(Interpolator):
         values: ArrayLike | None = None,
         *,
         extrapolate: str = "nearest",
-        duplicates: str = "error",
-        nan: str = "error",
+        duplicates: str = "raise",
+        nan: str = "raise",
         respect_constraints: bool = False,
         workers: int | None = None,
         planar: bool = False,
@@ -120,7 +120,7 @@ class Nearest(Interpolator):
         if self._extrapolate == "nearest":
             return rows
         place = self._located(queries)
-        if self._extrapolate == "error":
+        if self._extrapolate == "raise":
             self._outside(queries, None)
         return np.where(place.simplex >= 0, rows, np.int32(-1))
 

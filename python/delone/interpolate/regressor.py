@@ -37,7 +37,7 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     ----------
     method : str, optional
         As in `interpolator`.
-    extrapolate : {"nearest", "linear", "nan", "error"}, optional
+    extrapolate : {"nearest", "linear", "nan", "raise"}, optional
         Behavior outside the hull of the training points.
     duplicates : str, optional
         The value of training points that coincide but have different values; as in `Linear`, but by

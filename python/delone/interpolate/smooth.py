@@ -41,7 +41,7 @@ _DEGREES = {"local": 2, "plane": 1}
 
 
 class GradientWarning(UserWarning):
-    """The estimation of gradients stopped before it converged: `maxiter` was reached."""
+    """The estimation of gradients stopped before it converged: `max_iter` was reached."""
 
 
 class Sheet(NamedTuple):
@@ -81,12 +81,12 @@ class Smooth(Interpolator):
         *,
         gradients: str,
         tol: float,
-        maxiter: int,
+        max_iter: int,
         **options: Any,
     ) -> None:
         self._estimate = chosen("gradients", gradients, GRADIENTS)
         self._tol = as_number(tol, name="tol")
-        self._maxiter = as_count(maxiter, name="maxiter")
+        self._maxiter = as_count(max_iter, name="max_iter")
         if not self._tol > 0:
             raise InputError(f"tol must be above 0, got {tol}")
         super().__init__(points, values, **options)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen"]
 
-DUPLICATES = ("error", "mean", "first", "last", "min", "max")
-NAN = ("error", "drop", "propagate")
+DUPLICATES = ("raise", "mean", "first", "last", "min", "max")
+NAN = ("raise", "drop", "propagate")
 
 _LARGEST_EXACT_INTEGER = 2**53
 _NAMED = 5
@@ -93,7 +93,7 @@ class Field:
         Raises
         ------
         ConflictingValuesError
-            The policy is ``"error"`` and values differ.
+            The policy is ``"raise"`` and values differ.
         InputError
             The policy would have to order complex numbers.
         """
@@ -103,9 +103,9 @@ class Field:
         at_first = self.columns[first[again]]
         differ = ~((self.columns[again] == at_first) | _both_nan(self.columns[again], at_first))
         rows = again[differ.any(axis=1)]
-        if not rows.size and policy == "error":
+        if not rows.size and policy == "raise":
             return self
-        if policy == "error":
+        if policy == "raise":
             raise self._told_apart(rows, first)
         return replace(self, columns=self._merge(again, first, policy))
 
@@ -238,7 +238,7 @@ def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
     Examples
     --------
     >>> from delone.interpolate.values import chosen
-    >>> chosen("nan", "drop", ("error", "drop"))
+    >>> chosen("nan", "drop", ("raise", "drop"))
     'drop'
     """
     if not isinstance(value, str) or value not in choices:

@@ -163,12 +163,12 @@ class Mesh(MeshState):
         """
         return coarsened(self, marked)
 
-    def smooth(self, iterations: int = 1, method: str = "lloyd") -> Mesh:
+    def smooth(self, max_iter: int = 1, method: str = "lloyd") -> Mesh:
         """Make a mesh whose free points are at better places.
 
         Parameters
         ----------
-        iterations : int, optional
+        max_iter : int, optional
             How many rounds.
         method : {"lloyd", "odt", "laplace"}, optional
             Towards what a point moves: the centre of its Voronoi cell, as far as its triangles
@@ -184,7 +184,7 @@ class Mesh(MeshState):
         Raises
         ------
         InputError
-            `iterations` is negative, or `method` none of the three.
+            `max_iter` is negative, or `method` none of the three.
 
         Notes
         -----
@@ -200,7 +200,7 @@ class Mesh(MeshState):
         >>> bool(better.quality().radius_ratio.mean() > mesh.quality().radius_ratio.mean())
         True
         """
-        return smoothed(self, iterations, method)
+        return smoothed(self, max_iter, method)
 
     def plot_quality(self, ax: Any = None) -> Any:
         """Draw the histogram of the angles, with the bound (extra ``plot``).

@@ -54,7 +54,7 @@ def mesh(
     smooth: int = 0,
     holes: ArrayLike | None = None,
     regions: ArrayLike | None = None,
-    frozen: bool | str | ArrayLike = False,
+    fixed: bool | str | ArrayLike = False,
     segment_markers: ArrayLike | None = None,
     point_markers: ArrayLike | None = None,
     crossing: str | None = None,
@@ -96,7 +96,7 @@ def mesh(
         How many rounds of ``Mesh.smooth`` follow.
     holes, regions : array_like, optional
         Seeds, as for `ConstrainedDelaunay`; for ``(points, segments)`` alone.
-    frozen : bool, "boundary" or array_like of bool, shape (s,), optional
+    fixed : bool, "boundary" or array_like of bool, shape (s,), optional
         Segments that may not be split: all, those on the boundary, or those named. Angles next to
         them may stay small.
     segment_markers : array_like of int, shape (s,), optional
@@ -105,7 +105,7 @@ def mesh(
         the next, in the order of the coordinates. Those of arrays have 0.
     point_markers : array_like of int, shape (n,), optional
         A number for each point. Where it is 0 the marker of a segment that ends there counts.
-    crossing : {"split", "error"}, optional
+    crossing : {"split", "raise"}, optional
         Whether segments that cross get a vertex there: by default geometries do and arrays do not.
     progress : callable, optional
         Called now and then with the number of points added and the smallest angle in degrees.
@@ -147,9 +147,9 @@ def mesh(
     unless its sides happen to be cut alike, as two of equal length are: then one may do. All else
     is refined before needles are. Time is about a microsecond a triangle, memory linear.
 
-    Next to frozen segments no bound holds, and with sizes angles there may become far smaller than
+    Next to fixed segments no bound holds, and with sizes angles there may become far smaller than
     those of the input: points come as near to the segment as the size asks for, and it may not be
-    split. Sizes of the length of the frozen segments keep what there was.
+    split. Sizes of the length of the fixed segments keep what there was.
 
     Points on segments are rounded to doubles, so that pieces of a segment may bend by that much.
 
@@ -186,7 +186,7 @@ def mesh(
         region,
         limits,
         sizes=(max_area, size),
-        frozen=frozen,
+        fixed=fixed,
         markers=(segment_markers, point_markers),
         stages=stages,
     )
@@ -199,7 +199,7 @@ def filled(
     limits: Limits,
     *,
     sizes: tuple[Any, Any],
-    frozen: bool | str | ArrayLike,
+    fixed: bool | str | ArrayLike,
     markers: tuple[ArrayLike | None, ArrayLike | None],
     stages: dict[str, float],
 ) -> Mesh:
@@ -215,7 +215,7 @@ def filled(
         How far.
     sizes : tuple
         `max_area` and `size` of `mesh`.
-    frozen : bool, "boundary" or array_like of bool
+    fixed : bool, "boundary" or array_like of bool
         As for `mesh`.
     markers : tuple
         `segment_markers` and `point_markers` of `mesh`.
@@ -241,9 +241,9 @@ def filled(
         region=region,
         segment_markers=_segment_markers(base, markers[0]),
         point_markers=as_rows(markers[1], base.npoints - base.nadded, "point_markers"),
-        frozen=_frozen(frozen, count),
+        frozen=_fixed(fixed, count),
     )
-    if isinstance(frozen, str):
+    if isinstance(fixed, str):
         start = start._replace(lines=start.lines._replace(frozen=_on_boundary(start)))
     made, counts = rounds(start, sizes, limits)
     stages["refine"] = time.perf_counter() - clock
@@ -298,15 +298,15 @@ def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indi
     return as_rows(given, len(base.input_segments), "segment_markers")
 
 
-def _frozen(frozen: bool | str | ArrayLike, count: int) -> Bools:
-    if isinstance(frozen, str):
-        as_choice(frozen, ("boundary",), name="frozen")
+def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
+    if isinstance(fixed, str):
+        as_choice(fixed, ("boundary",), name="fixed")
         return np.zeros(count, dtype=bool)
-    array = as_plain_array(frozen, "frozen")
+    array = as_plain_array(fixed, "fixed")
     if array.dtype.kind != "b":
-        raise DtypeError(f"frozen must be booleans or 'boundary', got dtype {array.dtype}")
+        raise DtypeError(f"fixed must be booleans or 'boundary', got dtype {array.dtype}")
     if array.shape not in ((), (count,)):
-        raise ShapeError(f"frozen must have shape ({count},), got {array.shape}")
+        raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
     return np.broadcast_to(array, (count,)).copy()
 
 
@@ -341,7 +341,7 @@ def _base(
             holes=holes,
             regions=regions,
             boundary="outline",
-            crossing=crossing or "error",
+            crossing=crossing or "raise",
             workers=workers,
             planar=planar,
         )

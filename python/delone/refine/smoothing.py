@@ -39,10 +39,10 @@ METHODS = ("lloyd", "odt", "laplace")
 _HALVINGS = 3
 
 
-def smoothed(mesh: M, iterations: int, method: str) -> M:
+def smoothed(mesh: M, max_iter: int, method: str) -> M:
     """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
     as_choice(method, METHODS, name="method")
-    for _ in range(as_count(iterations, name="iterations")):
+    for _ in range(as_count(max_iter, name="max_iter")):
         free = _free(mesh)
         if not free.any():
             break

@@ -54,7 +54,7 @@ def improve(
     boundary: str = "faces",
     region: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
-    max_passes: int = 30,
+    max_iter: int = 30,
     progress: Callable[[int, int], object] | None = None,
 ) -> TetMesh:
     """Make the tetrahedra of a mesh better: remove slivers.
@@ -82,7 +82,7 @@ def improve(
         By default that of a TetMesh.
     fixed : array_like of bool, shape (n,), or of int, optional
         Points that do not move: a mask, or rows.
-    max_passes : int, optional
+    max_iter : int, optional
         How many passes over the tetrahedra below the goal there are at most.
     progress : callable, optional
         Called after each pass with its number and how many tetrahedra are below the goal.
@@ -151,7 +151,7 @@ def improve(
     )
     turn = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
     # More than the core counts are as many as it likes.
-    passes = min(as_count(max_passes, name="max_passes"), _INDEX_MAX)
+    passes = min(as_count(max_iter, name="max_iter"), _INDEX_MAX)
     if progress is not None and not callable(progress):
         raise DtypeError(f"progress must be callable, got {progress!r}")
     try:
