@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,12 +83,11 @@ class Dimension:
     delaunay: Callable[[Floats, int], tuple[Indices, Indices]]
 
 
-P = ParamSpec("P")
-T = TypeVar("T")
+F = TypeVar("F", bound="Callable[..., Any]")
 
 
-def only(ndim: int, instead: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Give an attribute to objects of one dimension.
+def only(ndim: int, instead: str) -> Callable[[F], F]:
+    """Give a method, or the getter of a property, to objects of one dimension.
 
     Parameters
     ----------
@@ -100,20 +99,35 @@ def only(ndim: int, instead: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     Returns
     -------
     callable
-        A decorator of getters and methods. In other dimensions they raise an AttributeError, so
-        that ``hasattr`` is right about properties.
+        A decorator. In other dimensions the attribute does not exist, also for ``hasattr``.
     """
 
-    def decorate(method: Callable[P, T]) -> Callable[P, T]:
-        @functools.wraps(method)
-        def checked(*args: P.args, **kwargs: P.kwargs) -> T:
-            owner: Any = args[0]
-            if owner.ndim != ndim:
-                raise AttributeError(
-                    f"{method.__name__} is only available in {ndim}-D: {instead}", obj=owner
-                )
-            return method(*args, **kwargs)
-
-        return checked
+    def decorate(method: F) -> F:
+        found: Any = _Only(method, ndim, instead)
+        return found  # type: ignore[no-any-return]
 
     return decorate
+
+
+class _Only:
+    """A method that objects of other dimensions do not have."""
+
+    def __init__(self, method: Callable[..., Any], ndim: int, instead: str) -> None:
+        functools.update_wrapper(self, method)
+        self._method, self._ndim, self._instead = method, ndim, instead
+
+    def __get__(self, owner: Any, kind: type | None = None) -> Any:
+        if owner is None:
+            return self._method
+        self._check(owner)
+        return self._method.__get__(owner, kind)
+
+    def __call__(self, owner: Any, *args: Any, **kwargs: Any) -> Any:
+        self._check(owner)
+        return self._method(owner, *args, **kwargs)
+
+    def _check(self, owner: Any) -> None:
+        if owner.ndim != self._ndim:
+            name = self._method.__name__
+            message = f"{name} is only available in {self._ndim}-D: {self._instead}"
+            raise AttributeError(message, name=name, obj=owner)

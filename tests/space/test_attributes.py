@@ -207,6 +207,7 @@ def test_what_is_there_in_one_dimension_only() -> None:
         _ = solid.areas
     with pytest.raises(AttributeError, match="2-D"):
         solid.walk((0, 0), (1, 1))
+    assert not hasattr(solid, "walk")
     for name in ("volumes",):
         assert not hasattr(flat, name)
     with pytest.raises(ShapeError):

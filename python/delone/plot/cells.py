@@ -115,7 +115,7 @@ def _bounded(diagram: Cells2) -> Cells2:
         axis = 0 if periods[1] is None else 1
         low[axis], high[axis] = -np.inf, np.inf
     make: Any = type(diagram)
-    options = {} if periods is None else {"periodic": periods}
+    options = {} if periods is None else {"periods": periods}
     found: Cells2 = make(
         diagram.points, clip=(*low.tolist(), *high.tolist()), weights=diagram.weights, **options
     )
