@@ -1,21 +1,23 @@
-//! Constrained triangulations on small lattices, where touches, overlaps and ties are everywhere:
-//! checked exactly, with crossings as errors and split, and the same for every order of the rows.
+//! Constrained triangulations on small lattices, with many touches, overlaps and ties: checked
+//! exactly.
+//!
+//! Crossings are errors or are split; the result must be the same for every order of the rows.
 
 #![no_main]
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use delone_core::Point2;
+use delone_core::arrays::Given;
 use delone_core::constrained::{Constrained, Options, constrain};
 use delone_core::delaunay2::Method;
-use delone_core::arrays::Given;
 use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
 use delone_predicates::{Sign, orient2d};
 use libfuzzer_sys::arbitrary::{self, Unstructured};
 
-/// More of them make a run slower, not harder.
+/// More points only make a run slower, not harder.
 const MOST_POINTS: usize = 40;
 const MOST_SEGMENTS: usize = 16;
 
@@ -41,7 +43,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// A lattice of a few places a side, at an offset that may leave few digits to crossings.
+/// A lattice of a few points per side, at an offset that may leave few digits for crossings.
 fn read(bytes: &mut Unstructured) -> arbitrary::Result<(Vec<Point2>, Segments)> {
     let side = bytes.int_in_range(1..=15)?;
     let count = bytes.int_in_range(3..=MOST_POINTS)?;
@@ -59,7 +61,7 @@ fn read(bytes: &mut Unstructured) -> arbitrary::Result<(Vec<Point2>, Segments)> 
     Ok((points, segments))
 }
 
-/// The triangles, once they have been checked, and once more with all rows turned round.
+/// The triangles, after they are checked, also with all rows reversed.
 fn check(points: &[Point2], segments: &[[u32; 2]], split: bool) -> Result<Shapes> {
     let made = made(points, segments, split)?;
     let all = [points, &made.added].concat();
@@ -105,14 +107,14 @@ fn assert_triangles(all: &[Point2], made: &Constrained) {
     let mut found = validate(given, &Watch::idle()).expect("a report");
     let free = |&[t, s]: &[u32; 2]| {
         let k = (0..3).find(|&k| neighbors[t as usize][k] == s as i32);
-        !made.constrained[t as usize][k.expect("neighbours")]
+        !made.constrained[t as usize][k.expect("neighbors")]
     };
     found.delaunay.retain(free);
     found.ties.retain(free);
     assert_eq!(found, Findings::default(), "{all:?}");
 }
 
-/// Flags are those of the subsegments, and the subsegments of each row lead from end to end.
+/// Flags must match the subsegments, and the subsegments of each row must lead from end to end.
 fn assert_segments(all: &[Point2], segments: &[[u32; 2]], made: &Constrained, split: bool) {
     let mut flagged = BTreeMap::new();
     for (t, s) in made.arrays.simplices.iter().enumerate() {
@@ -141,7 +143,7 @@ fn assert_segments(all: &[Point2], segments: &[[u32; 2]], made: &Constrained, sp
     }
     assert!(
         !flagged.into_values().any(|flag| flag),
-        "a flag of no subsegment"
+        "a flag without a subsegment"
     );
     for (ends, mut chain) in segments.iter().zip(chains) {
         let [a, b] = ends.map(|row| all[row as usize]);
@@ -159,7 +161,7 @@ fn assert_segments(all: &[Point2], segments: &[[u32; 2]], made: &Constrained, sp
 fn shapes(all: &[Point2], made: &Constrained) -> Shapes {
     let turned = |t: &[i32; 3]| {
         let [a, b, c] = t.map(|v| all[v as usize].map(|x| (x + 0.0).to_bits()));
-        // Coordinates are not negative, so that their bits are in their order.
+        // Coordinates are nonnegative, so their bits sort in the same order.
         [[a, b, c], [b, c, a], [c, a, b]]
             .into_iter()
             .min()
@@ -168,7 +170,7 @@ fn shapes(all: &[Point2], made: &Constrained) -> Shapes {
     made.arrays.simplices.iter().map(turned).collect()
 }
 
-/// Pairs of rows that cross where no point is, by trying all.
+/// Pairs of rows that cross other than at a point of the input, by brute force.
 fn crossing_pairs(points: &[Point2], segments: &[[u32; 2]]) -> Segments {
     let at = |i: usize| segments[i].map(|row| points[row as usize]);
     let mut found = Vec::new();

@@ -1,5 +1,7 @@
-//! Hulls in space against the oracle's determinants: nothing beyond, every corner extreme, every facet
-//! whole, and the same for every order of the rows.
+//! 3-D hulls compared with exact determinants: no point beyond, every corner extreme, every facet
+//! complete.
+//!
+//! The result must be the same for every order of the rows.
 
 #![no_main]
 
@@ -13,7 +15,7 @@ use delone_fuzz::oracle::orientation;
 use delone_predicates::Sign;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// More points make a run slower than the ties among them make it harder.
+/// More points make a run slower; ties among few points are harder.
 const MOST: usize = 24;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
@@ -33,7 +35,7 @@ fn read(bytes: &mut Unstructured) -> Result<Vec<Point3>> {
     Ok(points)
 }
 
-/// The facets by the coordinates of their corners, checked; none where the points span no volume.
+/// The facets by the coordinates of their corners, checked; `None` if the points span no volume.
 fn facets(points: &[Point3]) -> BTreeSet<Vec<[u64; 3]>> {
     let Some(hull) = hull3(points, &Watch::idle()).expect("a hull") else {
         assert!(is_flat(points), "{points:?}");
@@ -63,7 +65,7 @@ fn facets(points: &[Point3]) -> BTreeSet<Vec<[u64; 3]>> {
         .collect()
 }
 
-/// One sphere of triangles; those of one facet are in one plane, those of two are not.
+/// A closed surface of triangles; those of one facet are coplanar, those of two are not.
 fn check_surface(points: &[Point3], hull: &Hull3) {
     let at = |v: u32| points[v as usize];
     let vertices: BTreeSet<u32> = hull.simplices.as_flattened().iter().copied().collect();

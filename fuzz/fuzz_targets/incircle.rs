@@ -1,4 +1,4 @@
-//! All stages of `incircle`, and its canonical ties, against integers without limit.
+//! All stages of `incircle`, and its canonical ties, compared with arbitrary-precision integers.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! All stages of `insphere`, and its canonical ties, against integers without limit.
+//! All stages of `insphere`, and its canonical ties, compared with arbitrary-precision integers.
 
 #![no_main]
 

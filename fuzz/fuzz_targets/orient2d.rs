@@ -1,4 +1,4 @@
-//! All stages of `orient2d` against integers without limit.
+//! All stages of `orient2d` compared with arbitrary-precision integers.
 
 #![no_main]
 

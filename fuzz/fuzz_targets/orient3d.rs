@@ -1,4 +1,4 @@
-//! All stages of `orient3d` against integers without limit.
+//! All stages of `orient3d` compared with arbitrary-precision integers.
 
 #![no_main]
 

@@ -1,6 +1,7 @@
-//! Meshes of segments on small lattices, where ties, touches and sharp corners are everywhere: the
-//! triangles are checked exactly, subsegments lead from end to end, no angle is below the bound but
-//! where a corner of the input forces it, and the work ends.
+//! Refinement on small lattices, with many ties, touches and sharp corners: checked exactly.
+//!
+//! Subsegments lead from end to end, no angle is below the bound unless a corner of the input
+//! forces it, and refinement terminates.
 
 #![no_main]
 
@@ -8,21 +9,21 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use delone_core::Point2;
+use delone_core::arrays::Given;
 use delone_core::constrained::{Constrained, Options, components, constrain};
 use delone_core::delaunay2::Method;
-use delone_core::arrays::Given;
 use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::refine::{Refined, Task, refine};
 use delone_core::watch::Watch;
 use libfuzzer_sys::arbitrary::{self, Unstructured};
 use num_bigint::BigInt;
 
-/// More of them make a run slower, not harder.
+/// More points only make a run slower, not harder.
 const MOST_POINTS: usize = 20;
 const MOST_SEGMENTS: usize = 10;
-/// More than angles up to 26 degrees can ask for there.
+/// More than angles up to 26 degrees can need there.
 const MOST_ADDED: usize = 20_000;
-/// As in the core: radii about a corner are one if they differ by less.
+/// As in the core: radii around a corner are equal if they differ by less than this share.
 const SAME_SHELL: f64 = 1e-3;
 
 struct Input {
@@ -40,7 +41,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// Points of a lattice in a box, so that its sides stay straight however they are cut.
+/// Points of a lattice in a box, so that its sides stay straight however they are split.
 fn read(bytes: &mut Unstructured) -> arbitrary::Result<Input> {
     let side = bytes.int_in_range(1..=9)?;
     let degrees = *bytes.choose(&[0.0, 20.0, 26.0, 30.0, 33.0])?;
@@ -94,7 +95,7 @@ fn check(input: &Input) {
     assert_chains(&all, &lines, &made, points.len(), input.frozen);
     assert!(
         input.degrees > 26.0 || input.frozen || !made.exhausted,
-        "no end: {points:?} {lines:?}"
+        "does not terminate: {points:?} {lines:?}"
     );
     if !made.exhausted {
         assert_sizes(input.cap, &all, &made);
@@ -133,14 +134,14 @@ fn assert_triangles(all: &[Point2], made: &Refined) {
     let mut found = validate(given, &Watch::idle()).expect("a report");
     let free = |&[t, s]: &[u32; 2]| {
         let k = (0..3).find(|&k| made.neighbors[t as usize][k] == s as i32);
-        made.sides[t as usize][k.expect("neighbours")] < 0
+        made.sides[t as usize][k.expect("neighbors")] < 0
     };
     found.delaunay.retain(free);
     found.ties.retain(free);
     assert_eq!(found, Findings::default(), "{all:?}");
 }
 
-/// The pieces of each line lead from end to end, ever farther along it.
+/// The pieces of each line lead from end to end, with increasing distance along it.
 fn assert_chains(all: &[Point2], lines: &[[u32; 2]], made: &Refined, own: usize, frozen: bool) {
     let mut pieces = vec![BTreeMap::new(); lines.len()];
     for (t, corners) in made.simplices.iter().enumerate() {
@@ -219,7 +220,7 @@ fn is_below(degrees: f64, a: Point2, b: Point2, c: Point2) -> bool {
     cosine > BigInt::ZERO && 4 * &cosine * &cosine > 3 * dot(&u, &u) * dot(&v, &v)
 }
 
-/// A double of this lattice and its cuts as an integer.
+/// A double of this lattice or its splits as an integer.
 fn integer(x: f64) -> BigInt {
     let bits = x.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i64;
@@ -232,8 +233,8 @@ fn integer(x: f64) -> BigInt {
     digits << usize::try_from(shift + 1100).expect("a double")
 }
 
-/// Whether the angle at corner `k` lies between two lines, or opposite an edge that spans two that
-/// meet in a corner, on one circle about it.
+/// Whether the angle at corner `k` lies between two lines, or opposite an edge that joins two that
+/// meet in a corner, at points on one circle around it.
 fn is_forced(
     all: &[Point2],
     lines: &[[u32; 2]],

@@ -1,19 +1,19 @@
-//! Triangulations of space: valid by an exact check, and the same for every order of the rows.
+//! 3-D triangulations: valid by an exact check, and the same for every order of the rows.
 
 #![no_main]
 
 use std::collections::BTreeSet;
 
 use delone_core::Point3;
-use delone_core::delaunay3::triangulate;
 use delone_core::arrays::Given;
+use delone_core::delaunay3::triangulate;
 use delone_core::delaunay3::validate::{Findings3, validate};
 use delone_core::error::Error;
 use delone_core::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// More points make a run slower than the ties among them make it harder.
+/// More points make a run slower; ties among few points are harder.
 const MOST: usize = 40;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
@@ -39,7 +39,7 @@ fn read(bytes: &mut Unstructured) -> Result<Vec<Point3>> {
     Ok(points)
 }
 
-/// The valid tetrahedra by their coordinates; none where the points span none.
+/// The valid tetrahedra by their coordinates; `None` if the points span none.
 fn tetrahedra(points: &[Point3]) -> BTreeSet<[[u64; 3]; 4]> {
     match triangulate(points, 1, &Watch::idle()) {
         Ok(made) => {

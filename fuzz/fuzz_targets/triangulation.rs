@@ -1,4 +1,4 @@
-//! Whole triangulations: every method gives the same triangles, and they are checked exactly.
+//! 2-D triangulations: every method gives the same triangles, and they are checked exactly.
 
 #![no_main]
 
@@ -13,7 +13,7 @@ use delone_core::watch::Watch;
 use delone_fuzz::Coordinates;
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// More points make a run slower than the ties among them make it harder.
+/// More points make a run slower; ties among few points are harder.
 const MOST: usize = 60;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
@@ -38,7 +38,7 @@ fn read(bytes: &mut Unstructured) -> Result<Vec<Point2>> {
     Ok(points)
 }
 
-/// The valid triangles, each from its smallest row on; none where the points are in line.
+/// The valid triangles, each from its smallest row on; `None` if the points are in line.
 fn triangles(points: &[Point2], method: Method) -> BTreeSet<[i32; 3]> {
     match triangulate(points, method, 1, &Watch::idle()) {
         Ok(made) => {

@@ -1,4 +1,4 @@
-//! What the fuzz targets share: bytes to coordinates, and the predicates' oracle.
+//! Shared code of the fuzz targets: coordinates from bytes, and the oracle of the predicates.
 
 #[path = "../../crates/predicates/tests/oracle/mod.rs"]
 pub mod oracle;
@@ -7,9 +7,9 @@ use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use oracle::points::{power_of_two, ulps};
 use oracle::{Answers, Predicate};
 
-/// Coordinates from bytes, each in one of the ways that make predicates hard: any bit pattern, a
-/// lattice of the fuzzer's choice, or an earlier coordinate as it is, mirrored, or moved by a few
-/// doubles. All are finite.
+/// Coordinates from bytes, in ways that are hard for predicates: any bit pattern, a lattice chosen
+/// by the fuzzer, or an earlier coordinate as it is, negated, or moved by a few doubles. All are
+/// finite.
 pub struct Coordinates {
     unit: f64,
     offset: f64,
@@ -77,8 +77,8 @@ pub fn points<const D: usize, const N: usize>(bytes: &[u8]) -> Result<[[f64; D];
     Ok(points)
 }
 
-/// Holds all stages of a predicate against the oracle; then, for a canonical variant, that an
-/// exchange of the first two points changes its sign and that only ties are decided by it.
+/// Compares all stages of a predicate with the oracle. For a canonical variant, also checks that
+/// swapping the first two points negates the sign, and that it decides ties only.
 pub fn check<const D: usize, const N: usize>(
     predicate: &Predicate<D, N>,
     canonical: Option<oracle::Whole<D, N>>,

@@ -234,7 +234,7 @@ def test_what_is_not_finite_is_nowhere() -> None:
     assert place.simplex.tolist() == place.beside.tolist() == [-1, -1]
     assert np.isnan(place.weights).all() and np.isnan(place.along).all()
     assert (place.edge == -1).all()
-    with pytest.raises(ShapeError, match="not finite"):
+    with pytest.raises(ShapeError, match="must be finite"):
         index.along(bad[0], bad[1])
 
 

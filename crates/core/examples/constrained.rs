@@ -1,8 +1,8 @@
-//! Milliseconds a stage of a constrained triangulation, median and minimum of several runs:
-//! `cargo run --release -p delone-core --example constrained -- FILE 5`. FILE holds points, doubles
-//! in turns, and FILE.segments pairs of their rows, 32 bits each, little-endian: what
-//! `python benchmarks/constrained.py --write FOLDER` writes. The environment may set WORKERS,
-//! METHOD, SPLIT and CONFORMING.
+//! Milliseconds per stage of a constrained triangulation, median and minimum of several runs:
+//! `cargo run --release -p delone-core --example constrained -- FILE 5`. FILE contains points as
+//! pairs of doubles, and FILE.segments pairs of their rows, 32 bits each, little-endian, as written
+//! by `python benchmarks/constrained.py --write FOLDER`. The environment may set WORKERS, METHOD,
+//! SPLIT and CONFORMING.
 
 use std::env;
 use std::error::Error;

@@ -1,4 +1,4 @@
-//! Nanoseconds a query of location and interpolation, minimum of several runs:
+//! Nanoseconds per query of location and interpolation, minimum of several runs:
 //! `cargo run --release -p delone-core --example queries -- 1000000 1000000 3 find`.
 //! The environment may set WORKERS.
 
@@ -93,7 +93,7 @@ fn raster(n: usize) -> Vec<Point2> {
     points
 }
 
-/// Nanoseconds that this thread has had a core for, where the system tells; else of the clock.
+/// The CPU time of this thread in nanoseconds, where available; else the wall time.
 fn spent() -> f64 {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let told = told.and_then(|s| s.split(' ').next()?.parse().ok());

@@ -7,7 +7,7 @@ use delone_core::delaunay2::Method;
 use delone_core::refine::{Task, refine};
 use delone_core::watch::Watch;
 
-/// A ring of Koch's curves over a heptagon, `2^levels` segments a side.
+/// A Koch curve over a heptagon, `2^levels` segments per side.
 fn ring(sides: u32, levels: u32) -> Vec<[f64; 2]> {
     let corner = |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);
     let mut points: Vec<[f64; 2]> = (0..sides)

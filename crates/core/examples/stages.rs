@@ -1,4 +1,4 @@
-//! Nanoseconds a point and stage, median and minimum of several runs, on points made here:
+//! Nanoseconds per point and stage, median and minimum of several runs, on generated points:
 //! `cargo run --release -p delone-core --example stages -- 1000000 5 uniform grid`.
 //! The environment may set WORKERS, METHOD and CHECK (validates the first run).
 

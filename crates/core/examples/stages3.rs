@@ -1,6 +1,7 @@
-//! Nanoseconds a point and stage of triangulations in space, median and minimum of several runs, on points
-//! made here: `cargo run --release -p delone-core --example stages3 -- 1000000 5 uniform grid`.
-//! The environment may set WORKERS, a list such as `1,2` of which each takes its turn, and CHECK (validates the first run).
+//! Nanoseconds per point and stage of 3-D triangulations of generated points, median and minimum:
+//! `cargo run --release -p delone-core --example stages3 -- 1000000 5 uniform grid`.
+//! The environment may set WORKERS, a list such as `1,2` whose entries alternate, and CHECK
+//! (validates the first run).
 
 use std::time::Instant;
 
@@ -96,7 +97,7 @@ fn make(set: &str, n: usize) -> Vec<Point3> {
     };
     let side = (n as f64).cbrt().round() as usize;
     match set {
-        // Rows in an order of their own, by a step that is prime to any count.
+        // Rows in a scattered order, by a step that is coprime to any count.
         "grid" => (0..side * side * side)
             .map(|i| i * 1_000_003 % (side * side * side))
             .map(|i| [i % side, i / side % side, i / side / side].map(|x| x as f64))

@@ -1,7 +1,7 @@
 //! Triangulations as arrays: vertices are rows of points, neighbors are simplices or -1 outside.
 //! Simplices are triangles, `N` = 3 corners with `D` = 2 coordinates, or tetrahedra, 4 with 3.
 
-/// A triangulation that is given. Vertices must be rows of `points`, neighbours simplices or -1.
+/// A given triangulation. Vertices must be rows of `points`, neighbors simplices or -1.
 #[derive(Debug, Clone, Copy)]
 pub struct Given<'a, const D: usize, const N: usize> {
     /// Coordinates, finite.
@@ -12,9 +12,9 @@ pub struct Given<'a, const D: usize, const N: usize> {
     pub neighbors: &'a [[i32; N]],
 }
 
-/// Triangles in the plane.
+/// Triangles in 2-D.
 pub type Triangles<'a> = Given<'a, 2, 3>;
-/// Tetrahedra in space.
+/// Tetrahedra in 3-D.
 pub type Tetrahedra<'a> = Given<'a, 3, 4>;
 
 impl<const D: usize, const N: usize> Given<'_, D, N> {
@@ -31,7 +31,7 @@ impl<const D: usize, const N: usize> Given<'_, D, N> {
     }
 }
 
-/// A triangulation that has been made: its simplices, each row one.
+/// A computed triangulation: one row per simplex.
 #[derive(Debug, Default)]
 pub struct Arrays<const N: usize> {
     /// The vertices of each, positively oriented.

@@ -1,6 +1,8 @@
-//! Whether arrays of unknown origin are a mesh: neighbors agree, simplices are positively oriented.
-//! Indices must be in range. Linear, by all workers; whether the mesh is Delaunay is for the `validate`
-//! modules.
+//! Checks that arrays of unknown origin are a mesh: neighbors agree, simplices are positively
+//! oriented.
+//!
+//! Indices must be in range. Takes linear time and uses all workers. Whether the mesh is Delaunay
+//! is checked by the `validate` modules.
 
 use delone_predicates::{Sign, orient2d, orient3d};
 
@@ -12,16 +14,16 @@ use crate::watch::Watch;
 /// Simplices that one task checks.
 const SHARE: usize = 1 << 15;
 
-/// What the check finds first.
+/// The first fault that the check finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A simplex has a neighbor that does not have it, or not across the same side.
+    /// A simplex has a neighbor that does not list it, or not across the same side.
     Neighbors(usize),
     /// A simplex is flat or negatively oriented.
     Orientation(usize),
 }
 
-/// The first fault of triangles; of faults in one triangle that of its neighbors.
+/// The first fault of triangles. If a triangle has several, the one of its neighbors is reported.
 pub fn triangles(given: Given<2, 3>, workers: usize, watch: &Watch) -> Result<Option<Fault>> {
     first(given, workers, watch, |t| {
         let [a, b, c] = given.corners(t);
@@ -61,7 +63,7 @@ fn first<const D: usize, const N: usize>(
     Ok(found.into_iter().flatten().next())
 }
 
-/// Whether each neighbor has simplex `t` across the side that both share.
+/// Whether each neighbor of simplex `t` lists `t` across the side that both share.
 fn is_mutual<const D: usize, const N: usize>(given: Given<D, N>, t: usize) -> bool {
     let (corners, beyond) = (given.simplices[t], given.neighbors[t]);
     (0..N).filter(|&k| beyond[k] >= 0).all(|k| {
@@ -74,10 +76,11 @@ fn is_mutual<const D: usize, const N: usize>(given: Given<D, N>, t: usize) -> bo
 }
 
 /// Whether the sides opposite corner `k` of one simplex and opposite corner `j` of another have the
-/// same vertices; where both are positively oriented, they see it from different sides.
+/// same vertices. If both are positively oriented, they lie on different sides of it.
 fn shares_side<const N: usize>((one, k): ([i32; N], usize), (other, j): ([i32; N], usize)) -> bool {
     if N == 3 {
-        // In the other direction, so that the two triangles lie on different sides of the edge.
+        // Reversed: two positively oriented triangles traverse a shared edge in opposite
+        // directions.
         return one[(k + 1) % N] == other[(j + 2) % N] && one[(k + 2) % N] == other[(j + 1) % N];
     }
     let is_there = |v: i32| (0..N).any(|i| i != j && other[i] == v);

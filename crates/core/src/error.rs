@@ -1,11 +1,11 @@
-//! Errors of the core, each with the rows that the caller needs to name.
+//! Errors of the core, with the rows that the caller needs to name.
 
 use delone_predicates::Point2;
 
 /// Result of the core.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Every way in which a call of the core ends without an answer.
+/// The ways in which a call of the core can fail.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Coordinates that are NaN or infinite: the first rows, and how many there are.
@@ -22,13 +22,13 @@ pub enum Error {
         /// First rows of the distinct points, lexicographic.
         chain: Vec<u32>,
     },
-    /// Fewer than four distinct points of space: their rows in lexicographic order.
+    /// Fewer than four distinct points in 3-D: their rows in lexicographic order.
     #[error("{} too few", agreed(chain.len(), "distinct point is", "distinct points are"))]
     TooFewInSpace {
         /// First rows of the distinct points, lexicographic.
         chain: Vec<u32>,
     },
-    /// All points of space lie in one plane, but not on one line.
+    /// All points in 3-D lie in one plane, but not on one line.
     #[error("all {} distinct points lie in one plane", chain.len())]
     Coplanar {
         /// First rows of the distinct points, lexicographic.
@@ -40,21 +40,21 @@ pub enum Error {
         /// First rows of the distinct points, in order along the line.
         chain: Vec<u32>,
     },
-    /// More points than the 32-bit codes of the mesh can address.
-    #[error("{found} points are more than the {limit} that one triangulation can hold")]
+    /// More points than the mesh's 32-bit codes can address.
+    #[error("{found} points exceed the limit of {limit} for one triangulation")]
     TooMany {
         /// Points given.
         found: usize,
         /// Points that can be held.
         limit: usize,
     },
-    /// More tetrahedra than the 32-bit codes of the mesh can address.
-    #[error("more tetrahedra than the {limit} that one triangulation can hold")]
+    /// More tetrahedra than the mesh's 32-bit codes can address.
+    #[error("the tetrahedra exceed the limit of {limit} for one triangulation")]
     TooManyTetrahedra {
         /// Tetrahedra that can be held, ghosts included.
         limit: usize,
     },
-    /// Segments that cross: the pairs of their rows, and where they do.
+    /// Segments that cross: the pairs of their rows, and the points where they cross.
     #[error("{} pairs of segments cross", pairs.len())]
     Crossing {
         /// Both rows of each pair, the smaller first; ascending.
@@ -65,44 +65,44 @@ pub enum Error {
     /// More vertices than the caller allows.
     #[error("found {found} {what}, more than the limit of {limit} vertices allows")]
     Budget {
-        /// What there is too much of.
+        /// What exceeds the limit.
         what: &'static str,
         /// The limit.
         limit: usize,
-        /// How many when it was passed.
+        /// How many there were when the limit was exceeded.
         found: usize,
-        /// Where most of them are.
+        /// The segments that need most of them.
         crowd: Crowd,
     },
-    /// An array that does not fit its role, in words that name the row.
+    /// An invalid argument; the message names the row.
     #[error("{0}")]
     Shape(String),
-    /// Memory that the system refused.
-    #[error("no memory for {bytes} bytes")]
+    /// The system refused memory.
+    #[error("out of memory: could not allocate {bytes} bytes")]
     Memory {
-        /// Bytes asked for.
+        /// Bytes requested.
         bytes: usize,
     },
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,
-    /// A promise of the core that did not hold: always a bug.
+    /// An invariant of the core was violated: always a bug.
     #[error("{0}")]
     Internal(String),
 }
 
-/// The segments that take most of the vertices that are too many.
+/// The segments that need most of the added vertices when a limit is exceeded.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Crowd {
-    /// Their rows, those with the most first.
+    /// Their rows, in descending order of the number of vertices.
     pub segments: Vec<u32>,
-    /// The point where the first two of them meet, or where the last vertex was to be.
+    /// The point where the first two of them meet, or where the last vertex would have been.
     pub place: Option<Point2>,
-    /// Whether the place is where they meet.
+    /// Whether `place` is the point where they meet.
     pub corner: bool,
 }
 
-/// A number with the words that go with it.
+/// A count and the singular or plural that agrees with it.
 fn agreed(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

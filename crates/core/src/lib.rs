@@ -1,7 +1,7 @@
 //! The core of delone: point orders, meshes and the Delaunay triangulations on them.
 //!
-//! Knows nothing of Python. Data flows one way: `points` and `order` feed `delaunay2`, which fills a
-//! `mesh2`; consumers read that mesh and hand arrays out.
+//! The core has no knowledge of Python. Data flows one way: `points` and `order` feed `delaunay2`,
+//! which fills a `mesh2`; later stages read that mesh and return arrays.
 
 pub mod arrays;
 pub mod consistency;

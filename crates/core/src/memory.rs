@@ -1,11 +1,12 @@
 //! Fallible allocation: if memory is refused, the core reports an error and never aborts.
 //!
-//! Large arrays ask the kernel for huge pages. First touch of fresh memory by 4 KiB pages costs
-//! 40 ns a point of a triangulation of a million, by 2 MiB pages 20: hence the `unsafe` below.
+//! Large arrays ask the kernel for huge pages. In a triangulation of a million points, the first
+//! touch of fresh memory costs 40 ns per point with 4 KiB pages and 20 ns with 2 MiB pages: hence
+//! the `unsafe` below.
 
 use crate::error::{Error, Result};
 
-/// Below this size, two huge pages, they are not asked for.
+/// Arrays smaller than this, two huge pages, do not ask for huge pages.
 const HUGE_FROM: usize = 2 << 21;
 
 /// An empty vector with room for `n` items.
@@ -20,7 +21,7 @@ pub fn with_room<T>(n: usize) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// Puts `x` at the end of `v`.
+/// Appends `x` to `v`.
 #[inline]
 pub fn push<T>(v: &mut Vec<T>, x: T) -> Result<()> {
     make_room(v, 1)?;
@@ -28,7 +29,7 @@ pub fn push<T>(v: &mut Vec<T>, x: T) -> Result<()> {
     Ok(())
 }
 
-/// Makes sure that `n` more items fit at the end of `v`, which grows by shares as it would on its own.
+/// Reserves room for `n` more items at the end of `v`. Growth is amortized, as for `Vec::push`.
 #[inline]
 pub fn make_room<T>(v: &mut Vec<T>, n: usize) -> Result<()> {
     if v.capacity() - v.len() < n {
@@ -61,8 +62,8 @@ pub fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// Whether `bytes` more seem to be there: a system may promise memory that it does not have, and end
-/// the process that takes it. Known on Linux; elsewhere the allocator has the word.
+/// Whether `bytes` more seem to be available. A system may promise memory that it does not have,
+/// and kill the process that uses it. Known on Linux only; elsewhere the allocator decides.
 pub fn is_plausible(bytes: usize) -> bool {
     let Ok(text) = std::fs::read_to_string("/proc/meminfo") else {
         return true;
@@ -72,7 +73,7 @@ pub fn is_plausible(bytes: usize) -> bool {
     kilobytes.is_none_or(|available| bytes / 1024 <= available)
 }
 
-/// Types of which all bytes zero are a value, namely zero.
+/// Types for which all zero bytes are a valid value, namely zero.
 ///
 /// # Safety
 /// Zero bytes must be a valid value.
@@ -120,15 +121,15 @@ pub fn zeroed<T: Zero>(n: usize) -> Result<Vec<T>> {
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]
 mod huge {
-    /// Asks for huge pages behind `memory`; a refusal changes nothing but speed.
+    /// Asks for huge pages for `memory`; a refusal affects speed only.
     pub fn advise<T>(memory: &mut [T]) {
         const PAGE: usize = 4096;
         let range = memory.as_mut_ptr_range();
         let start = range.start.addr().next_multiple_of(PAGE);
         let end = range.end.addr() & !(PAGE - 1);
         let first = range.start.with_addr(start);
-        // SAFETY: the range is whole pages inside memory that this call borrows mutably, and
-        // MADV_HUGEPAGE changes neither contents nor protection. Guarded by the test below.
+        // SAFETY: the range consists of whole pages inside memory that this call borrows mutably,
+        // and MADV_HUGEPAGE changes neither contents nor protection. The test below guards this.
         let _ =
             unsafe { libc::madvise(first.cast(), end.saturating_sub(start), libc::MADV_HUGEPAGE) };
     }
@@ -136,7 +137,7 @@ mod huge {
 
 #[cfg(not(target_os = "linux"))]
 mod huge {
-    /// Elsewhere the system decides.
+    /// On other systems, the system decides.
     pub fn advise<T>(_memory: &mut [T]) {}
 }
 

@@ -1,5 +1,4 @@
-//! Checks of a point set before anything is built: finite coordinates, bounding box, the lexicographic
-//! chain of a degenerate set.
+//! Checks of a point set before triangulation: finite coordinates, bounding box, degenerate sets.
 
 use delone_predicates::{Point2, Point3, lexicographic, orient2d};
 
@@ -10,13 +9,14 @@ use crate::error::{Error, Result};
 pub const LIMIT2: usize = 1 << 28;
 
 /// Points that one 3-D mesh can hold: facet codes are `4 t + k` in 32 bits, and uniform points have
-/// seven tetrahedra each, ghosts included. Sets with more run into the limit of the mesh.
+/// seven tetrahedra each, ghosts included. Sets with more tetrahedra per point reach the limit of
+/// the mesh.
 pub const LIMIT3: usize = 1 << 27;
 
-/// How many bad rows an error names.
+/// How many invalid rows an error names.
 const NAMED_ROWS: usize = 10;
 
-/// The box of a finite point set.
+/// The bounding box of a finite point set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent<const D: usize = 2> {
     /// Smallest coordinate of each axis.
@@ -32,7 +32,7 @@ impl<const D: usize> Extent<D> {
         max: [f64::INFINITY; D],
     };
 
-    /// The box of some points, which must be finite; inside out where there are none.
+    /// The box of some points, which must be finite; inverted (`min` > `max`) if there are none.
     pub fn of(points: impl IntoIterator<Item = [f64; D]>) -> Self {
         let mut e = Self {
             min: [f64::INFINITY; D],
@@ -40,7 +40,7 @@ impl<const D: usize> Extent<D> {
         };
         for p in points {
             for (k, x) in p.into_iter().enumerate() {
-                // Selections, which are one instruction where `f64::min` has to mind NaN.
+                // A selection is one instruction; `f64::min` also has to handle NaN.
                 e.min[k] = if x < e.min[k] { x } else { e.min[k] };
                 e.max[k] = if x > e.max[k] { x } else { e.max[k] };
             }
@@ -48,7 +48,7 @@ impl<const D: usize> Extent<D> {
         e
     }
 
-    /// The longest side, rounded; infinite where it passes the range of doubles.
+    /// The longest side, rounded; infinite if it exceeds the range of doubles.
     pub fn side(&self) -> f64 {
         (0..D).fold(f64::NEG_INFINITY, |side, k| {
             side.max(self.max[k] - self.min[k])
@@ -56,7 +56,7 @@ impl<const D: usize> Extent<D> {
     }
 }
 
-/// Checks that `points` can be triangulated as far as numbers go.
+/// Checks that the coordinates of `points` can be triangulated.
 pub fn scan<const D: usize>(points: &[[f64; D]]) -> Result<()> {
     let limit = if D == 2 { LIMIT2 } else { LIMIT3 };
     if points.len() > limit {
@@ -65,7 +65,7 @@ pub fn scan<const D: usize>(points: &[[f64; D]]) -> Result<()> {
             limit,
         });
     }
-    // A sum of 0 * x is 0 for finite numbers alone, and needs no branch a row.
+    // The sum of 0 * x is 0 only if all x are finite; it needs no branch per row.
     let zero: f64 = points.as_flattened().iter().map(|x| 0.0 * x).sum();
     if zero == 0.0 {
         Ok(())
@@ -95,7 +95,7 @@ pub fn degenerate(points: &[Point2], rows: &[u32]) -> Error {
     }
 }
 
-/// The error of distinct `points` of space that span no tetrahedron.
+/// The error of distinct 3-D `points` that span no tetrahedron.
 pub fn degenerate_in_space(points: &[Point3], rows: &[u32]) -> Error {
     let mut order: Vec<u32> = (0u32..).zip(points).map(|(i, _)| i).collect();
     order.sort_unstable_by(|&i, &j| lexicographic(points[i as usize], points[j as usize]));
@@ -110,7 +110,7 @@ pub fn degenerate_in_space(points: &[Point3], rows: &[u32]) -> Error {
     }
 }
 
-/// Whether three points of space lie on one line: all projections do, and the cross product is zero.
+/// Whether three points in 3-D are collinear: all projections are, and the cross product is zero.
 pub fn collinear(a: Point3, b: Point3, c: Point3) -> bool {
     let turn = |j: usize, k: usize| orient2d([a[j], a[k]], [b[j], b[k]], [c[j], c[k]]);
     [(0, 1), (1, 2), (2, 0)]

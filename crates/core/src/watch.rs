@@ -1,4 +1,4 @@
-//! Interruption: long loops ask a watch every few thousand steps whether to stop.
+//! Interruption: long loops check every few thousand steps whether the caller wants to stop.
 
 use crate::error::{Error, Result};
 
@@ -6,26 +6,26 @@ fn never() -> bool {
     false
 }
 
-/// A watch that never stops anything, for as long as anyone wants it.
+/// A watch that never interrupts; it is static.
 pub static IDLE: Watch<'static> = Watch { stop: &never };
 
-/// Asked now and then by long loops; the answer `true` ends them with [`Error::Interrupted`].
+/// Checked at intervals by long loops; if it answers `true`, they end with [`Error::Interrupted`].
 pub struct Watch<'a> {
     stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl<'a> Watch<'a> {
-    /// A watch that asks `stop`.
+    /// A watch that calls `stop` at each check.
     pub fn new(stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { stop }
     }
 
-    /// A watch that never stops anything.
+    /// A watch that never interrupts.
     pub fn idle() -> Watch<'static> {
         Watch { stop: &never }
     }
 
-    /// Ends the caller's loop where the answer is to stop.
+    /// Returns the error [`Error::Interrupted`] if the caller wants to stop.
     pub fn check(&self) -> Result<()> {
         if (self.stop)() {
             Err(Error::Interrupted)
@@ -35,7 +35,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Counts work, and asks a watch each time that enough of it is done.
+/// Counts units of work, and checks for interruption whenever enough of it is done.
 pub struct Pace<'a> {
     watch: &'a Watch<'a>,
     every: usize,
@@ -43,7 +43,7 @@ pub struct Pace<'a> {
 }
 
 impl<'a> Pace<'a> {
-    /// Asks `watch` after each `every` units of work.
+    /// Checks `watch` after every `every` units of work.
     pub fn new(watch: &'a Watch<'a>, every: usize) -> Self {
         Self {
             watch,
@@ -57,7 +57,7 @@ impl<'a> Pace<'a> {
         self.watch
     }
 
-    /// Counts so many units, which are about to be done or have been.
+    /// Counts units that are about to be done or have been done.
     #[inline]
     pub fn spend(&mut self, work: usize) -> Result<()> {
         if work < self.left {
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pace_asks_after_so_much_work() {
+    fn a_pace_checks_after_so_many_units() {
         let asked = AtomicUsize::new(0);
         let stop = || asked.fetch_add(1, Ordering::Relaxed) == 2;
         let watch = Watch::new(&stop);
@@ -85,7 +85,7 @@ mod tests {
         while pace.spend(3).is_ok() {
             spent += 3;
         }
-        // The third time, after 12 units each: those that complete ten count.
+        // Units after which a check happened: 12 each time, once ten are complete.
         assert_eq!((spent, asked.into_inner()), (33, 3));
         assert_eq!(
             Pace::new(&Watch::new(&|| true), 10).spend(25),

@@ -1,5 +1,6 @@
-//! Doubles as arbitrary-precision integers, with correctly rounded quotients, roots and angles: the
-//! last resort of predicates and constructions that no filter decides.
+//! Doubles as arbitrary-precision integers, with correctly rounded quotients, roots and angles.
+//!
+//! The last resort of predicates and constructions when no filter decides.
 
 use delone_predicates::Sign as Turn;
 use delone_predicates::arithmetic::decode_odd;
@@ -8,7 +9,7 @@ use num_bigint::{BigInt, Sign};
 /// Exponent of the least subnormal.
 const LEAST: i64 = -1074;
 
-/// An exponent of which all coordinates are multiples, and its double one of which the weights are.
+/// An exponent `low` such that all coordinates are multiples of 2^low and all weights of 2^(2 low).
 pub fn lowest<const D: usize>(points: &[[f64; D]], weights: &[f64]) -> i64 {
     let exponent = |x: &f64| {
         let (magnitude, exponent) = decode_odd(*x);
@@ -23,12 +24,12 @@ pub fn lowest<const D: usize>(points: &[[f64; D]], weights: &[f64]) -> i64 {
 /// `x / 2^low`, an integer.
 pub fn scaled(x: f64, low: i64) -> BigInt {
     let (magnitude, exponent) = decode_odd(x);
-    // For zero the exponent says nothing; otherwise `low` is no larger, by its choice.
+    // The exponent of zero means nothing; otherwise `low` is at most `exponent`.
     let integer = BigInt::from(magnitude) << (i64::from(exponent) - low).max(0);
     if x < 0.0 { -integer } else { integer }
 }
 
-/// `n / d * 2^low` correctly rounded, ties to even; `None` beyond the range, and where `d` is zero.
+/// `n / d * 2^low` correctly rounded, ties to even; `None` if it exceeds the range or `d` is zero.
 pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
     if d.sign() == Sign::NoSign {
         return None;
@@ -36,7 +37,7 @@ pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
     if n.sign() == Sign::NoSign {
         return Some(0.0);
     }
-    // At least 66 bits of quotient, and one more for what is left over.
+    // At least 66 bits of the quotient, and a sticky bit for the remainder.
     let shift = 67 + d.bits() as i64 - n.bits() as i64;
     let (n, positive) = (n.magnitude(), n.sign() == d.sign());
     let (wide_n, wide_d) = if shift >= 0 {
@@ -51,12 +52,13 @@ pub fn ratio(n: &BigInt, d: &BigInt, low: i64) -> Option<f64> {
     Some(if positive { value } else { -value })
 }
 
-/// `digits * 2^exponent` rounded to a double, the last digit standing for all that follow.
+/// `digits * 2^exponent` rounded to a double. The last digit is sticky: it stands for all that
+/// follow.
 fn rounded(digits: u128, exponent: i64) -> Option<f64> {
     let top = exponent + 127 - i64::from(digits.leading_zeros());
     let unit = (top - 52).max(LEAST);
     let drop = unit - exponent;
-    // Below half of the least subnormal all digits go.
+    // Below half of the least subnormal, all digits are dropped.
     let (mut kept, tail, half) = if drop > 127 {
         (0, 0, 1)
     } else {
@@ -70,7 +72,7 @@ fn rounded(digits: u128, exponent: i64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// 2^exponent from the least subnormal on, where a double can be.
+/// 2^exponent, from the least subnormal up, if it is a double.
 fn power(exponent: i64) -> Option<f64> {
     match exponent {
         LEAST..-1022 => Some(f64::from_bits(1 << (exponent - LEAST))),
@@ -103,14 +105,14 @@ pub fn determinant([p, q, r]: [&[BigInt; 3]; 3]) -> BigInt {
         + (&q[0] * &r[1] - &q[1] * &r[0]) * &p[2]
 }
 
-/// The root of a square, times 2^64 and rounded down.
+/// The square root of an integer, times 2^64 and rounded down.
 pub fn root(square: &BigInt) -> BigInt {
     (square << 128_u32).sqrt()
 }
 
-/// The angle of a positive sine and a cosine that are times one number, in radians.
+/// The angle, in radians, from its positive sine and its cosine, both scaled by the same factor.
 pub fn angle(sine: &BigInt, cosine: &BigInt) -> f64 {
-    // The quotient is below 1, or all but its sign is lost in the arc tangent.
+    // The quotient is below 1, or so large that the arc tangent depends on its sign only.
     let quotient = |n: &BigInt, d: &BigInt| ratio(n, d, 0).unwrap_or(f64::MAX);
     if sine.magnitude() < cosine.magnitude() {
         let positive = BigInt::from(cosine.magnitude().clone());

@@ -1,4 +1,4 @@
-//! Constrained triangulations of points where ties and touches are everywhere, judged exactly.
+//! Constrained triangulations of points with many ties and touching segments, checked exactly.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -37,7 +37,7 @@ fn shapes(points: &[Point2], c: &Constrained) -> BTreeSet<[[u64; 2]; 3]> {
     c.arrays.simplices.iter().map(turned).collect()
 }
 
-/// Everything that makes a triangulation a constrained Delaunay one.
+/// Checks every property of a constrained Delaunay triangulation.
 fn check(points: &[Point2], segments: &[[u32; 2]], c: &Constrained) {
     let all = [points, &c.added[..]].concat();
     let at = |v: i32| all[v as usize];
@@ -183,7 +183,7 @@ proptest! {
     }
 }
 
-/// No vertex lies inside the circle on a subsegment.
+/// No vertex lies inside the diametral circle of a subsegment.
 fn check_conforming(points: &[Point2], segments: &[[u32; 2]]) {
     let options = Options {
         conforming: true,
@@ -201,7 +201,7 @@ fn check_conforming(points: &[Point2], segments: &[[u32; 2]]) {
         assert_eq!(
             all.iter().find(inside),
             None,
-            "in the circle on {u:?} {v:?}"
+            "in the diametral circle of {u:?} {v:?}"
         );
     }
 }
@@ -246,7 +246,7 @@ fn a_limit_ends_the_splits() {
 
 #[test]
 fn rules_of_a_star() {
-    // A pentagram winds twice round its middle.
+    // A pentagram winds twice around its center.
     let star: Vec<Point2> = (0..5)
         .map(|i| f64::from(2 * i) * std::f64::consts::TAU / 5.0)
         .map(|a| [a.cos(), a.sin()])

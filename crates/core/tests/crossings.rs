@@ -1,4 +1,4 @@
-//! Crossings of segments against rational numbers: the rounded point, and the pairs.
+//! Crossings of segments compared with rational numbers: the rounded point, and the pairs.
 
 use delone_core::Point2;
 use delone_core::constrained::intersection::{crosses, intersection};
@@ -30,7 +30,7 @@ fn cross_exactly(quad: Quad) -> bool {
     parameters(quad).is_some_and(|t| t.iter().all(inside))
 }
 
-/// Whether `r` is the double next to `x`, an even one in a tie, and not -0.0.
+/// Whether `r` is the double nearest to `x`, the even one in a tie, and not -0.0.
 fn is_nearest(r: f64, x: &BigRational) -> bool {
     let two = rational(2.0);
     let end = |next: f64| (rational(r) + rational(next)) / &two;
@@ -40,7 +40,7 @@ fn is_nearest(r: f64, x: &BigRational) -> bool {
     inside && !(r == 0.0 && r.is_sign_negative())
 }
 
-/// Checks all that is promised of two segments; whether they cross.
+/// Checks every guarantee for two segments; returns whether they cross.
 fn check(quad: Quad) -> bool {
     let [a, b, c, d] = quad;
     let found = crosses(a, b, c, d);
@@ -76,7 +76,7 @@ fn ulps(x: f64, steps: i32) -> f64 {
 
 #[test]
 fn ties_go_to_even() {
-    // The middle of two neighbours, at height one half.
+    // The midpoint of two neighboring doubles, at height one half.
     let half = |low: f64, shift: i32| {
         let y = ulps(0.5, shift);
         let quad = [[low, 0.0], [low.next_up(), 1.0], [-1.0, y], [3.0, y]];
@@ -184,7 +184,7 @@ fn of_all_exponents() {
     };
     let all = crossing_share(|bits| [(); 4].map(|()| [(); 2].map(|()| coordinate(bits()))));
     assert!(all > 100, "{all}");
-    // All of one order of magnitude, subnormal or near the largest.
+    // All of one order of magnitude, also subnormal or near the largest.
     let one = crossing_share(|bits| {
         let field = [0, 1, 2, 700, 863, 864, 1212, 1213, 2045, 2046][(bits() % 10) as usize];
         let mask = 1 << 63 | ((1 << 52) - 1);
@@ -221,7 +221,7 @@ fn of_segments_that_are_nearly_parallel() {
     assert!(share > 1_500, "{share}");
 }
 
-/// A coordinate on a tiny lattice, scaled.
+/// Coordinates on a tiny lattice, scaled.
 fn lattice_quad() -> impl Strategy<Value = Quad> {
     let scale = prop::sample::select(vec![1.0, 0.1, 3e-320, 1e-300, 1e300]);
     (prop::array::uniform4(prop::array::uniform2(-3i8..4)), scale)
@@ -274,11 +274,11 @@ proptest! {
 }
 
 /// Segments of lengths that differ by many orders of magnitude, around a point.
-fn mixed(n: u64, centre: f64) -> (Vec<Point2>, Vec<[u32; 2]>) {
+fn mixed(n: u64, center: f64) -> (Vec<Point2>, Vec<[u32; 2]>) {
     let mut points = Vec::new();
     for i in 0..n {
         let size = 10.0_f64.powf(-5.0 * unit(6 * i));
-        let middle = [1, 2].map(|k| centre + unit(6 * i + k));
+        let middle = [1, 2].map(|k| center + unit(6 * i + k));
         let half = [3, 4].map(|k| size * (unit(6 * i + k) - 0.5));
         points.push([middle[0] - half[0], middle[1] - half[1]]);
         points.push([middle[0] + half[0], middle[1] + half[1]]);
@@ -288,8 +288,8 @@ fn mixed(n: u64, centre: f64) -> (Vec<Point2>, Vec<[u32; 2]>) {
 
 #[test]
 fn many_sizes_together() {
-    for (n, centre) in [(9, 0.0), (65, 0.0), (1_000, 0.0), (2_000, 4e6), (600, 1e15)] {
-        let (points, segments) = mixed(n, centre);
+    for (n, center) in [(9, 0.0), (65, 0.0), (1_000, 0.0), (2_000, 4e6), (600, 1e15)] {
+        let (points, segments) = mixed(n, center);
         let pairs = found(&points, &segments);
         assert!(n < 100 || !pairs.is_empty());
         assert_eq!(pairs, brute_force(&points, &segments));
@@ -300,7 +300,7 @@ fn many_sizes_together() {
 fn sizes_of_the_whole_range() {
     let mut points: Vec<Point2> = Vec::new();
     for i in 0..1_200 {
-        // Crosses about the origin, from the least to the largest double.
+        // Crosses around the origin, from the smallest to the largest double.
         let size = f64::from_bits(hash(i) % f64::MAX.to_bits());
         let turn = 7.0 * unit(i);
         let arm = [size * turn.cos(), size * turn.sin()];
@@ -349,7 +349,7 @@ fn no_segments_and_none_of_any_length() {
 }
 
 #[test]
-fn a_watch_ends_the_search() {
+fn an_interruption_ends_the_search() {
     let (points, segments) = mixed(20_000, 0.0);
     let stopped = crossing_pairs(&points, &segments, &Watch::new(&|| true));
     assert_eq!(stopped, Err(Error::Interrupted));

@@ -44,13 +44,13 @@ fn methods() -> impl Iterator<Item = Method> {
     Method::NAMES.iter().map(|&(_, m)| m)
 }
 
-/// All methods agree on `points`, or all refuse it.
+/// All methods agree on `points`, or all reject them.
 fn agree(points: &[Point2]) -> Result<(), TestCaseError> {
     let mut sets = Vec::new();
     let mut shuffled: Vec<(u64, Point2)> = (0..).map(hash).zip(points.iter().copied()).collect();
     shuffled.sort_unstable_by_key(|&(key, _)| key);
     let shuffled: Vec<Point2> = shuffled.into_iter().map(|(_, p)| p).collect();
-    // Each point twice: backwards, then in any order.
+    // Each point twice: reversed, then in any order.
     let twice: Vec<Point2> = points.iter().rev().chain(&shuffled).copied().collect();
     for method in methods() {
         for points in [points, &shuffled, &twice] {
@@ -150,14 +150,14 @@ fn several_blocks_are_one_triangulation_for_any_number_of_workers() {
 }
 
 /// Bowyer-Watson and divide and conquer agree on `points`, and their triangles are valid.
-fn cut_as_inserted(points: &[Point2]) {
+fn methods_agree(points: &[Point2]) {
     let [inserted, cut] = [Method::BowyerWatson, Method::DivideConquer].map(|m| made(points, m, 1));
     assert_eq!(findings(points, &cut), Findings::default());
     assert_eq!(triangles(points, &inserted), triangles(points, &cut));
 }
 
 #[test]
-fn cells_within_cells_are_cut() {
+fn nested_cells_are_split() {
     // Clusters of 30 points at 30 places, 300 times smaller each time: all in one cell of the first key.
     let mut points = Vec::new();
     for (i, p) in (0i32..).zip(scattered(30, 1.0)) {
@@ -165,36 +165,36 @@ fn cells_within_cells_are_cut() {
         let own = scattered(30 + i as u64, 0.3 * scale).into_iter();
         points.extend(own.map(|q| [p[0] * scale + q[0], p[1] * scale + q[1]]));
     }
-    cut_as_inserted(&points);
-    // Each point halves the cell that is left: deeper than cells are followed.
+    methods_agree(&points);
+    // Each point halves the remaining cell: deeper than the keys of cells.
     let halves = (0..900).map(|i| 0.5f64.powi(i));
-    cut_as_inserted(&halves.clone().map(|x| [x, x * x]).collect::<Vec<_>>());
+    methods_agree(&halves.clone().map(|x| [x, x * x]).collect::<Vec<_>>());
     let thirds = halves.flat_map(|x| [[x, x / 3.0], [x / 3.0, x], [-x, x]]);
-    cut_as_inserted(&thirds.collect::<Vec<_>>());
+    methods_agree(&thirds.collect::<Vec<_>>());
 }
 
 #[test]
 fn cuts_hold_at_the_ends_of_the_range_and_in_lattices() {
     for scale in [1e-320, 1e-160, 1e-61, 1e60, 1e76, 1e150, 1e307] {
-        cut_as_inserted(&scattered(2000, scale));
+        methods_agree(&scattered(2000, scale));
         let lattice = scattered(2000, 17.0).into_iter();
         let lattice: Vec<_> = lattice.map(|p| p.map(|x| x.floor() * scale)).collect();
-        cut_as_inserted(&lattice);
+        methods_agree(&lattice);
     }
-    // Doubled rows move the border between keys that are coarse and fine.
+    // Repeated rows move the border between coarse and fine keys.
     let points = scattered(40_000, 1.0);
-    cut_as_inserted(&points.iter().chain(&points).copied().collect::<Vec<_>>());
-    // Columns of equal x, and small sets of each number.
+    methods_agree(&points.iter().chain(&points).copied().collect::<Vec<_>>());
+    // Columns of equal x, and small sets of every size.
     for n in 3..70 {
-        cut_as_inserted(&scattered(n, 1.0));
+        methods_agree(&scattered(n, 1.0));
         let columns = scattered(n, 4.0).into_iter().map(|[x, y]| [x.floor(), y]);
-        cut_as_inserted(&columns.chain([[0.5, 9.0]]).collect::<Vec<_>>());
+        methods_agree(&columns.chain([[0.5, 9.0]]).collect::<Vec<_>>());
     }
 }
 
 #[test]
 fn blocks_of_duplicates_and_of_lines_are_merged() {
-    // A block of one point, blocks that are collinear, and a few points beside.
+    // A block of one point, collinear blocks, and a few other points.
     let mut points = vec![[0.5, 0.5]; 200_000];
     points.extend(scattered(1000, 1.0));
     let one = made(&points, Method::Auto, 2);
@@ -250,7 +250,7 @@ fn numbers_that_are_not_finite_are_named() {
 }
 
 #[test]
-fn a_watch_ends_the_work() {
+fn an_interruption_ends_the_work() {
     let points = scattered(100_000, 1.0);
     let error = triangulate(&points, Method::Auto, 2, &Watch::new(&|| true)).expect_err("stopped");
     assert_eq!(error, Error::Interrupted);
@@ -285,7 +285,7 @@ fn validation_finds_each_kind_of_fault() {
         [[right.arrays.simplices.len() as u32, twice.count[0][1]]]
     );
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.4]];
-    // The diagonal of the square's other pair, and a point that no triangle has.
+    // The other diagonal of the square, and a point that is not a vertex.
     let simplices = [[0, 1, 3], [1, 2, 3]];
     let neighbors = [[1, -1, -1], [-1, 0, -1]];
     let given = Given {

@@ -1,4 +1,4 @@
-//! Whole triangulations of space: valid, canonical, the same for every order and number of workers.
+//! 3-D triangulations: valid, canonical, the same for every order and number of workers.
 
 use std::collections::BTreeSet;
 
@@ -58,7 +58,8 @@ fn shuffled(points: &[Point3], seed: u64) -> Vec<Point3> {
     keyed.into_iter().map(|(_, p)| p).collect()
 }
 
-/// The tetrahedra, valid and the same for some orders of the rows; none where the points are degenerate.
+/// The tetrahedra, valid and the same for some orders of the rows; `None` if the points are
+/// degenerate.
 fn agreed(points: &[Point3]) -> BTreeSet<Corners> {
     let twice: Vec<Point3> = points.iter().rev().chain(points).copied().collect();
     let orders = [
@@ -107,7 +108,7 @@ fn lattices_are_canonical_and_valid() {
 
 #[test]
 fn cospherical_points_are_canonical_and_valid() {
-    // All whole points at distance 3, 9 and 33 from the origin.
+    // All integer points at distance 3, 9 and 33 from the origin.
     for square in [9, 81, 1089] {
         let side = 33i32;
         let axis = || -side..=side;
@@ -116,9 +117,9 @@ fn cospherical_points_are_canonical_and_valid() {
         let points: Vec<Point3> = on.map(|p| p.map(f64::from)).collect();
         assert!(points.len() > 20);
         agreed(&points);
-        let mut with_centre = points;
-        with_centre.push([0.0; 3]);
-        agreed(&with_centre);
+        let mut with_center = points;
+        with_center.push([0.0; 3]);
+        agreed(&with_center);
     }
 }
 
@@ -188,7 +189,7 @@ fn many_points_are_valid_for_any_number_of_workers() {
 
 #[test]
 fn quadratic_triangulations_get_their_room() {
-    // Each pair of successive points on one line makes a tetrahedron with each on the other.
+    // Each pair of consecutive points on one line forms a tetrahedron with each pair on the other.
     let line = |i: u32| {
         let x = f64::from(i / 2) / 64.0;
         if i.is_multiple_of(2) {
@@ -205,7 +206,7 @@ fn quadratic_triangulations_get_their_room() {
 }
 
 #[test]
-fn degenerate_input_is_told_apart() {
+fn degenerate_inputs_are_distinguished() {
     let error = |points: &[Point3]| triangulate(points, 1, &Watch::idle()).expect_err("none");
     let line = [[2.0; 3], [0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
     let chain = vec![1, 2, 0, 4];
@@ -235,7 +236,7 @@ fn numbers_that_are_not_finite_are_named() {
 }
 
 #[test]
-fn a_watch_ends_the_work() {
+fn an_interruption_ends_the_work() {
     let points = scattered(100_000, 1.0);
     let error = triangulate(&points, 2, &Watch::new(&|| true)).expect_err("stopped");
     assert_eq!(error, Error::Interrupted);
@@ -259,7 +260,7 @@ fn validation_finds_each_kind_of_fault() {
     });
     assert_eq!(twice.facets.len(), 4);
     let opened = faulty(&|m| {
-        // A tetrahedron of the inside goes.
+        // Removes a tetrahedron in the interior.
         let t = m
             .arrays
             .neighbors
@@ -284,8 +285,8 @@ fn validation_finds_each_kind_of_fault() {
 }
 
 #[test]
-fn validation_tells_ties_from_faults() {
-    // An octahedron about its other axis: four tetrahedra round an edge.
+fn validation_distinguishes_ties_from_faults() {
+    // An octahedron about its other axis: four tetrahedra around an edge.
     let points = [
         [-1.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! Hulls in space: around all points, of extreme points alone, the same for every order of the rows.
+//! 3-D hulls: around all points, with extreme points only, the same for every order of the rows.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ fn made(points: &[Point3]) -> Option<Hull3> {
     hull3(points, &Watch::idle()).expect("a hull")
 }
 
-/// What a hull promises, by predicates; its facets as coordinates.
+/// Checks the guarantees of a hull by predicates; returns its facets as coordinates.
 fn check(points: &[Point3]) -> BTreeSet<Vec<[u64; 3]>> {
     let Some(hull) = made(points) else {
         assert!(is_flat(points), "{points:?}");
@@ -42,7 +42,7 @@ fn check(points: &[Point3]) -> BTreeSet<Vec<[u64; 3]>> {
         let [a, b, c] = [0, 1, 2].map(|k| at(facet[k]));
         let flat = |&v: &u32| orient3d(a, b, c, at(v)) == Sign::Zero;
         assert!(facet.iter().all(flat), "{points:?}");
-        // All of the plane's other points are no corners: strictly convex, nothing in line.
+        // Other points of the plane are not corners: strictly convex, no collinear corners.
         let n = facet.len();
         for k in 0..n {
             let [p, q, r] = [k, k + 1, k + 2].map(|j| at(facet[j % n]));
@@ -89,7 +89,8 @@ fn is_flat(points: &[Point3]) -> bool {
     points.iter().all(|&d| orient3d(a, b, c, d) == Sign::Zero)
 }
 
-/// Few distances, so that ties are many, at scales up to the ends of the range; or any doubles.
+/// Few distances, so that there are many ties, at scales up to the ends of the range; or any
+/// doubles.
 fn sets() -> impl Strategy<Value = Vec<Point3>> {
     let scale = prop_oneof![Just(1.0), Just(5e-324), Just(2f64.powi(1020)), Just(1e-3)];
     let lattice = prop::collection::vec([-3..4i32, -3..4i32, -2..3i32], 0..50);
@@ -129,7 +130,7 @@ fn unit(i: u64) -> f64 {
     (hash(i) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Many points: the inside is left out in bulk, and what is left out must be inside.
+/// Many points: points inside are skipped in bulk, and all that are skipped must be inside.
 #[test]
 fn large_sets() {
     let cube: Vec<Point3> = (0..20_000)
@@ -149,7 +150,7 @@ fn large_sets() {
         let hull = made(&points).expect("a volume");
         let vertices: BTreeSet<u32> = hull.simplices.as_flattened().iter().copied().collect();
         let some: Vec<Point3> = vertices.iter().map(|&v| points[v as usize]).collect();
-        // The hull of the extreme points has all of them for vertices, and nothing is beyond it.
+        // The hull of the extreme points has all of them as vertices, and no point is beyond it.
         let again = made(&some).expect("a volume");
         let count = again
             .simplices

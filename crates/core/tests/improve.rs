@@ -1,4 +1,4 @@
-//! Improved tetrahedra, judged exactly where the promise is exact.
+//! Improved tetrahedra, checked exactly where the guarantee is exact.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use delone_predicates::{Sign, orient3d};
 use num_rational::BigRational;
 use num_traits::Zero;
 
-/// A cube of n^3 cells of six tetrahedra each; the vertices inside are shaken.
+/// A cube of n^3 cells of six tetrahedra each; the vertices inside are perturbed.
 fn shaken(n: usize, by: f64) -> (Vec<Point3>, Vec<[i32; 4]>) {
     let mut state = 1_u64;
     let mut random = || {
@@ -112,7 +112,7 @@ fn sharpest(points: &[Point3], simplices: &[[i32; 4]]) -> BigRational {
     worst
 }
 
-/// Faces with one tetrahedron, as sets; checks neighbours on the way.
+/// Faces with one tetrahedron, as sets; checks neighbors on the way.
 fn boundary(simplices: &[[i32; 4]], neighbors: Option<&[[i32; 4]]>) -> BTreeSet<[i32; 3]> {
     let mut sides: BTreeMap<[i32; 3], Vec<(usize, usize)>> = BTreeMap::new();
     for (t, v) in simplices.iter().enumerate() {
@@ -157,7 +157,7 @@ fn a_shaken_cube_becomes_better() {
 }
 
 #[test]
-fn removals_alone_move_nothing() {
+fn removals_move_no_vertex() {
     let (points, simplices) = shaken(4, 0.6);
     let made = run(Task {
         smooth: false,
@@ -170,7 +170,7 @@ fn removals_alone_move_nothing() {
 }
 
 #[test]
-fn the_order_of_rows_does_not_show() {
+fn the_result_is_independent_of_row_order() {
     let (points, simplices) = shaken(3, 0.6);
     let n = points.len();
     let row = |v: usize| (v * 7 + 3) % n;
@@ -271,7 +271,7 @@ fn tiny_and_huge_coordinates_behave_as_others() {
 }
 
 #[test]
-fn what_is_no_mesh_is_refused() {
+fn invalid_meshes_are_rejected() {
     let corners = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -282,13 +282,13 @@ fn what_is_no_mesh_is_refused() {
     ];
     let refused = |simplices: &[[i32; 4]], what: &str| {
         let Err(Error::Shape(message)) = run(task(&corners, simplices)) else {
-            panic!("{what} was not refused");
+            panic!("{what} was not rejected");
         };
         assert!(message.contains(what), "{message}");
     };
     refused(&[[1, 0, 2, 3]], "negatively oriented");
     refused(&[[0, 3, 4, 1]], "flat");
-    refused(&[[0, 1, 2, 3], [5, 1, 2, 4]], "one point");
+    refused(&[[0, 1, 2, 3], [5, 1, 2, 4]], "same point");
     refused(
         &[[0, 1, 2, 3], [0, 1, 2, 4], [1, 2, 3, 4], [0, 1, 2, 3]],
         "more than two",
@@ -298,7 +298,7 @@ fn what_is_no_mesh_is_refused() {
 }
 
 #[test]
-fn a_watch_stops_it() {
+fn an_interruption_ends_it() {
     let (points, simplices) = shaken(6, 0.6);
     let stop = || true;
     let outcome = improve(

@@ -1,4 +1,4 @@
-//! Interpolation against what it must reproduce, at every scale.
+//! Interpolation against the functions that it must reproduce, at every scale.
 
 use delone_core::Point2;
 use delone_core::arrays::Triangles;
@@ -11,7 +11,7 @@ use delone_core::locate::{Batch, Kept, Located, Locator};
 use delone_core::watch::{IDLE, Watch};
 use proptest::prelude::*;
 
-/// A triangulation and what is kept for it.
+/// A triangulation and its cache.
 struct Made {
     points: Vec<Point2>,
     simplices: Vec<[i32; 3]>,
@@ -94,7 +94,7 @@ fn scale() -> impl Strategy<Value = f64> {
 
 proptest! {
     #[test]
-    fn linear_functions_come_back(
+    fn linear_functions_are_reproduced(
         points in prop::collection::vec((0..9i32, 0..9i32), 4..50),
         queries in prop::collection::vec((0..1000i32, 0..1000i32), 1..40),
         scale in scale(),
@@ -111,7 +111,7 @@ proptest! {
             .map(|(x, y)| place(f64::from(x) / 125.0, f64::from(y) / 125.0))
             .collect();
         queries.extend(&made.points);
-        // 2 x - 3 y about the middle of the points, in units of the scale.
+        // 2 x - 3 y relative to the center of the points, in units of the scale.
         let value = |p: Point2| {
             2.0 * (p[0] / scale - offset - 4.0) - 3.0 * (p[1] / scale - offset / 2.0 - 4.0)
         };
@@ -154,7 +154,7 @@ proptest! {
     }
 
     #[test]
-    fn leaving_one_out_is_what_the_others_say(
+    fn leaving_one_out_equals_interpolating_the_others(
         points in prop::collection::vec((0..7i32, 0..7i32), 5..40),
     ) {
         let points = points.into_iter().map(|(x, y)| [f64::from(x), f64::from(y)]);
@@ -197,8 +197,8 @@ proptest! {
 }
 
 #[test]
-fn a_barrier_keeps_the_values_beyond_out() {
-    // Two rows of squares; the middle line is closed.
+fn a_barrier_excludes_values_beyond_it() {
+    // Two rows of squares; the middle line is a barrier.
     let points: Vec<Point2> = (0..15)
         .map(|i| [f64::from(i % 5), f64::from(i / 5)])
         .collect();

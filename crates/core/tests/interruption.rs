@@ -1,4 +1,4 @@
-//! Long calls look at the watch often enough, and end where it says so.
+//! Long calls check for interruption often enough, and end when interrupted.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -14,12 +14,12 @@ use delone_core::locate::{self, Batch, Kept, Locator};
 use delone_core::watch::{IDLE, Watch};
 use delone_core::{delaunay3, hull, interpolate3, locate3, measure, order};
 
-/// More tasks than there are in any of these calls.
+/// More tasks than any of these calls has.
 const TASKS: usize = 100;
 
-/// How often `work` looks at its watch. It must end each time that a look says so, though each task that is left may
-/// look once.
-fn looks<T>(work: impl Fn(&Watch) -> Result<T>) -> usize {
+/// How often `work` checks for interruption. It must end after each check that interrupts it,
+/// though each remaining task may check once more.
+fn checks<T>(work: impl Fn(&Watch) -> Result<T>) -> usize {
     let run = |after: usize| {
         let asked = AtomicUsize::new(0);
         let stop = || asked.fetch_add(1, Ordering::Relaxed) >= after;
@@ -52,7 +52,7 @@ fn circle(n: usize) -> Vec<Point2> {
     (0..n).map(|i| [angle(i).cos(), angle(i).sin()]).collect()
 }
 
-/// One worker, so that the number of looks is certain.
+/// One worker, so that the number of checks is deterministic.
 fn plane(points: &[Point2], work: impl Fn(&Batch) -> Result<()>, queries: &[Point2]) -> usize {
     let made = triangulate(points, Method::Auto, 1, &IDLE).unwrap();
     let given = Triangles {
@@ -69,9 +69,9 @@ fn plane(points: &[Point2], work: impl Fn(&Batch) -> Result<()>, queries: &[Poin
             watch,
         })
     };
-    // The boundary is made once.
+    // The boundary is built once.
     run(&IDLE).unwrap();
-    looks(run)
+    checks(run)
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn one_query_among_very_many_neighbors() {
             },
             &[[0.1, 0.2]],
         );
-        // One lot of output and of queries, and then one in a hundred neighbors or so.
+        // One lot of output and of queries, and then about one check per hundred neighbors.
         assert!(found > 3000 / 400, "{found}");
     }
 }
@@ -109,7 +109,7 @@ fn one_query_among_very_many_neighbors_in_3d() {
     };
     let kept = locate3::Kept::of(&given, &IDLE).unwrap();
     let queries = [[0.1, 0.2, 0.3]; 20];
-    let found = looks(|watch| {
+    let found = checks(|watch| {
         interpolate3::natural(&locate3::Batch {
             locator: locate3::Locator::new(given, &kept, watch),
             queries: &queries,
@@ -131,26 +131,26 @@ fn holes_with_very_many_corners() {
         neighbors: &made.arrays.neighbors,
     };
     let left = Left::Natural(Kind::Sibson);
-    let found = looks(|watch| interpolate::leave_one_out(given, left, 1, watch));
+    let found = checks(|watch| interpolate::leave_one_out(given, left, 1, watch));
     assert!(found > 10, "{found}");
 }
 
 #[test]
-fn queries_that_are_put_in_order() {
+fn queries_that_are_sorted() {
     let points = scattered::<2>(1 << 12);
     let queries = scattered::<2>(1 << 19);
     let found = plane(&points, |batch| locate::find(batch).map(drop), &queries);
     // Each lot of 512, two lots for each of three digits twice, and output.
     assert!(found > (1 << 10) + 16, "{found}");
-    let alone = looks(|watch| order::order_of(&queries, 1, watch));
+    let alone = checks(|watch| order::order_of(&queries, 1, watch));
     assert!(alone > 16, "{alone}");
 }
 
 #[test]
-fn a_large_triangulation_and_what_follows_from_it() {
+fn a_large_triangulation_and_its_diagram() {
     let points = scattered::<2>(300_000);
-    let found = looks(|watch| triangulate(&points, Method::Auto, 1, watch));
-    // Points that are dealt, insertions, and triangles that are written.
+    let found = checks(|watch| triangulate(&points, Method::Auto, 1, watch));
+    // Distributing points, insertions, and writing triangles.
     assert!(
         found > 300_000 / 64 + 300_000 / 4096 + 600_000 / (1 << 14),
         "{found}"
@@ -162,19 +162,19 @@ fn a_large_triangulation_and_what_follows_from_it() {
         simplices,
         neighbors: &made.arrays.neighbors,
     };
-    assert!(looks(|watch| validate(given, watch)) > 300_000 / 64);
-    assert!(looks(|watch| lawson(&points, simplices, false, watch)) > 300_000 / 64);
-    assert!(looks(|watch| Kept::of(&given, watch)) > 5);
+    assert!(checks(|watch| validate(given, watch)) > 300_000 / 64);
+    assert!(checks(|watch| lawson(&points, simplices, false, watch)) > 300_000 / 64);
+    assert!(checks(|watch| Kept::of(&given, watch)) > 5);
     let edges = measure::edges2(simplices, given.neighbors, points.len(), 1, &IDLE).unwrap();
     assert!(
-        looks(|watch| measure::edges2(simplices, given.neighbors, points.len(), 1, watch)) > 40
+        checks(|watch| measure::edges2(simplices, given.neighbors, points.len(), 1, watch)) > 40
     );
-    assert!(looks(|watch| measure::around(&edges, points.len(), watch)) > 40);
+    assert!(checks(|watch| measure::around(&edges, points.len(), watch)) > 40);
     let (indptr, indices) = measure::around(&edges, points.len(), &IDLE).unwrap();
     let around = interpolate::Adjacency::new(points.len(), &indptr, &indices).unwrap();
     let values = vec![1.0; points.len()];
     let field = Field::of_rows(points.len(), &values, None, 1).unwrap();
-    let found = looks(|watch| global_gradients(&points, around, field, 1e-6, None, 9, 1, watch));
+    let found = checks(|watch| global_gradients(&points, around, field, 1e-6, None, 9, 1, watch));
     assert!(found > 20, "{found}");
 }
 
@@ -194,15 +194,15 @@ fn segments_that_cross() {
         method: Method::Auto,
         workers: 1,
     };
-    let found = looks(|watch| constrain(&points, &segments, options, watch));
-    // Pieces between n^2 crossings wait and are added.
+    let found = checks(|watch| constrain(&points, &segments, options, watch));
+    // Pieces between n^2 crossings are queued and inserted.
     assert!(found > 10 * n * n / 1024, "{found}");
 }
 
 #[test]
 fn hulls_of_very_many_points() {
     let flat = circle(200_000);
-    assert!(looks(|watch| hull::hull2(&flat, watch)) > 8);
+    assert!(checks(|watch| hull::hull2(&flat, watch)) > 8);
     let points = scattered::<3>(600_000);
-    assert!(looks(|watch| hull::hull3(&points, watch)) > 16);
+    assert!(checks(|watch| hull::hull3(&points, watch)) > 16);
 }

@@ -16,7 +16,7 @@ fn delaunay(points: &[Point2]) -> Option<(Rows, Rows)> {
 }
 
 /// The triangle across each edge, by definition.
-fn neighbours(simplices: &[[i32; 3]]) -> Rows {
+fn neighbors_of(simplices: &[[i32; 3]]) -> Rows {
     let edge = |s: &[i32; 3], k: usize| (s[(k + 1) % 3], s[(k + 2) % 3]);
     let beyond = |s: &[i32; 3], k: usize| {
         let (u, v) = edge(s, k);
@@ -31,12 +31,12 @@ fn neighbours(simplices: &[[i32; 3]]) -> Rows {
         .collect()
 }
 
-/// Flips edges of strictly convex quadrilaterals, as `choices` tell.
+/// Flips edges of strictly convex quadrilaterals, selected by `choices`.
 fn flip(points: &[Point2], simplices: &mut Rows, choices: &[u32]) {
     let at = |v: i32| points[v as usize];
     for &choice in choices {
         let (t, k) = (choice as usize / 3 % simplices.len(), choice as usize % 3);
-        let beyond = neighbours(simplices)[t][k];
+        let beyond = neighbors_of(simplices)[t][k];
         if beyond < 0 {
             continue;
         }
@@ -61,14 +61,14 @@ fn holds(points: &[Point2], triangle: &[i32; 3], q: Point2) -> bool {
         .all(|(u, v)| orient2d(u, v, q) != Sign::Negative)
 }
 
-/// What `find` promises, by definition.
+/// The result of `find`, by definition.
 fn first_holder(points: &[Point2], simplices: &[[i32; 3]], q: Point2) -> i32 {
     let found = simplices.iter().position(|t| holds(points, t, q));
     found.map_or(-1, |t| t as i32)
 }
 
 fn check(points: &[Point2], simplices: &[[i32; 3]], queries: &[Point2]) {
-    let neighbors = neighbours(simplices);
+    let neighbors = neighbors_of(simplices);
     let given = Given {
         points,
         simplices,
@@ -131,7 +131,7 @@ proptest! {
     }
 
     #[test]
-    fn holes_and_pinched_vertices_hide_nothing(
+    fn holes_and_pinched_vertices_hide_no_triangle(
         (points, queries) in lattice(),
         keep in prop::collection::vec(any::<bool>(), 1..20),
     ) {
@@ -166,13 +166,13 @@ proptest! {
     }
 
     #[test]
-    fn segments_meet_each_triangle_once_and_hold_both_ends(
+    fn segments_meet_each_triangle_once_and_contain_both_ends(
         (points, ends) in lattice(),
         flips in prop::collection::vec(any::<u32>(), 0..60),
     ) {
         let Some((mut simplices, _)) = delaunay(&points) else { return Ok(()) };
         flip(&points, &mut simplices, &flips);
-        let neighbors = neighbours(&simplices);
+        let neighbors = neighbors_of(&simplices);
         let given = Given { points: &points, simplices: &simplices, neighbors: &neighbors };
         let kept = Kept::of(&given, &Watch::idle()).expect("a locator");
         let locator = Locator::new(given, &kept, &IDLE);
@@ -191,7 +191,7 @@ proptest! {
                     prop_assert!(holds(&points, &t, q), "{:?} {:?}", a, b);
                 }
             }
-            // What a strictly separating edge keeps off is not met.
+            // A triangle that an edge strictly separates from the segment is not met.
             for &t in &met {
                 let corners = simplices[t as usize].map(|v| points[v as usize]);
                 let sides = corners.map(|p| orient2d(a, b, p));
@@ -203,8 +203,8 @@ proptest! {
 }
 
 #[test]
-fn a_walk_that_turns_in_circles_is_taken_straight() {
-    // The visibility walk does not end on this pinwheel (after L. De Floriani et al., 1991).
+fn a_walk_that_cycles_becomes_straight() {
+    // The visibility walk does not terminate on this pinwheel (after L. De Floriani et al., 1991).
     let turn = |r: f64, i: usize, phase: f64| {
         let angle = (i as f64 + phase) * std::f64::consts::TAU / 6.0;
         [r * angle.cos(), r * angle.sin()]

@@ -1,4 +1,4 @@
-//! Point location in space against its definition, on triangulations and on parts of them.
+//! 3-D point location against its definition, on triangulations and on parts of them.
 
 use delone_core::Point3;
 use delone_core::delaunay3::triangulate;
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 type Rows = Vec<[i32; 4]>;
 
 /// The tetrahedron across each face, by definition.
-fn neighbours(simplices: &[[i32; 4]]) -> Rows {
+fn neighbors_of(simplices: &[[i32; 4]]) -> Rows {
     let across = |s: &[i32; 4], k: usize| {
         let face = |t: &[i32; 4]| (0..4).all(|l| l == k || t.contains(&s[l]));
         let found = simplices.iter().position(|t| t != s && face(t));
@@ -32,7 +32,7 @@ fn holds(points: &[Point3], simplex: &[i32; 4], q: Point3) -> bool {
 }
 
 fn check(points: &[Point3], simplices: &[[i32; 4]], queries: &[Point3]) {
-    let neighbors = neighbours(simplices);
+    let neighbors = neighbors_of(simplices);
     let given = Tetrahedra {
         points,
         simplices,
@@ -125,9 +125,9 @@ proptest! {
     }
 
     #[test]
-    fn what_is_left_of_them((points, queries) in lattice(), seed in any::<u64>()) {
+    fn parts_of_triangulations((points, queries) in lattice(), seed in any::<u64>()) {
         if let Ok(made) = triangulate(&points, 1, &Watch::idle()) {
-            // About a third goes: holes, notches, parts that touch in an edge or a vertex.
+            // Removes about a third: holes, notches, parts that touch at an edge or a vertex.
             let mut state = seed;
             let mut stays = || {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -140,7 +140,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_finite_is_nowhere() {
+fn queries_that_are_not_finite_have_no_location() {
     let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     check(&points, &[[0, 1, 2, 3]], &[[0.1; 3], [0.0; 3], [2.0; 3]]);
     let given = Tetrahedra {

@@ -1,4 +1,4 @@
-//! Refined meshes, judged exactly where the promise is exact.
+//! Refined meshes, checked exactly where the guarantee is exact.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,8 @@ use delone_core::refine::{Refined, Task, refine};
 use delone_core::watch::Watch;
 use delone_predicates::{Sign, incircle_canonical, orient2d};
 
-/// The mesh inside rings, each its own loop of segments: what a ray from outside reaches is outside.
+/// The mesh inside rings, each its own loop of segments; triangles that a ray from outside reaches
+/// are outside.
 fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Refined) {
     let mut points = Vec::new();
     let mut segments = Vec::new();
@@ -27,7 +28,7 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
     };
     let base = constrain(&points, &segments, options, &Watch::idle()).unwrap();
     let labels = components(&base.arrays.neighbors, &base.constrained, &Watch::idle()).unwrap();
-    // The parity of walls from outside.
+    // The parity of the number of segments crossed from outside.
     let mut depth = BTreeMap::new();
     for (t, n) in base.arrays.neighbors.iter().enumerate() {
         for (k, &n) in n.iter().enumerate() {
@@ -80,7 +81,7 @@ fn meshed(rings: &[Vec<Point2>], min_angle: f64, area: f64) -> (Vec<Point2>, Ref
     (points, made)
 }
 
-/// Drops what lies outside of the domain.
+/// Drops triangles outside the domain.
 fn keep_inside(made: &mut Refined) {
     let mut number = vec![-1; made.labels.len()];
     let inside: Vec<usize> = (0..number.len()).filter(|&t| made.labels[t] >= 0).collect();
@@ -96,7 +97,7 @@ fn keep_inside(made: &mut Refined) {
     made.sides = inside.iter().map(|&t| made.sides[t]).collect();
 }
 
-/// Orientation, neighbours, sides, Delaunay; returns the smallest angle in degrees.
+/// Orientation, neighbors, sides, Delaunay; returns the smallest angle in degrees.
 fn check(points: &[Point2], made: &Refined) -> f64 {
     let all = [points, &made.added[..]].concat();
     let at = |v: i32| all[v as usize];
@@ -123,7 +124,7 @@ fn check(points: &[Point2], made: &Refined) -> f64 {
         match sides.get(&[v, u]) {
             None => {
                 assert_eq!(made.neighbors[t][k], -1);
-                assert!(made.sides[t][k] >= 0, "the boundary is made of segments");
+                assert!(made.sides[t][k] >= 0, "the boundary consists of segments");
             }
             Some(&(s, j)) => {
                 assert_eq!(made.neighbors[t][k], s as i32);
@@ -171,7 +172,7 @@ fn a_ring_with_a_hole_has_its_angles() {
 }
 
 #[test]
-fn sharp_corners_end() {
+fn refinement_terminates_at_sharp_corners() {
     for height in [0.1, 1e-3, 1e-6] {
         let needle = vec![[0.0, 0.0], [1.0, 0.0], [1.0, height]];
         let (points, made) = meshed(&[needle], 30.0, f64::INFINITY);

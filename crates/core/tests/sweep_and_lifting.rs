@@ -1,5 +1,5 @@
-//! The sweep and the lifted hull where their own steps are at their limits: many points on the line
-//! at once, fronts as long as the input, circles that end together, stars of high degree.
+//! The sweep and the lifted hull at their limits: many simultaneous points, long fronts, cocircular
+//! points, stars of high degree.
 
 use delone_core::Point2;
 use delone_core::arrays::Given;
@@ -71,7 +71,7 @@ fn circles_with_and_without_a_hub() {
     made(1000, |i| {
         direction(i).map(|x| x * (1.0 + 1e-9 * random(i + 1000)))
     });
-    // x^2 + y^2 = 5^2 13^2 17 has 72 solutions: points that are cocircular exactly.
+    // x^2 + y^2 = 5^2 13^2 17 has 72 solutions: exactly cocircular points.
     let lattice: Vec<Point2> = (-268i64..=268)
         .filter_map(|x| {
             let rest = 71825 - x * x;
@@ -112,7 +112,7 @@ fn sizes_of_every_kind() {
 }
 
 #[test]
-fn a_watch_ends_the_work() {
+fn an_interruption_ends_the_work() {
     let points: Vec<Point2> = (0..20_000)
         .map(|i| [random(i), random(i + 50_000)])
         .collect();

@@ -1,8 +1,8 @@
-//! Whether an angle is acute, right or obtuse; so, whether a point lies outside, on or inside the
-//! circle on the diameter between two others.
+//! Whether an angle is acute, right or obtuse: whether a point is outside, on or inside a diametral
+//! circle.
 //!
-//! The dot product (a - p) . (b - p) of exact values passes in floating point through the roundings
-//! of the cross product in `orient2d`, with a plus for a minus: the bounds are the same.
+//! The dot product (a - p) . (b - p) of exact values goes through the same roundings as the cross
+//! product in `orient2d`, with a plus instead of a minus: the bounds are the same.
 
 use crate::Point2;
 use crate::integer::{FULL, Integer, by_width, differences};
@@ -14,10 +14,10 @@ const BOUND: f64 = 4.0 * (f64::EPSILON / 2.0);
 /// Its absolute bound.
 const FLOOR: f64 = f64::MIN_POSITIVE;
 
-/// The angle at `p` between `a` and `b`: [`Sign::Positive`] where it is acute (or `p` is neither and
-/// sees both in one direction), [`Sign::Zero`] where it is right or `p` is one of them,
-/// [`Sign::Negative`] where it is obtuse, which is where `p` lies inside the circle on the diameter
-/// `a b`. Exact for all finite doubles.
+/// The angle at `p` between `a` and `b`: [`Sign::Positive`] if it is acute (or `p` is neither and
+/// sees both in one direction), [`Sign::Zero`] if it is right or `p` is one of them,
+/// [`Sign::Negative`] if it is obtuse, which means that `p` is inside the diametral circle of `a
+/// b`. Exact for all finite doubles.
 ///
 /// ```
 /// use delone_predicates::{Sign, angle};

@@ -20,8 +20,8 @@ const BOUND: f64 = 6.0 * (f64::EPSILON / 2.0);
 /// Absolute bound of the filter.
 const FLOOR: f64 = f64::MIN_POSITIVE;
 
-/// Whether `a` is nearer to `o` than `b` is: [`Sign::Positive`] where it is, [`Sign::Zero`] where both are
-/// equally near. Exact for all finite doubles.
+/// Whether `a` is nearer to `o` than `b` is: [`Sign::Positive`] if it is, [`Sign::Zero`] if both
+/// are equally near. Exact for all finite doubles.
 ///
 /// ```
 /// use delone_predicates::{Sign, nearer};
@@ -69,10 +69,10 @@ fn determinant<const D: usize, const D2: usize>(points: &[Point2; 3], low: i32) 
     squared(&b).minus(&squared(&a)).sign()
 }
 
-/// Relative bound of the filter in space: one more sum, 5 roundings, and so 7 u.
+/// Relative bound of the filter in 3-D: one more sum, so 5 roundings and 7 u.
 const BOUND3: f64 = 7.0 * (f64::EPSILON / 2.0);
 
-/// Whether `a` is nearer to `o` than `b` is, in space: as [`nearer`].
+/// Whether `a` is nearer to `o` than `b` is, in 3-D: like [`nearer`].
 ///
 /// ```
 /// use delone_predicates::{Sign, nearer3};

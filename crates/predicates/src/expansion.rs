@@ -1,4 +1,4 @@
-//! Numbers as unevaluated sums of two doubles, "double words", and their error bounds.
+//! Double-double arithmetic: numbers as unevaluated sums of two doubles, and their error bounds.
 //!
 //! Let u = 2^-53, and let a [`Pair`] stand for `hi + lo` with |lo| <= u |hi|. Assume that nothing
 //! overflows or underflows (`range::is_safe` sees to it). Then
@@ -34,7 +34,7 @@ pub fn two_difference(a: f64, b: f64) -> (f64, f64) {
     two_sum(a, -b)
 }
 
-/// As [`two_sum`], where |a| >= |b| or both are zero.
+/// Like [`two_sum`], for |a| >= |b| or both zero.
 #[inline]
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -52,8 +52,8 @@ fn split(a: f64) -> (f64, f64) {
 
 /// `a * b` rounded, and the error made.
 ///
-/// A fused multiply-add is taken where the target has it in hardware: in software it would be
-/// right, too, but many times slower than Dekker's product.
+/// A fused multiply-add is used if the target has it in hardware: in software it would be right,
+/// too, but many times slower than Dekker's product.
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
@@ -72,7 +72,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
 pub struct Pair {
     /// The sum, rounded.
     pub hi: f64,
-    /// What rounding took away.
+    /// The rounding error of the sum.
     pub lo: f64,
 }
 

@@ -36,15 +36,15 @@ const BOUND: f64 = 11.0 * U;
 const FLOOR: f64 = f64::MIN_POSITIVE;
 /// [`FLOOR`] for scaled coordinates: 2^-822.
 const FLOOR_SCALED: f64 = FLOOR * (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
-/// Relative bound of expansions: each monomial passes three products, a sum in the squared length,
-/// a difference in the cross product and two last sums: 27 + 16 = 43 u^2.
+/// Relative bound of expansions: each monomial goes through three products, a sum in the squared
+/// length, a difference in the cross product and two last sums: 27 + 16 = 43 u^2.
 const BOUND_EXPANSION: f64 = 64.0 * U * U;
 /// Most bits for 64-bit minors and a 128-bit sum: below 2^2b+1 and 3 * 2^4b+2.
 const BITS_NARROW: u32 = 30;
 
 /// Whether `d` lies inside the circle through `a`, `b`, `c`.
 ///
-/// For counter-clockwise `a`, `b`, `c`: [`Sign::Positive`] inside, [`Sign::Zero`] on the circle,
+/// For counterclockwise `a`, `b`, `c`: [`Sign::Positive`] inside, [`Sign::Zero`] on the circle,
 /// [`Sign::Negative`] outside. For clockwise ones the sign flips; for collinear ones the circle is
 /// the line. Exact for all finite doubles.
 ///
@@ -63,7 +63,7 @@ pub fn incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
     }
 }
 
-/// As [`incircle()`], without the floating-point filter: for callers that have tried one.
+/// Like [`incircle()`], without the floating-point filter: for callers that have tried one.
 #[cold]
 #[inline(never)]
 #[must_use]
@@ -74,7 +74,7 @@ pub fn incircle_exact(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
         .unwrap_or_else(|| integer(a, b, c, d))
 }
 
-/// The sign where plain floating point proves it.
+/// The sign, if plain floating point proves it.
 #[inline]
 pub fn filter(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     filter_above(FLOOR, a, b, c, d)
@@ -94,7 +94,7 @@ fn filter_above(floor: f64, a: Point2, b: Point2, c: Point2, d: Point2) -> Optio
     (det.abs() > bound).then(|| Sign::of(det))
 }
 
-/// The sign where the differences lie on a lattice of 64-bit integers.
+/// The sign, if the differences lie on a lattice of 64-bit integers.
 #[inline]
 pub fn lattice(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     let found = lattice_of(
@@ -113,7 +113,7 @@ pub fn lattice(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     Some(determinant::<1, 2, 4>([&a, &b, &c]))
 }
 
-/// The sign where numbers of two doubles prove it.
+/// The sign, if double-double arithmetic proves it.
 #[inline]
 pub fn expansion(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     if !is_safe(&[a, b, c, d]) {
@@ -136,7 +136,7 @@ pub fn expansion(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     (det.abs() > BOUND_EXPANSION * permanent).then(|| Sign::of(det))
 }
 
-/// The sign where the stages before prove it for coordinates scaled into their range.
+/// The sign, if the previous stages prove it for coordinates scaled into their range.
 pub fn scaled(a: Point2, b: Point2, c: Point2, d: Point2) -> Option<Sign> {
     let points = [a, b, c, d];
     if is_safe(&points) {

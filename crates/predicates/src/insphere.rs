@@ -1,7 +1,7 @@
 //! Whether a point lies inside the sphere through four others.
 //!
 //! With A = a - e and so on, and [P, Q, R] the determinant of three vectors, the determinant is
-//! |A|^2 [B, C, D] - |B|^2 [A, C, D] + |C|^2 [A, B, D] - |D|^2 [A, B, C]. At the circumcentre all
+//! |A|^2 [B, C, D] - |B|^2 [A, C, D] + |C|^2 [A, B, D] - |D|^2 [A, B, C]. At the circumcenter all
 //! lengths are equal, and the rest is [b - a, c - a, d - a]: positive inside, for positively
 //! oriented a, b, c, d.
 //!
@@ -47,8 +47,8 @@ const BITS_MEDIUM: u32 = 41;
 ///
 /// For positively oriented `a`, `b`, `c`, `d` (see [`orient3d`](crate::orient3d())):
 /// [`Sign::Positive`] inside, [`Sign::Zero`] on the sphere, [`Sign::Negative`] outside. For
-/// negatively oriented ones the sign flips; for coplanar ones the sphere is the plane, or, where
-/// they are cocircular, everything is on it. Exact for all finite doubles.
+/// negatively oriented ones the sign flips; for coplanar ones the sphere is the plane, or, if they
+/// are cocircular, everything is on it. Exact for all finite doubles.
 ///
 /// ```
 /// use delone_predicates::{Sign, insphere};
@@ -65,7 +65,7 @@ pub fn insphere(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
     }
 }
 
-/// As [`insphere()`], without the floating-point filter: for callers that have tried one.
+/// Like [`insphere()`], without the floating-point filter: for callers that have tried one.
 #[cold]
 #[inline(never)]
 #[must_use]
@@ -76,7 +76,7 @@ pub fn insphere_exact(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> 
         .unwrap_or_else(|| integer(a, b, c, d, e))
 }
 
-/// The sign where plain floating point proves it.
+/// The sign, if plain floating point proves it.
 #[inline]
 pub fn filter(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Option<Sign> {
     let [a, b, c, d] = [a, b, c, d].map(|p| [p[0] - e[0], p[1] - e[1], p[2] - e[2]]);
@@ -104,7 +104,7 @@ pub fn filter(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Option<S
     (det.abs() > bound).then(|| Sign::of(det))
 }
 
-/// The sign where the differences lie on a lattice of 64-bit integers.
+/// The sign, if the differences lie on a lattice of 64-bit integers.
 #[inline]
 pub fn lattice(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Option<Sign> {
     let found = lattice_of(
@@ -160,7 +160,7 @@ fn medium([a, b, c, d]: [[i64; 3]; 4]) -> Sign {
     positive.minus(&negative).sign()
 }
 
-/// The sign where numbers of two doubles prove it.
+/// The sign, if double-double arithmetic proves it.
 #[inline]
 pub fn expansion(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Option<Sign> {
     if !is_safe(&[a, b, c, d, e]) {
@@ -189,7 +189,7 @@ pub fn expansion(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Optio
     (det.abs() > BOUND_EXPANSION * permanent).then(|| Sign::of(det))
 }
 
-/// The sign where the stages before prove it for coordinates scaled into their range.
+/// The sign, if the previous stages prove it for coordinates scaled into their range.
 pub fn scaled(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Option<Sign> {
     let points = [a, b, c, d, e];
     if is_safe(&points) {

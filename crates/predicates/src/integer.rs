@@ -22,7 +22,7 @@ use crate::sign::Sign;
 #[derive(Clone, Copy, Debug)]
 pub struct Integer<const N: usize>([u64; N]);
 
-/// Widest coordinate, in bits, for which differences have `limbs` limbs.
+/// The widest coordinate, in bits, for which differences have `limbs` limbs.
 pub const fn capacity(limbs: usize) -> u32 {
     64 * limbs as u32 - 3
 }
@@ -88,7 +88,7 @@ impl<const N: usize> Integer<N> {
         Self(limbs)
     }
 
-    /// The product, of as many limbs as both factors together.
+    /// The product; it has as many limbs as both factors together.
     ///
     /// The product of the limbs as unsigned numbers is too large by 2^64A times b where a is
     /// negative, and by 2^64B times a where b is.
@@ -97,7 +97,7 @@ impl<const N: usize> Integer<N> {
         const { assert!(N + B == P, "a product has the limbs of its factors") }
         let mut product = [0; P];
         for (i, &a) in self.0.iter().enumerate() {
-            // Wide integers are mostly zeros; in short ones the branch would cost more.
+            // Wide integers are mostly zeros; for short ones the branch would cost more.
             if N > 8 && a == 0 {
                 continue;
             }
@@ -147,7 +147,7 @@ fn subtract(limbs: &mut [u64], other: &[u64]) {
     }
 }
 
-/// The first N - 1 points as seen from the last, in units of 2^low.
+/// The first N - 1 points relative to the last, in units of 2^low.
 pub fn differences<const L: usize, const D: usize, const N: usize, const M: usize>(
     points: &[[f64; D]; N],
     low: i32,

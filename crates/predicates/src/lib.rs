@@ -9,24 +9,24 @@
 //! | [`orient3d()`] | on which side of the plane `abc` does `d` lie? | 3 |
 //! | [`insphere()`] | does `e` lie inside the sphere `abcd`? | 5 |
 //!
-//! The answer is a [`Sign`], that of the real number which the doubles denote: no tolerance, no
-//! range limit, subnormals and `f64::MAX` included. [`incircle_canonical`] and
-//! [`insphere_canonical`] break ties by the points' coordinates alone, never by their order.
+//! The answer is a [`Sign`], exact for the given doubles: no tolerance, no range limit, subnormals
+//! and `f64::MAX` included. [`incircle_canonical`] and [`insphere_canonical`] break ties by the
+//! coordinates of the points only, never by their order.
 //!
 //! # Stages
 //!
-//! Each predicate asks cheap stages first; a stage answers only what it can prove.
+//! Each predicate tries cheap stages first; a stage answers only if it can prove the sign.
 //!
 //! 1. *Filter*: the determinant in plain floating point against a forward error bound. Overflow
 //!    and NaN fail the comparison, underflow is part of the bound. Inlined at the call.
 //! 2. *Lattice*: where all coordinate differences are integer multiples, up to 2^61, of one power
 //!    of two, integers of 64, 128 and 256 bits (320 for the sphere) give the exact answer. This
-//!    settles the ties of grids, integers and quantised data.
-//! 3. *Expansion*: two doubles a number, where the exponents rule out overflow and underflow.
+//!    settles the ties of grids, integers and quantized data.
+//! 3. *Expansion*: double-double arithmetic, if the exponents rule out overflow and underflow.
 //! 4. Stages 1 to 3 once more on coordinates scaled by a power of two, where stage 3 was out of
 //!    range.
 //! 5. *Integer*: fixed-size integers on the stack, up to the full 2098 bits between the last bit
-//!    of a subnormal and `f64::MAX`. Always right; nothing allocates.
+//!    of a subnormal and `f64::MAX`. Always right; no allocation.
 //!
 //! The functions `*_exact` are stages 2 to 5, for callers with a filter of their own.
 //!
@@ -67,10 +67,10 @@ pub use orient3d::{orient3d, orient3d_exact};
 pub use sign::Sign;
 pub use ties::{incircle_canonical, insphere_canonical, lexicographic, tie_flips};
 
-/// A point of the plane.
+/// A point in 2-D.
 pub type Point2 = [f64; 2];
 
-/// A point of space.
+/// A point in 3-D.
 pub type Point3 = [f64; 3];
 
 /// The arithmetic beneath the stages, for constructions on points; not part of the stable interface.

@@ -1,4 +1,4 @@
-//! On which side of the line through two points a third lies.
+//! On which side of the line through two points a third point lies.
 //!
 //! The determinant is the cross product l - r = (b - a) x (c - a), with l = (bx - ax)(cy - ay) and
 //! r = (by - ay)(cx - ax).
@@ -30,13 +30,13 @@ const BOUND: f64 = 4.0 * U;
 const FLOOR: f64 = f64::MIN_POSITIVE;
 /// [`FLOOR`] for scaled coordinates: 2^-822.
 const FLOOR_SCALED: f64 = FLOOR * (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
-/// Relative bound of expansions: one product, one sum make 13 u^2.
+/// Relative bound of expansions: one product and one sum make 13 u^2.
 const BOUND_EXPANSION: f64 = 32.0 * U * U;
 
 /// The side of the line from `a` to `b` on which `c` lies.
 ///
-/// [`Sign::Positive`] where `a`, `b`, `c` turn left (counter-clockwise), [`Sign::Zero`] where they
-/// lie on one line. Exact for all finite doubles.
+/// [`Sign::Positive`] if `a`, `b`, `c` turn left (counterclockwise), [`Sign::Zero`] if they are
+/// collinear. Exact for all finite doubles.
 ///
 /// ```
 /// use delone_predicates::{Sign, orient2d};
@@ -51,7 +51,7 @@ pub fn orient2d(a: Point2, b: Point2, c: Point2) -> Sign {
     }
 }
 
-/// As [`orient2d()`], without the floating-point filter: for callers that have tried one.
+/// Like [`orient2d()`], without the floating-point filter: for callers that have tried one.
 #[cold]
 #[inline(never)]
 #[must_use]
@@ -62,7 +62,7 @@ pub fn orient2d_exact(a: Point2, b: Point2, c: Point2) -> Sign {
         .unwrap_or_else(|| integer(a, b, c))
 }
 
-/// The sign where plain floating point proves it.
+/// The sign, if plain floating point proves it.
 #[inline]
 pub fn filter(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     filter_above(FLOOR, a, b, c)
@@ -77,7 +77,7 @@ fn filter_above(floor: f64, a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     (det.abs() > bound).then(|| Sign::of(det))
 }
 
-/// The sign where the differences lie on a lattice of 64-bit integers.
+/// The sign, if the differences lie on a lattice of 64-bit integers.
 #[inline]
 pub fn lattice(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     let found = lattice_of([b[0], b[1], c[0], c[1]], [a[0], a[1], a[0], a[1]])?;
@@ -85,7 +85,7 @@ pub fn lattice(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     Some(Sign::from(bx * cy - by * cx))
 }
 
-/// The sign where numbers of two doubles prove it.
+/// The sign, if double-double arithmetic proves it.
 #[inline]
 pub fn expansion(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     if !is_safe(&[a, b, c]) {
@@ -99,7 +99,7 @@ pub fn expansion(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     (det.abs() > bound).then(|| Sign::of(det))
 }
 
-/// The sign where the stages before prove it for coordinates scaled into their range.
+/// The sign, if the previous stages prove it for coordinates scaled into their range.
 pub fn scaled(a: Point2, b: Point2, c: Point2) -> Option<Sign> {
     let points = [a, b, c];
     if is_safe(&points) {

@@ -1,4 +1,4 @@
-//! On which side of the plane through three points a fourth lies.
+//! On which side of the plane through three points a fourth point lies.
 //!
 //! With B = b - a, C = c - a, D = d - a the determinant is
 //! det[B, C, D] = Bz (C x D) - Cz (B x D) + Dz (B x C), where x is the cross product in the plane.
@@ -34,16 +34,15 @@ const FLOOR_SCALED: f64 = {
     let hundred = (1_u128 << 100) as f64;
     FLOOR * hundred * hundred * hundred * hundred
 };
-/// Relative bound of expansions: each monomial passes two products and three sums: 30 u^2.
+/// Relative bound of expansions: each monomial goes through two products and three sums: 30 u^2.
 const BOUND_EXPANSION: f64 = 64.0 * U * U;
 /// Most bits for a 128-bit determinant: below 6 * 2^3b, and minors below 2^2b+1.
 const BITS_NARROW: u32 = 41;
 
 /// The side of the plane through `a`, `b`, `c` on which `d` lies.
 ///
-/// [`Sign::Positive`] where `b - a`, `c - a`, `d - a` are a right-handed frame (the tetrahedron is
-/// positively oriented), [`Sign::Zero`] where the four lie in one plane. Exact for all finite
-/// doubles.
+/// [`Sign::Positive`] if `b - a`, `c - a`, `d - a` are a right-handed frame (the tetrahedron is
+/// positively oriented), [`Sign::Zero`] if the four are coplanar. Exact for all finite doubles.
 ///
 /// ```
 /// use delone_predicates::{Sign, orient3d};
@@ -59,7 +58,7 @@ pub fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
     }
 }
 
-/// As [`orient3d()`], without the floating-point filter: for callers that have tried one.
+/// Like [`orient3d()`], without the floating-point filter: for callers that have tried one.
 #[cold]
 #[inline(never)]
 #[must_use]
@@ -70,7 +69,7 @@ pub fn orient3d_exact(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
         .unwrap_or_else(|| integer(a, b, c, d))
 }
 
-/// The sign where plain floating point proves it.
+/// The sign, if plain floating point proves it.
 #[inline]
 pub fn filter(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     filter_above(FLOOR, a, b, c, d)
@@ -90,7 +89,7 @@ fn filter_above(floor: f64, a: Point3, b: Point3, c: Point3, d: Point3) -> Optio
     (det.abs() > bound).then(|| Sign::of(det))
 }
 
-/// The sign where the differences lie on a lattice of 64-bit integers.
+/// The sign, if the differences lie on a lattice of 64-bit integers.
 #[inline]
 pub fn lattice(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     let found = lattice_of(
@@ -111,7 +110,7 @@ pub fn lattice(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     Some(determinant::<1, 2, 3>([&b, &c, &d]))
 }
 
-/// The sign where numbers of two doubles prove it.
+/// The sign, if double-double arithmetic proves it.
 #[inline]
 pub fn expansion(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     if !is_safe(&[a, b, c, d]) {
@@ -128,7 +127,7 @@ pub fn expansion(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     (det.abs() > BOUND_EXPANSION * permanent).then(|| Sign::of(det))
 }
 
-/// The sign where the stages before prove it for coordinates scaled into their range.
+/// The sign, if the previous stages prove it for coordinates scaled into their range.
 pub fn scaled(a: Point3, b: Point3, c: Point3, d: Point3) -> Option<Sign> {
     let points = [a, b, c, d];
     if is_safe(&points) {

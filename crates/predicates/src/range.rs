@@ -1,5 +1,5 @@
-//! What the exponents of the coordinates allow: the window of the expansions, the common lattice of
-//! the differences, the width of the integers.
+//! What the exponents of coordinates allow: the range of expansions, the lattice of differences,
+//! integer widths.
 
 use crate::expansion::two_difference;
 
@@ -15,7 +15,7 @@ const WINDOW_LOW: i32 = -160;
 /// Largest binary exponent of a coordinate that expansions take. See [`is_safe`].
 const WINDOW_HIGH: i32 = 189;
 
-/// The exponent field: 0 for subnormals, 2047 for what is not finite.
+/// The exponent field: 0 for subnormals, 2047 for NaN and infinities.
 #[inline]
 pub fn exponent_field(value: f64) -> i32 {
     ((value.to_bits() & ABS) >> 52) as i32
@@ -48,12 +48,12 @@ pub struct Scaled<const D: usize, const N: usize> {
     /// The points; unless `exact`, each coordinate may have lost up to 2^-1074 (two roundings of
     /// 2^-1075), and all of it.
     pub points: [[f64; D]; N],
-    /// Whether no coordinate has changed by more than the factor, and expansions are safe.
+    /// Whether every coordinate has changed exactly by the factor, and expansions are safe.
     pub exact: bool,
 }
 
-/// The points times the power of two that takes the largest coordinate to the upper end of the
-/// window. `None` where a coordinate is not finite.
+/// The points times the power of two that moves the largest coordinate to the upper end of the
+/// window. `None` if a coordinate is not finite.
 pub fn scale_to_window<const D: usize, const N: usize>(
     points: &[[f64; D]; N],
 ) -> Option<Scaled<D, N>> {
@@ -66,7 +66,7 @@ pub fn scale_to_window<const D: usize, const N: usize>(
     let shift = WINDOW_HIGH - (top - BIAS);
     let (first, second) = (power_of_two(shift / 2), power_of_two(shift - shift / 2));
     let points = points.map(|p| p.map(|x| x * first * second));
-    // What is safe and not zero is far from underflow, so it is exact.
+    // A safe nonzero value is far from underflow, so it is exact.
     let vanished = |(&x, &y): (&f64, &f64)| x != 0.0 && y == 0.0;
     let exact = is_safe(&points) && !coordinates.iter().zip(points.as_flattened()).any(vanished);
     Some(Scaled { points, exact })
@@ -84,7 +84,7 @@ impl<const N: usize> Lattice<N> {
     /// From integers below 2^bits.
     #[inline]
     fn reduced(values: [i64; N], bits: u32) -> Self {
-        // Not all are zero: the largest has its highest bit where it was scaled to.
+        // Not all are zero: the largest was scaled to a fixed highest bit.
         let common = values.iter().fold(0, |all, v| all | v).trailing_zeros();
         Self {
             values: values.map(|v| v >> common),
@@ -93,10 +93,11 @@ impl<const N: usize> Lattice<N> {
     }
 }
 
-/// The differences `minuends[i] - subtrahends[i]` on their common lattice, where its integers fit.
+/// The differences `minuends[i] - subtrahends[i]` on their common lattice, if the integers fit.
 ///
 /// The differences are scaled so that the largest has a given number of bits. If then each converts
-/// to an integer and back without change, all are known exactly; common factors of two come off last.
+/// to an integer and back without change, all are known exactly; common factors of two are removed
+/// last.
 #[inline]
 pub fn lattice<const N: usize>(minuends: [f64; N], subtrahends: [f64; N]) -> Option<Lattice<N>> {
     let differences: [(f64, f64); N] =
@@ -178,7 +179,7 @@ pub fn decode_odd(x: f64) -> (u64, i32) {
 }
 
 /// The lowest set bit of all coordinates (its exponent), and the width in bits from there to the
-/// highest: 2098 at most, 0 where all are zero. `None` where a coordinate is not finite.
+/// highest: at most 2098, and 0 if all are zero. `None` if a coordinate is not finite.
 pub fn bit_span<const D: usize, const N: usize>(points: &[[f64; D]; N]) -> Option<(i32, u32)> {
     let (mut low, mut high) = (i32::MAX, i32::MIN);
     for &x in points.as_flattened() {

@@ -11,7 +11,7 @@ pub enum Sign {
     Negative = -1,
     /// Exactly zero: the points are degenerate.
     Zero = 0,
-    /// Above zero: left turn, counter-clockwise, inside.
+    /// Above zero: left turn, counterclockwise, inside.
     Positive = 1,
 }
 
@@ -29,7 +29,7 @@ impl Sign {
         }
     }
 
-    /// This sign, or the other one where `flip` holds.
+    /// This sign, negated if `flip` is true.
     #[inline]
     #[must_use]
     pub fn flip_if(self, flip: bool) -> Self {

@@ -29,7 +29,7 @@
 //! roundings of the division and of the bound. Adding bx errs by e of the sum.
 //!
 //! Where n < 0 the two parts of N cancel, which is bad for great circles that end near their
-//! points. Since l - n^2 = m^2, m = |u|^2 vx - |v|^2 ux, which is the centre's ordinate times 2 d,
+//! points. Since l - n^2 = m^2, m = |u|^2 vx - |v|^2 ux, which is the center's ordinate times 2 d,
 //! then N = m^2 / t, t = sqrt l - n. m errs by less than h = 8 e (|u|^2 |vx| + |v|^2 |ux|), t by
 //! less than f, and if f < t / 4, then N by less than 4/3 ((2 |m| + h) h + N f) / t; 2 is taken for
 //! 4/3, and 14 e N holds the roundings.
@@ -82,7 +82,7 @@ const BITS_TRIPLE: u32 = 11;
 const BITS_SHIFT: u32 = 60;
 
 /// Which of the parabolas of `a` and `b` is in front at the height of `q`, when the sweep line has
-/// reached `q`: positive for that of `b`, zero where both pass one point there.
+/// reached `q`: positive for that of `b`, zero if both pass through one point there.
 ///
 /// Neither `a` nor `b` may lie right of `q`.
 #[inline]
@@ -129,7 +129,7 @@ fn front_from_points<const D: usize, const D2: usize, const D3: usize>(
     front_sign::<D, D2, D3>(&a, &b, true)
 }
 
-/// The sign of |a|^2 bx - |b|^2 ax, for a and b as seen from q, or the other way round.
+/// The sign of |a|^2 bx - |b|^2 ax, for a and b relative to q, or q relative to them.
 fn front_sign<const D: usize, const D2: usize, const D3: usize>(
     a: &[Integer<D>; 2],
     b: &[Integer<D>; 2],
@@ -140,12 +140,12 @@ fn front_sign<const D: usize, const D2: usize, const D3: usize>(
     far.minus(&near).sign().flip_if(reversed)
 }
 
-/// Where the circle through three points ends on the right, rounded, with a bound of the error.
+/// The right end of the circle through three points, rounded, with an error bound.
 #[derive(Clone, Copy, Debug)]
 pub struct CircleEnd {
-    /// The abscissa, about.
+    /// The approximate abscissa.
     pub value: f64,
-    /// The error, at most; infinite where nothing is known.
+    /// The error bound; infinite if nothing is known.
     pub error: f64,
 }
 
@@ -191,7 +191,7 @@ impl CircleEnd {
         Self::bounded(value, if known { error } else { f64::INFINITY })
     }
 
-    /// What is not finite is not known.
+    /// Values that are not finite are unknown.
     #[inline]
     fn bounded(value: f64, error: f64) -> Self {
         let error = if value.is_finite() && error.is_finite() {
@@ -202,7 +202,7 @@ impl CircleEnd {
         Self { value, error }
     }
 
-    /// The end, by way of coordinates below 1.
+    /// The end, computed with coordinates scaled below 1.
     #[cold]
     #[inline(never)]
     fn scaled(triple: [Point2; 3]) -> Self {
@@ -213,11 +213,11 @@ impl CircleEnd {
         let there = triple.map(|p| p.map(|x| x * power_of_two(first) * power_of_two(second)));
         let end = Self::within(&LENGTHS_SCALED, there);
         let back = |x: f64| x * power_of_two(-first) * power_of_two(-second);
-        // On the way back, too, underflow may take a little.
+        // Scaling back may underflow slightly, too.
         Self::bounded(back(end.value), back(end.error) + UNDERFLOW)
     }
 
-    /// The sign of this end minus another, where the bounds prove it.
+    /// The sign of this end minus another, if the bounds prove it.
     #[inline]
     #[must_use]
     pub fn minus(&self, other: &Self) -> Option<Sign> {
@@ -225,7 +225,7 @@ impl CircleEnd {
         (difference.abs() > self.error + other.error).then(|| Sign::of(difference))
     }
 
-    /// The sign of this end minus `x`, where the bound proves it.
+    /// The sign of this end minus `x`, if the bound proves it.
     #[inline]
     #[must_use]
     pub fn minus_abscissa(&self, x: f64) -> Option<Sign> {
@@ -234,7 +234,7 @@ impl CircleEnd {
     }
 }
 
-/// `p x - q y` and the sum of the magnitudes of its terms, for `p` and `q` not negative.
+/// `p x - q y` and the sum of the magnitudes of its terms, for nonnegative `p` and `q`.
 #[inline]
 fn weighted(p: f64, x: f64, q: f64, y: f64) -> (f64, f64) {
     let (left, right) = (p * x, q * y);
@@ -253,9 +253,9 @@ pub fn circle_ends(s: [Point2; 3], t: [Point2; 3]) -> Sign {
     lattice_ends(s, t).unwrap_or_else(|| integer_ends(s, t))
 }
 
-/// Whether the circles are equal but for their height, seen without arithmetic on big numbers: the
-/// middle points have one abscissa, and the others lie about them alike or mirrored in a
-/// horizontal. Differences that are not exact prove nothing.
+/// Whether the circles are equal up to their height, found without big numbers: the middle points
+/// have equal abscissas, and the others are placed alike relative to them, or mirrored vertically.
+/// Differences that are not exact prove nothing.
 fn mirrored(s: [Point2; 3], t: [Point2; 3]) -> bool {
     if s[1][0] != t[1][0] {
         return false;
@@ -274,7 +274,7 @@ fn mirrored(s: [Point2; 3], t: [Point2; 3]) -> bool {
     (s_seen == t_seen || s_seen == flipped) && exact(s) && exact(t)
 }
 
-/// As [`circle_ends`], where the differences lie on a lattice of 64-bit integers.
+/// Like [`circle_ends`], if the differences lie on a lattice of 64-bit integers.
 pub fn lattice_ends(s: [Point2; 3], t: [Point2; 3]) -> Option<Sign> {
     let [[a, b, c], [e, f, g]] = [s, t];
     let found = lattice(
@@ -339,7 +339,7 @@ fn either(a: Sign, b: Sign) -> Sign {
     if a.is_zero() { b } else { a }
 }
 
-/// As [`circle_ends`], by integers that hold every double.
+/// Like [`circle_ends`], by integers that hold every double.
 #[cold]
 #[inline(never)]
 pub fn integer_ends(s: [Point2; 3], t: [Point2; 3]) -> Sign {

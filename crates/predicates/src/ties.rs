@@ -1,4 +1,4 @@
-//! Ties, broken by the points' coordinates alone.
+//! Ties, broken by the coordinates of the points only.
 //!
 //! # The perturbation
 //!
@@ -80,23 +80,23 @@ fn smaller(a: Point2, b: Point2) -> Point2 {
     if before(b, a) { b } else { a }
 }
 
-/// Lexicographic order without a branch: on a grid nobody can guess it.
+/// Lexicographic order without a branch, which would be unpredictable on a grid.
 #[inline]
 fn before(a: Point2, b: Point2) -> bool {
     (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1]))
 }
 
-/// As [`incircle()`], with ties broken by a symbolic perturbation in lexicographic order.
+/// Like [`incircle()`], with ties broken by a symbolic perturbation in lexicographic order.
 ///
-/// [`Sign::Zero`] only where two points are equal or all four lie on one line. An exchange of two
-/// points changes the sign.
+/// [`Sign::Zero`] only if two points are equal or all four are collinear. Swapping two points
+/// negates the sign.
 ///
 /// ```
 /// use delone_predicates::{Sign, incircle_canonical};
 /// let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-/// // The square is cut along the diagonal from its smallest vertex, a.
-/// assert_eq!(incircle_canonical(a, b, c, d), Sign::Negative);
-/// assert_eq!(incircle_canonical(b, c, d, a), Sign::Positive);
+/// // The square is split along the diagonal from its smallest vertex, a.
+/// assert_eq!(incircle_canonical(a, b, c, d), Sign::Negative); assert_eq!(incircle_canonical(b, c,
+/// d, a), Sign::Positive);
 /// ```
 #[inline]
 #[must_use]
@@ -110,8 +110,8 @@ pub fn incircle_canonical(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
 #[cold]
 #[inline(never)]
 fn incircle_tie(points: [Point2; 4]) -> Sign {
-    // Only the smallest counts. To bring it to the front from place i takes i exchanges of
-    // neighbours, which leave the others in their order.
+    // Only the smallest counts. Moving it from place i to the front takes i swaps of adjacent
+    // points, which leave the others in their order.
     let mut smallest = 0;
     for i in 1..4 {
         match lexicographic(points[i], points[smallest]) {
@@ -125,10 +125,10 @@ fn incircle_tie(points: [Point2; 4]) -> Sign {
     (-orient2d(p, q, r)).flip_if(smallest % 2 == 1)
 }
 
-/// As [`insphere()`], with ties broken by a symbolic perturbation in lexicographic order.
+/// Like [`insphere()`], with ties broken by a symbolic perturbation in lexicographic order.
 ///
-/// [`Sign::Zero`] only where two points are equal or all five lie in one plane. An exchange of two
-/// points changes the sign.
+/// [`Sign::Zero`] only if two points are equal or all five are coplanar. Swapping two points
+/// negates the sign.
 #[inline]
 #[must_use]
 pub fn insphere_canonical(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
@@ -138,14 +138,14 @@ pub fn insphere_canonical(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3)
     }
 }
 
-/// The smallest point decides, where the others span space: to bring it to the front from place i takes
-/// i exchanges of neighbours, which leave the others in their order.
+/// The smallest point decides, if the others are affinely independent: moving it from place i to
+/// the front takes i swaps of adjacent points, which leave the others in their order.
 #[cold]
 #[inline(never)]
 fn insphere_tie(points: [Point3; 5]) -> Sign {
     let (mut smallest, mut twice) = (0, false);
     for (i, p) in points.iter().enumerate().skip(1) {
-        // On lattices nothing here can be predicted, so nothing is branched on.
+        // On lattices nothing here is predictable, so there is no branch.
         let q = points[smallest];
         let equal = (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
         let last = (p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]));
@@ -186,8 +186,7 @@ fn insphere_tie_sorted(mut points: [Point3; 5]) -> Sign {
     sign.flip_if(odd)
 }
 
-/// Sorts the points and returns whether that took an odd number of exchanges; `None` where two are
-/// equal.
+/// Sorts the points and returns whether that took an odd number of swaps; `None` if two are equal.
 fn sort<const D: usize, const N: usize>(points: &mut [[f64; D]; N]) -> Option<bool> {
     let mut odd = false;
     for i in 1..N {

@@ -1,15 +1,15 @@
-//! The parts of a triangulation that its segments separate: a flood over triangles.
+//! The components into which segments separate a triangulation: a flood fill over triangles.
 
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::watch::{Pace, Watch};
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// For each triangle the number of its component: triangles that share an edge which is not
-/// constrained are in one. Numbers count from 0 in the order of their first triangles. Neighbours
-/// below 0 are outside.
+/// The component of each triangle: triangles that share an unconstrained edge are in the same one.
+/// Components are numbered from 0 in the order of their first triangles. Neighbors below 0 are
+/// outside.
 pub fn components(
     neighbors: &[[i32; 3]],
     constrained: &[[bool; 3]],

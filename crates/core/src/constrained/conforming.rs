@@ -1,15 +1,19 @@
-//! Conforming triangulations: vertices are added on segments until the circle on each subsegment
-//! holds no vertex. Then each is an edge of the plain Delaunay triangulation of all vertices, too.
+//! Conforming triangulations: segments are split until the diametral circle of each subsegment is
+//! empty.
+//!
+//! Then each subsegment is also an edge of the unconstrained Delaunay triangulation of all
+//! vertices.
 //!
 //! J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", Journal
-//! of Algorithms 18 (1995). It is enough to look at the two triangles of a subsegment: if its circle
-//! holds a vertex that another segment hides, the circle on some subsegment between holds one that
-//! is in sight.
+//! of Algorithms 18 (1995). It suffices to check the two triangles of a subsegment: if its
+//! diametral circle contains a vertex that another segment hides, then the circle of some
+//! subsegment in between contains a visible one.
 //!
-//! A subsegment is halved; where one of its ends is a vertex of the input or a crossing, it is cut
-//! at a distance from there that is a power of two. So subsegments that meet at a sharp corner are
-//! cut on common circles about it and stop disturbing each other, which makes this end. A limit on
-//! vertices ends it in any case.
+//! A subsegment is split at its midpoint. If one of its ends is a vertex of the input or a
+//! crossing, it is split at a distance from that end that is a power of two. So subsegments that
+//! meet at a sharp corner are split on common circles around it and stop encroaching upon each
+//! other, which makes this terminate. A limit on vertices ends it in any case.
+//!
 
 use delone_predicates::{Point2, Sign, angle, lexicographic};
 
@@ -19,31 +23,32 @@ use crate::memory::with_room;
 use crate::mesh2::{next, prev};
 
 impl Splitter<'_> {
-    /// Splits subsegments until all circles are empty, but for those between neighbouring doubles.
+    /// Splits subsegments until all diametral circles are empty, except between neighboring
+    /// doubles.
     pub fn conform(&mut self) -> Result<()> {
         let corners = self.marked.count as u32;
         let mut parted = true;
         while std::mem::take(&mut parted) {
             for [u, v] in self.encroached()? {
                 self.pace.spend(1)?;
-                // One of those before may have taken it away, or its reason.
+                // An earlier split may have removed the subsegment or the encroaching vertex.
                 if !self.is_piece([u, v]) {
                     continue;
                 }
                 let e = self.marked.edge(u, v)?;
                 if self.encroaches(e) {
                     let x = self.cut(u, v, corners);
-                    let w = self.part([u, v], x, e)?;
+                    let w = self.split_piece([u, v], x, e)?;
                     parted |= w != u && w != v;
-                    self.work_off()?;
+                    self.insert_queued()?;
                 }
             }
         }
         Ok(())
     }
 
-    /// The subsegments whose circles hold a vertex in sight, in an order that hangs on coordinates
-    /// alone.
+    /// The subsegments encroached by a visible vertex, in an order that depends on coordinates
+    /// only.
     fn encroached(&mut self) -> Result<Vec<[u32; 2]>> {
         let mut found = with_room(64)?;
         for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
@@ -67,7 +72,7 @@ impl Splitter<'_> {
         Ok(found)
     }
 
-    /// Whether the apex on one side of the edge `e` lies in the circle on it.
+    /// Whether the apex on one side of the edge `e` lies in its diametral circle.
     fn encroaches(&mut self, e: u32) -> bool {
         let mesh = self.marked.patch();
         let inf = mesh.infinite();
@@ -79,7 +84,7 @@ impl Splitter<'_> {
             .any(|p| p != inf && angle(at(u), at(p), at(v)) == Sign::Negative)
     }
 
-    /// Where the piece u v is cut. Vertices below `corners` are of the input or crossings.
+    /// Where the subsegment u v is split. Vertices below `corners` are of the input or crossings.
     fn cut(&self, u: u32, v: u32, corners: u32) -> Point2 {
         let [u, v] = if u < corners { [u, v] } else { [v, u] };
         let sharp = u < corners && v >= corners;
@@ -87,13 +92,13 @@ impl Splitter<'_> {
     }
 }
 
-/// Where a subsegment is cut: in the middle, or, where its first end is a sharp corner, on a circle
-/// about that with a power of two for radius (J. Ruppert, 1995), so that the cuts of subsegments
-/// which meet there agree.
+/// Where a subsegment is split: at its midpoint, or, if its first end is a sharp corner, on a
+/// circle around that corner whose radius is a power of two (J. Ruppert, 1995), so that the splits
+/// of subsegments which meet there agree.
 pub(crate) fn cut(p: Point2, q: Point2, sharp: bool) -> Point2 {
     let length = (q[0] - p[0]).hypot(q[1] - p[1]);
     let share = if sharp { shell(length) / length } else { 0.5 };
-    // Where lengths leave the range of doubles, halves do, and sums of halves never do.
+    // If lengths overflow, use one half; sums of halves never overflow.
     let share = if share.is_finite() { share } else { 0.5 };
     let between = |a: f64, b: f64| {
         let x = a * (1.0 - share) + b * share + 0.0;

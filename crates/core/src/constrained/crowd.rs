@@ -1,15 +1,15 @@
-//! Where a limit on vertices was passed: the segments that take most of them.
+//! The segments that need most of the added vertices, for the error when a limit is exceeded.
 
 use delone_predicates::Point2;
 
 use crate::error::Crowd;
 
-/// Most segments that are named.
+/// The most segments that are named.
 const NAMED: usize = 5;
 
 /// The segments that occur most often in `rows`, each with at least half as many entries as the
-/// first. `ends` has the vertices of each segment, `at` their places; `last` is where the vertex
-/// that was too many would be.
+/// first. `ends` has the vertices of each segment, `at` their points; `last` is where the vertex
+/// that exceeds the limit would be.
 pub fn crowd(
     mut rows: Vec<u32>,
     ends: &[[u32; 2]],

@@ -1,23 +1,23 @@
-//! A few edges among many pieces: which pieces lie on them.
+//! A lookup of a few edges among many subsegments.
 
 use crate::error::Result;
 use crate::memory::filled;
 
-/// An edge, whichever way it is directed.
+/// An edge, regardless of its direction.
 pub fn edge([u, v]: [u32; 2]) -> [u32; 2] {
     [u.min(v), u.max(v)]
 }
 
-/// Edges, by which pieces are found.
+/// A sorted set of edges.
 pub struct Edges {
     /// Ascending.
     pub all: Vec<[u32; 2]>,
-    /// Whether a vertex is the smaller end of one: most pieces need no more.
+    /// Whether a vertex is the smaller end of an edge: most lookups need no more.
     begins: Vec<bool>,
 }
 
 impl Edges {
-    /// Those of a mesh of so many `vertices`.
+    /// The set of the edges `all` of a mesh with this many `vertices`.
     pub fn of(mut all: Vec<[u32; 2]>, vertices: usize) -> Result<Self> {
         all.sort_unstable();
         all.dedup();
@@ -28,7 +28,7 @@ impl Edges {
         Ok(Self { all, begins })
     }
 
-    /// The place of an edge among them.
+    /// The index of an edge in the set.
     #[inline]
     pub fn place(&self, ends: [u32; 2]) -> Option<usize> {
         let e = edge(ends);

@@ -1,18 +1,18 @@
-//! Where two segments cross: the exact point, each coordinate rounded once to the nearest double.
+//! Where two segments cross: the exact point, each coordinate correctly rounded.
 //!
 //! The lines ab and cd meet at a + t (b - a) with t = (c - a) x (d - c) / (b - a) x (d - c). Correct
-//! rounding makes the answer a function of the two lines alone: the order of the segments and of
-//! their ends changes nothing. And rounding is monotone, so each coordinate stays in the closed
-//! interval of any doubles that hold the exact one: the answer lies in the closed box of either
-//! segment.
+//! Correct rounding makes the result a function of the two lines: the order of the segments and of
+//! their ends does not matter. Rounding is monotone, so each coordinate stays in the closed
+//! interval between any doubles that enclose the exact one: the result lies in the closed box of
+//! either segment.
 //!
 //! # Stages
 //!
 //! 1. A vertical or horizontal segment gives its coordinate as it is.
-//! 2. Numbers of two doubles (`delone_predicates`' expansions), where the exponents rule out
-//!    overflow: the answer counts where all numbers within the error bound round to it.
+//! 2. Double-double arithmetic (`delone_predicates`' expansions), where the exponents rule out
+//!    overflow: the result counts if all numbers within the error bound round to it.
 //! 3. Integers: all coordinates in units of their lowest bit, one division to 63 bits or more, the
-//!    remainder kept as a sticky bit. Always right. Zeros and ties of the rounding end here.
+//!    remainder kept as a sticky bit. Always correct. Zeros and rounding ties are decided here.
 //!
 //! # The bound of stage 2
 //!
@@ -53,9 +53,9 @@ pub fn crosses(a: Point2, b: Point2, c: Point2, d: Point2) -> bool {
 /// The point where ab and cd cross, each coordinate rounded to the nearest double, ties to even.
 ///
 /// Exact for all finite doubles; a zero is +0.0. The point lies in the closed box of each segment,
-/// and neither the order of the segments nor of their ends changes it. For segments that do not
-/// meet but whose lines do it is the point of the lines, infinite where that is beyond all doubles.
-/// Parallel lines give NaN; segments of no length have no line and give nothing of use.
+/// and is independent of the order of the segments and of their ends. For segments that do not meet
+/// but whose lines do, it is the intersection of the lines, infinite if it exceeds all doubles.
+/// Parallel lines give NaN. Segments of zero length have no line; the result is meaningless.
 ///
 /// ```
 /// use delone_core::constrained::intersection::intersection;
@@ -70,17 +70,17 @@ pub fn intersection(a: Point2, b: Point2, c: Point2, d: Point2) -> Point2 {
     let near = expansion(a, b, c, d);
     let found: [Option<f64>; 2] = std::array::from_fn(|k| level[k].or(near[k]));
     if let [Some(x), Some(y)] = found {
-        // A negative zero becomes a positive one.
+        // Turns -0.0 into +0.0.
         return [x + 0.0, y + 0.0];
     }
     let exact = integer(a, b, c, d);
     [0, 1].map(|k| found[k].unwrap_or(exact[k]) + 0.0)
 }
 
-/// Coordinate `k` of a segment along which it does not change.
+/// Coordinate `k` of a segment on which it is constant.
 #[inline]
 fn level(k: usize, a: Point2, b: Point2, c: Point2, d: Point2) -> Option<f64> {
-    // Of two such segments the lines are parallel: no answer.
+    // If both segments are such, the lines are parallel: no answer.
     match (a[k] == b[k], c[k] == d[k]) {
         (true, false) => Some(a[k] + 0.0),
         (false, true) => Some(c[k] + 0.0),
@@ -105,7 +105,7 @@ fn quotient(n: Pair, d: Pair) -> Pair {
     Pair { hi, lo }
 }
 
-/// The coordinates that numbers of two doubles prove.
+/// The coordinates that double-double arithmetic proves.
 #[inline]
 fn expansion(a: Point2, b: Point2, c: Point2, d: Point2) -> [Option<f64>; 2] {
     if !is_safe(&[a, b, c, d]) {
@@ -125,7 +125,7 @@ fn expansion(a: Point2, b: Point2, c: Point2, d: Point2) -> [Option<f64>; 2] {
     [0, 1].map(|k| rounded(a[k], t * along[k], error * along[k].hi.abs() + FLOOR))
 }
 
-/// The double next to `base + step`, where the `error` of the step cannot change it.
+/// The double nearest to `base + step`, if the `error` of the step cannot change it.
 #[inline]
 fn rounded(base: f64, step: Pair, error: f64) -> Option<f64> {
     let (head, tail) = two_sum(base, step.hi);
@@ -136,7 +136,7 @@ fn rounded(base: f64, step: Pair, error: f64) -> Option<f64> {
     (low == high).then_some(low)
 }
 
-/// The coordinates by integers that hold every double.
+/// The coordinates by exact integers.
 #[cold]
 #[inline(never)]
 fn integer(a: Point2, b: Point2, c: Point2, d: Point2) -> Point2 {
@@ -161,7 +161,7 @@ fn in_units(x: f64, low: i32) -> BigInt {
     if x < 0.0 { -size } else { size }
 }
 
-/// The double next to `n / d * 2^unit`, ties to even.
+/// The double nearest to `n / d * 2^unit`, ties to even.
 fn nearest(n: &BigInt, d: &BigInt, unit: i32) -> f64 {
     if d.sign() == BigSign::NoSign {
         return f64::NAN;
@@ -180,18 +180,18 @@ fn nearest(n: &BigInt, d: &BigInt, unit: i32) -> f64 {
     if n.sign() == d.sign() { size } else { -size }
 }
 
-/// The double next to `bits * 2^exponent`, where `bits` has 63 or 64 bits; the lowest may stand for
-/// all below it, as it is never the one that decides.
+/// The double nearest to `bits * 2^exponent`, where `bits` has 63 or 64 bits. The lowest bit may be
+/// sticky and stand for all below it: it never decides alone.
 fn round(bits: u64, exponent: i64) -> f64 {
     const LOWEST: i64 = -1074;
     let length = i64::from(64 - bits.leading_zeros());
     let unit = (exponent + length - 53).max(LOWEST);
-    // From 66 on all is below half a unit.
+    // From 66 bits on, everything is below half a unit.
     let drop = (unit - exponent).min(66);
     let (bits, half) = (u128::from(bits), 1u128 << (drop - 1));
     let (kept, rest) = ((bits >> drop) as u64, bits & (2 * half - 1));
     let kept = kept + u64::from(rest > half || rest == half && kept & 1 == 1);
-    // The implicit bit of `kept` counts one more in the field of the exponent; a carry does, too.
+    // The implicit bit of `kept` adds one to the exponent field, and so does a carry.
     match u64::try_from(unit - LOWEST) {
         Ok(field) if field <= 2045 => f64::from_bits((field << 52) + kept),
         _ => f64::INFINITY,
@@ -202,7 +202,7 @@ fn round(bits: u64, exponent: i64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers in [0, 1) that look random.
+    /// Pseudorandom numbers in [0, 1).
     fn numbers() -> impl FnMut() -> f64 {
         let mut x = 7u64;
         move || {
@@ -213,7 +213,8 @@ mod tests {
         }
     }
 
-    /// How many of 10,000 coordinates expansions prove, each checked against the integers.
+    /// How many of 10,000 coordinates double-double arithmetic proves, each checked against the
+    /// integers.
     fn proved(mut draw: impl FnMut() -> Point2) -> usize {
         let (mut cases, mut proved) = (0, 0);
         while cases < 10_000 {
@@ -240,16 +241,16 @@ mod tests {
         let mut unit = numbers();
         assert_eq!(proved(|| [unit(), unit()]), 10_000);
         assert_eq!(proved(|| [4e5 + unit(), 5e6 + unit()]), 10_000);
-        // Integers meet at zero now and then.
+        // Integer coordinates sometimes cross at zero.
         let lattice = proved(|| [0, 1].map(|_| (20.0 * unit()).floor() - 10.0));
         assert!((9_500..10_000).contains(&lattice), "{lattice}");
-        let millimetres = proved(|| [0, 1].map(|_| (9e6 + 1e6 * unit()).floor() / 1e3));
-        assert!(millimetres > 9_900, "{millimetres}");
+        let millimeters = proved(|| [0, 1].map(|_| (9e6 + 1e6 * unit()).floor() / 1e3));
+        assert!(millimeters > 9_900, "{millimeters}");
     }
 
     #[test]
     fn expansions_prove_nothing_wrong_near_the_bounds() {
-        // Sizes from one end of the window to the other, and segments that nearly coincide.
+        // Sizes across the whole window, and segments that nearly coincide.
         let mut unit = numbers();
         let spread =
             proved(|| [0, 1].map(|_| (unit() - 0.5) * 2f64.powi((349.0 * unit()) as i32 - 159)));
@@ -267,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_meets_the_ends_of_the_range() {
+    fn rounding_is_right_at_the_ends_of_the_range() {
         let top = 1 << 63;
         assert_eq!(round(top, 0), 2f64.powi(63));
         assert_eq!(round(u64::MAX, 0), 2f64.powi(64));
@@ -275,7 +276,7 @@ mod tests {
         assert_eq!(round(u64::MAX, 960), f64::INFINITY);
         assert_eq!(round(u64::MAX << 11, 960), f64::MAX);
         assert_eq!(round(top, 5_000), f64::INFINITY);
-        // Half the least double goes to zero, a bit more does not.
+        // Half the least double rounds to zero, slightly more does not.
         assert_eq!(round(top, -1138), 0.0);
         assert_eq!(round(top | 1, -1138), f64::from_bits(1));
         assert_eq!(round(u64::MAX, -1139), 0.0);

@@ -1,6 +1,8 @@
-//! A triangulation with marked edges that grows: its points, its mesh, and a triangle of each vertex.
-//! Marked edges stay; all others are Delaunay as far as the marked ones let them, ties by
-//! coordinates, whenever no edit is under way.
+//! An incremental constrained Delaunay triangulation: points, mesh with marked edges, one corner
+//! per vertex.
+//!
+//! Marked edges are constrained. Between edits all others are constrained Delaunay, with ties
+//! broken by coordinates.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
@@ -10,38 +12,38 @@ use crate::memory::{filled, make_room};
 use crate::mesh2::{Code, Mesh2, Patch, next, prev, triangle};
 use crate::watch::{IDLE, Watch};
 
-/// Triangles, or segments, between two looks at the watch.
+/// Triangles, or segments, between two checks for interruption.
 pub const LOT: u32 = 1 << 16;
 
-/// Triangles that a walk to a new vertex meets before all triangles are searched, and for each of
-/// them along the side of a square of all vertices some more: new vertices are near what they come
-/// from, and a visibility walk may turn in circles where edges are marked.
+/// Triangles that a walk to a new vertex may visit before all triangles are searched, and how many
+/// more for each vertex along the side of a square that holds all vertices. New vertices are near
+/// what they come from, and a visibility walk may cycle around marked edges.
 const WALK: usize = 256;
 const WALK_ACROSS: usize = 4;
 
-/// The triangulation.
+/// A constrained Delaunay triangulation that can grow.
 #[derive(Debug)]
 pub struct Marked {
-    /// The vertices, then NaN to the room of the mesh and once more for infinity.
+    /// The vertices, then NaN up to the capacity of the mesh, plus one NaN for infinity.
     pub points: Vec<Point2>,
-    /// The mesh, with room for more vertices.
+    /// The mesh, with capacity for more vertices.
     pub mesh: Mesh2,
     /// How many vertices there are.
     pub count: usize,
-    /// For each vertex one of its corners.
+    /// One corner of each vertex.
     pub near: Vec<Code>,
-    /// Edges that may have to be flipped, by a code of either side.
+    /// Edges that may have to be flipped, each as a code of either side.
     pub stack: Vec<Code>,
 }
 
-/// The next corner of the same vertex, counter-clockwise.
+/// The next corner of the same vertex, counterclockwise.
 #[inline]
 pub fn turn(mesh: &Patch, corner: Code) -> Code {
     next(mesh.opposite(next(corner)))
 }
 
 impl Marked {
-    /// From a mesh of all of its vertices and their points, which end with NaN.
+    /// Builds it from a mesh of all of its vertices and their points, which end with NaN.
     pub fn new(mut mesh: Mesh2, points: Vec<Point2>, watch: &Watch) -> Result<Self> {
         let count = mesh.vertices();
         let mut near = filled(count, 0)?;
@@ -64,7 +66,7 @@ impl Marked {
         })
     }
 
-    /// How many triangles there are, ghosts with them.
+    /// The number of triangles, ghosts included.
     #[inline]
     pub fn triangles(&self) -> u32 {
         2 * self.count as u32 - 2
@@ -83,7 +85,7 @@ impl Marked {
         self.points[v as usize]
     }
 
-    /// The room of the mesh shrinks to its vertices, for the way out. Returns one of the ghosts.
+    /// Shrinks the capacity of the mesh to its vertices before export. Returns one of the ghosts.
     pub fn close(&mut self, watch: &Watch) -> Result<Code> {
         let used = self.triangles();
         if self.mesh.vertices() != self.count {
@@ -96,8 +98,8 @@ impl Marked {
             .ok_or_else(|| Error::Internal("the mesh has no ghost".into()))
     }
 
-    /// The vertex at `p`: one that is there, or a new one; and where that lies on a marked edge, the
-    /// ends of the edge, both halves of which are marked now. The search starts at the edge `from`.
+    /// The vertex at `p`, existing or new. If a new one lies on a marked edge, also the ends of
+    /// that edge, both halves of which are then marked. The search starts at the edge `from`.
     pub fn vertex_at(&mut self, p: Point2, from: Code) -> Result<(u32, Option<[u32; 2]>)> {
         let home = self.find(p, triangle(from))?;
         let points = &self.points;
@@ -127,7 +129,7 @@ impl Marked {
         for i in 0..self.stack.len() {
             self.touch(triangle(self.stack[i]));
         }
-        self.legalise()?;
+        self.legalize()?;
         Ok((v, parted))
     }
 
@@ -145,7 +147,7 @@ impl Marked {
         Ok(prev(corner))
     }
 
-    /// Room for one more vertex.
+    /// Makes room for one more vertex.
     pub fn grow(&mut self) -> Result<()> {
         let room = self.mesh.vertices();
         if self.count < room {
@@ -160,7 +162,8 @@ impl Marked {
         Ok(())
     }
 
-    /// The triangle whose closed area holds `p`, or a ghost whose hull edge has p strictly beyond.
+    /// The triangle whose closed area contains `p`, or a ghost whose hull edge has p strictly
+    /// outside.
     fn find(&mut self, p: Point2, from: u32) -> Result<u32> {
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
         let most = WALK + WALK_ACROSS * self.count.isqrt();
@@ -172,7 +175,7 @@ impl Marked {
             (8 * t..8 * t + 3).all(|e| {
                 let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
                 match [mesh.vertex(e), u, v].contains(&mesh.infinite()) {
-                    // Of a ghost the finite edge alone counts, and strictly.
+                    // For a ghost only the finite edge counts, and strictly.
                     true => {
                         mesh.vertex(e) != mesh.infinite()
                             || orient2d(at(u), at(v), p) == Sign::Positive
@@ -182,10 +185,10 @@ impl Marked {
             })
         };
         let found = (0..2 * self.count as u32 - 2).find(|&t| holds(t));
-        found.ok_or_else(|| Error::Internal(format!("no triangle holds {p:?}")))
+        found.ok_or_else(|| Error::Internal(format!("no triangle contains {p:?}")))
     }
 
-    /// Makes triangle `t` the one that each of its vertices is found by.
+    /// Records `t` as the triangle by which each of its vertices is found.
     #[inline]
     pub fn touch(&mut self, t: u32) {
         let corners = self.patch().corners(t);
@@ -196,15 +199,15 @@ impl Marked {
         }
     }
 
-    /// Flips what must be flipped, starting from the edges on the stack. Each flip lowers the lifted
-    /// surface for good (see `delaunay2::lawson`; marked edges change nothing about that), so it
-    /// ends.
-    pub fn legalise(&mut self) -> Result<()> {
-        self.legalise_with(|_, _| {})
+    /// Legalizes: flips edges, starting from those on the stack, until all are legal. Terminates
+    /// because each flip lowers the lifted surface for good (see `delaunay2::lawson`; marked edges
+    /// do not change that).
+    pub fn legalize(&mut self) -> Result<()> {
+        self.legalize_with(|_, _| {})
     }
 
-    /// The same, telling `flipped` the two triangles of each flip.
-    pub fn legalise_with(&mut self, mut flipped: impl FnMut(u32, u32)) -> Result<()> {
+    /// The same; calls `flipped` with the two triangles of each flip.
+    pub fn legalize_with(&mut self, mut flipped: impl FnMut(u32, u32)) -> Result<()> {
         while let Some(e) = self.stack.pop() {
             if self.must_flip(e)? {
                 let mut mesh = self.patch();
@@ -218,9 +221,9 @@ impl Marked {
         Ok(())
     }
 
-    /// Whether the edge `e` must be flipped: it is not bound, and the circle of the triangle on one
-    /// side holds the apex on the other; or it joins two ghosts one of whose apexes sees the
-    /// other's hull edge.
+    /// Whether the edge `e` must be flipped: it is not marked, and the circumcircle of the triangle
+    /// on one side contains the apex on the other; or it joins two ghosts, one of whose apexes sees
+    /// the other's hull edge.
     fn must_flip(&mut self, e: Code) -> Result<bool> {
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
         let o = mesh.opposite(e);

@@ -1,15 +1,17 @@
-//! Constrained Delaunay triangulations: every segment is a chain of edges, and all other edges are
-//! Delaunay where segments do not block the view; ties are broken by coordinates. One set of points and
-//! segments has one such triangulation.
+//! Constrained Delaunay triangulations: each segment is a chain of edges; the other edges are
+//! Delaunay as far as segments permit.
 //!
-//! The points are triangulated in bulk; then each segment that is not there makes way for itself.
+//! An edge that is not a subsegment is Delaunay with respect to the vertices that segments do not hide
+//! from it. Ties are broken by coordinates, so one set of points and segments has exactly one such
+//! triangulation. All points are triangulated first; then each segment that is not yet an edge is
+//! inserted.
 
 mod components;
 pub(crate) mod conforming;
 mod crowd;
 mod edges;
+mod inserted;
 pub mod intersection;
-mod laid;
 pub(crate) mod marked;
 pub mod pairs;
 mod polygon;
@@ -27,7 +29,7 @@ pub use self::polygon::{Filled, Rule, polygon};
 pub use self::ring::simple_ring;
 pub use self::subsegments::Subsegments;
 
-use self::laid::Laid;
+use self::inserted::Inserted;
 use self::marked::Marked;
 use self::present::mark_present;
 use self::segment::{Cavity, Step};
@@ -40,50 +42,52 @@ use crate::mesh2::export;
 use crate::order;
 use crate::watch::{Pace, Watch};
 
-/// Segments between two looks at the watch.
+/// Segments between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;
-/// Triangles that a segment crosses and that take as long as the rest of it.
+/// Crossed triangles that take as long as the rest of the insertion of a segment.
 const TRIANGLES: usize = 8;
 
-/// Pairs of segments that may cross for each vertex that may be added, and more of them in any case.
+/// Limit on pairs of segments that may cross: this many for each vertex that may be added, plus a
+/// constant.
 const PAIRS: usize = 8;
 const MORE_PAIRS: usize = 1 << 20;
 
-/// What a caller may choose.
+/// Options of the caller.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Whether segments that cross are split there; else they are an error.
+    /// Whether crossing segments are split where they cross; otherwise they are an error.
     pub split: bool,
-    /// Whether vertices are added until the circle on each subsegment is empty.
+    /// Whether vertices are added until each subsegment's diametral circle is empty.
     pub conforming: bool,
-    /// Most vertices that may be added.
+    /// The limit on added vertices.
     pub max_vertices: usize,
     /// How the points are triangulated.
     pub method: Method,
-    /// How many threads may work.
+    /// The number of threads.
     pub workers: usize,
 }
 
-/// A constrained Delaunay triangulation in the rows of the input, added vertices behind them.
+/// A constrained Delaunay triangulation in the rows of the input, with added vertices after them.
 #[derive(Debug)]
 pub struct Constrained {
     /// Vertices that the input does not have.
     pub added: Vec<Point2>,
-    /// Triangles and their neighbours; they tile the hull.
+    /// Triangles and their neighbors; they tile the hull.
     pub arrays: Arrays<3>,
     /// For each triangle and corner, whether the edge opposite is a subsegment.
     pub constrained: Vec<[bool; 3]>,
     /// `[row, first row of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
-    /// The edges that the segments have become.
+    /// The edges that the segments consist of.
     pub subsegments: Subsegments,
-    /// Segments whose ends are one point.
+    /// Segments whose ends coincide.
     pub zero: Vec<u32>,
     /// `[row, vertex]`: vertices of the input inside segments, ascending.
     pub through: Vec<[u32; 2]>,
-    /// `[row, row, vertex]`: segments that crossed, and where they meet now, ascending.
+    /// `[row, row, vertex]`: pairs of segments that crossed, and the vertex where they do,
+    /// ascending.
     pub crossings: Vec<[u32; 3]>,
-    /// Where the time went.
+    /// The times of the stages.
     pub stages: Vec<Stage>,
 }
 
@@ -96,22 +100,22 @@ pub fn constrain(
 ) -> Result<Constrained> {
     let mut clock = Clock::start();
     let mut work = Work::start(input, segments, options, watch, &mut clock)?;
-    let laid = work.lay(input, watch)?;
+    let inserted = work.insert_segments(input, watch)?;
     clock.lap("segments");
-    work.finish(input.len(), laid, clock, watch)
+    work.finish(input.len(), inserted, clock, watch)
 }
 
-/// A triangulation that gets its segments.
+/// A triangulation into which segments are inserted.
 struct Work<'a> {
     segments: &'a [[u32; 2]],
     options: Options,
     marked: Marked,
-    /// For each vertex its row: the first in the input, or one behind it.
+    /// The row of each vertex: the first in the input, or one after the input.
     rows: Vec<u32>,
-    /// Crossings, which are vertices behind the input.
+    /// The crossings: vertices after the input.
     met: Vec<Point2>,
     duplicates: Vec<[u32; 2]>,
-    /// The segments as vertices.
+    /// The segments as pairs of vertices.
     ends: Vec<[u32; 2]>,
 }
 
@@ -140,9 +144,9 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Lays all segments. Where two of them cross, that is an error, or they are split: few of them
-    /// in place, many by starting anew with the crossings among the points.
-    fn lay(&mut self, input: &[Point2], watch: &Watch) -> Result<Laid> {
+    /// Inserts all segments. If some cross, that is an error, or they are split: a few in place; if
+    /// there are many, the triangulation starts again with the crossings among the points.
+    fn insert_segments(&mut self, input: &[Point2], watch: &Watch) -> Result<Inserted> {
         let Options {
             conforming,
             max_vertices: limit,
@@ -150,22 +154,22 @@ impl<'a> Work<'a> {
             ..
         } = self.options;
         let few = if split { self.few() } else { 0 };
-        let laid = match self.lay_all(few, watch)? {
-            Some((laid, waiting)) if waiting.is_empty() => Some(laid),
-            Some((laid, waiting)) if split => self.reroute(input, laid, &waiting, watch)?,
+        let inserted = match self.insert_all(few, watch)? {
+            Some((inserted, waiting)) if waiting.is_empty() => Some(inserted),
+            Some((inserted, waiting)) if split => self.reroute(input, inserted, &waiting, watch)?,
             _ if !split => return Err(self.crossing_error(input, watch)?),
             _ => None,
         };
-        let mut splitter = if let Some(laid) = laid {
+        let mut splitter = if let Some(inserted) = inserted {
             if !conforming {
-                return Ok(laid);
+                return Ok(inserted);
             }
             let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit, watch)?;
-            splitter.adopt(laid)?;
+            splitter.adopt(inserted)?;
             splitter
         } else {
             let found = self.crossings(input, watch)?;
-            let meets = self.start_anew(input, &found, watch)?;
+            let meets = self.start_again(input, &found, watch)?;
             let mut splitter = Splitter::new(&mut self.marked, &self.ends, limit, watch)?;
             let rows = &self.rows;
             let is_rounded = |w: u32| {
@@ -181,15 +185,16 @@ impl<'a> Work<'a> {
         splitter.finish()
     }
 
-    /// Marks the segments that are edges, and lays the others row by row. Returns the rows that are
-    /// crossed by what was laid before, which wait; nothing where there are more than `few`.
-    fn lay_all(&mut self, few: usize, watch: &Watch) -> Result<Option<(Laid, Vec<u32>)>> {
+    /// Marks the segments that are edges, and inserts the others row by row. Returns the rows that
+    /// cross segments inserted before them, which are postponed; `None` if there are more than
+    /// `few`.
+    fn insert_all(&mut self, few: usize, watch: &Watch) -> Result<Option<(Inserted, Vec<u32>)>> {
         let present = mark_present(&mut self.marked, &self.ends, watch)?;
-        let mut laid = Laid {
+        let mut inserted = Inserted {
             pieces: with_room(self.ends.len())?,
             repeated: present.repeated,
             sorted: true,
-            ..Laid::default()
+            ..Inserted::default()
         };
         let mut waiting = Vec::new();
         let mut cavity = Cavity::default();
@@ -197,23 +202,27 @@ impl<'a> Work<'a> {
         for (row, &[mut a, mut b]) in (0u32..).zip(&self.ends) {
             pace.spend(1)?;
             if present.holds([a, b]) {
-                push(&mut laid.pieces, ([a, b], row))?;
+                push(&mut inserted.pieces, ([a, b], row))?;
                 continue;
             }
+            // The segment is inserted from both ends; pieces from the end `b` are collected in
+            // `back`.
             let mut back = Vec::new();
             while a != b {
                 let step = self.marked.join(a, b, &mut cavity)?;
                 pace.spend(TRIANGLES + cavity.size())?;
                 let Step::Joined { from, to, again } = step else {
+                    // Blocked by a segment that was inserted before.
                     waiting.push(row);
                     break;
                 };
-                laid.repeated |= again;
+                inserted.repeated |= again;
+                // `a ^ b ^ from` is the other end: any other vertex lies on the segment.
                 if to != a ^ b ^ from {
-                    push(&mut laid.through, [row, to])?;
+                    push(&mut inserted.through, [row, to])?;
                 }
                 if from == a {
-                    push(&mut laid.pieces, ([a, to], row))?;
+                    push(&mut inserted.pieces, ([a, to], row))?;
                     a = to;
                 } else {
                     push(&mut back, ([to, b], row))?;
@@ -221,13 +230,13 @@ impl<'a> Work<'a> {
                 }
             }
             for piece in back.into_iter().rev() {
-                push(&mut laid.pieces, piece)?;
+                push(&mut inserted.pieces, piece)?;
             }
             if waiting.len() > few {
                 return Ok(None);
             }
         }
-        Ok(Some((laid, waiting)))
+        Ok(Some((inserted, waiting)))
     }
 
     /// The error that names all pairs that cross.
@@ -236,9 +245,9 @@ impl<'a> Work<'a> {
         Ok(Error::Crossing { pairs, points })
     }
 
-    /// All pairs of segments that cross, but for those that do in a point of the input.
+    /// All pairs of segments that cross, except at points of the input.
     fn crossings(&self, input: &[Point2], watch: &Watch) -> Result<Crossings> {
-        // Many pairs may cross in one point.
+        // Many pairs may cross in one point, so pairs have a limit of their own.
         let limit = self.options.max_vertices;
         let most = limit.saturating_mul(PAIRS).saturating_add(MORE_PAIRS);
         let pairs = pairs::crossing_pairs_above(input, self.segments, most, watch)?;
@@ -253,13 +262,13 @@ impl<'a> Work<'a> {
         self.meetings(input, pairs, watch)
     }
 
-    /// The segments that cross most others.
+    /// The segments that cross the most other segments.
     fn crowd_of(&self, pairs: &[[u32; 2]], input: &[Point2]) -> Crowd {
         let rows = pairs.as_flattened().to_vec();
         crowd::crowd(rows, self.segments, |row| input[row as usize], None)
     }
 
-    /// Where `pairs` cross, but for those that do in a point of the input.
+    /// The points where `pairs` cross, except points of the input.
     fn meetings(&self, input: &[Point2], pairs: Vec<[u32; 2]>, watch: &Watch) -> Result<Crossings> {
         let at = |row: u32| self.segments[row as usize].map(|v| input[v as usize]);
         let mut points = with_room(pairs.len())?;
@@ -302,7 +311,7 @@ impl<'a> Work<'a> {
     }
 
     /// Triangulates the input and the crossings. Returns the vertex of each crossing.
-    fn start_anew(
+    fn start_again(
         &mut self,
         input: &[Point2],
         found: &Crossings,
@@ -318,7 +327,7 @@ impl<'a> Work<'a> {
         for (ends, s) in self.ends.iter_mut().zip(self.segments) {
             *ends = s.map(|row| place[row as usize]);
         }
-        // Crossings that are no vertex yet come behind the input, without gaps.
+        // Crossings that are not vertices yet get consecutive rows after the input.
         let mut behind: Vec<u32> = built
             .rows
             .iter()
@@ -344,12 +353,13 @@ impl<'a> Work<'a> {
         Ok(place[n..].to_vec())
     }
 
-    /// Puts pieces in the order of their rows and along them.
+    /// Sorts pieces by row, and along the segment of each row.
     fn sort(&self, pieces: &mut [([u32; 2], u32)], watch: &Watch) -> Result<()> {
         let at = |v: u32| self.marked.at(v);
         order::sort_by(pieces, watch, |(s, i), (t, j)| {
             i.cmp(j).then_with(|| {
-                // Along its row a coordinate never turns back; where it stays, the other tells.
+                // Along a segment each coordinate is monotone; if one is constant, the other
+                // decides.
                 let [a, b] = self.ends[*i as usize].map(at);
                 let by = |p: u32, q: u32, k: usize| {
                     let along = at(p)[k].total_cmp(&at(q)[k]);
@@ -361,7 +371,7 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// The vertices behind the `n` points of the input; those that are new get their rows.
+    /// The vertices after the `n` points of the input; new ones get their rows.
     fn added(&mut self, n: usize) -> Vec<Point2> {
         let later = &self.marked.points[self.rows.len()..self.marked.count];
         let added = [&self.met[..], later].concat();
@@ -370,17 +380,17 @@ impl<'a> Work<'a> {
         added
     }
 
-    /// Everything in rows of the input, of `n` points.
+    /// Converts everything to rows of the input, of `n` points.
     fn finish(
         mut self,
         n: usize,
-        laid: Laid,
+        inserted: Inserted,
         mut clock: Clock,
         watch: &Watch,
     ) -> Result<Constrained> {
         let workers = self.options.workers;
-        let mut pieces = laid.pieces;
-        if !laid.sorted {
+        let mut pieces = inserted.pieces;
+        if !inserted.sorted {
             self.sort(&mut pieces, watch)?;
         }
         let added = self.added(n);
@@ -389,19 +399,20 @@ impl<'a> Work<'a> {
         let ghost = self.marked.close(watch)?;
         let (arrays, constrained) =
             export::marked_arrays(self.marked.mesh, ghost, &rows, workers, watch)?;
-        let mut through = laid.through;
+        let mut through = inserted.through;
+        // Vertices that the caller knows are rows of the input; crossings are listed apart.
         through.iter_mut().for_each(|t| t[1] = row_of(t[1]));
         through.retain(|t| (t[1] as usize) < n);
         order::sort(&mut through, watch)?;
         through.dedup();
-        let mut crossings = laid.crossings;
+        let mut crossings = inserted.crossings;
         crossings.iter_mut().for_each(|c| c[2] = row_of(c[2]));
         order::sort(&mut crossings, watch)?;
         crossings.dedup();
         pieces.iter_mut().for_each(|p| p.0 = p.0.map(row_of));
         let zero = (0u32..).zip(&self.ends).filter(|(_, e)| e[0] == e[1]);
         let zero = zero.map(|(row, _)| row).collect();
-        let subsegments = Subsegments::of(&pieces, laid.repeated, watch)?;
+        let subsegments = Subsegments::of(&pieces, inserted.repeated, watch)?;
         clock.lap("export");
         Ok(Constrained {
             added,
@@ -417,7 +428,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Segments that cross, and where, rounded.
+/// Pairs of segments that cross, and the crossings, rounded.
 #[derive(Debug)]
 struct Crossings {
     pairs: Vec<[u32; 2]>,

@@ -1,18 +1,19 @@
-//! All pairs of segments that cross.
+//! All pairs of segments that cross, by joining trees of bounding boxes.
 //!
-//! Segments are put in classes by the size of their box, and each class in a tree: eight that follow
-//! each other along the Hilbert curve of their middles are a node, of which eight are a node of the
-//! next level, and so on. The trees are then joined with themselves and with each other, from the
-//! roots down, as far as boxes overlap; a single segment, which may be long and slanted, also as far
-//! as its line meets the box. What remains are pairs of segments, and the predicates decide those.
+//! Segments are divided into classes by the size of their boxes, and each class has a tree: eight
+//! segments that are consecutive along the Hilbert curve of their midpoints form a node, eight such
+//! nodes form a node of the next level, and so on. The trees are then joined with themselves and
+//! with each other, from the roots down, as far as boxes overlap; a single segment, which may be
+//! long and slanted, also as far as its line meets the box. The remaining pairs of segments are
+//! decided by predicates.
 //!
-//! For n segments that is O(n log n) for the trees, then time by the boxes that overlap: linear for
-//! what is drawn on maps, where few do. It is quadratic where the boxes of all overlap, say for
-//! long slanted lines side by side. Memory is linear, and that of the pairs.
+//! For n segments this takes O(n log n) for the trees, plus time proportional to the number of
+//! boxes that overlap: linear for map data, where few do. It is quadratic if all boxes overlap, for
+//! example for long slanted parallel lines. Memory is linear, plus the pairs.
 //!
 //! Sources: T. Brinkhoff, H.-P. Kriegel and B. Seeger, "Efficient processing of spatial joins using
-//! R-trees", SIGMOD 1993, for the join; I. Kamel and C. Faloutsos, "On packing R-trees", CIKM 1993, for
-//! trees packed along the curve.
+//! R-trees", SIGMOD 1993, for the join; I. Kamel and C. Faloutsos, "On packing R-trees", CIKM 1993,
+//! for trees packed along the curve.
 
 use delone_predicates::{Point2, Sign, stages};
 
@@ -26,19 +27,19 @@ use crate::watch::{Pace, Watch};
 
 /// Children of a node.
 const FAN: usize = 8;
-/// Binary orders of magnitude of one class of sizes.
+/// Binary orders of magnitude per size class.
 const CLASS: u32 = 3;
-/// Classes; the last has all that is smaller.
+/// Size classes; the last has everything smaller.
 const CLASSES: usize = 8;
 /// More levels than any tree has.
 const LEVELS: usize = 12;
-/// Joins of two nodes between two looks at the watch.
+/// Joins of two nodes between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
-/// Segments that are put in place between two looks at the watch.
+/// Segments that are put in place between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// All pairs of segments that cross in a single point inside both, `[smaller row, larger row]`,
-/// ascending.
+/// All pairs of segments that cross in a single point in the interior of both, as `[smaller row,
+/// larger row]`, ascending.
 ///
 /// Segments that touch at an end of either, overlap along a line or have no length do not cross.
 /// Exact for all finite doubles.
@@ -50,7 +51,7 @@ pub fn crossing_pairs(
     crossing_pairs_above(points, segments, usize::MAX, watch)
 }
 
-/// As [`crossing_pairs`], but ends as soon as more than `limit` pairs are found: these, then.
+/// Like [`crossing_pairs`], but stops and returns the pairs as soon as there are more than `limit`.
 pub fn crossing_pairs_above(
     points: &[Point2],
     segments: &[[u32; 2]],
@@ -84,11 +85,11 @@ impl Item {
         Extent::of(self.ends)
     }
 
-    /// Whether the line may meet the box: all corners may not be proved to lie on one side.
+    /// Whether the line may meet the box: the corners are not all proved to lie on one side.
     #[inline]
     fn may_meet(&self, e: &Extent) -> bool {
         let [a, b] = self.ends;
-        // The corners farthest to the left and to the right, as seen along the segment.
+        // The corners farthest to the left and right of the direction of the segment.
         let (x, y) = (usize::from(b[1] < a[1]), usize::from(b[0] < a[0]));
         let corners = [e.min, e.max];
         let left = [corners[x][0], corners[1 - y][1]];
@@ -99,7 +100,7 @@ impl Item {
 
     #[inline]
     fn crosses(&self, other: &Self) -> bool {
-        // Segments with a common end have no other point in common, or a line.
+        // Segments with a common end have no other point in common, or overlap.
         let [[a, b], [c, d]] = [self.rows, other.rows];
         if a == c || a == d || b == c || b == d {
             return false;
@@ -112,7 +113,7 @@ impl Item {
 /// Whether two boxes have a point in common.
 #[inline]
 pub(super) fn overlap(a: &Extent, b: &Extent) -> bool {
-    // Not short-circuited: four comparisons cost less than a branch that is hard to foresee.
+    // Not short-circuited: four comparisons are cheaper than an unpredictable branch.
     (a.min[0] <= b.max[0])
         & (b.min[0] <= a.max[0])
         & (a.min[1] <= b.max[1])
@@ -123,7 +124,7 @@ fn union(boxes: &[Extent]) -> Extent {
     Extent::of(boxes.iter().flat_map(|e| [e.min, e.max]))
 }
 
-/// Segments and boxes: those of the segments first, then those of all nodes, tree by tree and
+/// Segments and boxes: first the boxes of the segments, then those of all nodes, tree by tree and
 /// level by level.
 struct Forest {
     items: Vec<Item>,
@@ -131,14 +132,14 @@ struct Forest {
     trees: Vec<Tree>,
 }
 
-/// Where the boxes of each level start, the segments being level 0. The last level is one node.
+/// Where the boxes of each level start; the segments are level 0, and the last level is one node.
 struct Tree {
     levels: Vec<usize>,
-    /// Boxes of each level.
+    /// The number of boxes on each level.
     counts: Vec<usize>,
 }
 
-/// A node of a tree, by its level and the place of its box; at level 0 a segment.
+/// A node of a tree: its level and the index of its box; at level 0 a segment.
 #[derive(Clone, Copy)]
 struct Node {
     tree: usize,
@@ -172,17 +173,17 @@ impl Forest {
             forest.boxes.extend(lot.iter().map(Item::extent));
         }
         for w in starts.windows(2).filter(|w| w[0] < w[1]) {
-            forest.plant(w[0], w[1], watch)?;
+            forest.build_tree(w[0], w[1], watch)?;
         }
         Ok(forest)
     }
 
-    /// The tree over the segments from `start` to `end`.
-    fn plant(&mut self, start: usize, end: usize, watch: &Watch) -> Result<()> {
+    /// Builds the tree over the segments from `start` to `end`.
+    fn build_tree(&mut self, start: usize, end: usize, watch: &Watch) -> Result<()> {
         let mut pace = Pace::new(watch, LOT);
         let (mut levels, mut counts) = (vec![start], vec![end - start]);
         let (mut start, mut end) = (start, end);
-        // Also one segment gets a node: roots are not segments.
+        // Even a single segment gets a node: a root is not a segment.
         while levels.len() == 1 || end - start > 1 {
             let next = self.boxes.len();
             for first in (start..end).step_by(FAN) {
@@ -221,8 +222,8 @@ impl Forest {
     }
 }
 
-/// The rows by class, the largest segments first, and where each class starts, and the end. Those of
-/// no length, which may lie on each other in any number, are left out.
+/// The rows sorted by class, the largest segments first, and where each class starts, and the end.
+/// Segments of zero length, of which any number may coincide, are left out.
 fn classes(n: u32, ends: impl Fn(u32) -> [Point2; 2]) -> Result<(Vec<u32>, [usize; CLASSES + 1])> {
     // The exponent of the longer side of the box, halved so that it is finite.
     let size = |row: u32| {
@@ -247,7 +248,8 @@ fn classes(n: u32, ends: impl Fn(u32) -> [Point2; 2]) -> Result<(Vec<u32>, [usiz
     Ok((rows, starts))
 }
 
-/// Puts the `rows` of one class, which ascend, along the curve of the middles of their segments.
+/// Sorts the `rows` of one class, which are ascending, along the curve of their segments'
+/// midpoints.
 fn arrange(
     rows: &mut [u32],
     ends: impl Fn(u32) -> [Point2; 2],
@@ -264,7 +266,7 @@ fn arrange(
         middles.extend(lot.iter().map(middle));
     }
     let (distinct, others) = along_curve(&mut middles, rows, scratch, watch)?;
-    // Those with the middle of another come along the curve, too.
+    // Those that share another's midpoint follow it along the curve.
     for (row, other) in rows[distinct..].iter_mut().zip(others) {
         *row = other[0];
     }
@@ -291,7 +293,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// Whether enough is found.
+    /// Whether enough pairs are found.
     fn done(&self) -> bool {
         self.found.len() > self.limit
     }
@@ -319,7 +321,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// All pairs of one below `a` and one below `b`, another node.
+    /// All pairs of a segment below `a` and one below `b`, another node.
     fn between(&mut self, a: Node, b: Node) -> Result<()> {
         let Forest { boxes, items, .. } = self.forest;
         if !overlap(&boxes[a.place], &boxes[b.place]) || self.done() {
@@ -334,7 +336,7 @@ impl Join<'_> {
             return Ok(());
         }
         self.step()?;
-        // The larger box goes first, so that few small ones wait for a partner of their size.
+        // Descends into the larger box, so that few small ones wait for one of their size.
         let larger = boxes[a.place].side() >= boxes[b.place].side();
         if b.level == 0 || a.level > 0 && larger {
             for child in self.forest.children(a) {

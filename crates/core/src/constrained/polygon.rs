@@ -1,9 +1,10 @@
-//! The triangles inside rings, whatever the rings are: crossings become vertices, and the winding
-//! number of each triangle says whether it is inside.
+//! The triangles inside arbitrary rings: crossings become vertices, and winding numbers decide what
+//! is inside.
 //!
-//! One simple ring is filled by `ring`. Else the winding number is 0 outside of the hull and changes
-//! by one at each edge of a ring, so a flood over the triangles finds it: linear after the
-//! triangulation.
+//! A single simple ring is filled by `ring`. Otherwise the winding number is 0 outside of the hull
+//! and changes by one at each edge of a ring, so a flood fill over the triangles computes it:
+//! linear time after the triangulation.
+//!
 
 use delone_predicates::Point2;
 
@@ -18,29 +19,29 @@ use crate::mesh2::{next, prev, triangle};
 use crate::points::LIMIT2;
 use crate::watch::Watch;
 
-/// Which places are inside.
+/// Which points are inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
-    /// Those that the rings wind round an odd number of times.
+    /// Those with an odd winding number.
     EvenOdd,
-    /// Those that the rings wind round at all, all turns counted with their sign.
+    /// Those with a nonzero winding number, turns being counted with their sign.
     NonZero,
 }
 
 /// Triangles inside rings.
 #[derive(Debug, Default)]
 pub struct Filled {
-    /// Vertices that the rings do not have: their crossings.
+    /// Crossings, which are not vertices of the rings.
     pub added: Vec<Point2>,
-    /// Triangles as rows of the points of the rings, added vertices behind them.
+    /// Triangles as rows of the points of the rings, with added vertices after them.
     pub simplices: Vec<[i32; 3]>,
 }
 
-/// Not yet met by the flood.
+/// Not yet reached by the flood fill.
 const UNKNOWN: u32 = u32::MAX;
 
-/// The triangles inside the rings `points[starts[i]..starts[i + 1]]`, each of which closes itself.
-/// Rings without area have none.
+/// The triangles inside the rings `points[starts[i]..starts[i + 1]]`, each of which is closed
+/// implicitly. Rings without area have none.
 pub fn polygon(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Result<Filled> {
     if let [0, end] = starts[..]
         && end == points.len()
@@ -52,7 +53,7 @@ pub fn polygon(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -
     wound(points, starts, rule, watch)
 }
 
-/// The same by the triangulation of the hull.
+/// The same, from the triangulation of the hull.
 fn wound(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Result<Filled> {
     let mut segments = with_room(points.len())?;
     for ring in starts.windows(2) {
@@ -72,8 +73,8 @@ fn wound(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Resu
         Err(Error::TooFew { .. } | Error::Collinear { .. }) => return Ok(Filled::default()),
         work => work?,
     };
-    let laid = work.lay(points, watch)?;
-    let parts = flood(&mut work.marked, &laid.pieces)?;
+    let inserted = work.insert_segments(points, watch)?;
+    let parts = flood(&mut work.marked, &inserted.pieces)?;
     let added = work.added(points.len());
     let rows = &work.rows;
     let inside = |w: &i32| match rule {
@@ -92,17 +93,17 @@ fn wound(points: &[Point2], starts: &[usize], rule: Rule, watch: &Watch) -> Resu
     Ok(Filled { added, simplices })
 }
 
-/// Parts of the plane that the pieces separate.
-struct Parts {
-    /// For each triangle the part that it lies in; ghosts lie in the first.
+/// Regions of the plane that the pieces separate.
+struct Regions {
+    /// The region of each triangle; ghosts are in the first.
     of: Vec<u32>,
-    /// The winding number of each part.
+    /// The winding number of each region.
     winding: Vec<i32>,
 }
 
-/// The parts of the plane: a flood within each, which leaves it through a piece when it is full. So
-/// only as many pieces as there are parts are looked up.
-fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
+/// Finds the regions by a flood fill of each one, which continues across a piece only when the
+/// region is full. So only as many pieces are looked up as there are regions.
+fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Regions> {
     let used = marked.triangles();
     let vertices = marked.count;
     let mesh = marked.patch();
@@ -111,8 +112,8 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
     let ghost = (0..used).find(|&t| mesh.corners(t).contains(&inf));
     let mut stack = Vec::new();
     stack.extend(ghost);
-    // Pieces, by the code on the side that was met, and the part there.
-    let (mut doors, mut entries) = (Vec::new(), Vec::new());
+    // Pieces, by the code on the side that was reached, and the region there.
+    let (mut exits, mut entries) = (Vec::new(), Vec::new());
     let mut part = 0;
     for &t in &stack {
         of[t as usize] = part;
@@ -125,7 +126,7 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
                     continue;
                 }
                 if mesh.is_marked(e) {
-                    push(&mut doors, e)?;
+                    push(&mut exits, e)?;
                 } else {
                     of[there as usize] = part;
                     push(&mut stack, there)?;
@@ -133,11 +134,11 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
             }
         }
         let beyond = |e: u32| triangle(mesh.opposite(e));
-        while doors
+        while exits
             .pop_if(|e| of[beyond(*e) as usize] != UNKNOWN)
             .is_some()
         {}
-        let Some(e) = doors.pop() else {
+        let Some(e) = exits.pop() else {
             break;
         };
         part += 1;
@@ -147,7 +148,8 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
         push(&mut entries, (ends, of[triangle(e) as usize]))?;
     }
     let edges = Edges::of(entries.iter().map(|e| edge(e.0)).collect(), vertices)?;
-    // What is on the left of an edge from its smaller end is wound round so much more often.
+    // By how much the winding number is larger on the left of an edge directed from its smaller
+    // end.
     let mut more = filled(edges.all.len(), 0)?;
     for &(ends, _) in pieces {
         if let Some(place) = edges.place(ends) {
@@ -160,7 +162,7 @@ fn flood(marked: &mut Marked, pieces: &[([u32; 2], u32)]) -> Result<Parts> {
         let more = if ends[0] < ends[1] { more } else { -more };
         winding.push(winding[from as usize] - more);
     }
-    Ok(Parts { of, winding })
+    Ok(Regions { of, winding })
 }
 
 #[cfg(test)]
@@ -180,7 +182,7 @@ mod tests {
         all
     }
 
-    /// Whether two segments of some length have a point in common.
+    /// Whether two segments of positive length have a point in common.
     fn meet([a, b]: [Point2; 2], [c, d]: [Point2; 2]) -> bool {
         let on = |a: Point2, b: Point2, p: Point2| {
             orient2d(a, b, p).is_zero()
@@ -197,7 +199,7 @@ mod tests {
             || on(c, d, b)
     }
 
-    /// Whether a ring, closed or not, is simple, from every pair of its sides.
+    /// Whether a ring, closed or not, is simple; tests every pair of its sides.
     fn is_simple(ring: &[Point2]) -> bool {
         let closed = ring.len() > 1 && ring.first() == ring.last();
         let ring = &ring[..ring.len() - usize::from(closed)];
@@ -213,7 +215,8 @@ mod tests {
         n >= 3 && (0..n).all(|i| side(i)[0] != side(i)[1] && (i + 1..n).all(|j| apart(i, j)))
     }
 
-    /// A short ring gets triangles without its hull if and only if it is simple, and the same.
+    /// A short ring is filled without its hull if and only if it is simple, with the same
+    /// triangles.
     fn check(ring: &[Point2]) -> std::result::Result<(), TestCaseError> {
         let found = simple_ring(ring).unwrap();
         prop_assert_eq!(found.is_some(), is_simple(ring), "{:?}", ring);
@@ -233,7 +236,7 @@ mod tests {
         (0..=side, 0..=side).prop_map(|(x, y)| [f64::from(x), f64::from(y)])
     }
 
-    /// A ring that is made of a triangle, vertex by vertex, and stays simple.
+    /// A simple ring, grown from a triangle vertex by vertex.
     fn grown(points: &[(Point2, usize)], turn: bool) -> Vec<Point2> {
         let mut ring: Vec<Point2> = Vec::new();
         for &(p, place) in points {
@@ -259,7 +262,7 @@ mod tests {
         ) {
             let ring: Vec<_> = ring.iter().map(|p| p.map(|x| x * scale)).collect();
             let found = simple_ring(&ring).unwrap();
-            // What is too small or large for the grid is left to the hull.
+            // Coordinates too small or too large for the grid are left to the hull.
             if scale > 1e-305 {
                 check(&ring)?;
             } else {
@@ -276,7 +279,7 @@ mod tests {
         }
 
         #[test]
-        fn simple_rings_at_large(
+        fn random_simple_rings(
             points in prop::collection::vec((lattice(1 << 20), any::<usize>()), 3..120),
             turn in any::<bool>(),
         ) {
@@ -285,10 +288,10 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_that_runs_round_twice_is_not_simple() {
+    fn a_ring_that_winds_twice_is_not_simple() {
         let [a, b, c] = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
         assert_eq!(simple_ring(&[a, b, c, a, b, c]).unwrap(), None);
-        // A strip bent to a circle and a bit beyond: all of its triangles turn left.
+        // A strip bent into slightly more than a circle: all of its triangles turn left.
         let strip = |radius: f64, k: i32| {
             let turn = f64::from(k) * 0.3;
             [radius * turn.cos(), radius * turn.sin()]

@@ -1,8 +1,10 @@
-//! The segments that are edges of a triangulation already, which most of a coast are: one pass over
-//! the triangles in the order of memory finds them, without a branch that depends on the data.
+//! Marks the segments that are already edges of a triangulation, in one pass over the triangles.
 //!
-//! Each vertex has two slots for the other ends of its segments, as on a line or ring. Segments
-//! that find them taken are left to be laid one by one.
+//! In a coastline most segments are. The pass visits the triangles in memory order without
+//! data-dependent branches.
+//!
+//! Each vertex has two slots for the other ends of its segments, which suffice for a line or ring.
+//! Segments that find both slots taken are inserted one by one later.
 
 use super::marked::{LOT, Marked};
 use crate::error::Result;
@@ -12,25 +14,25 @@ use crate::watch::{Pace, Watch};
 /// An empty slot.
 const NONE: u32 = u32::MAX;
 
-/// What the pass has found.
+/// The result of the pass.
 #[derive(Debug)]
 pub struct Present {
     slots: Vec<[u32; 2]>,
     /// A bit for each slot: whether its segment is an edge.
     hits: Vec<u8>,
-    /// Whether a segment came twice.
+    /// Whether a segment is a duplicate.
     pub repeated: bool,
 }
 
 impl Present {
-    /// Whether the segment is an edge, which is marked.
+    /// Whether the segment is an edge, which is then marked.
     #[inline]
     pub fn holds(&self, [u, v]: [u32; 2]) -> bool {
         bits(self.slots[u as usize], v) & self.hits[u as usize] != 0
     }
 }
 
-/// The slots that name `v`.
+/// A bit for each slot that contains `v`.
 #[inline]
 fn bits(slots: [u32; 2], v: u32) -> u8 {
     u8::from(slots[0] == v) | u8::from(slots[1] == v) << 1
@@ -60,7 +62,7 @@ pub fn mark_present(marked: &mut Marked, ends: &[[u32; 2]], watch: &Watch) -> Re
 }
 
 fn with_slots(ends: &[[u32; 2]], vertices: usize, watch: &Watch) -> Result<Present> {
-    // One more for infinity.
+    // One more for the infinite vertex.
     let mut slots = filled(vertices + 1, [NONE; 2])?;
     let mut repeated = false;
     let mut pace = Pace::new(watch, LOT as usize);

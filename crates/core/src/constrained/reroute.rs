@@ -1,25 +1,27 @@
-//! Few segments that cross: they alone are laid anew, and the others stay where they are.
+//! A few crossing segments: only they are inserted again, and the others stay where they are.
 //!
-//! Segments that find a marked edge in their way wait until all others lie. The marked edges on the
-//! way of each say which rows it crosses; with the pairs among those that wait that is every
-//! pair, as of two that cross one was laid first or neither was. The rows of the pairs are taken
-//! away, their crossings inserted, and they are laid through these, as `split` would do it.
+//! Segments blocked by a marked edge wait until all others are inserted. The marked edges that each
+//! crosses give the rows that it crosses; with the pairs among those that wait these are all pairs,
+//! since of two segments that cross, one was inserted first or neither was. The rows of these pairs
+//! are removed, their crossings inserted, and the rows are inserted again through their crossings,
+//! as `split` would do it.
 //!
-//! Where a rounded crossing falls on another segment, or a segment comes to the pixel of a crossing
-//! of others, or one that crosses some to the pixel of any vertex that is none of its own, or a piece still crosses one, nothing is repaired here: `split` starts from the
-//! beginning. Where that does not happen, the pieces are the same as there, and so are the triangles,
-//! since one set of pieces has one triangulation.
+//! Some cases are not handled here, and `split` starts from the beginning: a rounded crossing lies
+//! on another segment; a segment passes through the pixel of a crossing of others; a crossing
+//! segment passes through the pixel of any vertex that is not its own; or a piece still crosses
+//! another. In all other cases the pieces are the same as there, and so are the triangles, since
+//! one set of pieces has one triangulation.
 
 use std::collections::BTreeSet;
 
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::edges::{Edges, edge};
-use super::laid::Laid;
+use super::inserted::Inserted;
 use super::marked::{Marked, turn};
 use super::pairs::overlap;
 use super::segment::{Cavity, Step};
-use super::split::{far, passes, way};
+use super::split::{far, passes, route};
 use super::{Crossings, Work, pairs};
 use crate::error::Result;
 use crate::memory::{filled, push, with_room};
@@ -27,16 +29,17 @@ use crate::mesh2::{next, prev, triangle};
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Segments that may wait, whatever their number, and one in so many.
+/// How many segments may wait: this many, or one in `ONE_IN`.
 const FEW: usize = 16;
 const ONE_IN: usize = 32;
-/// One crossing for so many points, and a few: one by one they cost more than all points at once.
+/// One crossing per this many points, plus a few: inserted one by one they cost more than all
+/// points at once.
 const POINTS: usize = 4;
 
 /// The stamp of no row.
 const NEVER: u32 = u32::MAX;
 
-/// A segment and the width of the pixels in its box.
+/// A segment and the size of the pixels in its box.
 struct Band {
     from: Point2,
     along: Point2,
@@ -57,15 +60,15 @@ impl Band {
         }
     }
 
-    /// The side of the line on which x lies, and zero at least where x lies as near as a pixel is
-    /// wide.
+    /// The side of the line on which x lies; zero at least if x is no farther from it than a
+    /// pixel's width.
     #[inline]
     fn side(&self, x: Point2) -> Sign {
         let left = self.along[0] * (x[1] - self.from[1]);
         let right = self.along[1] * (x[0] - self.from[0]);
         let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
         let det = left - right;
-        // Also where something overflowed, which is not a number then.
+        // False also after overflow, when the value is NaN.
         if det.abs() > self.pixel + rounding {
             Sign::of(det)
         } else {
@@ -80,81 +83,88 @@ impl Work<'_> {
         FEW + self.ends.len() / ONE_IN
     }
 
-    /// Lays the segments that wait, `laid` being the others, and those that they cross. Nothing
-    /// where that is not enough; then the triangulation is to be thrown away.
+    /// Inserts the segments that wait and those that they cross, `inserted` being all others. `None` if
+    /// that does not suffice; then the triangulation must be discarded.
     pub(super) fn reroute(
         &mut self,
         input: &[Point2],
-        mut laid: Laid,
+        mut inserted: Inserted,
         waiting: &[u32],
         watch: &Watch,
-    ) -> Result<Option<Laid>> {
+    ) -> Result<Option<Inserted>> {
         let most = FEW + input.len() / POINTS;
-        let Some(pairs) = self.pairs_of(input, &laid, waiting, most, watch)? else {
+        // Find all crossing pairs and their crossings.
+        let Some(pairs) = self.pairs_of(input, &inserted, waiting, most, watch)? else {
             return Ok(None);
         };
         let found = self.meetings(input, pairs, watch)?;
         let mut rows = found.pairs.concat();
         rows.sort_unstable();
         rows.dedup();
+        // A segment that waits but crosses nothing is a case for `split`.
         if !waiting.iter().all(|row| rows.binary_search(row).is_ok()) {
             return Ok(None);
         }
-        self.take_away(&mut laid, &rows)?;
+        // Remove the crossing rows and insert their crossings as vertices.
+        self.remove_rows(&mut inserted, &rows)?;
         let before = self.marked.count;
         let Some(meets) = self.insert(input.len(), &found)? else {
             return Ok(None);
         };
+        // Give up if another inserted segment passes through a new pixel.
         for w in before..self.marked.count {
             if self.is_passed(w as u32)? {
                 return Ok(None);
             }
         }
         for (&[s, t], &w) in found.pairs.iter().zip(&meets) {
-            push(&mut laid.crossings, [s, t, w])?;
+            push(&mut inserted.crossings, [s, t, w])?;
         }
+        // The crossings of each row, as pairs of row and vertex.
         let mut own = with_room(2 * meets.len())?;
-        for &[s, t, w] in &laid.crossings {
+        for &[s, t, w] in &inserted.crossings {
             own.extend([[s, w], [t, w]]);
         }
         own.sort_unstable();
-        // All ways first, so that they do not hang on the order of the rows.
-        let mut ways = with_room(rows.len())?;
+        // Compute all stops first, so that they are independent of the order of the rows.
+        let mut routes = with_room(rows.len())?;
         let mut seen = filled(self.marked.triangles() as usize, NEVER)?;
         for meets in own.chunk_by(|a, b| a[0] == b[0]) {
             watch.check()?;
             let row = meets[0][0];
             let ends = self.ends[row as usize];
             let own: Vec<_> = meets.iter().map(|m| m[1]).collect();
-            let through = &mut laid.through;
+            let through = &mut inserted.through;
             let rounded = |w: u32| w as usize >= before;
-            let stops = way(&mut self.marked, ends, row, own.clone(), rounded, through)?;
+            let stops = route(&mut self.marked, ends, row, own.clone(), rounded, through)?;
             if !self.is_clear(row, &stops, &own, &mut seen)? {
                 return Ok(None);
             }
-            ways.push((row, stops));
+            routes.push((row, stops));
         }
+        // All routes are clear: insert the rows again along them.
         let mut cavity = Cavity::default();
-        for (row, stops) in ways {
+        for (row, stops) in routes {
             watch.check()?;
-            if !self.lay_again(row, &stops, &mut laid, &mut cavity)? {
+            if !self.insert_again(row, &stops, &mut inserted, &mut cavity)? {
                 return Ok(None);
             }
         }
-        (laid.sorted, laid.repeated) = (false, true);
-        Ok(Some(laid))
+        (inserted.sorted, inserted.repeated) = (false, true);
+        Ok(Some(inserted))
     }
 
-    /// All pairs that cross, ascending, `waiting` being all rows that are not laid; nothing where
+    /// All pairs that cross, ascending; `waiting` are all rows that are not inserted. `None` if
     /// there are more than `most`.
     fn pairs_of(
         &mut self,
         input: &[Point2],
-        laid: &Laid,
+        inserted: &Inserted,
         waiting: &[u32],
         most: usize,
         watch: &Watch,
     ) -> Result<Option<Vec<[u32; 2]>>> {
+        // The marked edges that each waiting segment crosses.
         let mut met = Vec::new();
         for &row in waiting {
             watch.check()?;
@@ -171,12 +181,14 @@ impl Work<'_> {
         }
         met.sort_unstable();
         let edges = Edges::of(met.iter().map(|m| m.0).collect(), self.marked.count)?;
+        // The pairs among the waiting segments.
         let own: Vec<_> = waiting.iter().map(|&r| self.segments[r as usize]).collect();
         let mut pairs = pairs::crossing_pairs_above(input, &own, most, watch)?;
         for pair in &mut pairs {
             *pair = pair.map(|i| waiting[i as usize]);
         }
-        for &(ends, row) in &laid.pieces {
+        // The pairs of a waiting segment and an inserted row that covers a crossed edge.
+        for &(ends, row) in &inserted.pieces {
             let Some(place) = edges.place(ends) else {
                 continue;
             };
@@ -192,23 +204,23 @@ impl Work<'_> {
         Ok((pairs.len() <= most).then_some(pairs))
     }
 
-    /// Takes away what is laid of the `rows`, which ascend.
-    fn take_away(&mut self, laid: &mut Laid, rows: &[u32]) -> Result<()> {
+    /// Removes the inserted pieces of the `rows`, which are ascending.
+    fn remove_rows(&mut self, inserted: &mut Inserted, rows: &[u32]) -> Result<()> {
         let mut goes = filled(self.ends.len(), false)?;
         for &row in rows {
             goes[row as usize] = true;
         }
         let mut gone = Vec::new();
-        laid.pieces.retain(|&(ends, row)| {
+        inserted.pieces.retain(|&(ends, row)| {
             if goes[row as usize] {
                 gone.push(edge(ends));
             }
             !goes[row as usize]
         });
-        laid.through.retain(|t| !goes[t[0] as usize]);
+        inserted.through.retain(|t| !goes[t[0] as usize]);
         let mut free = Edges::of(gone, self.marked.count)?;
-        if laid.repeated {
-            let mut kept: Vec<_> = (laid.pieces.iter())
+        if inserted.repeated {
+            let mut kept: Vec<_> = (inserted.pieces.iter())
                 .filter_map(|p| free.place(p.0))
                 .collect();
             kept.sort_unstable();
@@ -223,11 +235,11 @@ impl Work<'_> {
             self.marked.patch().mark(e, false);
             self.marked.stack.push(e);
         }
-        self.marked.legalise()
+        self.marked.legalize()
     }
 
-    /// Makes the crossings vertices behind the `n` rows of the input. Nothing where one falls on a
-    /// segment, or there are too many.
+    /// Inserts the crossings as vertices after the `n` rows of the input. `None` if one lies on a
+    /// segment or there are too many.
     fn insert(&mut self, n: usize, found: &Crossings) -> Result<Option<Vec<u32>>> {
         let mut meets = with_room(found.points.len())?;
         for (&[s, t], &x) in found.pairs.iter().zip(&found.points) {
@@ -254,8 +266,8 @@ impl Work<'_> {
         Ok(Some(meets))
     }
 
-    /// Whether a segment that lies comes to the pixel of vertex `w`. From there to such a segment one
-    /// comes across edges that are as near.
+    /// Whether an inserted segment passes through the pixel of vertex `w`. It suffices to search
+    /// from w across edges that are as near as a pixel.
     fn is_passed(&mut self, w: u32) -> Result<bool> {
         let start = self.marked.near[w as usize];
         let p = self.marked.at(w);
@@ -288,9 +300,9 @@ impl Work<'_> {
         Ok(false)
     }
 
-    /// Whether a segment comes to the pixel of no vertex but of those on it and its crossings `meets`,
-    /// which ascend, however the mesh lies: from the segment to such a vertex one comes within its box, across
-    /// edges that come as near.
+    /// Whether a segment passes through the pixel of no vertex except those on it and its crossings
+    /// `meets`, which are ascending. Independent of the mesh: each such vertex is reached from the
+    /// segment within its box, across edges that come as near.
     fn is_clear(
         &mut self,
         row: u32,
@@ -306,6 +318,7 @@ impl Work<'_> {
         if !stops.iter().all(on) {
             return Ok(false);
         }
+        // Start from the triangles that the segment crosses and those around its stops.
         let mut own = stops.to_vec();
         own.sort_unstable();
         let band = Band::of(p, q);
@@ -339,6 +352,7 @@ impl Work<'_> {
             if !overlap(&band.extent, &Extent::of(at)) {
                 continue;
             }
+            // A vertex whose pixel the segment meets blocks it, unless it is one of its own.
             let sides = at.map(|x| band.side(x));
             let met = |k: usize| {
                 sides[k].is_zero() && own.binary_search(&corners[k]).is_err() && passes(p, q, at[k])
@@ -346,6 +360,7 @@ impl Work<'_> {
             if (0..3).any(met) {
                 return Ok(false);
             }
+            // Continue across edges that come as near as a pixel.
             for k in 0..3 {
                 let [u, v] = [sides[(k + 1) % 3], sides[(k + 2) % 3]];
                 if u == Sign::Zero || u != v {
@@ -356,12 +371,12 @@ impl Work<'_> {
         Ok(true)
     }
 
-    /// Lays a segment through its `stops`; whether nothing was in its way.
-    fn lay_again(
+    /// Inserts a segment through its `stops`; returns whether nothing blocked it.
+    fn insert_again(
         &mut self,
         row: u32,
         stops: &[u32],
-        laid: &mut Laid,
+        inserted: &mut Inserted,
         cavity: &mut Cavity,
     ) -> Result<bool> {
         for pair in stops.windows(2) {
@@ -371,7 +386,7 @@ impl Work<'_> {
                     return Ok(false);
                 };
                 let ends = if from == a { [a, to] } else { [to, b] };
-                push(&mut laid.pieces, (ends, row))?;
+                push(&mut inserted.pieces, (ends, row))?;
                 (a, b) = if from == a { (to, b) } else { (a, to) };
             }
         }
@@ -379,7 +394,7 @@ impl Work<'_> {
     }
 }
 
-/// Whether the edge `r s` may come to the pixel of `p`.
+/// Whether the edge `r s` may pass through the pixel of `p`.
 fn is_near(r: Point2, s: Point2, p: Point2) -> bool {
     let beside = (0..2).any(|k| {
         let unit = 2.0 * (p[k].abs() * f64::EPSILON + f64::MIN_POSITIVE);
@@ -399,8 +414,8 @@ mod tests {
 
     type Bits = [u64; 2];
 
-    /// What a triangulation came to, by coordinates: its triangles, the pieces with their rows, and
-    /// the vertices in segments and at crossings.
+    /// The resulting triangulation by coordinates: its triangles, the pieces with their rows, and
+    /// the vertices on segments and at crossings.
     #[derive(Debug, PartialEq)]
     struct Outcome {
         triangles: BTreeSet<[Bits; 3]>,
@@ -410,7 +425,7 @@ mod tests {
         added: Vec<Bits>,
     }
 
-    fn outcome(work: &mut Work, laid: &Laid, n: usize) -> Outcome {
+    fn outcome(work: &mut Work, inserted: &Inserted, n: usize) -> Outcome {
         let bits = |p: Point2| p.map(|x| (x + 0.0).to_bits());
         let points = work.marked.points.clone();
         let at = |v: u32| bits(points[v as usize]);
@@ -425,19 +440,19 @@ mod tests {
             corners
         };
         let triangles = real.map(turned).collect();
-        let pieces = laid.pieces.iter();
+        let pieces = inserted.pieces.iter();
         Outcome {
             triangles,
             pieces: pieces.map(|&([u, v], row)| (at(u), at(v), row)).collect(),
-            through: laid.through.iter().map(|t| (t[0], at(t[1]))).collect(),
-            crossings: (laid.crossings.iter())
+            through: inserted.through.iter().map(|t| (t[0], at(t[1]))).collect(),
+            crossings: (inserted.crossings.iter())
                 .map(|c| (c[0], c[1], at(c[2])))
                 .collect(),
             added: work.added(n).into_iter().map(bits).collect(),
         }
     }
 
-    /// Segments that cross are laid in place, or all anew: the same comes of it.
+    /// Inserting crossing segments in place, or all of them again, gives the same result.
     fn check(points: &[Point2], segments: &[[u32; 2]]) -> std::result::Result<bool, TestCaseError> {
         let options = Options {
             split: true,
@@ -451,17 +466,17 @@ mod tests {
         let Ok(mut work) = start() else {
             return Ok(false);
         };
-        let (laid, waiting) = work.lay_all(usize::MAX, &watch).unwrap().unwrap();
+        let (inserted, waiting) = work.insert_all(usize::MAX, &watch).unwrap().unwrap();
         if waiting.is_empty() {
             return Ok(false);
         }
-        let Some(laid) = work.reroute(points, laid, &waiting, &watch).unwrap() else {
+        let Some(inserted) = work.reroute(points, inserted, &waiting, &watch).unwrap() else {
             return Ok(false);
         };
-        let found = outcome(&mut work, &laid, points.len());
+        let found = outcome(&mut work, &inserted, points.len());
         let mut work = start().unwrap();
         let crossings = work.crossings(points, &watch).unwrap();
-        let meets = work.start_anew(points, &crossings, &watch).unwrap();
+        let meets = work.start_again(points, &crossings, &watch).unwrap();
         let mut splitter = Splitter::new(&mut work.marked, &work.ends, 10_000, &watch).unwrap();
         let rows = &work.rows;
         let is_rounded = |w: u32| {
@@ -469,10 +484,10 @@ mod tests {
                 .is_none_or(|&r| r as usize >= points.len())
         };
         splitter.run(&crossings.pairs, &meets, is_rounded).unwrap();
-        let laid = splitter.finish().unwrap();
+        let inserted = splitter.finish().unwrap();
         prop_assert_eq!(
             found,
-            outcome(&mut work, &laid, points.len()),
+            outcome(&mut work, &inserted, points.len()),
             "{:?} {:?}",
             points,
             segments
@@ -484,7 +499,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
 
         #[test]
-        fn few_or_all_makes_no_difference(
+        fn in_place_and_all_again_agree(
             points in prop::collection::vec((0..9, 0..9), 3..24),
             segments in prop::collection::vec((any::<u32>(), any::<u32>()), 2..16),
             offset in prop::sample::select(vec![0.0, 1e3, 2f64.powi(40), 2f64.powi(51)]),
@@ -499,7 +514,7 @@ mod tests {
     }
 
     #[test]
-    fn two_diagonals_are_laid_in_place() {
+    fn two_diagonals_are_inserted_in_place() {
         let square = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
         let twice = [[0, 2], [1, 3], [2, 0]];
         assert!(check(&square, &twice).unwrap());

@@ -1,13 +1,13 @@
-//! The triangles inside one simple ring, without a triangulation of its hull: corners are cut off
-//! until nothing is left, and flips make the triangles Delaunay.
+//! The triangles inside one simple ring by ear clipping and flips, without a triangulation of its
+//! hull.
 //!
 //! G. H. Meisters, "Polygons have ears", The American Mathematical Monthly 82 (1975); the flips are
-//! those of `delaunay2::lawson`, with the sides for edges that stay.
+//! those of `delaunay2::lawson`, with the sides as constrained edges.
 //!
 //! # Why the ring is simple if this succeeds
 //!
-//! Corners are cut off twice, first those that turn right, which fills the pockets outside, then
-//! those that turn left, which fills the inside:
+//! Ears are clipped in two passes, first at corners that turn right, which fills the pockets
+//! outside, then at corners that turn left, which fills the inside:
 //!
 //! ```text
 //!    a       c           a-------c        b goes, and the triangle of a, b, c stays.
@@ -16,24 +16,24 @@
 //!        b                   b
 //! ```
 //!
-//! The triangles of both are glued along the sides of the ring to a disk, as each is glued to it
-//! along one edge or along two that are adjacent. Every one of them is turned to the left, which
-//! exact predicates say, and the boundary of the disk maps to a convex polygon that is traversed
-//! once: no corner turns right, and the direction changes between ascending and descending, in
-//! lexicographic order, twice. How many triangles lie over a point is how often the boundary winds
-//! round it, since all count with the same sign: once inside of the convex polygon. So the triangles
-//! tile it, different vertices are different points, the sides are edges of a triangulation, and
-//! they meet in their common ends alone. Whether a corner is fit to be cut off is therefore no
-//! question of exactness: a wrong one ends without an answer.
+//! The triangles of both passes are glued along the sides of the ring to a disk, since each is
+//! glued to it along one edge or along two adjacent ones. Exact predicates ensure that every one of
+//! them is counterclockwise, and the boundary of the disk maps to a convex polygon that is
+//! traversed once: no corner turns right, and the direction changes between ascending and
+//! descending, in lexicographic order, exactly twice. The number of triangles over a point is the
+//! number of times the boundary winds around it, since all count with the same sign: once inside
+//! the convex polygon. So the triangles tile it, different vertices are different points, the sides
+//! are edges of a triangulation, and they meet only in their common ends. Whether a corner is fit
+//! to be clipped therefore need not be decided exactly: a wrong choice only ends without an answer.
 //!
 //! # Why it succeeds if the ring is simple
 //!
-//! Inside, and in each pocket, there is a corner whose triangle holds no other vertex (two in each
-//! polygon of four or more, not adjacent, so one is not at the edge of the hull that closes the
-//! pocket), and only such are cut off, which leaves a simple ring.
+//! Inside, and in each pocket, there is a corner whose triangle contains no other vertex (each
+//! polygon of four or more vertices has two that are not adjacent, so one is not at the hull edge
+//! that closes the pocket), and only such corners are clipped, which leaves a simple ring.
 //!
-//! Each corner asks all those that turn the other way, eight at once by their cells in a grid: a
-//! quadratic number of them, but for rings of [`MOST`] vertices a fraction of the rest.
+//! Each corner is tested against all those that turn the other way, eight at once by their cells in
+//! a grid. This is quadratic, but for rings of up to [`MOST`] vertices a fraction of the rest.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, lexicographic, orient2d};
 
@@ -41,10 +41,10 @@ use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::mesh2::{Code, Mesh2, Patch, next, prev};
 
-/// Most vertices of a ring: above, the search among all corners costs more than it saves.
+/// The most vertices of a ring: above, the search among all corners costs more than it saves.
 const MOST: usize = 400;
 
-/// Cells of the grid along the longer side, less one: they are numbered from 0.
+/// Cells of the grid along the longer side, minus one: they are numbered from 0.
 const CELLS: f64 = 254.0;
 /// The cell of no vertex.
 const NOWHERE: u8 = u8::MAX;
@@ -52,7 +52,7 @@ const NOWHERE: u8 = u8::MAX;
 const LANES: usize = 16;
 const WORD: usize = LANES / 2;
 
-/// The triangles inside a ring, as its rows; nothing where the ring is not simple, or too long.
+/// The triangles inside a ring, as its rows; `None` if the ring is not simple, or too long.
 pub fn simple_ring(points: &[Point2]) -> Result<Option<Vec<[i32; 3]>>> {
     let closed = points.len() > 1 && points.first() == points.last();
     let points = &points[..points.len() - usize::from(closed)];
@@ -82,31 +82,31 @@ pub fn simple_ring(points: &[Point2]) -> Result<Option<Vec<[i32; 3]>>> {
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     at: Point2,
-    /// The vertices before and after it, counter-clockwise.
+    /// The vertices before and after it, counterclockwise.
     before: u32,
     after: u32,
-    /// Its place among those that stay, or [`GOES`].
+    /// Its index among the corners that stay, or [`CLIPPABLE`].
     place: u32,
     /// Its cell in a grid over the box, which keeps the order of coordinates.
     cell: [u8; 2],
 }
 
-/// The place of a corner that may be cut off.
-const GOES: u32 = u32::MAX;
+/// The place of a corner that may be clipped.
+const CLIPPABLE: u32 = u32::MAX;
 
-/// A ring, counter-clockwise.
+/// A ring, counterclockwise.
 struct Ring {
     corners: Vec<Corner>,
     turns: Vec<Sign>,
 }
 
 impl Ring {
-    /// Nothing where the box is not finite or has no size, or the ring has no inside at its first
+    /// `None` if the box is not finite or has no size, or the ring has no interior at its first
     /// vertex in lexicographic order.
     fn of(points: &[Point2]) -> Result<Option<Self>> {
         let n = points.len();
         let (mut min, mut max) = (points[0], points[0]);
-        // Not a number once a coordinate is none, or is infinite.
+        // NaN as soon as a coordinate is NaN or infinite.
         let mut poison = 0.0;
         for p in points {
             for k in 0..2 {
@@ -130,7 +130,7 @@ impl Ring {
                 at,
                 before: before as u32,
                 after: after as u32,
-                place: GOES,
+                place: CLIPPABLE,
                 cell: [0, 1].map(|k| ((at[k] - min[k]) * scale) as u8),
             });
             if at[0] < first.1[0] || at[0] == first.1[0] && at[1] < first.1[1] {
@@ -152,16 +152,16 @@ impl Ring {
     }
 }
 
-/// Cuts corners of one turn off a ring.
+/// Clips the corners of one orientation off a ring.
 struct Cutter {
     corners: Vec<Corner>,
     turn: Sign,
-    /// A vertex of what is left, and how many there are.
+    /// A vertex of the remaining ring, and how many there are.
     start: u32,
     left: usize,
-    /// The corners that do not turn so.
+    /// The corners with the other orientation.
     others: Vec<u32>,
-    /// The cells of the others, [`NOWHERE`] behind them.
+    /// The cells of the others, then [`NOWHERE`].
     columns: Vec<[u8; LANES]>,
     rows: Vec<[u8; LANES]>,
 }
@@ -175,7 +175,7 @@ impl Cutter {
         let mut columns = filled(n.div_ceil(LANES), blank)?;
         let mut rows = filled(n.div_ceil(LANES), blank)?;
         for (corner, at) in ring.corners.iter().zip(&ring.turns) {
-            let mut place = GOES;
+            let mut place = CLIPPABLE;
             if *at != turn {
                 place = others.len() as u32;
                 columns.as_flattened_mut()[others.len()] = corner.cell[0];
@@ -195,16 +195,16 @@ impl Cutter {
         })
     }
 
-    /// Cuts off corners until none turns so or three are left; whether that was reached. Round by
-    /// round no two adjacent ones go, which makes triangles of like size. It ends: a round without
-    /// a cut is the last.
+    /// Clips corners until none has the orientation or three vertices are left; returns whether
+    /// that was reached. In each round no two adjacent corners are clipped, so that triangles have
+    /// similar sizes. It terminates: a round without a cut is the last.
     fn cut_all(&mut self, mut cut: impl FnMut([u32; 3])) -> bool {
         let mut idle = 0;
         let mut b = self.start;
         while self.left > 3 && self.others.len() < self.left {
             let corner = self.corners[b as usize];
             let (a, c) = (corner.before, corner.after);
-            if corner.place != GOES || self.is_blocked(corner) {
+            if corner.place != CLIPPABLE || self.is_blocked(corner) {
                 idle += 1;
                 if idle > self.left {
                     return false;
@@ -226,7 +226,8 @@ impl Cutter {
         true
     }
 
-    /// Looks again whether `v` turns so. A corner that did does not cease to, if the ring is simple.
+    /// Tests again whether `v` has the orientation. If the ring is simple, a corner that has it
+    /// keeps it.
     #[inline]
     fn update(&mut self, v: u32) -> bool {
         let Corner {
@@ -239,20 +240,20 @@ impl Cutter {
         let a = self.corners[before as usize].at;
         let c = self.corners[after as usize].at;
         let turns = orient2d(a, at, c) == self.turn;
-        if turns && place != GOES {
-            self.forget(v, place as usize);
+        if turns && place != CLIPPABLE {
+            self.remove_other(v, place as usize);
         }
-        turns || place != GOES
+        turns || place != CLIPPABLE
     }
 
-    /// Takes a corner from the others: the last of them gets its place.
-    fn forget(&mut self, v: u32, place: usize) {
+    /// Removes a corner from the others: the last of them takes its place.
+    fn remove_other(&mut self, v: u32, place: usize) {
         let last = self.others.len() - 1;
         let moved = self.others[last];
         self.others[place] = moved;
         self.others.truncate(last);
         self.corners[moved as usize].place = place as u32;
-        self.corners[v as usize].place = GOES;
+        self.corners[v as usize].place = CLIPPABLE;
         for cells in [&mut self.columns, &mut self.rows] {
             let cells = cells.as_flattened_mut();
             cells[place] = cells[last];
@@ -260,8 +261,8 @@ impl Cutter {
         }
     }
 
-    /// Whether a vertex that turns otherwise lies in the closed triangle at a corner, but for its
-    /// own.
+    /// Whether a vertex of the other orientation lies in the closed triangle at a corner, except
+    /// its own vertices.
     #[inline]
     fn is_blocked(&self, corner: Corner) -> bool {
         let a = self.corners[corner.before as usize];
@@ -272,7 +273,7 @@ impl Cutter {
         let used = self.others.len().div_ceil(LANES);
         let lanes = self.columns[..used].iter().zip(&self.rows[..used]);
         for (i, (x, y)) in lanes.enumerate() {
-            // 0 for those in the box.
+            // 0 in the lanes of vertices in the box.
             let mut beyond = [0; LANES];
             for j in 0..LANES {
                 let dx = x[j].wrapping_sub(low[0]).saturating_sub(size[0]);
@@ -307,7 +308,7 @@ impl Cutter {
         })
     }
 
-    /// Whether what is left, of which no corner turns right, is traversed once.
+    /// Whether the remaining ring, none of whose corners turns right, is traversed once.
     fn is_convex(&self) -> bool {
         let ascends = |v: u32| {
             let Corner { at, after, .. } = self.corners[v as usize];
@@ -324,14 +325,14 @@ impl Cutter {
     }
 }
 
-/// Something in the lane of a place, if that lies in word `i`.
+/// Nonzero in the lane of a place, if it lies in word `i`.
 #[inline]
 fn lane(place: u32, i: usize) -> u64 {
     let (word, j) = (place as usize / WORD, place as usize % WORD);
     u64::from(word == i) << (8 * j)
 }
 
-/// Not 0 where a byte is 0; the lowest bit that is set is in the first such byte.
+/// Nonzero if a byte is 0; the lowest bit that is set is in the first such byte.
 #[inline]
 fn has_zero(word: u64) -> u64 {
     let ones = u64::MAX / 0xff;
@@ -343,10 +344,10 @@ struct Fill<'a> {
     points: &'a [Point2],
     mesh: Mesh2,
     count: u32,
-    /// For each vertex of what is left, what lies across the edge to the next one.
+    /// For each vertex of the remaining ring, the code across the edge to the next vertex.
     across: Vec<Code>,
     stack: Vec<Code>,
-    /// What lies across the sides: a code of a record of no triangle.
+    /// What lies across the sides: a code of a record that is not a triangle.
     outside: Code,
 }
 
@@ -363,7 +364,7 @@ impl<'a> Fill<'a> {
         })
     }
 
-    /// The triangle where `b` is cut off.
+    /// Adds the triangle that is clipped at `b`.
     fn add(&mut self, [a, b, c]: [u32; 3]) {
         let t = self.count;
         self.count += 1;
@@ -373,13 +374,13 @@ impl<'a> Fill<'a> {
         self.across[a as usize] = 8 * t + 1;
     }
 
-    /// The triangle that is left.
+    /// Adds the last triangle.
     fn close(&mut self, [a, b, c]: [u32; 3]) {
         self.add([a, b, c]);
         self.join(8 * (self.count - 1) + 1, c);
     }
 
-    /// Joins the edge `e`, which begins at `v`, to what lies across.
+    /// Links the edge `e`, which starts at `v`, to the code across it.
     fn join(&mut self, e: Code, v: u32) {
         let o = self.across[v as usize];
         self.mesh.resume(self.count).link(e, o);
@@ -388,11 +389,11 @@ impl<'a> Fill<'a> {
         }
     }
 
-    /// Flips edges as long as one is to be flipped; see `delaunay2::lawson` why that ends.
+    /// Flips edges until all are legal; see `delaunay2::lawson` for why that terminates.
     fn flip(&mut self) {
         let mut mesh = self.mesh.resume(self.count);
         while let Some(e) = self.stack.pop() {
-            // A flip elsewhere may have given the code to a side.
+            // A flip elsewhere may have assigned this code to a side.
             let o = mesh.opposite(e);
             if o != self.outside && must_flip(self.points, &mesh, e, o) {
                 let other = mesh.flip(e);

@@ -1,23 +1,24 @@
-//! The insertion of a segment: the triangles that it crosses make way for it.
+//! Insertion of a segment: its cavity is emptied and triangulated again on both sides.
 //!
 //! M. V. Anglada, "An improved incremental algorithm for constructing restricted Delaunay
 //! triangulations", Computers & Graphics 21 (1997), for the cavity; its two halves are then filled
-//! as below. A segment that is an edge costs a turn round one of its ends, whichever is shorter.
+//! as below. If the segment is an edge, finding it costs a turn around one of its ends, whichever
+//! is shorter.
 //!
 //! ```text
 //!       x-----x                x-----x
-//!      /|\   /|\              /  ...  \       The triangles on the way of a b go. Each half of the
-//!     a-|-\-/-|-b    ->      a---------b      cavity is a polygon whose vertices all see the
-//!      \|  x  |/              \ \ | / /       segment, along the edges that were crossed.
+//!      /|\   /|\              /  ...  \       The triangles that a b crosses are removed. Each half
+//!     a-|-\-/-|-b    ->      a---------b      of the cavity is a polygon whose vertices all see
+//!      \|  x  |/              \ \ | / /       the segment along the crossed edges.
 //!       x-----x                x--x--x
 //! ```
 //!
-//! Such a polygon is triangulated by a scan in the manner of Graham in linear time (G. T. Toussaint
-//! and D. Avis, "On a convex hull algorithm for polygons and its application to triangulation
-//! problems", Pattern Recognition 15, 1982), also where an edge hangs into it and a vertex comes
-//! twice. Lawson's flips make it Delaunay: O(k^2) for k crossed edges at most, and about k log k
-//! for points that were not chosen to the contrary. What lies outside of the cavity stays as it is,
-//! since the constrained Delaunay triangulation is unique and only a segment takes sight away.
+//! Such a polygon is triangulated by a scan like Graham's in linear time (G. T. Toussaint and D.
+//! Avis, "On a convex hull algorithm for polygons and its application to triangulation problems",
+//! Pattern Recognition 15, 1982), even if an edge dangles into it and a vertex occurs twice.
+//! Lawson's flips then make it Delaunay: O(k^2) for k crossed edges in the worst case, and about k
+//! log k for points that are not adversarial. Triangles outside of the cavity do not change, since
+//! the constrained Delaunay triangulation is unique and only a segment blocks visibility.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
@@ -25,40 +26,40 @@ use super::marked::{Marked, turn};
 use crate::error::{Error, Result};
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 
-/// How far a segment came.
+/// How far the insertion of a segment came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// `from`, one of its ends, is joined to `to`, the first vertex from there on; the edge may have
-    /// been marked before.
+    /// `from`, one of its ends, is joined to `to`, the next vertex on the segment; the edge may
+    /// have been marked before.
     Joined {
         /// The end.
         from: u32,
         /// The vertex.
         to: u32,
-        /// Whether another segment is there, too.
+        /// Whether another segment covers the edge, too.
         again: bool,
     },
-    /// A marked edge is in the way, the first one from that end on; nothing has changed.
+    /// A marked edge blocks the segment, the first one from that end on; nothing has changed.
     Crossed(Code),
 }
 
 /// An edge of the cavity's boundary.
 #[derive(Debug, Clone, Copy)]
 struct Rim {
-    /// The vertex where it ends, on the way from a to b.
+    /// Its end vertex, on the way from a to b.
     end: u32,
-    /// The edge in the triangle that goes.
+    /// The edge in the triangle that is removed.
     inner: Code,
-    /// The edge in the triangle that comes.
+    /// The edge in the new triangle.
     new: Code,
     /// Its other side.
     across: Code,
     marked: bool,
-    /// The place of the rim that is its other side.
+    /// The index of the rim that is its other side, for a dangling edge.
     twin: Option<u32>,
 }
 
-/// Room for one cavity, kept from one to the next.
+/// Buffers for one cavity, reused for the next.
 #[derive(Debug, Default)]
 pub struct Cavity {
     triangles: Vec<u32>,
@@ -68,7 +69,7 @@ pub struct Cavity {
 }
 
 impl Cavity {
-    /// How many triangles the last segment has crossed.
+    /// How many triangles the last segment crossed.
     pub fn size(&self) -> usize {
         self.triangles.len()
     }
@@ -83,8 +84,8 @@ enum Side {
     Inner(Code),
 }
 
-/// The vertex behind edge `e`, which the segment from `a` to `b` crosses, and the edge that the
-/// segment crosses next; none where it meets the vertex.
+/// The vertex beyond edge `e`, which the segment from `a` to `b` crosses, and the next edge that
+/// the segment crosses; `None` if it meets the vertex.
 #[inline]
 fn behind(mesh: &Patch, points: &[Point2], e: Code, a: u32, b: u32) -> Result<(u32, Option<Code>)> {
     let o = mesh.opposite(e);
@@ -102,8 +103,8 @@ fn behind(mesh: &Patch, points: &[Point2], e: Code, a: u32, b: u32) -> Result<(u
 }
 
 impl Marked {
-    /// Joins vertices `a` and `b`, which differ, as far as the first vertex or marked edge on the
-    /// way, seen from one of them.
+    /// Joins the distinct vertices `a` and `b` as far as the first vertex or marked edge on the
+    /// segment, from one of its ends.
     pub fn join(&mut self, a: u32, b: u32, cavity: &mut Cavity) -> Result<Step> {
         let from = match self.search(a, b) {
             Found::Edge(e) => {
@@ -130,9 +131,8 @@ impl Marked {
         }
     }
 
-    /// The vertices that the segment from `a` to `b` meets, but for its ends, whatever edges are
-    /// marked: those on it, and of those beside it on the way the ones that `near` takes for it. It
-    /// ends as `gather` does.
+    /// The vertices on the segment from `a` to `b`, except its ends, whatever edges are marked:
+    /// those exactly on it, and those beside it that `near` accepts. Terminates as `gather` does.
     pub fn stops(&mut self, a: u32, b: u32, near: impl Fn(&Self, u32) -> bool) -> Result<Vec<u32>> {
         let mut stops = Vec::new();
         let mut from = a;
@@ -162,8 +162,8 @@ impl Marked {
         Ok(stops)
     }
 
-    /// Adds to `stops` the vertices beside the edge `e`, on either side, that `near` takes; behind
-    /// each there may be others. It ends: no vertex comes twice.
+    /// Adds to `stops` the vertices beside the edge `e`, on either side, that `near` accepts;
+    /// beyond each there may be others. Terminates: no vertex is added twice.
     fn hidden(&mut self, e: Code, near: impl Fn(&Self, u32) -> bool, stops: &mut Vec<u32>) {
         let first = stops.len();
         let mut stack = vec![e, self.patch().opposite(e)];
@@ -178,8 +178,8 @@ impl Marked {
         }
     }
 
-    /// Shows `visit` the edges that the segment from `a` to `b` crosses, but for those that it only
-    /// touches. It ends as `gather` does.
+    /// Calls `visit` for each edge that the segment from `a` to `b` crosses, except those that it
+    /// only touches. Terminates as `gather` does.
     pub fn cross(&mut self, a: u32, b: u32, mut visit: impl FnMut(&Patch, Code)) -> Result<()> {
         let mut from = a;
         while from != b {
@@ -200,7 +200,8 @@ impl Marked {
         Ok(())
     }
 
-    /// Looks for the edge from `a` to `b` round both at once, as one of them may have very many.
+    /// Looks for the edge from `a` to `b` around both at once, as one of them may have a very high
+    /// degree.
     fn search(&mut self, a: u32, b: u32) -> Found {
         let starts = [self.near[a as usize], self.near[b as usize]];
         let mesh = self.patch();
@@ -218,7 +219,7 @@ impl Marked {
         }
     }
 
-    /// How the segment from `a` to `b`, which is no edge, leaves a.
+    /// How the segment from `a` to `b`, which is not an edge, leaves a.
     fn leave(&mut self, a: u32, b: u32) -> Result<Leave> {
         let start = self.near[a as usize];
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
@@ -227,14 +228,14 @@ impl Marked {
             let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
             orient2d(a, b, v)
         };
-        // Of a vertex on the line, whether it lies on b's side.
+        // Whether a vertex on the line lies on b's side.
         let ahead = |v: u32| {
             let [a, b, v] = [a, b, v].map(|v| self.points[v as usize]);
             lexicographic(a, b) == lexicographic(a, v)
         };
         let mut corner = start;
         let mut right = None;
-        // One turn more than there are triangles: an edge is seen from both of its sides.
+        // One step more than there are triangles: each edge is seen from both sides.
         let mut met = false;
         loop {
             let u = mesh.vertex(next(corner));
@@ -256,7 +257,8 @@ impl Marked {
         }
     }
 
-    /// Makes way from `a` to the first vertex on the way to `b`, across the edge `e` opposite a.
+    /// Inserts the segment from `a` to the first vertex on the way to `b`, across the edge `e`
+    /// opposite a.
     fn cut(&mut self, a: u32, b: u32, e: Code, cavity: &mut Cavity) -> Result<Step> {
         let end = match self.gather(a, b, e, cavity)? {
             Step::Joined { to, .. } => to,
@@ -278,7 +280,8 @@ impl Marked {
         })
     }
 
-    /// Collects what lies on the way. It ends: the crossed edges follow each other along a b.
+    /// Collects the crossed triangles and the rims. Terminates: the crossed edges follow each other
+    /// along a b.
     fn gather(&mut self, a: u32, b: u32, first: Code, cavity: &mut Cavity) -> Result<Step> {
         let mesh = self.mesh.resume(2 * self.count as u32 - 2);
         let rim = |end: u32, inner: Code| Rim {
@@ -341,7 +344,7 @@ impl Marked {
         }
     }
 
-    /// Fills a cavity from `a` to `b` of three triangles or more, and marks the edge between them.
+    /// Fills a cavity from `a` to `b` of at least three triangles, and marks the edge between them.
     fn fill(&mut self, a: u32, b: u32, cavity: &mut Cavity) -> Result<()> {
         let Cavity {
             triangles,
@@ -355,7 +358,7 @@ impl Marked {
         self.pair(rims);
         let mut free = triangles.clone();
         self.stack.clear();
-        // The left half lies on the left of a b, and the right one of b a, so its rims go back.
+        // The left half lies left of a b, the right half left of b a, so its rims run backward.
         let ahead = (0..halves).map(|i| (i, i));
         let upper = self.scan([a, b], ahead, rims, &mut free, scan)?;
         let back = (halves..rims.len()).rev().map(|i| (i.wrapping_sub(1), i));
@@ -364,7 +367,7 @@ impl Marked {
         let mut mesh = self.patch();
         mesh.link(upper, lower);
         mesh.mark(upper, true);
-        self.legalise()?;
+        self.legalize()?;
         for &t in triangles.iter() {
             self.patch().release(t);
             self.touch(t);
@@ -372,7 +375,7 @@ impl Marked {
         Ok(())
     }
 
-    /// Finds the rims that are two sides of one edge, which hangs into the cavity.
+    /// Finds the pairs of rims that are two sides of one edge, which dangles into the cavity.
     fn pair(&mut self, rims: &mut [Rim]) {
         let mut mesh = self.patch();
         for (i, r) in (0..).zip(rims.iter()) {
@@ -380,7 +383,7 @@ impl Marked {
         }
         for i in 0..rims.len() {
             let across = rims[i].across;
-            // Outside of the cavity this is some code, which leads to no such rim.
+            // Outside the cavity this is a code that leads to no such rim.
             let twin = mesh.opposite(across);
             let is_rim = rims.get(twin as usize).is_some_and(|r| r.inner == across);
             rims[i].twin = is_rim.then_some(twin);
@@ -388,8 +391,8 @@ impl Marked {
     }
 
     /// Triangulates the polygon on the left of the edge from `start` to `end`. Its other edges are
-    /// the rims named second by `chain`, on the way from start to end; each leads to the vertex of
-    /// the rim named first, and the last one to `end`. Returns the new side of that edge.
+    /// the rims given second in `chain`, on the way from start to end; each leads to the vertex of
+    /// the rim given first, and the last one to `end`. Returns the new side of that edge.
     fn scan(
         &mut self,
         [start, end]: [u32; 2],
@@ -398,7 +401,7 @@ impl Marked {
         free: &mut Vec<u32>,
         scan: &mut Vec<(u32, Side)>,
     ) -> Result<Code> {
-        let broken = || Error::Internal("a cavity is no polygon".into());
+        let broken = || Error::Internal("a cavity is not a polygon".into());
         let last = chain.len();
         scan.clear();
         scan.push((start, Side::Rim(usize::MAX)));
@@ -437,7 +440,7 @@ impl Marked {
         }
     }
 
-    /// Joins the new triangles to what lies across their rims, and fixes those.
+    /// Links the new triangles to the codes across their rims, and updates those.
     fn stitch(&mut self, rims: &[Rim]) {
         let mut mesh = self.patch();
         for r in rims {
@@ -456,7 +459,7 @@ impl Marked {
 /// Whether two vertices are joined.
 enum Found {
     Edge(Code),
-    /// They are not; the turn round this one was the shorter.
+    /// They are not; the search around this one was shorter.
     None(u32),
 }
 

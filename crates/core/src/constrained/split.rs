@@ -1,26 +1,27 @@
-//! Segments that cross: each crossing becomes a vertex.
+//! Splits crossing segments: each crossing becomes a vertex.
 //!
-//! A crossing is computed from the two segments as they were given and rounded once; these points
-//! are vertices before the first segment is laid. The places that are rounded to a vertex are its
-//! *pixel*. As in snap rounding (J. D. Hobby, "Practical segment intersection with finite precision
-//! output", Computational Geometry 13, 1999) a segment that crosses others goes through its crossings
-//! and through every vertex to whose pixel it comes, in the order in which it meets them. One that
-//! crosses no other is straight, but for crossings of others to whose pixel it comes: past such a
-//! point, less than a unit in the last place away, it would leave a needle that no input asked for.
-//! Points of the input that it does not meet exactly it leaves beside it. On a grid
-//! with pixels of one size nothing would cross any more. Doubles lie ever closer towards zero, so two
-//! pieces may: then, as in iterated snap rounding (D. Halperin and E. Packer, Computational Geometry
-//! 23, 2002), they are led through an end of one of them, if the other comes to its pixel, or split
-//! where they cross, until none does.
+//! A crossing is computed from the two given segments and rounded once; the crossings are vertices
+//! before the first segment is inserted. The points that round to a vertex are its *pixel*. As in
+//! snap rounding (J. D. Hobby, "Practical segment intersection with finite precision output",
+//! Computational Geometry 13, 1999) a segment that crosses others passes through its crossings and
+//! through every vertex whose pixel it meets, in the order in which it meets them. A segment that
+//! crosses no other stays straight, except that it passes through crossings of others whose pixel
+//! it meets: next to such a point, less than a unit in the last place away, it would leave a sliver
+//! that no input asked for. Points of the input that are not exactly on it stay beside it. On a
+//! grid with pixels of one size nothing would cross any more. Doubles are denser towards zero, so
+//! two pieces may still cross. Then, as in iterated snap rounding (D. Halperin and E. Packer,
+//! Computational Geometry 23, 2002), one is rerouted through an end of the other whose pixel it
+//! meets, or both are split where they cross, until no pieces cross.
 //!
-//! # What is guaranteed
+//! # Guarantees
 //!
-//! The result is planar at every step, whatever is rounded: a piece is an edge or it waits. And it
-//! ends: where two pieces cross, the point, rounded to the nearest doubles, lies in the box of each,
-//! since the corners of a box are doubles, and so does an end of one to whose pixel the other comes.
-//! It is not both ends of a piece, so of each piece that is parted the parts have strictly smaller
-//! boxes, of finitely many doubles. Each piece stays in the box of its segment, and within a few
-//! units in the last place of it. A limit on vertices ends what takes too many.
+//! The result is planar at every step, however coordinates round: a piece is an edge or it is
+//! queued. And the process terminates: where two pieces cross, the point, rounded to the nearest
+//! doubles, lies in the box of each, since the corners of a box are doubles, and so does an end of
+//! one whose pixel the other meets. It is not both ends of a piece, so each piece that is split has
+//! parts with strictly smaller boxes, of finitely many doubles. Each piece stays in the box of its
+//! segment, and within a few units in the last place of it. A limit on vertices stops an input that
+//! needs too many.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -28,8 +29,8 @@ use std::collections::HashMap;
 use delone_predicates::{Point2, lexicographic, orient2d};
 
 use super::crowd::crowd;
+use super::inserted::Inserted;
 use super::intersection::intersection;
-use super::laid::Laid;
 use super::marked::Marked;
 use super::segment::{Cavity, Step};
 use crate::error::{Error, Result};
@@ -37,15 +38,15 @@ use crate::mesh2::{next, prev};
 use crate::order;
 use crate::watch::{Pace, Watch};
 
-/// Pieces, or changes of what covers them, between two looks at the watch.
+/// Pieces, or changes of what covers them, between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;
-/// Triangles of a cavity that take as long as a piece.
+/// Crossed triangles that take as long as a piece.
 const TRIANGLES: usize = 8;
 
-/// A segment's place in the order, doubled, and one more where the piece runs against it.
+/// A segment's index in the order, doubled, plus one if the piece runs against it.
 type Cover = u32;
 
-/// A piece that waits to be laid.
+/// A piece that is queued for insertion.
 struct Job {
     ends: [u32; 2],
     covers: Vec<Cover>,
@@ -54,9 +55,9 @@ struct Job {
 /// The loop of splits.
 pub struct Splitter<'a> {
     pub(super) marked: &'a mut Marked,
-    /// The segments as vertices, by row.
+    /// The segments as pairs of vertices, by row.
     given: &'a [[u32; 2]],
-    /// Those with a length and their rows, in an order that hangs on their coordinates.
+    /// Those with a positive length and their rows, in an order that depends on their coordinates.
     segments: Vec<([u32; 2], u32)>,
     /// Vertices of the input.
     own: usize,
@@ -75,7 +76,8 @@ fn reversed(covers: &[Cover]) -> Vec<Cover> {
 }
 
 impl<'a> Splitter<'a> {
-    /// For the segments `given`, of which `marked` has none yet; `limit` vertices may be added.
+    /// For the segments `given`, none of which is in `marked` yet; at most `limit` vertices may be
+    /// added.
     pub fn new(
         marked: &'a mut Marked,
         given: &'a [[u32; 2]],
@@ -97,24 +99,24 @@ impl<'a> Splitter<'a> {
         })
     }
 
-    /// Takes over segments that have been laid without a split.
-    pub fn adopt(&mut self, laid: Laid) -> Result<()> {
+    /// Takes over segments that were inserted without a split.
+    pub fn adopt(&mut self, inserted: Inserted) -> Result<()> {
         let mut place = vec![0; self.given.len()];
         for (i, (_, row)) in (0..).zip(&self.segments) {
             place[*row as usize] = i;
         }
-        for (ends, row) in laid.pieces {
+        for (ends, row) in inserted.pieces {
             let i = place[row as usize];
             let against = self.segments[i as usize].0 != self.given[row as usize];
             self.add(ends, &[2 * i + Cover::from(against)])?;
         }
-        self.through = laid.through;
-        self.crossings = laid.crossings;
+        self.through = inserted.through;
+        self.crossings = inserted.crossings;
         Ok(())
     }
 
-    /// Lays all of them. Those in `pairs` cross, in the vertices `meets`. `is_rounded` knows the
-    /// vertices that are no points of the input.
+    /// Inserts all segments. Those in `pairs` cross at the vertices `meets`. `is_rounded` tells
+    /// which vertices are not points of the input.
     pub fn run(
         &mut self,
         pairs: &[[u32; 2]],
@@ -133,7 +135,7 @@ impl<'a> Splitter<'a> {
             let first = own.partition_point(|o| o[0] < row);
             let meets = own[first..].iter().take_while(|o| o[0] == row);
             let meets = meets.map(|o| o[1]).collect();
-            let stops = way(
+            let stops = route(
                 self.marked,
                 [a, b],
                 row,
@@ -142,26 +144,26 @@ impl<'a> Splitter<'a> {
                 &mut self.through,
             )?;
             for pair in stops.windows(2).rev() {
-                self.wait([pair[0], pair[1]], &[2 * i as Cover])?;
+                self.enqueue([pair[0], pair[1]], &[2 * i as Cover])?;
             }
-            self.work_off()?;
+            self.insert_queued()?;
         }
         Ok(())
     }
 
-    /// Lays what waits.
-    pub(super) fn work_off(&mut self) -> Result<()> {
+    /// Inserts the queued pieces.
+    pub(super) fn insert_queued(&mut self) -> Result<()> {
         while let Some(job) = self.jobs.pop() {
             self.pace.spend(1)?;
-            self.lay(job)?;
+            self.insert_job(job)?;
             self.pace.spend(self.cavity.size() / TRIANGLES)?;
         }
         Ok(())
     }
 
-    /// What became of the segments.
-    pub fn finish(mut self) -> Result<Laid> {
-        Ok(Laid {
+    /// The result of the insertion.
+    pub fn finish(mut self) -> Result<Inserted> {
+        Ok(Inserted {
             pieces: self.all_pieces()?,
             repeated: true,
             sorted: false,
@@ -170,7 +172,7 @@ impl<'a> Splitter<'a> {
         })
     }
 
-    fn lay(&mut self, job: Job) -> Result<()> {
+    fn insert_job(&mut self, job: Job) -> Result<()> {
         let [a, b] = job.ends;
         match self.marked.join(a, b, &mut self.cavity)? {
             Step::Crossed(e) => self.repair(e, job),
@@ -203,20 +205,20 @@ impl<'a> Splitter<'a> {
         Ok(())
     }
 
-    /// Whether an edge is a piece.
+    /// Whether an edge is a piece of a segment.
     pub(super) fn is_piece(&self, [u, v]: [u32; 2]) -> bool {
         self.pieces.contains_key(&[u.min(v), u.max(v)])
     }
 
-    /// Takes a piece away and says what covers it from `u` to `v`.
+    /// Removes a piece and returns what covers it from `u` to `v`.
     fn take(&mut self, [u, v]: [u32; 2]) -> Result<Vec<Cover>> {
         let covers = self.pieces.remove(&[u.min(v), u.max(v)]);
         let covers = covers.ok_or_else(|| Error::Internal(format!("no piece joins {u} {v}")))?;
         Ok(if u < v { covers } else { reversed(&covers) })
     }
 
-    /// Splits a piece that waits and the marked edge `e` in its way: at an end of one to whose pixel
-    /// the other comes, or else where they cross.
+    /// Splits a queued piece and the marked edge `e` that blocks it: at an end of one whose pixel
+    /// the other meets, or else where they cross.
     fn repair(&mut self, e: u32, job: Job) -> Result<()> {
         let mesh = self.marked.patch();
         let (u, v) = (mesh.vertex(next(e)), mesh.vertex(prev(e)));
@@ -226,16 +228,16 @@ impl<'a> Splitter<'a> {
         let passed = ends.into_iter().filter(|&(r, s, p)| passes(r, s, p));
         let x = passed.map(|e| e.2).min_by(|p, q| lexicographic(*p, *q));
         let x = x.unwrap_or_else(|| intersection(p, q, r, s));
-        let w = self.part([u, v], x, e)?;
+        let w = self.split_piece([u, v], x, e)?;
         for ends in [[w, b], [a, w]] {
-            self.wait(ends, &job.covers)?;
+            self.enqueue(ends, &job.covers)?;
         }
         Ok(())
     }
 
-    /// Makes the piece u v, which is the edge `e`, pass through the point `x`. Returns the vertex
-    /// there: u or v themselves where x is one of them.
-    pub(super) fn part(&mut self, [u, v]: [u32; 2], x: Point2, e: u32) -> Result<u32> {
+    /// Splits the piece u v, which is the edge `e`, at the point `x`. Returns the vertex there: u
+    /// or v themselves if x is one of them.
+    pub(super) fn split_piece(&mut self, [u, v]: [u32; 2], x: Point2, e: u32) -> Result<u32> {
         let (w, parted) = self.marked.vertex_at(x, e)?;
         let found = self.marked.count - self.own;
         if found > self.limit {
@@ -262,13 +264,13 @@ impl<'a> Splitter<'a> {
             let covers = self.take([u, v])?;
             self.unmark(u, v)?;
             for ends in [[w, v], [u, w]] {
-                self.wait(ends, &covers)?;
+                self.enqueue(ends, &covers)?;
             }
         }
         Ok(w)
     }
 
-    fn wait(&mut self, ends: [u32; 2], covers: &[Cover]) -> Result<()> {
+    fn enqueue(&mut self, ends: [u32; 2], covers: &[Cover]) -> Result<()> {
         self.pace.spend(1)?;
         if ends[0] != ends[1] {
             self.jobs.push(Job {
@@ -279,18 +281,18 @@ impl<'a> Splitter<'a> {
         Ok(())
     }
 
-    /// The edge u v is one like others again.
+    /// Makes the edge u v unconstrained again.
     fn unmark(&mut self, u: u32, v: u32) -> Result<()> {
         let e = self.marked.edge(u, v)?;
         self.marked.patch().mark(e, false);
         self.marked.stack.push(e);
-        self.marked.legalise()
+        self.marked.legalize()
     }
 
-    /// All pieces, directed as their rows are, in no order.
+    /// All pieces, directed as their rows are, in no particular order.
     fn all_pieces(&mut self) -> Result<Vec<([u32; 2], u32)>> {
         let mut all = Vec::new();
-        // They go one by one, as to free them all takes long, too.
+        // Drained one by one, since freeing them all at once would take long without a check.
         for ([u, v], covers) in self.pieces.drain() {
             self.pace.spend(1)?;
             for cover in covers {
@@ -303,10 +305,10 @@ impl<'a> Splitter<'a> {
     }
 }
 
-/// The vertices on the way of a segment, in order, its ends with them: where it meets others, the
-/// vertices that lie on it exactly, which go to `through` with its row, and those to whose pixel it
-/// comes, of the points of the input only if it meets another segment.
-pub(super) fn way(
+/// The vertices that a segment passes through, in order, its ends included: where it meets others,
+/// the vertices exactly on it, which go to `through` with its row, and those whose pixel it meets,
+/// points of the input only if it meets another segment.
+pub(super) fn route(
     marked: &mut Marked,
     [a, b]: [u32; 2],
     row: u32,
@@ -325,8 +327,8 @@ pub(super) fn way(
     }
     stops.extend(meets.into_iter().filter(|&w| w != a && w != b));
     stops.extend([a, b]);
-    // The rounded points of a line keep its order in both coordinates, though perhaps not strictly:
-    // in the first, or in the second where that stays.
+    // The rounded points of a line are monotone in both coordinates, though perhaps not strictly:
+    // sort by the first, or by the second where the first is constant.
     let along = |v: Point2, w: Point2, k: usize| {
         let (v, w) = if p[k] <= q[k] { (v, w) } else { (w, v) };
         v[k].partial_cmp(&w[k]).unwrap_or(Ordering::Equal)
@@ -339,7 +341,7 @@ pub(super) fn way(
     Ok(stops)
 }
 
-/// The segments that have a length, each from its lexicographically smaller end, sorted by their
+/// The segments of positive length, each from its lexicographically smaller end, sorted by their
 /// ends.
 fn in_order(marked: &Marked, segments: &[[u32; 2]], watch: &Watch) -> Result<Vec<([u32; 2], u32)>> {
     let at = |v: u32| marked.at(v);
@@ -361,8 +363,8 @@ fn in_box(x: Point2, p: Point2, q: Point2) -> bool {
     (0..2).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]))
 }
 
-/// Whether the segment `r s` comes to the pixel of `p`, the places that are rounded to it: at the
-/// abscissa of p it has an ordinate that is rounded to that of p, or the other way round.
+/// Whether the segment `r s` meets the pixel of `p`, the points that round to it: at the abscissa
+/// of p it has an ordinate that rounds to that of p, or vice versa.
 pub(super) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
     if !in_box(p, r, s) || p == r || p == s || far(r, s, p) {
         return false;
@@ -370,7 +372,7 @@ pub(super) fn passes(r: Point2, s: Point2, p: Point2) -> bool {
     if orient2d(r, s, p).is_zero() {
         return true;
     }
-    // Now neither side of the box has no length.
+    // From here on both sides of the box have a positive length.
     (0..2).any(|k| {
         let other = 1 - k;
         let (mut below, mut above) = (p, p);

@@ -1,4 +1,4 @@
-//! The edges that the segments have become, each once, with the segments that cover it.
+//! The subsegments, each once, with the segments that cover it.
 
 use std::collections::HashMap;
 
@@ -21,7 +21,7 @@ pub struct Subsegments {
 }
 
 impl Subsegments {
-    /// From edges with the rows of their segments, ascending; each edge comes once unless it is
+    /// From edges with the rows of their segments, ascending; each edge occurs once unless it is
     /// `repeated`.
     pub fn of(pieces: &[([u32; 2], u32)], repeated: bool, watch: &Watch) -> Result<Self> {
         if repeated {

@@ -1,13 +1,13 @@
-//! Bulk triangulation by cavity insertion along the curve.
+//! Bowyer-Watson insertion of a block along the Hilbert curve, in rounds.
 //!
-//! The kernel is Bowyer's and Watson's (see `cavity`). The order is a biased randomised one in the
-//! sense of N. Amenta, S. Choi and G. Rote, "Incremental constructions con BRIO" (2003), without
-//! the dice: every 64th point along the curve, then every 8th, then the rest. Early points
-//! spread over the plane keep cavities small; the curve keeps each round in the cache.
+//! The kernel is Bowyer's and Watson's (see `cavity`). The order is a biased randomized one as in
+//! N. Amenta, S. Choi and G. Rote, "Incremental constructions con BRIO" (2003), but without random
+//! choices: every 64th point along the curve, then every 8th, then the rest. Early points that are
+//! spread out keep cavities small; the curve keeps each round in the cache.
 //!
-//! An order that is fixed in advance has inputs that make it quadratic: two lines that nearly
-//! coincide do, whose triangles are so thin that each point meets most of them. A budget of
-//! triangles met, O(n log n), ends such a block early, and `divide_conquer` takes it.
+//! Any order that is fixed in advance is quadratic for some inputs, for example for two lines that
+//! nearly coincide: their triangles are so thin that each point visits most of them. A budget of
+//! O(n log n) visited triangles ends such a block early, and `divide_conquer` takes over.
 
 use std::ops::Range;
 
@@ -20,20 +20,20 @@ use crate::mesh2::{Code, Patch, triangle};
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Strides of the rounds. On a million uniform points one round makes 12.6 in-circle tests a
-/// point, these three 9.
+/// Strides of the rounds. On a million uniform points one round makes 12.6 in-circle tests per
+/// point, these three make 9.
 const STRIDES: [u32; 3] = [64, 8, 1];
 
-/// Insertions between two looks at the watch.
+/// Insertions between two checks for interruption.
 const WATCH_EVERY: usize = 4096;
 
-/// Triangles that an insertion may meet on average, and how many more for each doubling of the
-/// number of points: of the generators and the corpus, none but near lines needs more than 10.
+/// Triangles that an insertion may visit on average, and how many more for each doubling of the
+/// number of points. Of the generators and the corpus, only near lines need more than 10.
 const BUDGET: usize = 16;
 const BUDGET_DOUBLING: usize = 2;
 
-/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
-/// block is collinear or the budget did not suffice. `points` end with NaN for infinity.
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; `None` if the block
+/// is collinear or the budget is exhausted. `points` end with NaN for infinity.
 pub fn build(
     points: &[Point2],
     block: Range<u32>,
@@ -52,7 +52,8 @@ pub fn build(
         .map(|i| block.start + i)
         .filter(|v| !first.contains(v));
     let share = BUDGET + BUDGET_DOUBLING * n.ilog2() as usize;
-    // The budget grows as points go in, from that of an eighth of them: a hopeless block ends early.
+    // The budget grows with each insertion, from that of an eighth of the points: a hopeless block
+    // ends early.
     let mut budget = share * (n / 8 + WATCH_EVERY);
     let mut near = triangle(kernel.ghost());
     let mut until_watch = WATCH_EVERY;
@@ -74,7 +75,7 @@ pub fn build(
     Ok(Some(kernel.ghost()))
 }
 
-/// The numbers below n in rounds of falling stride, each once.
+/// The numbers below n in rounds of falling strides, each number once.
 struct Rounds {
     n: u32,
     round: usize,
@@ -114,7 +115,7 @@ mod tests {
     use crate::mesh2::Mesh2;
     use crate::order::arrange;
 
-    /// What `build` makes of `points`; `None` where it gives up.
+    /// The result of `build` for `points`; `None` if it gives up.
     fn built(points: &[Point2]) -> Option<Code> {
         let mut arranged = arrange(points, 1, &Watch::idle()).unwrap();
         let n = arranged.points.len();

@@ -1,22 +1,22 @@
-//! The kernel: one point goes into the mesh by carving its cavity and filling it with a star.
+//! The Bowyer-Watson kernel: a point is inserted by emptying its cavity and filling it with a star.
 //!
 //! A. Bowyer, "Computing Dirichlet tessellations", and D. F. Watson, "Computing the n-dimensional
 //! Delaunay tessellation", both The Computer Journal 24 (1981).
 //!
 //! ```text
 //!       x-----x                x-----x
-//!      / \   / \              /   .   \        The triangles whose circle holds p go; what is
-//!     x---\-/---x    ->      x . . p . x       left is a star-shaped hole, whose edges, seen
-//!      \   x p /              \  .  . /        from p, become triangles.
+//!      / \   / \              /   .   \        The triangles whose circumcircle contains p are
+//!     x---\-/---x    ->      x . . p . x       removed. This leaves a star-shaped cavity; each
+//!      \   x p /              \  .  . /        boundary edge and p form a new triangle.
 //!       \ / \ /                x-----x
 //!        x---x
 //! ```
 //!
-//! No old vertex lies inside a cavity (each stays a vertex), so its triangles form a tree from the
-//! seed outwards. A depth-first walk of that tree, always to the right first, meets the edges of
-//! the hole in counter-clockwise order: no marks, no hash map. It ends because the tree does.
-//! A record is free once its two outer edges are on the stack; a cavity of k triangles
-//! gives its k records and two fresh ones to the k + 2 triangles of the star.
+//! No old vertex lies inside a cavity (each stays a vertex), so its triangles form a tree, rooted
+//! at the seed. A depth-first traversal of that tree, right child first, visits the boundary edges
+//! in counterclockwise order: no marks and no hash map are needed. It terminates because the tree
+//! is finite. A record is free once its two outer edges are on the stack; the k records of a cavity
+//! of k triangles and two new ones hold the k + 2 triangles of the star.
 
 use delone_predicates::{Point2, Sign, incircle_exact, lexicographic, orient2d, tie_flips};
 
@@ -51,19 +51,19 @@ struct Ray {
     lift: f64,
 }
 
-/// An edge of the hole so far, from the end of the one before to `end`.
+/// An edge of the boundary so far, from the end of the previous one to `end`.
 #[derive(Clone, Copy)]
 struct Rim {
     across: Code,
     end: Ray,
     /// The cross product of its two ends.
     cross: f64,
-    /// The vertex beyond. It is looked up when the edge is met and used when it is due, so that
-    /// the loads have time: 5 % of the whole.
+    /// The apex beyond the edge. It is looked up when the edge is found and used when it is popped,
+    /// so that the loads have time to complete: 5 % of the total.
     apex: Ray,
 }
 
-/// A triangle in conflict, as seen from the new point.
+/// A triangle in conflict, relative to the new point.
 struct Seed {
     /// The half-edge opposite the first corner.
     e: Code,
@@ -77,7 +77,7 @@ fn cross(a: Point2, b: Point2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// A mesh that grows by one point at a time.
+/// A mesh into which points are inserted one at a time.
 pub struct Kernel<'a> {
     points: &'a [Point2],
     mesh: Patch<'a>,
@@ -90,7 +90,7 @@ pub struct Kernel<'a> {
 
 impl<'a> Kernel<'a> {
     /// A kernel on an empty `mesh` over `points`, which lie in `extent` and end with a NaN point
-    /// for infinity, that starts from the counter-clockwise triangle `first`.
+    /// for infinity. It starts from the counterclockwise triangle `first`.
     pub fn start(
         points: &'a [Point2],
         extent: &Extent,
@@ -98,7 +98,7 @@ impl<'a> Kernel<'a> {
         first: [u32; 3],
     ) -> Self {
         let ghost = triangle(mesh.triangle(first));
-        // An infinite side makes the bound infinite: then every test is exact.
+        // If the side is infinite, so is the bound, and every test is exact.
         let side = extent.side();
         let underflow = UNDERFLOW * (side * side).max(1.0);
         Self {
@@ -112,7 +112,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Triangles met so far, on the way and in cavities.
+    /// Triangles visited so far, in walks and cavities.
     pub fn work(&self) -> usize {
         self.work
     }
@@ -149,7 +149,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Inserts vertex `p`, which is none yet, and looks for its place from triangle `near` on.
+    /// Inserts vertex `p`, which is not in the mesh yet; the search starts at triangle `near`.
     /// Returns the new triangle that points towards `aim`.
     pub fn insert(&mut self, p: u32, near: u32, aim: Point2) -> u32 {
         let origin = self.points[p as usize];
@@ -175,8 +175,8 @@ impl<'a> Kernel<'a> {
         let (mut first, mut last, mut hint) = (u32::MAX, u32::MAX, u32::MAX);
         loop {
             //        w            Seen from p the edge runs from u to v. If the triangle
-            //      /   \          beyond it is in conflict, its edges u w and w v take
-            //     v ---- u        the place of u v.
+            //      /   \          beyond it is in conflict, its edges u w and w v replace
+            //     v ---- u        u v.
             //         p
             let apex = edge.apex;
             let right = cross(from.d, apex.d);
@@ -207,11 +207,11 @@ impl<'a> Kernel<'a> {
             }
             last = t;
             if edge.end.vertex == self.mesh.infinite() {
-                // Who takes a ghost away makes two: the last one made is there.
+                // An insertion that removes a ghost makes two new ones; remember the last one.
                 self.ghost = t;
             }
             let ahead = cross(edge.end.d, aim);
-            // A side of NaN is at infinity and counts as past the aim.
+            // A NaN side is at infinity and counts as beyond the aim.
             hint = if side >= 0.0 && (ahead < 0.0 || ahead.is_nan()) {
                 t
             } else {
@@ -227,8 +227,9 @@ impl<'a> Kernel<'a> {
         if hint == u32::MAX { last } else { hint }
     }
 
-    /// A triangle in conflict with vertex `p`: from `near` on, across edges that have p on their
-    /// other side, to the first whose circle holds p. Such a walk ends (see `walk`).
+    /// A triangle in conflict with vertex `p`: walks from `near` across edges that have p on their
+    /// other side to the first triangle whose circumcircle contains p. Such a walk terminates (see
+    /// `walk`).
     #[inline]
     fn seed(&mut self, p: u32, near: u32) -> Seed {
         let origin = self.points[p as usize];
@@ -236,7 +237,7 @@ impl<'a> Kernel<'a> {
         let [mut a, mut b, mut c] = self.mesh.corners(near).map(|v| self.ray(v, origin));
         loop {
             //        c               The cross products tell on which side of its edges p
-            //      /   \             lies, and with the lifts whether its circle holds p.
+            //      /   \             lies; with the lifts they tell whether its circle contains p.
             //     a --- b
             let [bc, ca, ab] = [cross(b.d, c.d), cross(c.d, a.d), cross(a.d, b.d)];
             let det = a.lift * bc + b.lift * ca + c.lift * ab;
@@ -250,7 +251,7 @@ impl<'a> Kernel<'a> {
                 };
             }
             let certain = -(TURN_BOUND * (sum + c.lift) + self.underflow);
-            // Nothing is certain where a corner is infinite, which makes all of this NaN.
+            // If a corner is infinite, all of this is NaN and nothing is certain.
             if det < -bound && bc < certain {
                 (b, c) = (c, b);
             } else if det < -bound && ca < certain {
@@ -268,7 +269,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same, by a walk with exact signs to the triangle that holds p.
+    /// The same, by a walk with exact predicates to the triangle that contains p.
     #[cold]
     #[inline(never)]
     fn seed_exactly(&mut self, p: u32, near: u32) -> Seed {
@@ -284,10 +285,10 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Writes a triangle of the star in a free record and links its outer edge.
+    /// Writes a triangle of the star to a free record and links its outer edge.
     #[inline]
     fn spoke(&mut self, corners: [u32; 3], across: Code) -> u32 {
-        // The two fresh records lie at the bottom, so that the stack never runs empty.
+        // The two new records are at the bottom of the stack, so it never runs empty.
         let t = self.free.pop().unwrap_or_default();
         self.mesh.set(t, corners);
         self.mesh.link(across, 8 * t);
@@ -303,8 +304,8 @@ impl<'a> Kernel<'a> {
         let inf = self.mesh.infinite();
         let (a, b) = match (u == inf, v == inf, w == inf) {
             (false, false, false) => {
-                // The triangle beyond is no sliver and p no corner of it: a tie means four distinct
-                // points on a circle.
+                // The triangle beyond is not degenerate and p is not a corner of it, so a tie means four
+                // distinct points on a circle.
                 return match incircle_exact(at(v), at(u), at(w), at(p)) {
                     Sign::Zero => tie_flips(at(u), at(v), at(w), at(p)),
                     sign => sign == Sign::Positive,

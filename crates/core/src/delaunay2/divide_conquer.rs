@@ -1,14 +1,15 @@
-//! Divide and conquer all the way down: cut in two, triangulate both sides, merge.
+//! Divide and conquer: split the points in two, triangulate both parts, merge.
 //!
-//! L. Guibas and J. Stolfi (1985; see `merge`), cuts of both directions as in R. A. Dwyer, "A faster
-//! divide-and-conquer algorithm for constructing Delaunay triangulations", Algorithmica 2 (1987).
+//! L. Guibas and J. Stolfi (1985; see `merge`); alternating cut directions as in R. A. Dwyer, "A
+//! faster divide-and-conquer algorithm for constructing Delaunay triangulations", Algorithmica 2
+//! (1987).
 //!
-//! Points come along the Hilbert curve, whose cells are squares and halves of squares: each bit of the
-//! keys, from the first on in which the points of a part differ, cuts it in two along one axis, and no
-//! point needs to be moved. From [`FEW`] points on cuts are medians, so that leaves have three or four
-//! points. Cells halve boxes, not numbers of points; a part deeper than 8 log n cells ends that and is
-//! cut at medians all the way, which are found in linear time. Merges are linear, so both ways take
-//! O(n log n) in the worst case.
+//! Points are sorted along the Hilbert curve, whose cells are squares and halves of squares. Each
+//! bit of the keys, from the first on in which the points of a part differ, splits it in two along
+//! one axis, and no point needs to be moved. From [`FEW`] points down, splits are at medians, so
+//! that leaves have three or four points. Cells halve boxes, not numbers of points; a part deeper
+//! than 8 log n cells is therefore split at medians from there on, which are found in linear time.
+//! Merges are linear, so both kinds of splits take O(n log n) in the worst case.
 
 use std::ops::Range;
 
@@ -25,13 +26,13 @@ use crate::order::curve;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Vertices of a part whose merge looks at the watch.
+/// Parts of at least this many vertices check for interruption when they are merged.
 const WATCHED: usize = 1 << 12;
 
-/// Most vertices that are cut at medians by comparing all with all.
+/// The most vertices that are split at medians by comparing all with all.
 const FEW: usize = 8;
 
-/// Fills `mesh` with the triangulation of vertices `block`, two at least, and returns a ghost.
+/// Fills `mesh` with the triangulation of the vertices `block`, at least two, and returns a ghost.
 /// `points` end with NaN for infinity.
 pub fn build(points: &[Point2], block: Range<u32>, mesh: Patch, watch: &Watch) -> Result<Code> {
     let mut keys: Vec<u32> = with_room(block.len())?;
@@ -49,7 +50,7 @@ pub fn build(points: &[Point2], block: Range<u32>, mesh: Patch, watch: &Watch) -
     let part = if keys.is_sorted() {
         builder.along_curve(&mut keys, 0, depth)?
     } else {
-        // Blocks that were too small alone make one without an order.
+        // Blocks that were too small alone are combined into one without an order.
         builder.uncurved(0, block.len())?
     };
     Ok(part.ghost())
@@ -63,11 +64,11 @@ struct Builder<'a> {
     block: u32,
 }
 
-/// Part of the block: the first of its places, and how many. Each place has two records.
+/// Part of the block: its first place and its number of places. Each place has two records.
 type Places = (u32, usize);
 
 impl Builder<'_> {
-    /// Triangulates the vertices from place `at` on, which have these `keys`, in ascending order.
+    /// Triangulates the vertices from place `at` on, which have these `keys`, ascending.
     fn along_curve(&mut self, keys: &mut [u32], at: u32, depth: u32) -> Result<Part> {
         let n = keys.len();
         let start = self.block + at;
@@ -82,7 +83,7 @@ impl Builder<'_> {
             self.watch.check()?;
         }
         if keys[0] == keys[n - 1] {
-            // A crowded cell is in the order of its own cells.
+            // The points of a crowded cell are sorted by keys of their own.
             let own = curve::keys(&self.points[start as usize..][..n], false);
             keys.iter_mut().zip(own).for_each(|(key, own)| *key = own);
             if !keys.is_sorted() {
@@ -104,14 +105,14 @@ impl Builder<'_> {
         Ok(self.join(sides, axis, bounds, (at, n), middle))
     }
 
-    /// The same by medians alone.
+    /// The same, by medians only.
     fn uncurved(&mut self, at: u32, n: usize) -> Result<Part> {
         let mut vertices = with_room(n)?;
         vertices.extend((self.block + at..).take(n));
         self.at_medians(&mut vertices, at, Axis::X)
     }
 
-    /// Two halves of a square in the order of the axis along which one comes before the other.
+    /// Two halves of a square in their order along the axis that separates them.
     #[inline]
     fn side_by_side<'p>(&self, [a, b]: [&'p Part; 2]) -> ([&'p Part; 2], Axis) {
         let at = |v: u32| self.points[v as usize];
@@ -128,7 +129,7 @@ impl Builder<'_> {
         (if first { [a, b] } else { [b, a] }, axis)
     }
 
-    /// Triangulates any vertices by cuts at medians, the first along `axis`, then in turn.
+    /// Triangulates any vertices by splits at medians, the first along `axis`, then alternating.
     fn at_medians(&mut self, vertices: &mut [u32], at: u32, axis: Axis) -> Result<Part> {
         let n = vertices.len();
         if n <= FEW {
@@ -148,7 +149,7 @@ impl Builder<'_> {
         Ok(self.join([&first, &second], axis, bounds, (at, n), middle))
     }
 
-    /// Joins the part of the first `middle` places and that of the others.
+    /// Merges the part of the first `middle` places and that of the others.
     #[inline]
     fn join(
         &mut self,
@@ -158,7 +159,7 @@ impl Builder<'_> {
         (at, n): Places,
         middle: usize,
     ) -> Part {
-        // The mesh of k vertices leaves two of its 2 k records free.
+        // A mesh of k vertices leaves two of its 2 k records free.
         let end = |k: usize| self.record(at + k as u32);
         let free = Free {
             bottom: end(middle) - 2,
@@ -182,7 +183,7 @@ impl Builder<'_> {
         self.halves(vertices, at, Bounds::within(extent.side()))
     }
 
-    /// Cuts few vertices in two until leaves are left.
+    /// Splits few vertices in two until leaves are left.
     fn halves(&mut self, vertices: &mut [u32], at: u32, bounds: Bounds) -> Part {
         let n = vertices.len();
         let (t, points) = (self.record(at), self.points);
@@ -197,8 +198,8 @@ impl Builder<'_> {
             return part;
         }
         let axis = sort(self.points, self.mesh.infinite(), vertices);
-        // As many leaves as must be, of three or four; two and two, or two and one, where such a leaf is
-        // degenerate.
+        // Use as few leaves as possible, of three or four vertices; two and two, or two and one, if
+        // such a leaf is degenerate.
         let leaves = n.div_ceil(4).max(2);
         let middle = (n * (leaves / 2)).div_ceil(leaves);
         let (first, second) = vertices.split_at_mut(middle);
@@ -208,8 +209,8 @@ impl Builder<'_> {
     }
 }
 
-/// Sorts at most [`FEW`] vertices along the longer side of their box, by counting for each those before
-/// it: no branch hangs on the points. `infinite` is a vertex of NaN.
+/// Sorts at most [`FEW`] vertices along the longer side of their box, by counting for each those
+/// before it: no branch depends on the points. `infinite` is a vertex of NaN.
 #[inline]
 fn sort(points: &[Point2], infinite: u32, vertices: &mut [u32]) -> Axis {
     let n = vertices.len();
@@ -221,7 +222,7 @@ fn sort(points: &[Point2], infinite: u32, vertices: &mut [u32]) -> Axis {
     let side = |k: usize| extent.max[k] - extent.min[k];
     let axis = if side(0) >= side(1) { Axis::X } else { Axis::Y };
     let turned = points.map(|p| axis.turned(p));
-    // Infinite coordinates put the padding behind all others.
+    // Infinite coordinates sort the padding after all others.
     let first = turned.map(|p| {
         if p[0] < f64::INFINITY {
             p[0]
@@ -233,7 +234,7 @@ fn sort(points: &[Point2], infinite: u32, vertices: &mut [u32]) -> Axis {
     for (rank, &x) in ranks.iter_mut().zip(&first) {
         *rank = first.iter().map(|&y| u64::from(y < x)).sum();
     }
-    // Points whose first coordinates tie have one rank, less than they should.
+    // Points whose first coordinates are equal share one rank, so the sum is too small.
     let all: u64 = ranks[..n].iter().sum();
     if all != (n * (n - 1) / 2) as u64 {
         for (rank, p) in ranks.iter_mut().zip(&turned) {

@@ -1,9 +1,9 @@
-//! The triangle from which an insertion starts.
+//! The triangle from which an incremental insertion starts.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
-/// The first two vertices of `order` and the first that is not in line with them, turned left;
-/// nothing where all are in line.
+/// The first two vertices of `order` and the first that is not collinear with them,
+/// counterclockwise; `None` if all are collinear.
 pub fn first_triangle(points: &[Point2], mut order: impl Iterator<Item = u32>) -> Option<[u32; 3]> {
     let at = |v: u32| points[v as usize];
     let (a, b) = (order.next()?, order.next()?);

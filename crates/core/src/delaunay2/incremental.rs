@@ -1,16 +1,15 @@
-//! Randomised incremental insertion: find the triangle of the next point, split it, flip.
+//! Randomized incremental insertion: locate the triangle of the next point, split it, flip.
 //!
 //! L. J. Guibas, D. E. Knuth and M. Sharir, "Randomized incremental construction of Delaunay and
-//! Voronoi diagrams", Algorithmica 7 (1992): with the points in random order the flips are O(n) and
-//! the work is O(n log n), both expected, whatever the points. N. Amenta, S. Choi and G. Rote,
-//! "Incremental constructions con BRIO" (2003): a biased randomised order keeps the expectation.
-//! Each point falls in the last round by the toss of a coin, else in the one before by the next
-//! toss, and so on; within a round the order is free, and follows the curve, so that the walk from
-//! one point to the next is short. The coin is a hash of the point's place along the curve: the
-//! order hangs on the coordinates alone.
+//! Voronoi diagrams", Algorithmica 7 (1992): with the points in random order the expected number of
+//! flips is O(n) and the expected work is O(n log n), whatever the points. N. Amenta, S. Choi and
+//! G. Rote, "Incremental constructions con BRIO" (2003): a biased randomized order keeps the
+//! expectation. Each point is in the last round with probability 1/2, else in the one before with
+//! probability 1/2, and so on. Within a round the order is arbitrary; here it follows the curve, so
+//! that the walk from one point to the next is short. The coin tosses are a hash of the point's
+//! place along the curve, so the order depends on the coordinates only.
 //!
-//! The kernel differs from that of `cavity` in what it keeps true: here every step leaves a
-//! triangulation of the points so far.
+//! Unlike in `cavity`, the mesh is a triangulation of the points so far after every step.
 
 use std::ops::Range;
 
@@ -23,11 +22,11 @@ use crate::memory::filled;
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 use crate::watch::Watch;
 
-/// Insertions between two looks at the watch.
+/// Insertions between two checks for interruption.
 const WATCH_EVERY: usize = 4096;
 
-/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
-/// block is collinear. `points` end with NaN for infinity.
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; `None` if the block
+/// is collinear. `points` end with NaN for infinity.
 pub fn build(
     points: &[Point2],
     block: Range<u32>,
@@ -55,9 +54,9 @@ pub fn build(
     ghost_of(&flipper.mesh).map(Some)
 }
 
-/// The vertices of a block in a biased randomised order: a counting sort by round.
+/// The vertices of a block in a biased randomized order, by a counting sort by round.
 fn brio(block: Range<u32>) -> Result<Vec<u32>> {
-    // One round more for each doubling: the first holds about one point.
+    // One round more for each doubling, so that the first has about one point.
     let last = block.len().max(1).ilog2();
     let round = |v: u32| last - hash(v - block.start).trailing_zeros().min(last);
     let mut ends = vec![0u32; last as usize + 2];
@@ -76,7 +75,7 @@ fn brio(block: Range<u32>) -> Result<Vec<u32>> {
     Ok(order)
 }
 
-/// A bijection of the 64-bit numbers whose low bits serve as coins: the finaliser of S. Vigna's
+/// A bijection of the 64-bit numbers whose low bits serve as coins: the finalizer of S. Vigna's
 /// splitmix64, with Stafford's thirteenth set of constants.
 fn hash(i: u32) -> u64 {
     let h = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -96,7 +95,7 @@ fn ghost_of(mesh: &Patch) -> Result<Code> {
     ghost.ok_or_else(|| Error::Internal("the mesh has no ghost".into()))
 }
 
-/// A Delaunay triangulation that grows by one point at a time.
+/// A Delaunay triangulation into which points are inserted one at a time.
 struct Flipper<'a> {
     points: &'a [Point2],
     mesh: Patch<'a>,
@@ -104,18 +103,18 @@ struct Flipper<'a> {
 }
 
 impl Flipper<'_> {
-    /// Inserts vertex `p`, which is none yet, and looks for its place from triangle `near` on.
+    /// Inserts vertex `p`, which is not in the mesh yet; the search starts at triangle `near`.
     /// Returns one of its triangles.
     fn insert(&mut self, p: u32, near: u32) -> Result<u32> {
         let (home, _) = walk(&self.mesh, self.points, near, self.at(p));
-        let on = self.edge_under(p, home)?;
+        let on = self.edge_containing(p, home)?;
         self.stack.clear();
         match on {
             None => self.stack.extend(self.mesh.split_triangle(home, p)),
             Some(e) => self.stack.extend(self.mesh.split_edge(e, p)),
         }
-        // Each flip adds an edge at p and takes none away, so there are fewer than vertices. The
-        // edges on the stack are opposite p and no flip but their own moves them.
+        // Each flip adds an edge at p and removes none there, so there are fewer flips than
+        // vertices. The edges on the stack are opposite p, and only their own flips change them.
         while let Some(e) = self.stack.pop() {
             if self.conflicts(e, p) {
                 let other = self.mesh.flip(e);
@@ -129,9 +128,9 @@ impl Flipper<'_> {
         self.points[v as usize]
     }
 
-    /// The edge of triangle `home` on which `p` lies, where it lies on one; a ghost holds p
-    /// strictly beyond its hull edge.
-    fn edge_under(&self, p: u32, home: u32) -> Result<Option<Code>> {
+    /// The edge of triangle `home` on which `p` lies, if any; if `home` is a ghost, p is strictly
+    /// outside its hull edge.
+    fn edge_containing(&self, p: u32, home: u32) -> Result<Option<Code>> {
         if self.mesh.corners(home).contains(&self.mesh.infinite()) {
             return Ok(None);
         }
@@ -140,19 +139,19 @@ impl Flipper<'_> {
             let ends = [next(e), prev(e)].map(|c| self.at(self.mesh.vertex(c)));
             let side = orient2d(ends[0], ends[1], self.at(p));
             if side == Sign::Negative || side == Sign::Zero && on.is_some() {
-                return Err(Error::Internal(format!("vertex {p} is in no triangle")));
+                return Err(Error::Internal(format!("no triangle contains vertex {p}")));
             }
             on = if side == Sign::Zero { Some(e) } else { on };
         }
         Ok(on)
     }
 
-    /// Whether the triangle beyond `e`, an edge opposite `p`, is in conflict with p.
+    /// Whether the triangle across `e`, an edge opposite `p`, is in conflict with p.
     ///
-    /// Then e may be flipped. What the circle of the triangle beyond holds on the side of p lies
-    /// within the angle at its apex q, so the quadrilateral is strictly convex, on a tie, too. A
-    /// ghost beyond another is in conflict where p sees its hull edge, which makes a left turn with
-    /// p; a ghost beyond a triangle never is, since p lies on the inner side.
+    /// If so, e may be flipped. The part of the circumcircle of the triangle across e that is on
+    /// p's side lies within the angle at its apex q, so the quadrilateral is strictly convex, even
+    /// on a tie. A ghost across from another is in conflict if p sees its hull edge, which makes a
+    /// left turn with p; a ghost across from a triangle never is, since p lies on the inner side.
     fn conflicts(&self, e: Code, p: u32) -> bool {
         //        p
         //      /   \
@@ -187,14 +186,14 @@ mod tests {
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(7..7 + n));
-            // A round ends where the order falls back.
+            // A round ends where the order decreases.
             let falls = order.windows(2).filter(|w| w[0] > w[1]).count();
             assert!(falls <= n.max(1).ilog2() as usize);
         }
     }
 
     #[test]
-    fn about_half_of_the_points_come_in_the_last_round() {
+    fn about_half_of_the_points_are_in_the_last_round() {
         let order = brio(0..4096).unwrap();
         let last = order.windows(2).rposition(|w| w[0] > w[1]).unwrap();
         let share = (order.len() - last - 1) as f64 / order.len() as f64;
@@ -243,7 +242,7 @@ mod tests {
         }
         assert!(
             flipper.insert(0, near).is_err(),
-            "vertex 0 is there already"
+            "vertex 0 is already in the mesh"
         );
     }
 }

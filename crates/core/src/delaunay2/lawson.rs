@@ -1,20 +1,22 @@
-//! Lawson's flips: any triangulation of a point set becomes the canonical Delaunay triangulation.
+//! Lawson's flips: turn any triangulation of a point set into the canonical Delaunay triangulation.
 //!
 //! C. L. Lawson, "Software for C1 surface interpolation", in Mathematical Software III (1977).
 //!
-//! An edge uv between the triangles u v p and v u q is flipped where q lies in the circle of u v p,
-//! ties as in the whole mesh (see `delone_predicates`). Then the quadrilateral is strictly convex:
-//! what the closed circle holds beyond uv, but for u and v, lies strictly within the angle at p.
+//! An edge uv between the triangles u v p and v u q is flipped if q lies in the circumcircle of u v
+//! p, with ties as in the whole mesh (see `delone_predicates`). Then the quadrilateral is strictly
+//! convex: the part of the closed circle beyond uv, except u and v, lies strictly within the angle
+//! at p.
 //!
-//! # Why it ends, and where
+//! # Why it terminates, and with what
 //!
 //! Lift each point to its perturbed height and each triangle with it: a surface over the hull. On
 //! the convex quadrilateral of a flip the surfaces before and after are the upper and the lower
-//! half of a tetrahedron, so the surface falls over its inside and rises nowhere. It lay on the
-//! lifted edge uv before and lies strictly below it at the crossing with pq after, for good: no
-//! edge comes back once it was flipped away. So there are at most n (n - 1) / 2 flips, one for each
-//! pair of points. Where no edge flips, the surface is convex at each edge, hence convex: the
-//! lower hull, which is the canonical triangulation and no other.
+//! half of a tetrahedron, so the surface becomes lower inside the quadrilateral and rises nowhere.
+//! Before the flip it contained the lifted edge uv; afterwards it is strictly below it at the
+//! crossing with pq, for good: an edge that was flipped away never returns. So there are at most n
+//! (n - 1) / 2 flips, one for each pair of points. If no edge needs a flip, the surface is convex
+//! at each edge, hence convex: it is the lower hull, which is the canonical triangulation and no
+//! other.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
@@ -27,27 +29,27 @@ use crate::order::arrange;
 use crate::points;
 use crate::watch::Watch;
 
-/// Triangles between two looks at the watch where little is done with each.
+/// Triangles between two checks for interruption in cheap loops.
 const LOT: usize = 1 << 16;
 
-/// Edges between two looks at the watch.
+/// Edges between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;
 
-/// What the flips came to.
+/// The result of the flips.
 #[derive(Debug)]
 pub struct Flipped {
-    /// Triangles, each in the place of one of the triangles given.
+    /// Triangles, each in the place of one of the given triangles.
     pub arrays: Arrays<3>,
     /// How many edges were flipped.
     pub flips: usize,
-    /// `[u, v, p, q]` for each flip where it was recorded: the edge u v, with p on its left and q
-    /// on its right, became p q.
+    /// `[u, v, p, q]` for each flip, if recorded: the edge u v, with p on its left and q on its
+    /// right, became p q.
     pub sequence: Vec<[i32; 4]>,
 }
 
-/// Flips edges of `simplices`, which must tile the hull of `points` and have each distinct point
-/// for a vertex, until the canonical Delaunay triangulation is reached. Vertices must be rows of
-/// `points`. Where the triangles do not tile the hull, [`Error::Shape`] names a culprit.
+/// Flips edges of `simplices`, which must tile the hull of `points` and have each distinct point as
+/// a vertex, until the canonical Delaunay triangulation is reached. Vertices must be rows of
+/// `points`. If the triangles do not tile the hull, [`Error::Shape`] names one that is wrong.
 pub fn lawson(
     points: &[Point2],
     simplices: &[[i32; 3]],
@@ -70,7 +72,7 @@ pub fn lawson(
         neighbors: &neighbors,
     };
     if simplices.is_empty() {
-        return Err(nothing_given(points, watch));
+        return Err(no_simplices(points, watch));
     }
     if let Some(fault) = fault(&validate(given, watch)?) {
         return Err(Error::Shape(fault));
@@ -94,8 +96,8 @@ pub fn lawson(
     })
 }
 
-/// Why no triangles are wrong: either there can be none, or points are left over.
-fn nothing_given(points: &[Point2], watch: &Watch) -> Error {
+/// Why an empty list of triangles is wrong: either there can be none, or points are left over.
+fn no_simplices(points: &[Point2], watch: &Watch) -> Error {
     let arranged = match arrange(points, 1, watch) {
         Ok(arranged) => arranged,
         Err(error) => return error,
@@ -104,10 +106,10 @@ fn nothing_given(points: &[Point2], watch: &Watch) -> Error {
     if arranged.points.len() < 3 || arranged.points[1..].windows(2).all(in_line) {
         return points::degenerate(&arranged.points, &arranged.rows);
     }
-    Error::Shape("no simplices are given, but the points span an area".into())
+    Error::Shape("no simplices are given, but the points are not collinear".into())
 }
 
-/// The first culprit that keeps the triangles from tiling the hull, in words.
+/// The first reason why the triangles do not tile the hull, as a message.
 fn fault(found: &Findings) -> Option<String> {
     if let Some(&v) = found.missing.first() {
         return Some(format!("point {v} is a vertex of no simplex"));
@@ -123,12 +125,12 @@ fn fault(found: &Findings) -> Option<String> {
             "the simplices do not tile the convex hull: there are {have}, and {expected} would"
         ));
     }
-    // Turns have been looked at, and `adjacency` repeats no edge and joins right.
+    // Orientations are checked; `adjacency` repeats no edge and links correctly.
     let broken = found.orientation.len() + found.edges.len() + found.neighbors.len();
-    (broken > 0).then(|| "the simplices are not joined along their edges".into())
+    (broken > 0).then(|| "the simplices do not meet edge to edge".into())
 }
 
-/// The rows that are vertices, ascending, and the triangles in places among them.
+/// The rows that are vertices, ascending, and the triangles as indices into them.
 pub(crate) fn compact(
     points: &[Point2],
     simplices: &[[i32; 3]],
@@ -154,13 +156,13 @@ pub(crate) fn compact(
     Ok((rows, own))
 }
 
-/// The loop of flips over a mesh.
+/// The flips of a mesh.
 struct Flips<'a> {
     points: &'a [Point2],
     mesh: Patch<'a>,
-    /// Edges to look at, by one of their codes: each edge that must be flipped is among them.
+    /// Edges to test, by one of their codes: every edge that must be flipped is among them.
     stack: Vec<Code>,
-    /// Whether a code is on the stack, so that it is there once.
+    /// Whether a code is on the stack, so that it is there only once.
     waiting: Vec<bool>,
     count: usize,
     record: bool,
@@ -168,7 +170,7 @@ struct Flips<'a> {
 }
 
 impl<'a> Flips<'a> {
-    /// All edges of the first `triangles` records wait.
+    /// Puts all edges of the first `triangles` records on the stack.
     fn over(
         points: &'a [Point2],
         mesh: Patch<'a>,
@@ -199,14 +201,14 @@ impl<'a> Flips<'a> {
     }
 
     fn push(&mut self, e: Code) {
-        // No code here is a ghost's: flips have triangles on both sides.
+        // No code here belongs to a ghost: flips have triangles on both sides.
         if !std::mem::replace(&mut self.waiting[e as usize], true) {
             self.stack.push(e);
         }
     }
 
-    /// Each step takes an edge off the stack, and only a flip, of which there are n (n - 1) / 2 at
-    /// most, puts four there.
+    /// Each step pops an edge from the stack, and only a flip, of which there are at most n (n - 1)
+    /// / 2, pushes four.
     fn run(&mut self, watch: &Watch) -> Result<()> {
         let n = self.points.len() as u128;
         let budget = n * (n - 1) / 2;
@@ -222,7 +224,7 @@ impl<'a> Flips<'a> {
                 continue;
             };
             if self.count as u128 == budget {
-                return Err(Error::Internal("a flip came twice".into()));
+                return Err(Error::Internal("an edge was flipped twice".into()));
             }
             self.count += 1;
             if self.record {
@@ -230,7 +232,7 @@ impl<'a> Flips<'a> {
             }
             let other = self.mesh.flip(e);
             let o = next(other);
-            // The four edges round the new one, by their new codes.
+            // The four edges around the new one, by their new codes.
             for outer in [e, prev(e), other, o] {
                 self.push(outer);
             }
@@ -238,7 +240,7 @@ impl<'a> Flips<'a> {
         Ok(())
     }
 
-    /// The edge `e` as u, v with its apexes p, q, where it must be flipped.
+    /// The edge `e` as u, v with its apexes p, q, if it must be flipped.
     fn must_flip(&self, e: Code) -> Option<[u32; 4]> {
         let o = self.mesh.opposite(e);
         let [u, v] = [next(e), prev(e)].map(|c| self.mesh.vertex(c));
@@ -278,7 +280,7 @@ mod tests {
     }
 
     /// All fans of a convex polygon end in its canonical triangulation.
-    fn fans_end_alike(points: &[Point2]) {
+    fn all_fans_give_one_triangulation(points: &[Point2]) {
         let method = Method::BowyerWatson;
         let right = triangulate(points, method, 1, &Watch::idle()).unwrap();
         let right = sorted(&right.arrays.simplices);
@@ -296,7 +298,7 @@ mod tests {
     #[test]
     fn fans_of_convex_polygons() {
         let parabola: Vec<Point2> = (-6..7).map(f64::from).map(|x| [x, x * x]).collect();
-        fans_end_alike(&parabola);
+        all_fans_give_one_triangulation(&parabola);
         // All of them on one circle: every flip breaks a tie.
         let [a, b, c] = [5.0, 4.0, 3.0];
         let quarter = [[a, 0.0], [b, c], [c, b]];
@@ -304,8 +306,8 @@ mod tests {
             .iter()
             .flat_map(|r| quarter.map(|[x, y]| [x * r[0] - y * r[1], x * r[1] + y * r[0]]))
             .collect();
-        fans_end_alike(&circle);
-        fans_end_alike(
+        all_fans_give_one_triangulation(&circle);
+        all_fans_give_one_triangulation(
             &circle
                 .iter()
                 .map(|p| p.map(|x| x * 1e-310))
@@ -314,8 +316,8 @@ mod tests {
     }
 
     #[test]
-    fn a_stretched_triangulation_comes_back() {
-        // What tiles the hull of points tiles that of their image under a stretch.
+    fn a_stretched_triangulation_is_restored() {
+        // A tiling of the hull stays one when the points are stretched.
         let mut state = 1u64;
         let mut random = || {
             state = state
@@ -349,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_tiling_is_refused_by_name() {
+    fn wrong_tilings_are_named() {
         let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.5]];
         let refused = |simplices: &[[i32; 3]]| {
             lawson(&points, simplices, false, &Watch::idle())
@@ -381,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_watch_ends_the_flips() {
+    fn an_interruption_ends_the_flips() {
         let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let stop = Watch::new(&|| true);
         let error = lawson(&points, &fan(4, 1), false, &stop).unwrap_err();

@@ -1,5 +1,6 @@
-//! Triangulations of two, three and four points, by a table and without branches: half of all merges
-//! would join parts of that size, and their branches cannot be foreseen.
+//! Triangulations of two, three and four points, by table and without branches.
+//!
+//! Half of all merges would join parts of that size, and their branches are unpredictable.
 
 use delone_predicates::{Point2, Sign, incircle_canonical};
 
@@ -12,8 +13,8 @@ const U: f64 = f64::EPSILON / 2.0;
 
 // With the frame of the head of `merge`, and a cross product and a squared length of differences each
 // at most 2 W^2 and off by 8 u W^2: the sum of three cross products errs by 24 u W^2, and its two
-// additions by 4 u W^2 and 6 u W^2. In the in-circle determinant three terms err by 36 u W^4 each, its
-// two additions by 8 u W^4 and 12 u W^4: 128 u W^4. What is left is room for the second order.
+// additions by 4 u W^2 and 6 u W^2. In the in-circle determinant three terms err by 36 u W^4 each,
+// its two additions by 8 u W^4 and 12 u W^4: 128 u W^4. The rest is room for terms of second order.
 
 /// Bound of twice the area of a triangle for points in a box of side 1.
 const TURN: f64 = 40.0 * U;
@@ -43,7 +44,8 @@ pub fn pair(mesh: &mut Patch, points: &[Point2], [a, b]: [u32; 2], t: u32) -> Pa
     Part::with_corners(points, [Corner::new(b, t), Corner::new(a, t + 1)])
 }
 
-/// Three points as a triangle, in four records from `t` on; nothing where their turn is uncertain.
+/// Three points as a triangle, in four records from `t` on; `None` if their orientation is
+/// uncertain.
 #[inline]
 pub fn triple(
     mesh: &mut Patch,
@@ -68,7 +70,7 @@ pub fn triple(
     Some(Part::with_corners(points, corners))
 }
 
-/// Four points, in six records from `t` on; nothing where a turn is uncertain.
+/// Four points, in six records from `t` on; `None` if an orientation is uncertain.
 #[inline]
 pub fn quad(
     mesh: &mut Patch,
@@ -79,7 +81,7 @@ pub fn quad(
 ) -> Option<Part> {
     let [p, q, r, s] = vertices.map(|v| points[v as usize]);
     let [a, b, c] = [p, q, r].map(|x| minus(x, s));
-    // Twice the areas of the triangles without one of the points.
+    // Twice the areas of the triangles that omit one of the points.
     let (bc, ac, ab) = (cross(b, c), cross(a, c), cross(a, b));
     let areas = [bc, ac, ab, bc - ac + ab];
     let lift = |x: Point2| x[0] * x[0] + x[1] * x[1];
@@ -95,7 +97,7 @@ pub fn quad(
         return None;
     }
     if circle.abs() <= CIRCLE * (bounds.square * bounds.square) {
-        // Ties go as in the whole mesh.
+        // Ties are broken as in the whole mesh.
         let inside = incircle_canonical(p, q, r, s) == Sign::Positive;
         case = case & 15 | usize::from(inside) << 4;
     }
@@ -116,16 +118,17 @@ pub fn quad(
     Some(Part::with_corners(points, [0, 1, 2, 3].map(corner)))
 }
 
-/// Records over few vertices: corners by their number, and codes across as from record 0.
+/// Records over few vertices: corners by number, and neighbor codes as if from record 0.
 struct Plan<const R: usize> {
     corners: [[u8; 3]; R],
     across: [[u32; 3]; R],
 }
 
-/// A triangle, whose ghosts lie across its edges; number 3 is infinite.
+/// A triangle and the ghosts across its edges; number 3 is the infinite vertex.
 static TRIANGLE: Plan<4> = linked([[0, 1, 2], [3, 2, 1], [3, 0, 2], [3, 1, 0]]);
 
-/// Vertex 3 within 0 1 2, and the quadrilateral 0 1 2 3 with the diagonal 0 2; number 4 is infinite.
+/// Vertex 3 inside 0 1 2, and the quadrilateral 0 1 2 3 with the diagonal 0 2; number 4 is
+/// infinite.
 static QUADS: [Plan<6>; 2] = [
     linked([
         [0, 1, 3],
@@ -168,10 +171,10 @@ const fn ends(corners: [u8; 3], k: usize) -> [u8; 2] {
     [corners[(k + 1) % 3], corners[(k + 2) % 3]]
 }
 
-/// Writes a plan over `vertices` in records from `t` on.
+/// Writes a plan over `vertices` to the records from `t` on.
 #[inline]
 fn write<const R: usize>(mesh: &mut Patch, plan: &Plan<R>, vertices: [u32; 5], t: u32) {
-    // Eight, so that a number of three bits needs no check.
+    // Eight entries, so that a 3-bit index needs no bounds check.
     let [a, b, c, d, e] = vertices;
     let vertices = [a, b, c, d, e, 0, 0, 0];
     for (i, record) in mesh.records_mut(t, R).iter_mut().enumerate() {
@@ -182,18 +185,19 @@ fn write<const R: usize>(mesh: &mut Patch, plan: &Plan<R>, vertices: [u32; 5], t
     }
 }
 
-/// What to make of four points.
+/// How to triangulate four points.
 #[derive(Clone, Copy)]
 struct Case {
     /// The plan.
     kind: u8,
     /// The points in the order of the plan.
     order: [u8; 4],
-    /// For each point of the hull the record of the ghost that ends there.
+    /// For each point of the hull, the record of the ghost that ends there.
     ghosts: [u8; 4],
 }
 
-/// By the signs of the four areas, from the one without the first point on, and of the determinant.
+/// Indexed by the signs of the four areas, from the one without the first point on, and of the
+/// determinant.
 static CASES: [Case; 32] = cases();
 
 const fn cases() -> [Case; 32] {
@@ -205,7 +209,7 @@ const fn cases() -> [Case; 32] {
     let mut cases = [none; 32];
     let mut signs = 0;
     while signs < 32 {
-        // Signs that four points cannot have find no order, and the entry stays unused.
+        // Signs that four points cannot have match no order, and the entry stays unused.
         let mut i = 0;
         while i < 256 {
             let order = [i & 3, i >> 2 & 3, i >> 4 & 3, i >> 6];
@@ -221,7 +225,7 @@ const fn cases() -> [Case; 32] {
     cases
 }
 
-/// The plan that fits the points in this order, 2 for none.
+/// The plan that fits the points in this order, 2 if none does.
 const fn kind(signs: usize, [a, b, c, d]: [usize; 4]) -> usize {
     if 1 << a | 1 << b | 1 << c | 1 << d != 15 || !left(signs, [a, b, c]) || !left(signs, [b, c, d])
     {
@@ -229,7 +233,7 @@ const fn kind(signs: usize, [a, b, c, d]: [usize; 4]) -> usize {
     } else if left(signs, [a, b, d]) && left(signs, [c, a, d]) {
         0
     } else if left(signs, [c, d, a]) && left(signs, [d, a, b]) {
-        // The diagonal is right where the last point is not in the circle of the others.
+        // The diagonal is right if the last point is not in the circumcircle of the others.
         let odd = ((a > b) as u8 + (a > c) as u8 + (a > d) as u8)
             + ((b > c) as u8 + (b > d) as u8 + (c > d) as u8);
         if (signs >> 4 & 1 == 1) != (odd % 2 == 1) {
@@ -242,7 +246,7 @@ const fn kind(signs: usize, [a, b, c, d]: [usize; 4]) -> usize {
     }
 }
 
-/// Whether three of the points turn left.
+/// Whether three of the points are counterclockwise.
 const fn left(signs: usize, [a, b, c]: [usize; 3]) -> bool {
     let odd = ((a > b) as u8 + (a > c) as u8 + (b > c) as u8) % 2 == 1;
     let without = 6 - a - b - c;
@@ -283,7 +287,8 @@ mod tests {
         hold: true,
     };
 
-    /// All triangles turn left, no circle holds another point, and the ends of the part are right.
+    /// All triangles are counterclockwise, all circumcircles are empty, and the ends of the part
+    /// are right.
     fn check(mesh: &Patch, points: &[Point2], part: &Part, records: u32) {
         mesh.check(records as usize).unwrap();
         let inf = mesh.infinite();
@@ -329,7 +334,7 @@ mod tests {
                 let mut mesh = Mesh2::with_vertices(4).unwrap();
                 let part = quad(&mut mesh.patch(), &points, [0, 1, 2, 3], 0, BOUNDS).unwrap();
                 check(&mesh.patch(), &points, &part, 6);
-                // Ties: the diagonal ends at the smallest point.
+                // On a tie the diagonal ends at the smallest point.
                 let least = (0..4).find(|&v| points[v as usize] == [0.0; 2]);
                 let of_least = |t: &u32| mesh.patch().corners(*t)[..].contains(&least.unwrap_or(4));
                 if shape[2] == [1.0, 1.0] {
@@ -348,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_uncertain_is_left() {
+    fn uncertain_signs_are_left_to_the_caller() {
         let mut mesh = Mesh2::with_vertices(4).unwrap();
         let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [0.0, 1.0]];
         assert!(quad(&mut mesh.patch(), &line, [0, 1, 2, 3], 0, BOUNDS).is_none());

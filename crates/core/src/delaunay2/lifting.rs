@@ -1,9 +1,9 @@
-//! The lower hull of the points lifted to a paraboloid.
+//! Delaunay triangulation by the lower hull of the points lifted to a paraboloid.
 //!
 //! K. Q. Brown, "Voronoi diagrams from convex hulls", Information Processing Letters 9 (1979), and
 //! H. Edelsbrunner and R. Seidel, "Voronoi diagrams and arrangements", Discrete & Computational
 //! Geometry 1 (1986): with z = x^2 + y^2 the lower facets of the convex hull are the Delaunay
-//! triangles. The hull is built by randomised insertion with conflicts, K. L. Clarkson and P. W.
+//! triangles. The hull is built by randomized insertion with conflicts, K. L. Clarkson and P. W.
 //! Shor, "Applications of random sampling in computational geometry, II", Discrete & Computational
 //! Geometry 4 (1989), in the rounds of N. Amenta, S. Choi and G. Rote, "Incremental constructions
 //! con BRIO" (2003): each point in the last round with probability 1/2, else in the one before with
@@ -12,39 +12,39 @@
 //! # The lifted hull
 //!
 //! The hull has one more vertex: a point so high above the others that its facets are vertical as
-//! far as any sign can tell. Those are the ghosts; what is not one is a lower facet. A point *sees*
-//! a facet if it lies on its outer side: below the plane, for a lower facet, which is the
-//! orientation of four lifted points and is the in-circle determinant, with heights perturbed as
-//! for ties; or beyond the hull edge of a ghost. No height is ever computed, so none is rounded.
-//! All perturbed points are extreme and no four in one plane: the hull is simplicial and has every
-//! point as a vertex.
+//! far as any sign shows. Those facets are the ghosts; all others are lower facets. A point
+//! *sees* a facet if it lies on its outer side. For a lower facet that means below its plane, which
+//! is the orientation of four lifted points and is the in-circle determinant, with heights
+//! perturbed as for ties; for a ghost it means beyond its hull edge. No height is ever computed, so
+//! none is rounded. All perturbed points are extreme and no four are coplanar: the hull is
+//! simplicial and has every point as a vertex.
 //!
 //! # Conflicts
 //!
-//! A point outside the hull so far is in conflict with the facets that it sees. Each keeps one of
-//! them, and each facet the list of points that keep it. When p is inserted, the facets that it
-//! sees are a disc; they go, and a cone of new ones comes, from p to the horizon. The points x that
-//! kept what goes get a facet of the cone:
+//! A point outside the hull so far is in conflict with the facets that it sees. Each point stores
+//! one of them, and each facet the list of points that store it. When p is inserted, the facets
+//! that it sees form a disk; they are removed, and replaced by a cone of new facets from p to the
+//! horizon. The points x that stored a removed facet are assigned a facet of the cone:
 //!
-//! - Each sees one. x sees a connected set of facets, and saw one that goes. If all that it saw
-//!   goes, it sees new ones, since it lies outside the new hull. If not, it saw the facets g and h
-//!   on either side of an edge of the horizon, p seeing g alone. The plane of the new facet on that
-//!   edge is a combination of the planes of g and h with positive factors, as p lies on both sides:
-//!   so x, outside both, is outside it.
-//! - It sees the one in whose angle round p it lies. The lower facets of the cone are the graph,
-//!   near p, of a convex function; each plane lies below the cone but where its own facet is. So if
-//!   x is below any plane, then below the one in whose angle it is. On the border of two angles
-//!   both planes agree. Outside the angles of all lower facets, where p is on the hull of the
+//! - Each x sees a facet of the cone. It sees a connected set of facets, and saw one that is removed.
+//!   If all that it saw are removed, it sees new ones, since it lies outside the new hull. If not, it
+//!   saw the facets g and h on either side of an edge of the horizon, where p sees only g. The plane
+//!   of the new facet on that edge is a combination of the planes of g and h with positive factors,
+//!   since p is outside one and inside the other: so x, outside both, is outside it.
+//! - It sees the one in whose angle around p it lies. Near p, the lower facets of the cone are the
+//!   graph of a convex function; each plane lies below the cone except on its own facet. So if x is
+//!   below any plane, it is below the one in whose angle it lies. On the border of two angles both
+//!   planes agree. Outside the angles of all lower facets, when p is on the hull of the points in the
 //!   plane, x is beyond an edge at p and sees a ghost.
 //!
-//! The angle is found by a binary search round p with orientations in the plane.
+//! The angle is found by a binary search around p with 2-D orientation tests.
 //!
 //! # Bound
 //!
-//! A point changes its facet only when a facet that it sees goes: O(n log n) times in all, expected
-//! over the random rounds, for every input (the theorem of Clarkson and Shor). A search takes the
-//! logarithm of the degree of p, below 6 on average over the vertices: O(n log n) in all where
-//! degrees are bounded, and O(n log^2 n) where points crowd round vertices of high degree.
+//! A point changes its facet only when a facet that it sees is removed: O(n log n) times in total,
+//! expected over the random rounds, for every input (the theorem of Clarkson and Shor). A search
+//! takes the logarithm of the degree of p, below 6 on average over the vertices: O(n log n) in
+//! total if degrees are bounded, and O(n log^2 n) if points crowd around vertices of high degree.
 
 use std::ops::Range;
 
@@ -56,14 +56,14 @@ use crate::memory::{filled, with_room, zeroed};
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 use crate::watch::Watch;
 
-/// Insertions between two looks at the watch.
+/// Insertions between two checks for interruption.
 const WATCH_EVERY: usize = 4096;
 
 /// No point.
 const NONE: u32 = u32::MAX;
 
-/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
-/// block is collinear. `points` end with NaN for infinity.
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; `None` if the block
+/// is collinear. `points` end with NaN for infinity.
 pub fn build(
     points: &[Point2],
     block: Range<u32>,
@@ -105,7 +105,7 @@ fn rounds(block: Range<u32>) -> Result<Vec<u32>> {
     Ok(order)
 }
 
-/// The finaliser of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
+/// The finalizer of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
 fn random(v: u32) -> u64 {
     let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -113,24 +113,24 @@ fn random(v: u32) -> u64 {
     x ^ x >> 31
 }
 
-/// A new facet, from the inserted point to `vertex` and to that of the next one round the point.
+/// A new facet, from the inserted point to `vertex` and to that of the next spoke around the point.
 #[derive(Clone, Copy)]
 struct Spoke {
     vertex: u32,
     facet: u32,
 }
 
-/// The hull of the points so far, and where the others see it.
+/// The hull of the points so far, and the conflicts of the others.
 struct Hull<'a> {
     points: &'a [Point2],
     mesh: Patch<'a>,
     /// The first vertex of the block and the first record of the patch.
     base: [u32; 2],
     facets: usize,
-    /// For each vertex a facet that it sees, and the next vertex that keeps the same.
+    /// For each vertex a facet that it sees, and the next vertex that stores the same one.
     seen: Vec<u32>,
     next: Vec<u32>,
-    /// For each facet the first vertex that keeps it.
+    /// For each facet the first vertex that stores it.
     kept_by: Vec<u32>,
     stack: Vec<Code>,
     visible: Vec<u32>,
@@ -140,7 +140,7 @@ struct Hull<'a> {
 }
 
 impl<'a> Hull<'a> {
-    /// The hull of a first triangle, counter-clockwise, and the point above.
+    /// The hull of a first triangle, counterclockwise, and the point above.
     fn start(
         points: &'a [Point2],
         block: Range<u32>,
@@ -165,7 +165,7 @@ impl<'a> Hull<'a> {
             moved: with_room(n)?,
         };
         let at = first.map(|v| points[v as usize]);
-        // Records 1 to 3 are the ghosts across edges 0 to 2. A point beyond no edge is inside.
+        // Records 1 to 3 are the ghosts across edges 0 to 2. A point that sees no edge is inside.
         for x in block.filter(|v| !first.contains(v)) {
             let beyond = |k: usize| {
                 orient2d(at[(k + 1) % 3], at[(k + 2) % 3], points[x as usize]) == Sign::Negative
@@ -180,7 +180,7 @@ impl<'a> Hull<'a> {
         self.points[v as usize]
     }
 
-    /// Makes `facet` the one that `x` keeps.
+    /// Stores `facet` as the conflict of `x`.
     fn keep(&mut self, x: u32, facet: u32) {
         let (x_at, facet_at) = ((x - self.base[0]) as usize, (facet - self.base[1]) as usize);
         self.seen[x_at] = facet;
@@ -205,9 +205,9 @@ impl<'a> Hull<'a> {
         }
     }
 
-    /// Puts the lifted point `p` into the hull.
+    /// Inserts the lifted point `p` into the hull.
     fn insert(&mut self, p: u32) {
-        self.look(p);
+        self.find_horizon(p);
         self.moved.clear();
         for i in 0..self.visible.len() {
             let facet_at = (self.visible[i] - self.base[1]) as usize;
@@ -219,14 +219,14 @@ impl<'a> Hull<'a> {
                 x = self.next[(x - self.base[0]) as usize];
             }
         }
-        self.raise_cone(p);
+        self.build_cone(p);
         self.redistribute(p);
     }
 
-    /// Finds the facets that `p` sees and, counter-clockwise, their horizon, as half-edges of what
-    /// stays. No vertex lies inside the disc of visible facets, so they form a tree, and the
-    /// search meets each once.
-    fn look(&mut self, p: u32) {
+    /// Finds the facets that `p` sees and their horizon, counterclockwise, as half-edges of the
+    /// facets that stay. No vertex lies inside the disk of visible facets, so they form a tree, and
+    /// the search visits each once.
+    fn find_horizon(&mut self, p: u32) {
         self.visible.clear();
         self.horizon.clear();
         let seed = self.seen[(p - self.base[0]) as usize];
@@ -245,8 +245,8 @@ impl<'a> Hull<'a> {
         }
     }
 
-    /// Joins `p` to the horizon, in the records of the facets that go and two more.
-    fn raise_cone(&mut self, p: u32) {
+    /// Joins `p` to the horizon, using the records of the removed facets and two more.
+    fn build_cone(&mut self, p: u32) {
         self.cone.clear();
         for i in 0..self.horizon.len() {
             let across = self.horizon[i];
@@ -266,7 +266,7 @@ impl<'a> Hull<'a> {
         }
     }
 
-    /// Gives each moved point the facet of the cone in whose angle round `p` it lies.
+    /// Assigns each moved point the facet of the cone in whose angle around `p` it lies.
     fn redistribute(&mut self, p: u32) {
         if self.moved.is_empty() {
             return;
@@ -299,12 +299,12 @@ struct Angles<'a> {
     p: Point2,
     cone: &'a [Spoke],
     outer: bool,
-    /// The first spoke that is a half turn or more from the first one.
+    /// The first spoke that is at least a half turn from the first one.
     half: usize,
 }
 
 impl<'a> Angles<'a> {
-    /// The angles between spokes; where p is on the hull, the first one leads to infinity.
+    /// The angles between spokes; if p is on the hull, the first one leads to infinity.
     fn round(points: &'a [Point2], p: u32, cone: &'a [Spoke], outer: bool) -> Self {
         let p = points[p as usize];
         let at = |s: &Spoke| points[s.vertex as usize];
@@ -327,19 +327,19 @@ impl<'a> Angles<'a> {
         orient2d(self.p, self.points[self.cone[spoke].vertex as usize], x)
     }
 
-    /// Of spokes within less than a half turn of x, all on one side of it after all on the other,
-    /// how many x is left of, or on.
+    /// Counts the spokes that x is left of, or on. All `spokes` are within less than a half turn of
+    /// x, with those on one side of it before those on the other.
     fn passed(&self, spokes: Range<usize>, x: Point2) -> usize {
         self.cone[spokes].partition_point(|s| {
             orient2d(self.p, self.points[s.vertex as usize], x) != Sign::Negative
         })
     }
 
-    /// The last spoke before the direction of `x`, or with it.
+    /// The last spoke at or before the direction of `x`.
     fn of(&self, x: Point2) -> usize {
         let m = self.cone.len();
         if self.outer {
-            //   The finite spokes 1 to m - 1 span a half turn at most; beyond either is outside.
+            //   The finite spokes 1 to m - 1 span at most a half turn; beyond either end is outside.
             if self.side(1, x) == Sign::Negative {
                 0
             } else if self.side(m - 1, x) == Sign::Positive {
@@ -393,7 +393,7 @@ mod tests {
         ] {
             assert_eq!(angles.of(x), expected, "{x:?}");
         }
-        // On the spoke that is a half turn from the first, either side will do.
+        // On the spoke a half turn from the first, either side is right.
         assert!([1, 2].contains(&angles.of([-2.0, 0.0])));
     }
 }

@@ -1,9 +1,9 @@
-//! Two triangulations side by side become one: the merge of divide and conquer.
+//! Merges two separated triangulations: the merge step of divide and conquer.
 //!
 //! L. Guibas and J. Stolfi, "Primitives for the manipulation of general subdivisions and the
 //! computation of Voronoi diagrams", ACM Transactions on Graphics 4 (1985); on triangles with
-//! ghosts as in J. R. Shewchuk, "Triangle" (1996). Linear: every step adds a triangle between the
-//! two or takes one away that never comes back.
+//! ghosts as in J. R. Shewchuk, "Triangle" (1996). Linear time: every step adds a triangle between
+//! the two or removes one that never returns.
 //!
 //! # The frame of the bridge
 //!
@@ -15,15 +15,16 @@
 //!
 //! # The bounds of the filter
 //!
-//! Let u = 2^-53 and W the longer side of the box of both parts, so that no difference of coordinates
-//! is larger. A rounded difference errs by u W, a product of two by 3 u W^2 to first order, s and t,
-//! sums of two of those at most 2 W^2 in size, by 2 * 3 u W^2 + 2 u W^2 = 8 u W^2. A product of s and t
-//! errs by 2 * 2 W^2 * 8 u W^2 + 4 u W^4 = 36 u W^4, and the difference of two, at most 8 W^4, by
-//! 2 * 36 u W^4 + 8 u W^4 = 80 u W^4. [`TURN`] and [`CIRCLE`] leave a fifth and more for terms of
-//! second order and the roundings of W and of the bounds. The bounds are used for W between 2^-200 and
-//! 2^250 only: there nothing overflows, and what underflow adds, less than 2^-1070 (1 + W^2), is no
-//! more than a term of second order. Other parts are merged by the exact predicates alone, and what
-//! the bounds leave open goes to them. The infinite vertex is NaN, above no bridge and in no circle.
+//! Let u = 2^-53 and W the longer side of the box of both parts, so that no difference of
+//! coordinates is larger. A rounded difference errs by u W, and a product of two by 3 u W^2 to
+//! first order. s and t, sums of two of those, each at most 2 W^2 in size, err by 2 * 3 u W^2 + 2 u
+//! W^2 = 8 u W^2. A product of s and t errs by 2 * 2 W^2 * 8 u W^2 + 4 u W^4 = 36 u W^4, and the
+//! difference of two, at most 8 W^4, by 2 * 36 u W^4 + 8 u W^4 = 80 u W^4. [`TURN`] and [`CIRCLE`]
+//! leave at least a fifth for terms of second order and the roundings of W and of the bounds. The
+//! bounds are used only for W between 2^-200 and 2^250: there nothing overflows, and underflow adds
+//! less than 2^-1070 (1 + W^2), no more than a term of second order. Other parts are merged by the
+//! exact predicates alone, which also decide what the bounds leave open. The infinite vertex is
+//! NaN, above no bridge and in no circle.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
@@ -37,16 +38,15 @@ const U: f64 = f64::EPSILON / 2.0;
 const TURN: f64 = 10.0 * U;
 /// Bound of the in-circle test for parts of side 1.
 const CIRCLE: f64 = 96.0 * U;
-/// More than the size of t for parts of side 1, so much that its product with an s that is certain
-/// is certain, too.
+/// Larger than t for parts of side 1, by so much that its product with a certain s is certain, too.
 const FAR: f64 = 16.0;
 
-/// What rounding may do within a box.
+/// Rounding bounds for points in a box.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
     /// The square of the longer side.
     pub square: f64,
-    /// Whether it is so far from the ends of the range of doubles that bounds hold.
+    /// Whether it is far enough from the ends of the range of doubles for the bounds to hold.
     pub hold: bool,
 }
 
@@ -62,8 +62,8 @@ impl Bounds {
     }
 }
 
-/// Joins two triangulations in `mesh`, all of `left` before all of `right` along `axis`, each given
-/// by one of its ghosts, with the two free records `spare`. Returns a ghost.
+/// Joins two triangulations in `mesh`, each given by one of its ghosts, using the two free records
+/// `spare`. All points of `left` precede all of `right` along `axis`. Returns a ghost.
 pub fn merge(
     mesh: &mut Patch,
     points: &[Point2],
@@ -88,11 +88,11 @@ pub struct Free {
     pub bottom: u32,
     /// For the ghost above.
     pub top: u32,
-    /// For the time of the merge, where a part is a single vertex.
+    /// Needed during the merge if a part is a single vertex.
     pub idle: u32,
 }
 
-/// Joins two parts of the points, not both single. Returns the whole.
+/// Joins two parts of the points, not both single. Returns the joined part.
 pub fn join(
     mesh: &mut Patch,
     points: &[Point2],
@@ -105,7 +105,7 @@ pub fn join(
     let (l, r) = (left.last(axis), right.first(axis));
     let (mut l_in, mut r_in) = (l.ghost(), r.ghost());
     if left.single || right.single {
-        // In place of ghosts one of infinite corners that is its own neighbour.
+        // Instead of ghosts, use one record with infinite corners that is its own neighbor.
         mesh.set(idle, [inf; 3]);
         mesh.link(8 * idle, 8 * idle);
         mesh.link(8 * idle + 1, 8 * idle + 2);
@@ -116,7 +116,7 @@ pub fn join(
     let ([l, r], [l_in, r_in]) = lower_tangent(mesh, points, bounds, ends, [l_in, r_in]);
     let (l_out, r_out) = (after(mesh, l_in), after(mesh, r_in));
     //     left       right      A ghost below the first bridge from l to r. The bridge rises;
-    //   l_out \     / r_in      what it has passed is triangulated, and what is above is bounded
+    //   l_out \     / r_in      triangles are added below it, and the region above it is bounded
     //          l---r            by the ghosts l_out, which begins at l, and r_in, which ends at r.
     //    l_in /     \ r_out
     mesh.set(bottom, [inf, r, l]);
@@ -135,7 +135,7 @@ pub fn join(
     mesh.link(8 * top, bridge.below);
     mesh.link(8 * top + 2, 8 * bridge.l_out + 1);
     mesh.link(8 * top + 1, 8 * bridge.r_in + 2);
-    // A single vertex has no hull edge between the ghosts above and below.
+    // A single vertex has no hull edge between the ghosts above and below it.
     if left.single {
         mesh.link(8 * bottom + 1, 8 * top + 2);
     }
@@ -146,7 +146,7 @@ pub fn join(
     Part::merged(points, left, right, upper, lower)
 }
 
-/// The ghost after ghost `g`, by records, of ghosts whose infinite corner is the first.
+/// The ghost after ghost `g`, by records; the infinite corner of the ghosts is the first.
 #[inline]
 fn after(mesh: &Patch, g: u32) -> u32 {
     triangle(mesh.record(g)[OPPOSITE + 2])
@@ -158,9 +158,9 @@ fn before(mesh: &Patch, g: u32) -> u32 {
     triangle(mesh.record(g)[OPPOSITE + 1])
 }
 
-/// From vertices on the two hulls, and the ghosts that end there, down to those of which neither
-/// hull has a vertex below the line through them. Of collinear vertices on it the nearest two
-/// remain. Each step goes on round a hull.
+/// The lower tangent: moves from vertices on the two hulls, given with the ghosts that end there,
+/// to those such that neither hull has a vertex below the line through them. Of collinear vertices
+/// on it, the nearest two are returned. Each step advances around a hull.
 #[inline]
 fn lower_tangent(
     mesh: &Patch,
@@ -197,14 +197,14 @@ fn lower_tangent(
     }
 }
 
-/// The bridge as the base of triangles.
+/// The bridge as the base of candidate triangles.
 struct Frame {
     l: Point2,
     r: Point2,
     d: Point2,
 }
 
-/// A point above the bridge or not; see the head of the file.
+/// How a point lies relative to the bridge; see the head of the file.
 #[derive(Clone, Copy)]
 struct Sight {
     s: f64,
@@ -228,7 +228,7 @@ impl Frame {
         }
     }
 
-    /// The vertex behind the hull edge of ghost `g`.
+    /// The vertex beyond the hull edge of ghost `g`.
     #[inline(always)]
     fn behind(&self, mesh: &Patch, points: &[Point2], g: u32) -> (u32, Sight) {
         let x = mesh.vertex(mesh.record(g)[OPPOSITE]);
@@ -237,14 +237,15 @@ impl Frame {
 }
 
 impl Sight {
-    /// Positive where `other` lies in the circle through the bridge and this point.
+    /// Positive if `other` lies in the circle through the bridge and this point.
     #[inline(always)]
     fn holds(self, other: Self) -> f64 {
         self.t * other.s - other.t * self.s
     }
 }
 
-/// Whether the circle through the bridge l r and `v` above it holds `x`, ties as in the whole mesh.
+/// Whether the circle through the bridge l r and `v` above it contains `x`, with ties as in the
+/// whole mesh.
 #[cold]
 #[inline(never)]
 fn holds(points: &[Point2], vertices: [u32; 4]) -> bool {
@@ -252,13 +253,13 @@ fn holds(points: &[Point2], vertices: [u32; 4]) -> bool {
     incircle_canonical(l, r, v, x) == Sign::Positive
 }
 
-/// The smaller, without a branch; the second where one is NaN.
+/// The smaller, without a branch; the second if one is NaN.
 #[inline]
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The larger, without a branch; the second where one is NaN.
+/// The larger, without a branch; the second if one is NaN.
 #[inline]
 fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -283,7 +284,7 @@ impl Bridge {
         while more && !bounds.hold {
             more = self.step_exactly(mesh, points);
         }
-        // A copy, whose address no call takes, stays in registers.
+        // A copy whose address is never taken stays in registers.
         let mut bridge = *self;
         while more {
             more = bridge.step(mesh, points, bounds.square).unwrap_or_else(|| {
@@ -296,8 +297,8 @@ impl Bridge {
         *self = bridge;
     }
 
-    /// Adds the triangle on the bridge; false where it has reached the upper tangent, nothing where
-    /// the bounds leave open what lies above the bridge.
+    /// Adds the triangle on the bridge; false if the bridge is the upper tangent, `None` if the
+    /// bounds do not decide what lies above the bridge.
     #[inline(always)]
     fn step(&mut self, mesh: &mut Patch, points: &[Point2], square: f64) -> Option<bool> {
         let at = |v: u32| points[v as usize];
@@ -310,12 +311,12 @@ impl Bridge {
         if on_left.s.abs() <= turn || on_right.s.abs() <= turn {
             return None;
         }
-        // Both at once: neither waits for the branches of the other.
+        // Load both first: neither waits for the branches of the other.
         let mut behind_left = frame.behind(mesh, points, self.l_out);
         let mut behind_right = frame.behind(mesh, points, self.r_in);
         let goes = |v: u32, on: Sight, (x, beyond): (u32, Sight)| {
             let held = on.holds(beyond);
-            // Above the bridge and in the circle, in one test; or certainly above it, and then exactly.
+            // One test for above the bridge and in the circle; the exact test only if it is above.
             least(on.s - turn, held - circle) > 0.0
                 || most(turn - on.s, held.abs() - circle) <= 0.0 && holds(points, [l, r, v, x])
         };
@@ -323,7 +324,7 @@ impl Bridge {
             self.l_out = mesh.peel(self.l_out);
             (left, on_left) = behind_left;
             if on_left.s <= turn {
-                return None; // It is above the bridge, but by how much?
+                return None; // It may be above the bridge: left to the exact step.
             }
             behind_left = frame.behind(mesh, points, self.l_out);
         }
@@ -331,11 +332,11 @@ impl Bridge {
             self.peel_right(mesh);
             (right, on_right) = behind_right;
             if on_right.s <= turn {
-                return None; // It is above the bridge, but by how much?
+                return None; // It may be above the bridge: left to the exact step.
             }
             behind_right = frame.behind(mesh, points, self.r_in);
         }
-        // What is not above the bridge goes to its line far away, and the other is taken.
+        // A point not above the bridge is moved far away on its line, so the other is taken.
         let far = |on: Sight| Sight {
             s: most(on.s, 0.0),
             t: if on.s > turn { on.t } else { FAR * square },
@@ -356,7 +357,7 @@ impl Bridge {
         Some(true)
     }
 
-    /// The same by exact predicates, where even what lies above the bridge is uncertain.
+    /// The same by exact predicates, if it is uncertain what lies above the bridge.
     #[cold]
     #[inline(never)]
     fn step_exactly(&mut self, mesh: &mut Patch, points: &[Point2]) -> bool {
@@ -384,7 +385,7 @@ impl Bridge {
         true
     }
 
-    /// Takes the triangle behind the ghost on the right away: that ghost stays the last before r.
+    /// Removes the triangle beyond the ghost on the right: that ghost stays the last before r.
     #[inline]
     fn peel_right(&mut self, mesh: &mut Patch) {
         let before = mesh.record(self.r_in)[OPPOSITE + 1];
@@ -392,7 +393,7 @@ impl Bridge {
         mesh.link(8 * other + 1, before);
     }
 
-    /// The ghost on the left becomes a triangle: its infinite corner becomes r.
+    /// Turns the ghost on the left into a triangle: its infinite corner becomes r.
     #[inline]
     fn take_left(&mut self, mesh: &mut Patch, head: u32) {
         let g = self.l_out;
@@ -403,7 +404,7 @@ impl Bridge {
         (self.l, self.below) = (head, 8 * g + 2);
     }
 
-    /// The ghost on the right becomes a triangle: its infinite corner becomes l.
+    /// Turns the ghost on the right into a triangle: its infinite corner becomes l.
     #[inline]
     fn take_right(&mut self, mesh: &mut Patch, tail: u32) {
         let g = self.r_in;

@@ -1,8 +1,8 @@
 //! 2-D Delaunay triangulations of points, exact and canonical.
 //!
-//! Every method ends in the same triangles: cocircular points are tied by their coordinates, as if
-//! each lifted point were lowered by an infinitesimal that is larger the smaller the point is in
-//! lexicographic order.
+//! All methods return the same triangles: ties between cocircular points are broken by coordinates,
+//! as if each lifted point were lowered by an infinitesimal that is larger the smaller the point is
+//! in lexicographic order.
 
 mod bowyer_watson;
 mod cavity;

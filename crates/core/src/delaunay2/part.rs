@@ -1,8 +1,9 @@
-//! A triangulated part of the points as a merge sees it: its four extreme vertices, each with the
-//! ghost whose hull edge ends there.
+//! A triangulated part as a merge sees it: four extreme vertices, each with the ghost whose hull
+//! edge ends there.
 //!
-//! Extremes go by one coordinate, ties by the other as if the plane were turned a little: so they are
-//! strict corners of the hull, which meets each of them once, even where the part is a chain.
+//! Extremes are by one coordinate, with ties broken by the other as if the plane were rotated
+//! slightly. So they are strict corners of the hull, which visits each of them once, even if the
+//! part is a chain.
 
 use std::hint::select_unpredictable;
 
@@ -11,8 +12,8 @@ use delone_predicates::Point2;
 use crate::mesh2::{Code, Patch, triangle};
 use crate::order::blocks::Axis;
 
-/// A vertex and the record of the ghost that ends there, in one word: a choice between two is one
-/// instruction without a branch.
+/// A vertex and the record of the ghost that ends there, in one word: choosing between two takes
+/// one instruction and no branch.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner(u64);
 
@@ -35,7 +36,7 @@ impl Corner {
         self.0 as u32
     }
 
-    /// This corner with another ghost, if it is at the vertex of `new`.
+    /// This corner, with the ghost of `new` if both are at the same vertex.
     #[inline]
     fn renewed(self, new: Self) -> Self {
         Self::choose(self.vertex() == new.vertex(), new, self)
@@ -65,7 +66,7 @@ impl Part {
         }
     }
 
-    /// The part whose hull has the `corners` and no others that are extreme.
+    /// The part whose hull has the `corners`; all extreme vertices must be among them.
     #[inline]
     pub fn with_corners<const N: usize>(points: &[Point2], corners: [Corner; N]) -> Self {
         let ends = |axis: Axis| {
@@ -83,7 +84,8 @@ impl Part {
         }
     }
 
-    /// The part round which the hull of `ghost` runs, whose ghosts are turned.
+    /// The part bounded by the hull of `ghost`; its ghosts are rotated so that their infinite
+    /// corner is first.
     pub fn with_hull(mesh: &mut Patch, points: &[Point2], ghost: Code) -> Self {
         let corner = |mesh: &mut Patch, g: Code| {
             let g = mesh.turn(g);
@@ -122,7 +124,7 @@ impl Part {
     fn joined(points: &[Point2], [a, b]: [&Self; 2]) -> Self {
         let end = |i: usize, axis: Axis| {
             let (p, q) = (a.ends[i], b.ends[i]);
-            // Last ends are at odd places, where the one before is not chosen.
+            // Odd places are the last ends: there the later of the two is chosen.
             let (p, q) = if i % 2 == 1 { (q, p) } else { (p, q) };
             Corner::choose(before(points, axis, p, q), a.ends[i], b.ends[i])
         };
@@ -137,7 +139,7 @@ impl Part {
         }
     }
 
-    /// The same after a merge, in which one ghost of each got a successor.
+    /// The same after a merge, in which one ghost of each part got a new successor.
     #[inline]
     pub fn merged(
         points: &[Point2],

@@ -1,10 +1,12 @@
-//! Makes a Delaunay triangulation canonical: fans each polygon of cocircular points from its
-//! smallest vertex. For methods that leave ties as they come.
+//! Breaks ties: re-triangulates each polygon of cocircular points as a fan from its smallest
+//! vertex.
+//!
+//! For methods whose ties are arbitrary.
 //!
 //! The triangles of such a polygon have no vertex inside it, so their dual is a tree, and a search
-//! from one of them meets each once. Every flip gives the smallest vertex one more triangle, so a
-//! polygon of k vertices takes k - 3 flips at most. A fanned polygon has no wrong edge left and is
-//! not looked at again: the whole is linear.
+//! from one of them visits each once. Every flip gives the smallest vertex one more triangle, so a
+//! polygon of k vertices takes at most k - 3 flips. A polygon that is a fan has no wrong edge left
+//! and is not visited again: the total time is linear.
 
 use delone_predicates::{Point2, incircle, lexicographic, tie_flips};
 
@@ -12,10 +14,10 @@ use crate::error::Result;
 use crate::mesh2::{Code, Patch, next, prev, triangle};
 use crate::watch::Watch;
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const WATCH_EVERY: u32 = 1 << 14;
 
-/// Flips what ties of the first `triangles` triangles of `mesh`, ghosts among them, need to be
+/// Flips edges of the first `triangles` triangles of `mesh`, ghosts included, until ties are
 /// canonical. The triangulation must be Delaunay.
 pub fn fan(mesh: &mut Patch, points: &[Point2], triangles: usize, watch: &Watch) -> Result<()> {
     let start = mesh.first();
@@ -46,19 +48,19 @@ fn tied(mesh: &Patch, points: &[Point2], e: Code) -> bool {
     incircle(a, b, c, points[apex as usize]).is_zero()
 }
 
-/// Whether a tie across `e` is against the rule.
+/// Whether a tie across `e` violates the rule.
 fn wrong(mesh: &Patch, points: &[Point2], e: Code) -> bool {
     let at = |e: Code| points[mesh.vertex(e) as usize];
     tie_flips(at(next(e)), at(prev(e)), at(e), at(mesh.opposite(e)))
 }
 
-/// Lists the triangles of the cocircular polygon round the edge `e`, by a half-edge of each.
+/// Lists the triangles of the cocircular polygon around the edge `e`, by a half-edge of each.
 fn gather(mesh: &Patch, points: &[Point2], e: Code, polygon: &mut Vec<Code>) {
     polygon.clear();
     polygon.extend([e, mesh.opposite(e)]);
     let mut done = 0;
     while done < polygon.len() {
-        // The search came across this edge, two are left.
+        // The search came across this edge; two are left.
         let e = polygon[done];
         for side in [next(e), prev(e)] {
             if tied(mesh, points, side) {
@@ -69,7 +71,7 @@ fn gather(mesh: &Patch, points: &[Point2], e: Code, polygon: &mut Vec<Code>) {
     }
 }
 
-/// Flips until all triangles of `polygon` have its smallest vertex.
+/// Flips until all triangles of `polygon` contain its smallest vertex.
 fn fan_one(mesh: &mut Patch, points: &[Point2], polygon: &[Code]) {
     let corners = polygon
         .iter()
@@ -84,9 +86,9 @@ fn fan_one(mesh: &mut Patch, points: &[Point2], polygon: &[Code]) {
         .map(|(_, e)| e)
         .collect();
     while let Some(e) = opposite.pop() {
-        //        m                m          The triangle beyond the edge opposite the smallest
-        //      /   \            / | \        vertex m joins the fan; two edges are opposite m
-        //     u --- v    ->    u  |  v       in its place.
+        //        m                m          The triangle across the edge opposite the smallest
+        //      /   \            / | \        vertex m joins the fan; two edges opposite m
+        //     u --- v    ->    u  |  v       replace it.
         //      \   /            \ | /
         //        q                q
         if tied(mesh, points, e) {

@@ -1,4 +1,4 @@
-//! From rows of coordinates to arrays of triangles: scan, order, build in blocks, merge, export.
+//! Triangulates rows of coordinates: scan, sort, build in blocks, merge, export.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -14,16 +14,16 @@ use crate::order::{Arranged, arrange};
 use crate::watch::Watch;
 use crate::{parallel, points};
 
-/// How a triangulation is built; the triangles are the same.
+/// How a triangulation is built; all methods give the same triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// What is fastest: cavity insertion along the curve, but divide and conquer where ties abound.
+    /// The fastest: cavity insertion along the curve, or divide and conquer if there are many ties.
     Auto,
     /// Cavity insertion along the curve.
     BowyerWatson,
-    /// Halves, quarters and so on, merged.
+    /// Recursive halves, merged.
     DivideConquer,
-    /// Randomised insertion and flips.
+    /// Randomized insertion and flips.
     Incremental,
     /// Fortune's sweep line.
     Sweep,
@@ -32,7 +32,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// The names by which callers ask for methods.
+    /// The names of the methods.
     pub const NAMES: [(&'static str, Self); 6] = [
         ("auto", Self::Auto),
         ("bowyer-watson", Self::BowyerWatson),
@@ -42,7 +42,7 @@ impl Method {
         ("lifting", Self::Lifting),
     ];
 
-    /// The method of a name.
+    /// The method with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::NAMES
             .iter()
@@ -56,22 +56,23 @@ impl Method {
     }
 }
 
-/// Places at which a block is tried for ties, and how many tell that they abound. Of four neighbours along
-/// the curve a third have one circle on a grid, hardly any among scattered points.
+/// Places at which a block is tested for ties, and how many ties mean that there are many. Of four
+/// consecutive points along the curve a third are cocircular on a grid, hardly any among scattered
+/// points.
 const TRIED: usize = 48;
-const ABOUND: usize = 6;
+const MANY: usize = 6;
 
-/// A part of the work and the time it took.
+/// The name of a stage and the time it took.
 pub type Stage = (&'static str, Duration);
 
 /// Triangles in the rows of the input.
 #[derive(Debug)]
 pub struct Triangulation {
-    /// Triangles and their neighbours.
+    /// Triangles and their neighbors.
     pub arrays: Arrays<3>,
     /// `[row, first row of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
-    /// Where the time went.
+    /// The times of the stages.
     pub stages: Vec<Stage>,
 }
 
@@ -109,7 +110,7 @@ pub fn triangulate(
     })
 }
 
-/// The same as a mesh; the stages go to `clock`.
+/// The same as a mesh; the times of the stages go to `clock`.
 pub fn mesh(
     input: &[Point2],
     method: Method,
@@ -125,13 +126,13 @@ pub fn mesh(
     if n < 3 {
         return Err(points::degenerate(&arranged.points, &arranged.rows));
     }
-    // The vertex at infinity: its NaN sends every filter on to the exact tests.
+    // The vertex at infinity: its NaN fails every filter, so exact tests decide.
     arranged.points.push([f64::NAN; 2]);
     let mut mesh = Mesh2::with_vertices(n)?;
     let ghost = build(&mut mesh, &arranged, method, workers, watch)?;
     let patch = mesh.patch();
     if patch.vertex(patch.opposite(ghost)) == patch.infinite() {
-        // Ghosts on both sides of a hull edge: a chain.
+        // Ghosts on both sides of a hull edge: all points are collinear.
         return Err(points::degenerate(&arranged.points[..n], &arranged.rows));
     }
     clock.lap("build");
@@ -150,7 +151,7 @@ pub fn mesh(
     })
 }
 
-/// Triangulates each block, then merges them two by two.
+/// Triangulates each block, then merges pairs of blocks.
 fn build(
     mesh: &mut Mesh2,
     arranged: &Arranged,
@@ -159,7 +160,7 @@ fn build(
     watch: &Watch,
 ) -> Result<Code> {
     let points = &arranged.points[..];
-    // Merges want two vertices on either side. Blocks of fewer come from duplicates alone.
+    // A merge needs two vertices per side. Only duplicates make blocks of fewer.
     let few = |w: &[usize]| w[1] - w[0] < 2;
     let whole = [0, mesh.vertices()];
     let one = !method.in_blocks() || arranged.starts.windows(2).any(few);
@@ -202,7 +203,7 @@ fn patches<'a>(mesh: &'a mut Mesh2, starts: &[usize], width: usize) -> Vec<(usiz
     patches
 }
 
-/// One block by the method that was asked for.
+/// Triangulates one block by the requested method.
 fn block(
     points: &[Point2],
     block: Range<u32>,
@@ -212,7 +213,7 @@ fn block(
 ) -> Result<Code> {
     let own = block.clone();
     let ghost = match method {
-        Method::Auto if ties_abound(&points[block.start as usize..block.end as usize]) => None,
+        Method::Auto if has_many_ties(&points[block.start as usize..block.end as usize]) => None,
         Method::Auto | Method::BowyerWatson => {
             bowyer_watson::build(points, own, mesh.reborrow(), watch)?
         }
@@ -227,14 +228,14 @@ fn block(
     divide_conquer::build(points, block, mesh, watch)
 }
 
-/// Whether many neighbours among the points of a block, which lie along the curve, have one circle.
-fn ties_abound(own: &[Point2]) -> bool {
+/// Whether many consecutive points of a block, which is sorted along the curve, are cocircular.
+fn has_many_ties(own: &[Point2]) -> bool {
     let step = (own.len() / TRIED).max(4);
     let ties = own
         .chunks(step)
         .filter_map(|part| part.first_chunk())
         .filter(|&&[a, b, c, d]| incircle(a, b, c, d).is_zero());
-    ties.count() >= ABOUND
+    ties.count() >= MANY
 }
 
 /// Times the stages one after the other.
@@ -267,12 +268,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ties_abound_on_grids_alone() {
+    fn only_grids_have_many_ties() {
         let grid = |i: u32| [f64::from(i % 60), f64::from(i / 60)];
         let scattered = |i: u32| grid(i).map(|x| (x + 0.3 * (1.7 * x * f64::from(i)).sin()) * 1e3);
         let abound = |points: Vec<Point2>| {
             let arranged = arrange(&points, 1, &Watch::idle()).unwrap();
-            ties_abound(&arranged.points)
+            has_many_ties(&arranged.points)
         };
         assert!(abound((0..3600).map(grid).collect()));
         assert!(!abound((0..3600).map(scattered).collect()));

@@ -1,10 +1,10 @@
-//! Is this the Delaunay triangulation? Exact, and with the culprits where it is not.
+//! Exact validation of a 2-D Delaunay triangulation: lists the simplices that are wrong.
 //!
-//! Why these checks suffice: where all triangles turn left and each inner edge joins exactly two
-//! of them, the triangles cover each point of the plane as often as their boundary winds round it;
-//! a boundary that is one convex cycle winds once round its inside. So they tile the hull, and a
-//! tiling whose inner edges are all locally Delaunay is Delaunay (B. Delaunay, "Sur la sphère
-//! vide", 1934).
+//! Why these checks suffice: if all triangles are counterclockwise and each inner edge joins
+//! exactly two of them, the triangles cover each point of the plane as often as their boundary
+//! winds around it; a boundary that is one convex cycle winds once around its interior. So they
+//! tile the hull, and a tiling whose inner edges are all locally Delaunay is Delaunay (B. Delaunay,
+//! "Sur la sphère vide", 1934).
 
 use delone_predicates::{Sign, incircle, lexicographic, orient2d, tie_flips};
 
@@ -15,36 +15,36 @@ use crate::order::{Arranged, arrange};
 use crate::points;
 use crate::watch::{Pace, Watch};
 
-/// Triangles, or vertices, between two looks at the watch where little is done with each.
+/// Triangles, or vertices, between two checks for interruption in cheap loops.
 const LOT: usize = 1 << 16;
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;
 
-/// Culprits by kind; all empty where the triangulation is right.
+/// Faults by kind; all are empty if the triangulation is right.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Findings {
-    /// Triangles that do not turn left.
+    /// Triangles that are not counterclockwise.
     pub orientation: Vec<u32>,
-    /// Directed edges that more than one triangle has.
+    /// Directed edges that belong to more than one triangle.
     pub edges: Vec<[u32; 2]>,
-    /// Triangles whose neighbour across some edge does not share that edge.
+    /// Triangles whose neighbor across some edge does not share that edge.
     pub neighbors: Vec<u32>,
-    /// Boundary edges after which the boundary is no convex cycle.
+    /// Boundary edges after which the boundary is not a convex cycle.
     pub hull: Vec<[u32; 2]>,
-    /// Distinct points that are no vertex.
+    /// Distinct points that are not vertices.
     pub missing: Vec<u32>,
     /// Vertices that are not the first row with their coordinates.
     pub repeats: Vec<u32>,
-    /// Adjacent triangles of which one has the other's apex in its circle.
+    /// Adjacent triangles one of which has the other's apex in its circumcircle.
     pub delaunay: Vec<[u32; 2]>,
     /// Adjacent cocircular triangles whose common edge is not the canonical one.
     pub ties: Vec<[u32; 2]>,
-    /// Triangles expected, 2 n - h - 2, and found, where they differ.
+    /// The expected number of triangles, 2 n - h - 2, and the actual one, if they differ.
     pub count: Vec<[u32; 2]>,
 }
 
 impl Triangles<'_> {
-    /// The ends of edge k of triangle t, counter-clockwise.
+    /// The ends of edge k of triangle t, counterclockwise.
     fn edge(&self, t: usize, k: usize) -> [i32; 2] {
         let s = self.simplices[t];
         [s[(k + 1) % 3], s[(k + 2) % 3]]
@@ -57,7 +57,7 @@ impl Triangles<'_> {
     }
 }
 
-/// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
+/// Checks every property of the canonical Delaunay triangulation of the points.
 pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, 1, watch)?;
@@ -85,7 +85,7 @@ pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     Ok(found)
 }
 
-/// One triangle: its turn, its neighbours, the circles across its edges.
+/// Checks one triangle: its orientation, its neighbors, the circumcircles across its edges.
 fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec<[i32; 2]>) {
     let [a, b, c] = given.simplices[t].map(|v| given.point(v));
     if orient2d(a, b, c) != Sign::Positive {
@@ -162,7 +162,7 @@ fn repeated_edges(given: Triangles, watch: &Watch) -> Result<Vec<[u32; 2]>> {
     Ok(repeated)
 }
 
-/// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
+/// Distinct points none of whose rows is a vertex, and vertices that repeat an earlier row.
 fn missing(
     given: Triangles,
     ordered: &Arranged,
@@ -192,8 +192,8 @@ fn missing(
     Ok(())
 }
 
-/// The boundary must be one cycle that goes lexicographically up and down once and never turns
-/// right: then it is the convex hull, with the points on its edges.
+/// The boundary must be one cycle that ascends and descends lexicographically exactly once and
+/// never turns right: then it is the convex hull, with the points on its edges.
 fn hull(given: Triangles, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
     boundary.sort_unstable();
     let up = |[u, v]: [i32; 2]| lexicographic(given.point(u), given.point(v)).is_lt();
@@ -221,7 +221,7 @@ fn hull(given: Triangles, mut boundary: Vec<[i32; 2]>, found: &mut Findings) {
             found.hull.push(edge.map(|v| v as u32));
         }
         edge = after;
-        // A walk along a boundary that is no permutation might miss its start: the count ends it.
+        // If the boundary is not a permutation, the walk may miss its start: the count ends it.
         if edge == first || seen > boundary.len() {
             break;
         }

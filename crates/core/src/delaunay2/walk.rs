@@ -1,23 +1,23 @@
-//! The walk to the triangle that holds a point, from triangle to triangle across edges that have
-//! the point on their other side.
+//! Visibility walk to the triangle that contains a point.
 //!
-//! O. Devillers, S. Pion and M. Teillaud, "Walking in a triangulation" (2002). The visibility walk
-//! meets triangles in the order of the power of the point to their circles, with ties as in the
-//! mesh, which falls at each step; with exact signs it never comes back and ends.
+//! From triangle to triangle, across edges that have the point on their other side.
+//!
+//! O. Devillers, S. Pion and M. Teillaud, "Walking in a triangulation" (2002). In a Delaunay
+//! triangulation the power of the point with respect to the circumcircle, with ties as in the mesh,
+//! falls at each step; with exact signs the walk never returns to a triangle and terminates.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
 use crate::mesh2::{Patch, next, prev, triangle};
 
-/// The triangle whose closed area holds `q`, or a ghost whose hull edge has `q` strictly beyond
-/// it, walking from triangle `from`; and the number of triangles met on the way.
+/// The triangle whose closed area contains `q`, or a ghost with `q` strictly outside its hull edge,
+/// by a walk from triangle `from`; and the number of triangles visited on the way.
 #[inline]
 pub fn walk(mesh: &Patch, points: &[Point2], from: u32, q: Point2) -> (u32, usize) {
     walk_within(mesh, points, from, q, usize::MAX).unwrap_or((from, 0))
 }
 
-/// The same in a triangulation of any kind, where a walk may turn in circles; nothing where more
-/// than `limit` triangles would be met.
+/// The same in an arbitrary triangulation, where a walk may cycle; `None` after `limit` triangles.
 #[inline]
 pub fn walk_within(
     mesh: &Patch,
@@ -34,7 +34,7 @@ pub fn walk_within(
     let mut start = 8 * from;
     if let Some(k) = mesh.corners(from).iter().position(|&v| v == inf) {
         let outer = 8 * from + k as u32;
-        // The ghost's own half-edge has the outside on its left.
+        // The finite half-edge of a ghost has the outside on its left.
         if orient2d(
             at(mesh.vertex(next(outer))),
             at(mesh.vertex(prev(outer))),
@@ -54,7 +54,7 @@ pub fn walk_within(
     }
     let mut steps = 1;
     while steps < limit {
-        // The walk came across e; two edges are left to look at.
+        // The walk came across e; two edges are left to test.
         let across = if beyond(next(e)) {
             mesh.opposite(next(e))
         } else if beyond(prev(e)) {

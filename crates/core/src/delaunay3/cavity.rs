@@ -1,38 +1,42 @@
-//! The kernel: one point goes into the mesh by carving its cavity and filling it with a star.
+//! The 3-D Bowyer-Watson kernel: a point is inserted by emptying its cavity and filling it with a
+//! star.
 //!
 //! A. Bowyer, "Computing Dirichlet tessellations", and D. F. Watson, "Computing the n-dimensional
 //! Delaunay tessellation", both The Computer Journal 24 (1981); the perturbation is that of O. Devillers
 //! and M. Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011).
 //!
-//! # Why this is right on ties, too
+//! # Why this is right on ties
 //!
-//! The mesh is the lower hull of the points so far at the heights |p|^2 - eps(p), projected; see
-//! `delone_predicates` on ties. Five lifted points of which four span space are never in one
-//! hyperplane, so each facet of that hull is one tetrahedron, and none is flat: a facet of a lower hull is not
-//! vertical.
+//! The mesh is the projection of the lower hull of the points so far at the heights |p|^2 - eps(p);
+//! see `delone_predicates` on ties. Five lifted points of which four are affinely independent are
+//! never in one hyperplane, so each facet of that hull is one tetrahedron, and none is flat, since
+//! a facet of a lower hull is not vertical.
 //!
-//! A finite tetrahedron goes when the lifted new point p lies below its hyperplane: `insphere_canonical`.
-//! A hull facet abc stops being one, and its ghost goes, when p lies beyond its plane, or in its plane and, among
-//! the lifted points over that plane, below a, b, c. The lower hull over the plane of a hull facet is, by
-//! the same heights, the canonical triangulation of its points in two dimensions (|p|^2 differs from the squared
-//! length in the plane by an affine function), so coplanar hull facets come out canonical. No predicate
-//! of the plane is needed: for the finite neighbour abcd of the ghost, the perturbed determinant of a,
-//! b, c, d, p is orient3d(a, b, c, d) times the height of p above the affine function of a, b, c, d; as p is an
-//! affine combination of a, b, c alone, the height of d does not count, and the answer for abcd is
-//! that for abc in its plane. So **a ghost with p in its plane is in conflict when its finite neighbour is**.
+//! A finite tetrahedron is removed if the lifted new point p lies below its hyperplane:
+//! `insphere_canonical`. A hull facet abc stops being one, and its ghost is removed, if p lies
+//! beyond its plane, or in its plane and, among the lifted points over that plane, below a, b, c.
+//! The lower hull over the plane of a hull facet is, by the same heights, the canonical
+//! triangulation of its points in 2-D (|p|^2 differs from the squared length in the plane by an
+//! affine function), so coplanar hull facets are triangulated canonically. No 2-D predicate is
+//! needed: for the finite neighbor abcd of the ghost, the perturbed determinant of a, b, c, d, p is
+//! orient3d(a, b, c, d) times the height of p above the affine function of a, b, c, d; as p is an
+//! affine combination of a, b, c only, the height of d does not count, and the answer for abcd is
+//! that for abc in its plane. So **a ghost with p in its plane is in conflict exactly when its
+//! finite neighbor is**.
 //!
-//! With these answers the tetrahedra in conflict are those that p takes from the hull, ghosts for vertical
-//! facets included. The new ones are p joined to the border of what goes, each of them on the new
-//! lower hull, so none is flat; what goes is one piece, as the star of p in the new triangulation of the sphere
-//! is a ball and its complement, too. No vertex is inside it, as all points are extreme in the lift.
+//! By these tests the tetrahedra in conflict are those that p removes from the hull, ghosts for
+//! vertical facets included. The new ones join p to the boundary of the cavity. Each of them is on
+//! the new lower hull, so none is flat. The cavity is connected, since the star of p in the new
+//! triangulation of the sphere is a ball and its complement, too. No vertex is inside it, as all
+//! lifted points are extreme.
 //!
-//! # Why it ends
+//! # Why it terminates
 //!
-//! A walk crosses facets that have p strictly beyond them; the power of p falls at each step (H. Edelsbrunner,
-//! "An acyclicity theorem for cell complexes in d dimensions", 1990, for every lower hull), so no
-//! tetrahedron comes twice. A cavity is part of the mesh. An insertion makes 2 v - 4 records where v is the number of
-//! its new neighbours, so all make at most n^2, and none is removed more than once: the work is
-//! bounded by the size that a triangulation in space may have.
+//! A walk crosses facets that have p strictly beyond them; the power of p falls at each step (H.
+//! Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990, for every lower
+//! hull), so no tetrahedron is visited twice. A cavity is part of the mesh. An insertion makes 2
+//! v - 4 records, where v is the number of its new neighbors, so all insertions make at most n^2, and
+//! none is removed more than once: the work is bounded by the largest size of a 3-D triangulation.
 
 use std::hint::select_unpredictable;
 
@@ -46,29 +50,30 @@ use crate::error::{Error, Result};
 use crate::memory::{push, with_room};
 use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
 
-/// Most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4, rounded up.
+/// The most vertices of a star that is linked by a table, and facets of such a star: 2 v - 4,
+/// rounded up.
 const STAR: usize = 64;
 const RIM: usize = 2 * STAR;
 
 /// No record.
 const NONE: u32 = u32::MAX;
 
-/// Beside a mesh, what grows with it. To be made by the thread that starts others, see
+/// Arrays that grow with the mesh. To be allocated by the thread that starts the others, see
 /// [`crate::order::space::Room3`].
 #[derive(Debug)]
 pub struct Room {
     /// The sphere of each record.
     pub spheres: Vec<Sphere>,
-    /// 2 p + 1 where p is the vertex that has last found the record in conflict, 2 p where predicates have
-    /// said that it is not. Apart from the spheres: a store to
-    /// part of one would hold up the next load of the whole.
+    /// 2 p + 1 if p is the vertex that last found the record in conflict, 2 p if predicates have
+    /// decided that it is not. Separate from the spheres: a store to part of one would stall the
+    /// next load of the whole.
     mark: Vec<u32>,
-    /// Where each vertex stands in the star of the vertex inserted last, if it does.
+    /// The index of each vertex in the star of the vertex inserted last, if it is in it.
     place: Vec<u8>,
 }
 
 impl Room {
-    /// Room for so many records and vertices, which touches no page.
+    /// Room for this many records and vertices, which touches no page.
     pub fn of(records: usize, vertices: usize) -> Result<Self> {
         Ok(Self {
             spheres: with_room(records)?,
@@ -78,42 +83,42 @@ impl Room {
     }
 }
 
-/// A mesh that grows by one point at a time.
+/// A mesh into which points are inserted one at a time.
 pub struct Kernel<'a> {
     points: &'a [Point3],
     mesh: Mesh3<'a>,
     spheres: Vec<Sphere>,
     mark: Vec<u32>,
     place: Vec<u8>,
-    /// Added to each radius: NaN where the coordinates are out of the range of spheres, else 0.
+    /// Added to each radius: NaN if the coordinates are out of the range of spheres, else 0.
     doubt: f64,
     /// Whether the points lie on a small lattice.
     small: bool,
-    /// The records in conflict, each as the facet by which it was reached.
+    /// The records in conflict, each by the facet through which it was reached.
     cavity: Vec<Code>,
-    /// The facets of the hole, seen from inside.
+    /// The boundary facets of the cavity, seen from inside.
     rim: Vec<Code>,
     star: Box<Star>,
     work: usize,
 }
 
-/// Room for one star.
+/// Buffers for one star.
 struct Star {
     vertices: [u32; 256],
     rays: Rays,
     facets: Facets,
-    /// By facet of the hole: its corners, their places, what lies across, and the new record.
+    /// For each boundary facet: its corners, their indices, the code across, and the new record.
     corners: [[u32; 3]; RIM],
     places: [[u8; 3]; RIM],
     across: [Code; RIM],
     records: [u32; RIM],
-    /// By the places of a directed edge, the facet of the star that has it.
+    /// For the indices of a directed edge, the facet of the star that has it.
     table: [Code; STAR * STAR],
 }
 
 impl<'a> Kernel<'a> {
-    /// A kernel in the empty `mesh` over `points`, which end with NaN for infinity, that starts from the
-    /// positively oriented tetrahedron `first`.
+    /// A kernel in the empty `mesh` over `points`, which end with NaN for infinity. It starts from
+    /// the positively oriented tetrahedron `first`.
     pub fn start(
         points: &'a [Point3],
         mut mesh: Mesh3<'a>,
@@ -156,7 +161,7 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// Records met so far, on the way and in cavities.
+    /// Records visited so far, in walks and cavities.
     pub fn work(&self) -> usize {
         self.work
     }
@@ -185,8 +190,8 @@ impl<'a> Kernel<'a> {
         self.points[v as usize]
     }
 
-    /// Inserts vertex `p`, which is none yet, and looks for its place from `near` on. Returns the new
-    /// tetrahedron whose sphere holds `aim` deepest.
+    /// Inserts vertex `p`, which is not in the mesh yet; the search starts at `near`. Returns the
+    /// new tetrahedron whose circumsphere contains `aim` deepest.
     #[inline(always)]
     pub fn insert(&mut self, p: u32, near: u32, aim: Point3) -> Result<u32> {
         let seed = self.seed(p, near)?;
@@ -198,8 +203,8 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// A tetrahedron in conflict with p: from `near` on to the neighbour of least power, and where that
-    /// is not certain by exact steps.
+    /// A tetrahedron in conflict with p: walks from `near` to the neighbor of least power, by exact
+    /// steps where that is uncertain.
     #[inline(always)]
     fn seed(&mut self, p: u32, near: u32) -> Result<u32> {
         let q = self.at(p);
@@ -211,7 +216,7 @@ impl<'a> Kernel<'a> {
             if own < -SLACK * (own + 2.0 * square) {
                 return Ok(t);
             }
-            // A step down by less than rounding may lead in a circle.
+            // A decrease smaller than the rounding error could make the walk cycle.
             let mut least = own - SLACK * (own + 2.0 * square);
             let mut next = t;
             for e in self.mesh.opposites(t) {
@@ -227,7 +232,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same across facets that have p beyond them, exactly.
+    /// The same across facets that have p beyond them, by exact predicates.
     #[cold]
     #[inline(never)]
     fn seed_exactly(&mut self, p: u32, near: u32) -> Result<u32> {
@@ -251,17 +256,17 @@ impl<'a> Kernel<'a> {
             });
             let Some(k) = beyond else {
                 return Err(Error::Internal(format!(
-                    "vertex {p} lies in tetrahedron {t}, and not in its sphere"
+                    "vertex {p} is in tetrahedron {t} but not in its circumsphere"
                 )));
             };
             t = tetrahedron(self.mesh.opposites(t)[k]);
         }
     }
 
-    /// Collects the tetrahedra in conflict with p, from `seed` outwards, and the facets of their
-    /// border; returns how many.
+    /// Collects the tetrahedra in conflict with p, from `seed` outward, and their boundary facets;
+    /// returns the numbers of both.
     ///
-    /// Whether a neighbour is in conflict cannot be predicted, so no branch hangs on it: each is
+    /// Whether a neighbor is in conflict is unpredictable, so no branch depends on it: each is
     /// written to both lists, and the ends of the lists move or not.
     #[inline(always)]
     fn carve(&mut self, p: u32, seed: u32) -> Result<(usize, usize)> {
@@ -277,7 +282,7 @@ impl<'a> Kernel<'a> {
                 self.visit(p, q, e ^ k, &mut ends);
             }
             next += 1;
-            // Each record adds three facets at most, and the first one four.
+            // Each record adds at most three facets, and the first one four.
             if ends.0 + 4 > self.cavity.len() || ends.1 + 4 > self.rim.len() {
                 grow(&mut self.cavity)?;
                 grow(&mut self.rim)?;
@@ -289,7 +294,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Puts what lies across facet `e` into the cavity, or `e` into its border.
+    /// Adds the record across facet `e` to the cavity, or `e` to its boundary.
     #[inline(always)]
     fn visit(&mut self, p: u32, q: Point3, e: Code, (gone, rims): &mut (usize, usize)) {
         let across = self.mesh.opposite(e);
@@ -300,8 +305,8 @@ impl<'a> Kernel<'a> {
         let power = distance - square;
         let certain = power.abs() > SLACK * (distance + square);
         let mut conflict = power < 0.0;
-        // All that is uncertain is behind a call, and the mark is read after it: the compiler would else branch
-        // on the conflict, too, which takes 250 ns a point more.
+        // Everything uncertain is behind a call, and the mark is read after it: otherwise the
+        // compiler would branch on the conflict, too, which costs 250 ns more per point.
         if !certain {
             conflict = self.uncertain(other as u32, p);
         }
@@ -313,7 +318,7 @@ impl<'a> Kernel<'a> {
         *rims += usize::from(!conflict);
     }
 
-    /// Whether t is in conflict with p, by predicates where they have not said so yet.
+    /// Whether t is in conflict with p, by predicates unless they have decided it before.
     #[cold]
     #[inline(never)]
     fn uncertain(&mut self, t: u32, p: u32) -> bool {
@@ -326,13 +331,14 @@ impl<'a> Kernel<'a> {
         conflict
     }
 
-    /// Notes the corners of the hole's facets and numbers them; `false` where there are too many.
+    /// Records the corners of the boundary facets and numbers them; `false` if there are too many.
     #[inline(always)]
     fn number(&mut self, p: u32, gone: usize, rims: usize) -> bool {
         let star = &mut *self.star;
         let (mesh, place) = (&self.mesh, &mut self.place[..]);
         let mut vertices = 0;
-        // All corners of the cavity are on its border. Each record but the first brings one, at most.
+        // All corners of the cavity are on its boundary. Each record after the first adds at most
+        // one.
         for v in mesh.corners(tetrahedron(self.cavity[0])) {
             place[v as usize] = vertices as u8;
             star.vertices[vertices] = v;
@@ -370,7 +376,7 @@ impl<'a> Kernel<'a> {
         true
     }
 
-    /// Fills the hole with the star of p.
+    /// Fills the cavity with the star of p.
     #[inline(always)]
     fn fill(&mut self, p: u32, gone: usize, rims: usize, aim: Point3) -> Result<u32> {
         let more = self.records(gone, rims)?;
@@ -380,6 +386,8 @@ impl<'a> Kernel<'a> {
             *record = tetrahedron(e);
         }
         let facets = star.places[..rims].iter().zip(&star.records);
+        // Each boundary facet is the base of a new tetrahedron; note its three other facets by
+        // edge.
         for (&[a, b, c], &t) in facets {
             let (a, b, c) = (place(a), place(b), place(c));
             star.table[STAR * b + c] = 4 * t;
@@ -387,6 +395,7 @@ impl<'a> Kernel<'a> {
             star.table[STAR * a + b] = 4 * t + 2;
         }
         let (all_corners, all_opposite) = self.mesh.all_mut();
+        // Link each new tetrahedron to its neighbors in the star and across its base.
         for i in 0..rims {
             let i = i & (RIM - 1);
             let (t, across) = (star.records[i], star.across[i]);
@@ -402,6 +411,7 @@ impl<'a> Kernel<'a> {
             ];
             all_opposite[tetrahedron(across) as usize][corner(across)] = (4 * t + 3) as i32;
         }
+        // Compute the spheres of the star, and find the one that contains `aim` deepest.
         star.facets.gather(&star.rays, &star.places[..rims]);
         let all_spheres = &mut self.spheres[..];
         let origin = self.points[p as usize];
@@ -412,7 +422,7 @@ impl<'a> Kernel<'a> {
                 let t = star.records[(from + lane) & (RIM - 1)];
                 let [x, y, z, square] = &lanes.sphere;
                 all_spheres[t as usize] = [x[lane], y[lane], z[lane], square[lane]];
-                // Ghosts and flat tetrahedra, whose powers are NaN, are for want of others.
+                // Ghosts and flat tetrahedra, whose powers are NaN, never win.
                 let better = lanes.power[lane] < least;
                 least = if better { lanes.power[lane] } else { least };
                 best = if better { t } else { best };
@@ -421,8 +431,8 @@ impl<'a> Kernel<'a> {
         Ok(best)
     }
 
-    /// Makes the first `rims` of the cavity's list records to be filled and frees the rest; returns
-    /// how many it added.
+    /// Turns the first `rims` records of the cavity's list into records to be filled and frees the
+    /// rest; returns how many it added.
     #[inline(always)]
     fn records(&mut self, gone: usize, rims: usize) -> Result<usize> {
         for i in gone..rims {
@@ -439,7 +449,8 @@ impl<'a> Kernel<'a> {
         Ok(rims.saturating_sub(gone))
     }
 
-    /// As [`Self::fill`], for stars of any size: edges are sorted, and the two of a pair meet.
+    /// Like [`Self::fill`], for stars of any size: edges are sorted, so that equal ones are
+    /// adjacent.
     #[cold]
     #[inline(never)]
     fn fill_large(&mut self, p: u32, gone: usize, rims: usize) -> Result<u32> {
@@ -492,7 +503,7 @@ impl<'a> Kernel<'a> {
     }
 }
 
-/// What a test for conflict reads.
+/// What a conflict test reads.
 #[derive(Clone, Copy)]
 struct View<'a> {
     points: &'a [Point3],
@@ -537,7 +548,7 @@ impl View<'_> {
     }
 }
 
-/// Doubles the room of a list that is used as an array.
+/// Doubles the length of a list that is used as an array.
 #[cold]
 #[inline(never)]
 fn grow(list: &mut Vec<u32>) -> Result<()> {

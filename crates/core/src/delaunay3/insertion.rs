@@ -1,4 +1,4 @@
-//! Bulk triangulation by cavity insertion along the curve.
+//! Bowyer-Watson insertion of points along the Hilbert curve.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -11,7 +11,7 @@ use crate::points::collinear;
 use crate::watch::Watch;
 
 /// Fills the empty `mesh` with the triangulation of `points`, which end with NaN for infinity, and
-/// returns it with its spheres in `room`; nothing where the points span no tetrahedron.
+/// returns it with its spheres in `room`; `None` if the points span no tetrahedron.
 pub fn build<'a>(
     points: &'a [Point3],
     mesh: Mesh3<'a>,
@@ -27,8 +27,8 @@ pub fn build<'a>(
     Ok(Some(kernel.finish()))
 }
 
-/// Four vertices that span a tetrahedron, positively oriented, the first of each kind in the order of
-/// insertion.
+/// Four vertices that span a tetrahedron, positively oriented: the first in the order of insertion
+/// that extend a segment, a triangle, a tetrahedron.
 fn first_tetrahedron(points: &[Point3]) -> Option<[u32; 4]> {
     let n = points.len() as u32;
     let at = |v: u32| points[v as usize];

@@ -1,6 +1,8 @@
-//! Meshes as arrays, where they lie: the records of the blocks are renumbered in place, what the seam
-//! adds fills the holes that ghosts and loose tetrahedra leave, and so do tetrahedra from the end. No copy is
-//! made, and no page is touched anew.
+//! Joins the meshes of blocks into one set of arrays, in place.
+//!
+//! The records of the blocks are renumbered where they are. Tetrahedra of the seam, and then
+//! tetrahedra from the end, fill the holes that ghosts and loose tetrahedra leave. No copy is made,
+//! and no new page is touched.
 
 use super::seam::{Block, Joint, SOUND, Seam};
 use crate::arrays::Arrays;
@@ -16,26 +18,27 @@ const SHARE: usize = 1 << 14;
 /// No tetrahedron.
 const NONE: u32 = u32::MAX;
 
-/// A seam with what of it belongs to the whole, and its joints with the blocks.
+/// A seam, the part of it that belongs to the result, and its joints with the blocks.
 pub struct Fitted {
     /// The seam.
     pub seam: Seam,
-    /// For each of its tetrahedra whether it belongs.
+    /// For each of its tetrahedra, whether it belongs to the result.
     pub belongs: Vec<bool>,
-    /// Where it meets the blocks.
+    /// The facets where it meets the blocks.
     pub joints: Vec<Joint>,
 }
 
-/// Where the tetrahedra go.
+/// The new places of the tetrahedra.
 struct Plan {
     total: usize,
-    /// Records below `total` that are to be filled, ascending: by what is `added`, then by what moves.
+    /// Records below `total` that are to be filled, ascending: first by those `added`, then by
+    /// those that move.
     holes: Vec<u32>,
-    /// Tetrahedra of the seam that belong, ascending.
+    /// Tetrahedra of the seam that belong to the result, ascending.
     added: Vec<u32>,
-    /// For records from `total` on, their new number.
+    /// The new numbers of records from `total` on.
     moved: Vec<u32>,
-    /// For tetrahedra of the seam, their number.
+    /// The numbers of the tetrahedra of the seam.
     placed: Vec<u32>,
     /// Records that move, ascending.
     movers: Vec<u32>,
@@ -50,8 +53,8 @@ impl Plan {
         }
     }
 
-    /// Tetrahedron t of the seam in the numbers of the whole. Where its neighbour is none of the whole, a
-    /// joint follows or the outside.
+    /// Tetrahedron t of the seam in the numbers of the result. If its neighbor is not in the
+    /// result, there is a joint or the outside.
     #[inline]
     fn addition(&self, t: usize, blocks: &[Block], fitted: &Fitted) -> ([i32; 4], [i32; 4]) {
         let Seam { vertices, arrays } = &fitted.seam;
@@ -73,7 +76,8 @@ impl Plan {
     }
 }
 
-/// Makes arrays of `records`, of which the i-th block has `rooms[i]`, and of what the seam adds.
+/// Makes arrays of `records`, of which the i-th block has `rooms[i]`, and of the tetrahedra added
+/// by the seam.
 pub fn join(
     mut records: Records,
     rooms: &[usize],
@@ -110,7 +114,7 @@ pub fn join(
     })
 }
 
-/// Gives each tetrahedron that is added or must move a hole, in the order of both.
+/// Assigns a hole to each tetrahedron that is added or must move, in the order of both.
 fn plan(
     starts: &[usize],
     rooms: &[usize],
@@ -132,8 +136,8 @@ fn plan(
             }
         }
     }
-    // The first so many holes are those below `total`. Where the blocks use up their room, the seam may
-    // add to it.
+    // The first holes are those below `total`. If the blocks use up their room, the seam may add to
+    // it.
     let mut holes = with_room(added.len() + movers.len())?;
     let inner = starts.iter().zip(rooms).zip(blocks);
     let inner = inner.flat_map(|((&s, &room), b)| {
@@ -160,7 +164,7 @@ fn plan(
     Ok(plan)
 }
 
-/// Renumbers the records of the blocks; what lies beyond a loose one is left -1.
+/// Renumbers the records of the blocks; neighbors across from loose ones stay -1.
 fn renumber(
     records: &mut Records,
     starts: &[usize],
@@ -171,6 +175,7 @@ fn renumber(
     watch: &Watch,
 ) -> Result<()> {
     let (mut corners, mut opposite) = (&mut records.corners[..], &mut records.opposite[..]);
+    // Split the records into disjoint slices, one per task.
     let mut tasks = Vec::new();
     for ((&start, &room), block) in starts.iter().zip(rooms).zip(blocks) {
         let (own_corners, rest_corners) = corners.split_at_mut(room);
@@ -211,7 +216,7 @@ fn renumber(
     Ok(())
 }
 
-/// Fills the holes with what the seam adds and with what moves.
+/// Fills the holes with the tetrahedra that the seam adds and those that move.
 fn fill(
     records: &mut Records,
     blocks: &[Block],
@@ -250,7 +255,7 @@ fn fill(
     Ok(())
 }
 
-/// Joins the tetrahedra of the seam to the blocks.
+/// Links the tetrahedra of the seam to the blocks.
 fn tie(records: &mut Records, starts: &[usize], fitted: &Fitted, plan: &Plan) {
     for joint in &fitted.joints {
         let record = starts[joint.block as usize] + tetrahedron(joint.inner) as usize;

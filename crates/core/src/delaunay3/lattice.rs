@@ -1,18 +1,20 @@
-//! Points on a small lattice, such as the voxels of an image: there every determinant is exact in plain
-//! floating point, and nearly every cavity meets ties.
+//! Exact predicates in plain floating point for points on a small lattice, such as the voxels of an
+//! image.
 //!
-//! Let all coordinates be multiples of a power of two, the unit, and M < 2^9 the largest difference of
-//! two along an axis, in units. All differences are integers of at most M, exact as they are below 2^53;
-//! squared lengths are integers of at most 3 M^2, 2 x 2 minors and their parts of at most 2 M^2, 3 x 3 minors of at
-//! most 6 M^3, products of a minor and a length of at most 18 M^5, and the sum of four, like each part of
-//! it, of at most 72 M^5 < 2^52. So no operation rounds. Units between 2^-200 and 2^[`RANGE`] keep all
-//! in the range of doubles.
+//! There every determinant is exact in plain floating point, and nearly every cavity has ties.
+//!
+//! Let all coordinates be multiples of a power of two, the unit, and M < 2^9 the largest difference
+//! of two along an axis, in units. All differences are integers of at most M, exact as they are
+//! below 2^53. Squared lengths are integers of at most 3 M^2, 2 x 2 minors and their parts of at
+//! most 2 M^2, 3 x 3 minors of at most 6 M^3, products of a minor and a length of at most 18 M^5,
+//! and the sum of four, like each part of it, of at most 72 M^5 < 2^52. So no operation rounds.
+//! Units between 2^-200 and 2^[`RANGE`] keep everything in the range of doubles.
 
 use delone_predicates::{Point3, Sign};
 
 use super::sphere::RANGE;
 
-/// The largest difference along an axis, in units, is below.
+/// The largest difference along an axis, in units, is less than this.
 const SPAN: f64 = 512.0;
 
 /// Whether finite `points` with coordinates below 2^[`RANGE`] lie on a small lattice.
@@ -28,7 +30,7 @@ pub fn is_small(points: &[Point3]) -> bool {
             max[k] = max[k].max(p[k]);
             unit = unit.min(lowest_bit(p[k]));
         }
-        // Scattered points end this soon.
+        // Scattered points fail here early.
         if (0..3).any(|k| max[k] - min[k] >= SPAN * unit) {
             return false;
         }
@@ -36,7 +38,8 @@ pub fn is_small(points: &[Point3]) -> bool {
     unit > 2f64.powi(-200) && unit < 2f64.powi(RANGE)
 }
 
-/// The largest power of two of which `x` is a multiple; infinite for zero, and 0 for what is near it.
+/// The largest power of two of which `x` is a multiple; infinite for zero, and 0 for subnormal
+/// results.
 fn lowest_bit(x: f64) -> f64 {
     const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
     let exponent = (x.to_bits() >> MANTISSA & 0x7ff) as i32;
@@ -64,7 +67,7 @@ fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
     Sign::of(det3(minus(b, a), minus(c, a), minus(d, a)))
 }
 
-/// As `insphere_canonical`, for points on a small lattice.
+/// Like `insphere_canonical`, for points on a small lattice.
 pub fn insphere_canonical(points: [Point3; 5]) -> Sign {
     let [a, b, c, d, e] = points;
     let (a, b, c, d) = (minus(a, e), minus(b, e), minus(c, e), minus(d, e));
@@ -78,8 +81,9 @@ pub fn insphere_canonical(points: [Point3; 5]) -> Sign {
     }
 }
 
-/// The smallest point of distinct ones decides, or the next: see `delone_predicates` on ties. To bring a point
-/// to the front from place i takes i exchanges of neighbours, which leave the others in their order.
+/// Breaks a tie: the smallest of the distinct points decides, or else the next; see
+/// `delone_predicates` on ties. Moving a point from place i to the front takes i swaps of adjacent
+/// points, which leave the others in their order.
 fn tie(points: [Point3; 5]) -> Sign {
     let i = smallest(&points);
     let other = |k: usize| points[k + usize::from(k >= i)];
@@ -94,7 +98,8 @@ fn tie(points: [Point3; 5]) -> Sign {
     (-orient3d(points[i], other(0), other(1), other(2))).flip_if((i + j) % 2 == 1)
 }
 
-/// The place of the smallest point in lexicographic order, without a branch: nobody can guess it.
+/// The index of the smallest point in lexicographic order, without a branch, which would be
+/// unpredictable.
 fn smallest(points: &[Point3]) -> usize {
     let mut least = 0;
     for (i, p) in points.iter().enumerate().skip(1) {
@@ -121,7 +126,7 @@ mod tests {
     fn agrees_with_the_predicate() {
         let mut state = 5;
         let mut ties = 0;
-        // The largest steps are just within the span.
+        // The largest steps are just below the span.
         for (side, step, shift) in [
             (2, 511.0, 0.0),
             (3, 255.5, 7.5),
@@ -145,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn small_lattices_are_told() {
+    fn small_lattices_are_recognized() {
         let cube = |step: f64, far: f64| vec![[0.0, -step, 2.0 * step], [far, step, 0.0]];
         assert!(is_small(&cube(1.0, 511.0)));
         assert!(!is_small(&cube(1.0, 512.0)));

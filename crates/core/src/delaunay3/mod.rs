@@ -1,8 +1,8 @@
 //! 3-D Delaunay triangulations of points, exact and canonical.
 //!
 //! Each lifted point is lowered by an infinitesimal that is larger the smaller the point is in
-//! lexicographic order; the lower hull is then made of tetrahedra alone, none of them flat, whatever
-//! the points, and is the same for every order of insertion.
+//! lexicographic order. The lower hull then consists of tetrahedra only, none of them flat, for
+//! every input, and is independent of the order of insertion.
 
 mod cavity;
 mod dispatch;

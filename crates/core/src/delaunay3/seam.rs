@@ -1,24 +1,25 @@
-//! Blocks become one triangulation along their seam.
+//! Joins triangulated blocks into one triangulation along their seam.
 //!
-//! Let the points P be parted into blocks whose convex hulls do not meet, and T(B) the canonical
-//! triangulation of block B. In T(P) there are
+//! Let the points P be divided into blocks whose convex hulls do not meet, and let T(B) be the
+//! canonical triangulation of block B. T(P) consists of
 //!
-//! - tetrahedra of four vertices of one block B. No point of B disturbs them, so they are in T(B). A
-//!   tetrahedron of T(B) is *sound* when it is certain that no point of another block is in conflict with it,
-//!   for want of nearness to them; what is sound is in T(P).
-//! - all others. A vertex of such a tetrahedron has another record of its block around it that is not sound, as
-//!   its star in T(B) is not its star in T(P). So all vertices are in the *seam* S, the vertices of records,
-//!   ghosts included, that are not sound. A tetrahedron of T(P) with its vertices in S is in T(S), where
-//!   fewer points could disturb it.
+//! - tetrahedra of four vertices of one block B. No point of B is in conflict with them, so they are in
+//!   T(B). A tetrahedron of T(B) is *sound* if it is certain that no point of another block is in conflict
+//!   with it, because none is near enough; sound tetrahedra are in T(P).
+//! - all others. A vertex of such a tetrahedron has a record of its block around it that is not sound, as
+//!   its star in T(B) is not its star in T(P). So all its vertices are in the *seam* S, the vertices of
+//!   records, ghosts included, that are not sound. A tetrahedron of T(P) with its vertices in S is in
+//!   T(S), where fewer points could be in conflict with it.
 //!
-//! So T(P) = the sound ones + some of T(S). Which? Sound tetrahedra tile a region K, and the rest of the hull is tiled by
-//! the others, all of which are in T(S). The facets between K and the rest are known: those of sound tetrahedra
-//! whose neighbour in T(B) is not sound. Each of them is a facet of T(S), with the right tetrahedron on the
-//! far side. All facets of T(P) connect, so from these the rest is reached, across facets that are no border. Where there is
-//! no sound tetrahedron, T(S) is T(P).
+//! So T(P) = the sound tetrahedra + some of T(S). Which? Sound tetrahedra tile a region K, and the
+//! rest of the hull is tiled by the others, all of which are in T(S). The facets between K and the
+//! rest are known: those of sound tetrahedra whose neighbor in T(B) is not sound. Each of them is a
+//! facet of T(S), with the right tetrahedron on the far side. T(P) is connected across facets, so
+//! from these the rest is reached, across facets that are not on the border of K. If there is no
+//! sound tetrahedron, T(S) is T(P).
 //!
-//! Ties change nothing, as heights hang on the coordinates alone: T(B), T(S) and T(P) are lower hulls of the
-//! same lifted points.
+//! Ties change nothing, as heights depend on the coordinates only: T(B), T(S) and T(P) are lower
+//! hulls of the same lifted points.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -30,18 +31,18 @@ use crate::mesh3::{Code, FACETS, Mesh3, corner, tetrahedron};
 use crate::order::space::Extent3;
 use crate::parallel;
 
-/// What a record is: nothing of the result, as ghosts and free ones;
+/// Kinds of records: not in the result, such as ghosts and free records;
 const NOTHING: u8 = 0;
 /// a tetrahedron that is in the result;
 pub const SOUND: u8 = 1;
-/// a tetrahedron or a ghost that another block may disturb.
+/// a tetrahedron or a ghost that may be in conflict with another block.
 const LOOSE: u8 = 2;
 
 /// What a block must know of the others: its own cell, and their boxes.
 pub struct Surroundings {
-    /// The cell of the block; the points of others are outside or on its border.
+    /// The cell of the block; the points of other blocks are outside or on its border.
     pub cell: Extent3,
-    /// The boxes of the points of the others.
+    /// The boxes of the points of the other blocks.
     pub others: Vec<Extent3>,
 }
 
@@ -55,7 +56,7 @@ impl Surroundings {
             let (low, high) = (center[k] - min[k], max[k] - center[k]);
             low > 0.0 && high > 0.0 && low * low > reach && high * high > reach
         });
-        // NaN is within nothing and far from nothing.
+        // NaN compares false: not within, and not far.
         !within
             && self
                 .others
@@ -82,7 +83,7 @@ fn is_far(other: &Extent3, center: Point3, reach: f64) -> bool {
     apart(0) + apart(1) + apart(2) > reach
 }
 
-/// A triangulated block, beside its records.
+/// A triangulated block, without its records.
 pub struct Block {
     /// For each vertex, its row in the input.
     pub rows: Vec<u32>,
@@ -92,7 +93,7 @@ pub struct Block {
     pub holes: Vec<u32>,
     /// Vertices in the seam, ascending, and their points.
     pub seam: Vec<(u32, Point3)>,
-    /// Facets of sound tetrahedra towards what is not, with their corners.
+    /// Facets between sound tetrahedra and the others, with their corners.
     border: Vec<([u32; 3], Code)>,
 }
 
@@ -102,7 +103,7 @@ impl Block {
         self.kinds.len() - self.holes.len()
     }
 
-    /// Finds what is sound in a triangulated block; everything is where there are no others.
+    /// Finds the sound records in a triangulated block; without other blocks all are.
     pub fn sift(
         points: &[Point3],
         rows: Vec<u32>,
@@ -115,6 +116,7 @@ impl Block {
             kinds[t as usize] = NOTHING;
         }
         let (mut holes, mut loose) = (Vec::new(), Vec::new());
+        // Classify each record: a hole, loose, or sound.
         for (t, (kind, &sphere)) in (0u32..).zip(kinds.iter_mut().zip(spheres)) {
             if *kind == NOTHING {
                 push(&mut holes, t)?;
@@ -126,14 +128,14 @@ impl Block {
             } else {
                 None
             };
-            let disturbed = match ghost {
+            let in_conflict = match ghost {
                 None => around.may_reach(sphere),
                 Some(k) => {
                     let [a, b, c] = mesh.facet(4 * t + k as u32);
                     around.may_see(points[a as usize], points[b as usize], points[c as usize])
                 }
             };
-            if disturbed {
+            if in_conflict {
                 *kind = LOOSE;
                 push(&mut loose, t)?;
                 push(&mut holes, t)?;
@@ -142,6 +144,7 @@ impl Block {
                 push(&mut holes, t)?;
             }
         }
+        // The seam has the vertices of loose records, the border their facets to sound ones.
         let mut seam = Vec::new();
         let mut border = Vec::new();
         for t in loose {
@@ -189,7 +192,7 @@ impl Seam {
     }
 }
 
-/// A facet between what is sound and the rest.
+/// A facet between the sound region and the rest.
 pub struct Joint {
     /// The block of the sound side.
     pub block: u32,
@@ -209,7 +212,7 @@ struct Borders {
 
 impl Borders {
     fn of(blocks: &[Block], seam: &Seam) -> Result<Self> {
-        // Vertices of blocks to those of the seam, which come block by block and ascend.
+        // Maps vertices of blocks to those of the seam, which are sorted by block and vertex.
         let mut start = 0;
         let mut all = Vec::new();
         for (block, i) in blocks.iter().zip(0..) {
@@ -217,7 +220,7 @@ impl Borders {
             for &(corners, e) in &block.border {
                 let place = |v: u32| own.partition_point(|&[_, w]| w < v) + start;
                 let [a, b, c] = smallest_first(corners.map(|v| place(v) as u32));
-                // The other side has it the other way round.
+                // Reversed: the other side has the opposite orientation.
                 push(&mut all, (a, ([c, b], i, e)))?;
             }
             start += block.seam.len();
@@ -252,10 +255,10 @@ impl Borders {
     }
 }
 
-/// Finds each border facet of the blocks in the seam, with the rest of the triangulation beyond. One that has
-/// the outside beyond it is no joint.
+/// Finds each border facet of the blocks in the seam, with the rest of the triangulation beyond. A
+/// facet on the hull is not a joint.
 pub fn joints(blocks: &[Block], seam: &Seam, workers: usize) -> Result<Vec<Joint>> {
-    /// Tetrahedra that one task looks at.
+    /// Tetrahedra per task.
     const SHARE: usize = 1 << 14;
     let borders = Borders::of(blocks, seam)?;
     let Arrays {
@@ -306,16 +309,16 @@ fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// For each tetrahedron of the seam whether it belongs to the whole.
-pub fn rest(seam: &Seam, joints: &[Joint]) -> Result<Vec<bool>> {
+/// For each tetrahedron of the seam, whether it belongs to the result.
+pub fn belonging(seam: &Seam, joints: &[Joint]) -> Result<Vec<bool>> {
     let neighbors = &seam.arrays.neighbors;
     let mut belongs = filled(neighbors.len(), false)?;
-    // Bits of facets towards what is sound.
+    // Bits of the facets towards sound tetrahedra.
     let mut closed = filled(neighbors.len(), 0u8)?;
     for joint in joints {
         closed[tetrahedron(joint.outer) as usize] |= 1 << corner(joint.outer);
     }
-    // Where nothing is sound: from any tetrahedron on.
+    // If nothing is sound, start from any tetrahedron.
     let any = joints.is_empty().then_some(0);
     let mut stack = Vec::new();
     for t in joints.iter().map(|j| tetrahedron(j.outer)).chain(any) {

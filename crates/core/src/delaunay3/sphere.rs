@@ -1,52 +1,56 @@
-//! The circumsphere of a tetrahedron in plain floating point, with a proven certainty.
+//! Circumspheres of tetrahedra in plain floating point, with a proven error bound.
 //!
 //! # The bound
 //!
-//! Let u = 2^-53, let B, C, D be three corners as seen from the fourth, p, rounded once, and L = |B| |C|
-//! |D|. The centre, seen from p, is c = N / (2 det) with N = |B|^2 (C x D) + |C|^2 (D x B) + |D|^2
-//! (B x C) and det = B . (C x D).
+//! Let u = 2^-53, let B, C, D be three corners relative to the fourth, p, rounded once, and L = |B|
+//! |C| |D|. The center, relative to p, is c = N / (2 det) with N = |B|^2 (C x D) + |C|^2 (D x B) +
+//! |D|^2 (B x C) and det = B . (C x D).
 //!
-//! *det.* Each of its six monomials passes three differences, two products and three sums or
-//! differences: 8 roundings. The sum of the magnitudes of the monomials is the permanent of the matrix of
-//! magnitudes, at most 3!/3^(3/2) L < 1.16 L. So det errs by at most 9.3 u L, to first order.
+//! *det.* Each of its six monomials goes through three differences, two products and three sums or
+//! differences: 8 roundings. The sum of the magnitudes of the monomials is the permanent of the
+//! matrix of magnitudes, at most 3!/3^(3/2) L < 1.16 L. So det errs by at most 9.3 u L, to first
+//! order.
 //!
-//! *N.* Each component of C x D has monomials of at most |C| |D| in all (Cauchy), so those of a
-//! component of N sum to at most (|B| + |C| + |D|) L. They pass at most: six differences, three roundings
-//! in the squared length, two in the cross product, the product of both, two sums: 14. The corners
-//! are on the sphere, so each length is at most 2 r, and each component errs by at most 14 * 6 u r L = 84
-//! u r L; all three, as a vector, by 146 u r L.
+//! *N.* Each component of C x D has monomials of at most |C| |D| in total (Cauchy), so those of a
+//! component of N sum to at most (|B| + |C| + |D|) L. They go through at most 14 roundings: six
+//! differences, three in the squared length, two in the cross product, the product of both, two
+//! sums. The corners are on the sphere, so each length is at most 2 r, and each component errs by
+//! at most 14 * 6 u r L = 84 u r L; all three, as a vector, by 146 u r L.
 //!
 //! *c.* Hence c errs by at most (146 u r L + 2 * 9.3 u r L) / (2 |det|) plus a rounding, less than 83 u r L / |det|.
 //! A sphere is kept where det^2 > 2^-52 L^2, that is L / |det| < 2^26: then c errs by less than 83 * 2^-27 r < 2^-20 r.
 //! (Terms of second order are 2^-20 of that; the computed L^2 errs by 20 u.)
 //!
-//! *Position.* The absolute centre is p + c, rounded: an error of at most u |p + c| in each coordinate. It is
-//! kept where |p + c|^2 < 2^60 r^2: less than 2^-22 r. The error of both, E, is less than 2^-19.5 r.
+//! *Position.* The absolute center is p + c, rounded: an error of at most u |p + c| in each
+//! coordinate. It is kept if |p + c|^2 < 2^60 r^2: less than 2^-22 r. The sum of both errors, E, is
+//! less than 2^-19.5 r.
 //!
-//! *Power.* For a query q at distance d from the centre so found, the power d^2 - r^2, with r the distance of
-//! p from the same centre, errs by at most 2 (d + r) E + 2 E^2 < 2^-18 (d r + r^2) < 2^-17 (d^2 + r^2), and by
-//! some u (d^2 + r^2) for its own roundings. [`SLACK`] = 2^-16 covers it.
+//! *Power.* For a query q at distance d from the computed center, the power d^2 - r^2, with r the
+//! distance of p from the same center, errs by at most 2 (d + r) E + 2 E^2 < 2^-18 (d r + r^2) <
+//! 2^-17 (d^2 + r^2), and by a few u (d^2 + r^2) for its own roundings. [`SLACK`] = 2^-16 covers
+//! it.
 //!
-//! *Range.* All coordinates are below 2^[`RANGE`] in magnitude, so that each length is below 2^42, and L^2 is
-//! above 2^-600, so that each length is above 2^-384 and r above 2^-385. An underflow adds at most 2^-1074, times at
-//! most three lengths: less than 2^-940, which is nothing beside u L r > 2^-53 2^-300 2^-385. Where a sphere is
-//! certain, r < 2^27 2^42, and its fourth power is in range.
+//! *Range.* All coordinates are below 2^[`RANGE`] in magnitude, so each length is below 2^42, and
+//! L^2 is above 2^-600, so each length is above 2^-384 and r above 2^-385. An underflow adds at
+//! most 2^-1074, times at most three lengths: less than 2^-940, which is negligible compared with u
+//! L r > 2^-53 2^-300 2^-385. If a sphere is certain, r < 2^27 2^42, and its fourth power is in
+//! range.
 
 use delone_predicates::Point3;
 
-/// Relative certainty of a power, see the head of the file.
+/// Relative uncertainty of a power, see the head of the file.
 pub const SLACK: f64 = 1.0 / 65536.0;
 
-/// Coordinates below 2^RANGE may be asked of spheres.
+/// Spheres are used only for coordinates below 2^RANGE.
 pub const RANGE: i32 = 40;
 
-/// A centre, and the square of the radius. NaN, which fails every comparison, where nothing is certain.
+/// A center and the squared radius. NaN, which fails every comparison, if nothing is certain.
 pub type Sphere = [f64; 4];
 
 /// The sphere of ghosts and of tetrahedra that are too flat.
 pub const UNKNOWN: Sphere = [f64::NAN; 4];
 
-/// A corner as seen from the point at the origin.
+/// A corner relative to the point at the origin.
 #[derive(Clone, Copy)]
 pub struct Ray {
     /// The difference.
@@ -56,7 +60,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// `q` as seen from `p`.
+    /// `q` relative to `p`.
     #[inline(always)]
     pub fn new(q: Point3, p: Point3) -> Self {
         let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
@@ -67,7 +71,7 @@ impl Ray {
     }
 }
 
-/// The sphere through `p` and three corners seen from it; `doubt` is added to the square of its radius.
+/// The sphere through `p` and three corners relative to it; `doubt` is added to its squared radius.
 #[inline(always)]
 pub fn sphere(p: Point3, b: Ray, c: Ray, d: Ray, doubt: f64) -> Sphere {
     const FLAT: f64 = f64::EPSILON; // 2^-52
@@ -101,17 +105,17 @@ pub fn power([x, y, z, square]: Sphere, q: Point3) -> f64 {
     dx * dx + dy * dy + dz * dz - square
 }
 
-/// The square of the distance from the centre beyond which a point is outside for certain.
+/// The squared distance from the center beyond which a point is certainly outside.
 #[inline]
 pub fn reach(square: f64) -> f64 {
-    // d^2 (1 - s) > r^2 (1 + s), and more, for s = SLACK.
+    // d^2 (1 - s) > r^2 (1 + s), with room to spare, for s = SLACK.
     square * (1.0 + 4.0 * SLACK)
 }
 
-/// Spheres that are computed side by side.
+/// Spheres computed side by side.
 pub const LANES: usize = 8;
 
-/// The corners of a star as seen from its centre.
+/// The corners of a star relative to its center.
 pub struct Rays {
     all: [[f64; 4]; 64],
 }
@@ -125,7 +129,7 @@ impl Default for Rays {
 }
 
 impl Rays {
-    /// Puts ray i in place.
+    /// Stores ray i.
     #[inline(always)]
     pub fn set(&mut self, i: usize, ray: Ray) {
         let [x, y, z] = ray.d;
@@ -133,11 +137,11 @@ impl Rays {
     }
 }
 
-/// A coordinate by facet; rows a multiple of 4 KiB apart would contend for the cache.
+/// One coordinate by facet; rows at multiples of 4 KiB would conflict in the cache.
 type Row = [f64; 136];
 
-/// The corners of facets of a star, coordinate by coordinate. All are gathered before the first are computed
-/// with: a load of what has been stored in pieces waits until it is in the cache.
+/// The corners of facets of a star, coordinate by coordinate. All are gathered before the first are
+/// used: a load of data that was stored in pieces waits until it is in the cache.
 pub struct Facets {
     corners: [[Row; 4]; 3],
 }
@@ -151,7 +155,7 @@ impl Default for Facets {
 }
 
 impl Facets {
-    /// Puts the rays of facets in place.
+    /// Stores the rays of facets.
     #[inline(always)]
     pub fn gather(&mut self, rays: &Rays, places: &[[u8; 3]]) {
         for (i, places) in places.iter().enumerate() {
@@ -167,9 +171,9 @@ impl Facets {
     }
 }
 
-/// Spheres side by side, and the powers of one point.
+/// Spheres computed side by side, and the powers of one point.
 pub struct Lanes {
-    /// Coordinate by coordinate, the square of the radius last.
+    /// Coordinate by coordinate; the squared radius is last.
     pub sphere: [[f64; LANES]; 4],
     /// Powers.
     pub power: [f64; LANES],

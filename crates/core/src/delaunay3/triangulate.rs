@@ -1,7 +1,7 @@
-//! From rows of coordinates to arrays of tetrahedra: scan, order, build, export.
+//! Triangulates rows of 3-D coordinates: scan, sort, build in blocks, join, export.
 //!
-//! A large set is cut into blocks, which threads triangulate side by side and `seam` joins. The
-//! blocks hang on the points alone, so the arrays are the same for any number of threads.
+//! A large set is split into blocks, which threads triangulate in parallel and `seam` joins. The
+//! blocks depend on the points only, so the arrays are the same for any number of threads.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use delone_predicates::Point3;
 use super::cavity::Room;
 use super::insertion;
 use super::join::{Fitted, join};
-use super::seam::{Block, Seam, Surroundings, joints, rest};
+use super::seam::{Block, Seam, Surroundings, belonging, joints};
 use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::{is_plausible, with_room};
@@ -23,27 +23,28 @@ use crate::{parallel, points};
 /// Sizes of blocks.
 #[derive(Debug, Clone, Copy)]
 struct Sizes {
-    /// Points from which on there are two blocks.
+    /// From this many points on there are two blocks.
     two: usize,
-    /// Most points that a block should hold.
+    /// The most points that a block should hold.
     block: usize,
-    /// Fewest points of the seam of two blocks that a block should hold.
+    /// The fewest points of the seam of two blocks that a block should hold.
     slab: usize,
     /// The same for the seam of more blocks.
     shells: usize,
-    /// Points a block in the sample on which it is tried whether blocks are worth it.
+    /// Points per block in the sample that tells whether blocks pay.
     sample: usize,
-    /// Points of which at most one is in the sample, as it must cost little.
+    /// Of this many points at most one is in the sample, as it must cost little.
     sparse: usize,
 }
 
-/// The seam of two halves of a million uniform points has 5 % of them, which are triangulated twice, that of two
-/// halves of 2^17 points 10 %; smaller blocks have more.
+/// The seam of two halves of a million uniform points has 5 % of them, which are triangulated
+/// twice; that of two halves of 2^17 points has 10 %; smaller blocks have more.
 ///
-/// The seam of two halves is a slab, and cut across it has 8 % of its points in a seam of its own. That of more
-/// blocks is of shells around cells, most of whose points are near their own medians: of four million points
-/// in 32 blocks a seventh is in the seam, and of these 85 % in a seam of their own where it is cut in 32, too; in
-/// four blocks 29 %, in two 15 %. A seam that is not cut at all is then done sooner, also by two threads.
+/// The seam of two halves is a slab, and split across it has 8 % of its points in a seam of its
+/// own. The seam of more blocks consists of shells around cells, and most of its points are near
+/// its own medians: of four million points in 32 blocks a seventh is in the seam. Of these, 85 %
+/// are in a seam of their own if it is split in 32, too, 29 % for four blocks, and 15 % for two.
+/// Not splitting a seam at all is then faster, even with two threads.
 const SIZES: Sizes = Sizes {
     two: 1 << 17,
     block: 1 << 19,
@@ -59,11 +60,11 @@ pub type Stage = (&'static str, Duration);
 /// Tetrahedra in the rows of the input.
 #[derive(Debug)]
 pub struct Triangulation3 {
-    /// Tetrahedra and their neighbours.
+    /// Tetrahedra and their neighbors.
     pub arrays: Arrays<4>,
     /// `[row, first row of the same point]`, ascending.
     pub duplicates: Vec<[u32; 2]>,
-    /// Where the time went.
+    /// The times of the stages.
     pub stages: Vec<Stage>,
 }
 
@@ -109,13 +110,13 @@ fn in_blocks(
     }
 }
 
-/// Tetrahedra, and rows of points that others have, too.
+/// Tetrahedra, and rows of duplicate points.
 type Made = (Arrays<4>, Vec<[u32; 2]>);
 
-/// Records of all blocks, the room of each, and what is sound in it.
+/// Records of all blocks, the room of each, and the sound tetrahedra in it.
 type Built = (Records, Vec<usize>, Vec<Block>);
 
-/// What goes for all parts of one triangulation.
+/// Parameters of all parts of one triangulation.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     sizes: Sizes,
@@ -124,8 +125,8 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The triangulation in one block with room for `times` as many records as usual; the points in order
-    /// where they are degenerate.
+    /// The triangulation in one block with room for `times` as many records as usual; if the points
+    /// are degenerate, the points in order.
     fn single(
         self,
         input: &[Point3],
@@ -148,11 +149,11 @@ impl Task<'_> {
         Ok(Ok((arrays, arranged.duplicates)))
     }
 
-    /// Whether blocks are worth it: not where most points would be in the seam, as for points on a
-    /// sphere, whose tetrahedra all have the one sphere.
+    /// Whether blocks pay: not if most points would be in the seam, as for points on a sphere,
+    /// whose tetrahedra all have that circumsphere.
     fn pays(self, input: &[Point3], cuts: &Cuts3) -> Result<bool> {
         let step = input.len() / (self.sizes.sample * cuts.blocks());
-        // Odd, as rows of a grid come in periods.
+        // Odd, since rows of a grid are periodic.
         let step = step.max(self.sizes.sparse) | 1;
         let mut sample = with_room(input.len() / step + 1)?;
         sample.extend(input.iter().step_by(step));
@@ -164,7 +165,7 @@ impl Task<'_> {
         Ok(4 * in_seam <= 3 * sample.len())
     }
 
-    /// The triangulation by blocks; nothing where a block or the seam is degenerate.
+    /// The triangulation by blocks; `None` if a block or the seam is degenerate.
     fn joined(self, input: &[Point3], cuts: &Cuts3, clock: &mut Clock) -> Result<Option<Made>> {
         let mut parts = self.parts(input, cuts)?;
         clock.lap("order");
@@ -208,9 +209,9 @@ impl Task<'_> {
         })
     }
 
-    /// Triangulates each block and finds what is sound in it; nothing where one is degenerate. Where the
-    /// room for records does not suffice, which is for sets that are far from scattered, it begins again
-    /// with twice as much: all attempts together cost less than twice the last.
+    /// Triangulates each block and finds its sound tetrahedra; `None` if one is degenerate. If the
+    /// room for records does not suffice, which happens only for sets that are far from scattered,
+    /// it starts again with twice as much: all attempts together cost less than twice the last.
     fn built(
         self,
         parts: &[Arranged3],
@@ -235,6 +236,7 @@ impl Task<'_> {
         first: bool,
     ) -> Result<Option<Built>> {
         let vertices = |part: &Arranged3| part.points.len() - 1;
+        // Divide the room for records among the blocks.
         let rooms: Vec<(usize, usize)> = parts
             .iter()
             .map(|part| {
@@ -252,6 +254,7 @@ impl Task<'_> {
         }
         let mut records = Records::with_room(room)?;
         let meshes = records.meshes(&rooms);
+        // Each task gets its own slices of the records, so blocks share no mutable state.
         let mut tasks = Vec::with_capacity(parts.len());
         for (((i, part), mesh), &(room, vertices)) in
             parts.iter().enumerate().zip(meshes).zip(&rooms)
@@ -280,8 +283,8 @@ impl Task<'_> {
         Ok(blocks.map(|blocks| (records, rooms, blocks)))
     }
 
-    /// Triangulates the seam of the blocks of `whole` points and finds where it meets them; nothing where it
-    /// is degenerate.
+    /// Triangulates the seam of the blocks of `whole` points and finds where it meets them; `None`
+    /// if it is degenerate.
     fn fitted(self, whole: usize, blocks: &[Block]) -> Result<Option<Fitted>> {
         let (vertices, points) = Seam::gather(blocks)?;
         let Some(arrays) = self.seam(&points, whole, blocks.len())? else {
@@ -291,7 +294,7 @@ impl Task<'_> {
         self.watch.check()?;
         let joints = joints(blocks, &seam, self.workers)?;
         self.watch.check()?;
-        let belongs = rest(&seam, &joints)?;
+        let belongs = belonging(&seam, &joints)?;
         Ok(Some(Fitted {
             seam,
             belongs,
@@ -299,8 +302,8 @@ impl Task<'_> {
         }))
     }
 
-    /// The tetrahedra of a seam: in at most as many blocks as made it, where it is large enough for them, and has at
-    /// most half of the points, so that a seam of seams ends.
+    /// The tetrahedra of a seam. It is split into at most as many blocks as made it, if it is large
+    /// enough for them and has at most half of the points, so that the recursion terminates.
     fn seam(self, points: &[Point3], whole: usize, blocks: usize) -> Result<Option<Arrays<4>>> {
         let mut clock = Clock::start();
         let least = match blocks {
@@ -314,7 +317,7 @@ impl Task<'_> {
                 return Ok(Some(arrays));
             }
         }
-        // Twice the room, as the points are all but scattered.
+        // Twice the room, as the points are far from uniform.
         Ok(self
             .single(points, 2, &mut clock)?
             .ok()
@@ -322,8 +325,8 @@ impl Task<'_> {
     }
 }
 
-/// Refuses a further attempt that would want more memory than there is. (A quadratic triangulation would
-/// else grow until the system ends the process.)
+/// Refuses a further attempt that would need more memory than is available. (Otherwise a quadratic
+/// triangulation would grow until the system ends the process.)
 fn check_memory(room: usize) -> Result<()> {
     /// Corners, facets, sphere and mark of a record.
     const RECORD: usize = 16 + 16 + 32 + 4;
@@ -364,7 +367,7 @@ mod tests {
     use crate::arrays::Given;
     use crate::delaunay3::validate::{Findings3, validate};
 
-    /// The tetrahedra in blocks of some sizes, valid and all the same.
+    /// The tetrahedra in blocks of several sizes, all valid and identical.
     fn same_in_blocks(points: &[Point3]) {
         let n = points.len();
         let sets = [usize::MAX, n / 2 + 1, n / 7 + 1, n / 30 + 1].map(|block| {
@@ -443,7 +446,7 @@ mod tests {
         same_in_blocks(&far);
     }
 
-    /// The tetrahedra by blocks whether that pays or not, and in one, as sets of rows.
+    /// The tetrahedra in blocks, whether that pays or not, and in one, as sets of rows.
     fn same_when_joined(points: &[Point3], blocks: usize) {
         let watch = Watch::idle();
         let task = |seam: usize| Task {

@@ -1,16 +1,17 @@
-//! Is this the Delaunay triangulation in space? Exact, and with the culprits where it is not.
+//! Exact validation of a 3-D Delaunay triangulation: lists the simplices that are wrong.
 //!
-//! Why these checks suffice: where all tetrahedra are positive and each inner facet joins exactly two of
-//! them, they cover each point of space as often as their boundary winds round it. The boundary is
-//! checked to be the border of a convex body: its facets are parted into lower and upper ones by
-//! the sign of their normal along z, and where that is zero along y, then x, which is the direction z
-//! tilted by an infinitesimal. Along it, each lower facet projects to a triangle that turns right, each upper one
-//! to one that turns left. An edge between an upper and a lower facet is on the silhouette; if the
-//! silhouette is one convex cycle, which goes up and down once, then lower facets tile its inside once (as in
-//! two dimensions, see `delaunay2::validate`), and upper ones, too. Each is then the graph of a function
-//! over a convex polygon, and one that bends inwards at each edge is convex or concave. So the boundary
-//! winds once round its inside, which is convex, and the tetrahedra tile it. A tiling of the hull whose
-//! inner facets are all locally Delaunay is Delaunay (B. Delaunay, "Sur la sphère vide", 1934), and likewise with
+//! Why these checks suffice: if all tetrahedra are positive and each inner facet joins exactly two
+//! of them, they cover each point of space as often as their boundary winds around it. The boundary
+//! is checked to be that of a convex body: its facets are divided into lower and upper ones by the
+//! sign of their normal along z, and if that is zero along y, then x, which is the direction z
+//! tilted by an infinitesimal. Along it, each lower facet projects to a triangle that turns right,
+//! each upper one to one that turns left. An edge between an upper and a lower facet is on the
+//! silhouette. If the silhouette is one convex cycle, which ascends and descends once, then lower
+//! facets tile its interior once (as in 2-D, see `delaunay2::validate`), and so do upper ones. Each
+//! set is then the graph of a function over a convex polygon, and one that is locally convex (or
+//! concave) at each edge is convex (or concave). So the boundary winds once around its interior,
+//! which is convex, and the tetrahedra tile it. A tiling of the hull whose inner facets are all
+//! locally Delaunay is Delaunay (B. Delaunay, "Sur la sphère vide", 1934), and likewise with
 //! perturbed heights.
 
 use std::collections::HashMap;
@@ -26,27 +27,27 @@ use crate::order::space::{Arranged3, arrange};
 use crate::points;
 use crate::watch::{Pace, Watch};
 
-/// Facets, or tetrahedra, between two looks at the watch where little is done with each.
+/// Facets, or tetrahedra, between two checks for interruption in cheap loops.
 const LOT: usize = 1 << 16;
-/// Tetrahedra between two looks at the watch.
+/// Tetrahedra between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
 
-/// Culprits by kind; all empty where the triangulation is right.
+/// Faults by kind; all are empty if the triangulation is right.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Findings3 {
     /// Tetrahedra that are not positively oriented.
     pub orientation: Vec<u32>,
-    /// Oriented facets that more than one tetrahedron has.
+    /// Oriented facets that belong to more than one tetrahedron.
     pub facets: Vec<[u32; 3]>,
-    /// Tetrahedra whose neighbour across some facet does not share that facet.
+    /// Tetrahedra whose neighbor across some facet does not share that facet.
     pub neighbors: Vec<u32>,
     /// Boundary facets, outward, at which the boundary is not convex or not closed.
     pub hull: Vec<[u32; 3]>,
-    /// Distinct points that are no vertex.
+    /// Distinct points that are not vertices.
     pub missing: Vec<u32>,
     /// Vertices that are not the first row with their coordinates.
     pub repeats: Vec<u32>,
-    /// Adjacent tetrahedra of which one has the other's apex in its sphere.
+    /// Adjacent tetrahedra one of which has the other's apex in its circumsphere.
     pub delaunay: Vec<[u32; 2]>,
     /// Adjacent cospherical tetrahedra whose common facet is not a canonical one.
     pub ties: Vec<[u32; 2]>,
@@ -77,7 +78,7 @@ fn smallest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
     }
 }
 
-/// Checks everything that makes `given` the canonical Delaunay triangulation of its points.
+/// Checks every property of the canonical Delaunay triangulation of the points.
 pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, watch)?;
@@ -98,7 +99,7 @@ pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     Ok(found)
 }
 
-/// One tetrahedron: its orientation, its neighbours, the spheres across its facets.
+/// Checks one tetrahedron: its orientation, its neighbors, the circumspheres across its facets.
 fn tetrahedron(
     given: Tetrahedra,
     t: usize,
@@ -174,7 +175,7 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
     Ok(repeated)
 }
 
-/// Distinct points of which no row is a vertex, and vertices that repeat an earlier row.
+/// Distinct points none of whose rows is a vertex, and vertices that repeat an earlier row.
 fn missing(
     given: Tetrahedra,
     ordered: &Arranged3,
@@ -200,7 +201,8 @@ fn missing(
     Ok(())
 }
 
-/// The turn of a, b, c as seen along the tilted z axis: the sign of their normal along z, or y, or x.
+/// The orientation of a, b, c as seen along the tilted z axis: the sign of their normal along z, or
+/// y, or x.
 fn turn(a: Point3, b: Point3, c: Point3) -> Sign {
     let along = |j: usize, k: usize| orient2d([a[j], a[k]], [b[j], b[k]], [c[j], c[k]]);
     match along(0, 1) {
@@ -212,15 +214,14 @@ fn turn(a: Point3, b: Point3, c: Point3) -> Sign {
     }
 }
 
-/// Whether the projection of a comes before that of b: by x, then, as the tilt has it, from large z to
-/// small, then by y.
+/// Whether the projection of a precedes that of b: by x, then, because of the tilt, by decreasing
+/// z, then by y.
 fn before(a: Point3, b: Point3) -> bool {
     let turned = |p: Point3| [p[0], -p[2], p[1]];
     lexicographic(turned(a), turned(b)).is_lt()
 }
 
-/// Checks that the outward facets of the boundary are the border of a convex body, see the head of
-/// the file.
+/// Checks that the outward facets of the boundary bound a convex body, see the head of the file.
 fn hull(given: Tetrahedra, boundary: &[[i32; 3]], found: &mut Findings3) {
     let mut across = HashMap::with_capacity(3 * boundary.len());
     let upper: Vec<bool> = boundary
@@ -254,14 +255,14 @@ fn hull(given: Tetrahedra, boundary: &[[i32; 3]], found: &mut Findings3) {
         }
     }
     cycle(given, &silhouette, &mut wrong);
-    let culprits = boundary.iter().zip(&wrong).filter(|&(_, &wrong)| wrong);
-    found.hull = culprits.map(|(f, _)| f.map(|v| v as u32)).collect();
+    let faulty = boundary.iter().zip(&wrong).filter(|&(_, &wrong)| wrong);
+    found.hull = faulty.map(|(f, _)| f.map(|v| v as u32)).collect();
     if boundary.is_empty() && !given.simplices.is_empty() {
         found.neighbors.push(0);
     }
 }
 
-/// The silhouette must be one cycle that goes up and down once and never turns right.
+/// The silhouette must be one cycle that ascends and descends once and never turns right.
 fn cycle(given: Tetrahedra, silhouette: &HashMap<i32, (i32, usize)>, wrong: &mut [bool]) {
     let Some((&first, &(_, facet))) = silhouette.iter().min() else {
         if let Some(wrong) = wrong.first_mut() {
@@ -286,7 +287,7 @@ fn cycle(given: Tetrahedra, silhouette: &HashMap<i32, (i32, usize)>, wrong: &mut
         let turn = turn(a, b, c);
         wrong[i] |= turn == Sign::Negative || turn == Sign::Zero && up != up_after;
         u = v;
-        // Vertices of the cycle are starts of one edge each; the count ends a walk that misses its start.
+        // Each vertex of the cycle starts one edge; the count ends a walk that misses its start.
         if u == first || seen > silhouette.len() {
             break;
         }

@@ -1,9 +1,10 @@
-//! Of given points those that lie deepest in circles, and whether that was all.
+//! Finds the given points that lie deepest in circumcircles, and reports whether these are all.
 //!
-//! A k-d tree with the box of the points in each node (J. L. Bentley, "Multidimensional binary search
-//! trees", 1975) finds candidates by disks rounded outward; whether a candidate is in conflict with a
-//! triangle is decided exactly, ties by coordinates. Which of several are the deepest is decided
-//! in doubles: any choice among them is right, a good one saves rounds.
+//! A k-d tree with the bounding box of the points in each node (J. L. Bentley, "Multidimensional
+//! binary search trees", 1975) finds candidates by disks rounded outward. Whether a candidate is in
+//! conflict with a triangle is decided exactly, with ties broken by coordinates. Which of several
+//! candidates are the deepest is decided in doubles: any choice among them is valid, a good one
+//! saves rounds.
 
 use delone_predicates::{Point2, Sign, incircle_canonical};
 
@@ -15,14 +16,14 @@ use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Points in a leaf.
+/// Points per leaf.
 const LEAF: usize = 16;
 
-/// Queries that one thread answers before it takes the next ones.
+/// Queries per task.
 const TASK: usize = 256;
 
-/// Distances of boxes are lowered by this share before a box is left out: the rounding of their
-/// computation is below 8 units of 2^-53.
+/// Computed distances to boxes are reduced by this factor before a box is pruned: their rounding
+/// error is below 8 units of 2^-53.
 const SLACK: f64 = 1.0 - 16.0 * f64::EPSILON;
 
 /// The points found in circles.
@@ -32,7 +33,7 @@ pub struct Answers {
     pub starts: Vec<i64>,
     /// Rows of the points.
     pub rows: Vec<i32>,
-    /// Whether there are no more in circle i.
+    /// Whether these are all points in conflict with circle i.
     pub all: Vec<bool>,
 }
 
@@ -41,13 +42,13 @@ struct Node {
     extent: Extent,
     start: u32,
     end: u32,
-    /// The left child; the right one is the next. Zero in leaves.
+    /// The left child; the right one is the next node. Zero in leaves.
     children: u32,
 }
 
 struct Tree<'a> {
     points: &'a [Point2],
-    /// In which boxes and distances are measured, so that their squares are doubles.
+    /// Boxes and distances are measured in this unit, so that their squares are doubles.
     unit: f64,
     rows: Vec<u32>,
     nodes: Vec<Node>,
@@ -62,7 +63,7 @@ impl<'a> Tree<'a> {
             extent: Extent::of(
                 rows[start..end]
                     .iter()
-                    .map(|&row| measured(points[row as usize], unit)),
+                    .map(|&row| in_units(points[row as usize], unit)),
             ),
             start: start as u32,
             end: end as u32,
@@ -73,7 +74,7 @@ impl<'a> Tree<'a> {
         while i < nodes.len() {
             let (start, end) = (nodes[i].start as usize, nodes[i].end as usize);
             let sides = [0, 1].map(|k| nodes[i].extent.max[k] - nodes[i].extent.min[k]);
-            // Equal points stay together; a side may overflow, and infinity is the wider one.
+            // Equal points stay together. A side may overflow; then infinity is the wider one.
             if end - start > LEAF && sides.iter().any(|&side| side > 0.0) {
                 let axis = usize::from(sides[1] > sides[0]);
                 let middle = (end - start) / 2;
@@ -94,23 +95,24 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The rows of up to `most` points in conflict with a triangle, deepest first; and whether that
-    /// was all. The search looks for one point more than is asked: if there is none, that was all.
+    /// The rows of up to `most` points in conflict with a triangle, deepest first; and whether
+    /// these are all. The search looks for one point more than requested: if it finds none, they
+    /// are all.
     fn query(&self, corners: [Point2; 3], most: usize, found: &mut Vec<(f64, u32)>) -> bool {
         let wanted = most.saturating_add(1);
         let [x, y, radius] = disk(corners);
-        let ([x, y], radius) = (measured([x, y], self.unit), radius / self.unit + LEAST);
+        let ([x, y], radius) = (in_units([x, y], self.unit), radius / self.unit + LEAST);
         let reach = radius * radius;
         found.clear();
         let mut open = vec![(0.0, 0u32)];
         while let Some((distance, i)) = open.pop() {
-            // Nothing in the box is in the disk, or deeper than what has been found.
+            // No point of the box is in the disk, or none is deeper than those found.
             if distance > reach {
                 continue;
             }
             if found.len() == wanted {
                 if radius.is_infinite() {
-                    // No box is out of reach, and none is known to be the deeper: enough.
+                    // The disk covers everything and no box is known to be deeper: stop.
                     break;
                 }
                 if -distance * SLACK <= found[most].0 {
@@ -154,7 +156,7 @@ impl<'a> Tree<'a> {
         if corners.contains(&p) || incircle_canonical(a, b, c, p) != Sign::Positive {
             return;
         }
-        let [x, y] = measured(p, self.unit);
+        let [x, y] = in_units(p, self.unit);
         let (dx, dy) = (x - center[0], y - center[1]);
         let depth = -(dx * dx + dy * dy);
         let at = found.partition_point(|&(other, _)| other >= depth);
@@ -163,14 +165,14 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// A point in a unit of length.
+/// A point in multiples of a unit of length.
 #[inline]
-fn measured(p: Point2, unit: f64) -> Point2 {
+fn in_units(p: Point2, unit: f64) -> Point2 {
     in_unit([0.0; 2], p, unit)
 }
 
-/// For each triangle, counter-clockwise, up to `most` of the `points` that are in conflict with it:
-/// inside its circle, or on it where the tie goes that way. Corners among the points are none.
+/// For each counterclockwise triangle, up to `most` of the `points` in conflict with it: inside its
+/// circumcircle, or on it if the tie is broken that way. Its own corners do not count.
 pub fn deepest(
     points: &[Point2],
     triangles: &[[Point2; 3]],
@@ -219,7 +221,7 @@ mod tests {
             state = state
                 .wrapping_mul(6364136223846793005)
                 .wrapping_add(1442695040888963407);
-            // A lattice, so that many are on one circle.
+            // A lattice, so that many points are cocircular.
             ((state >> 40) % 64) as f64 * scale
         };
         (0..n).map(|_| [random(), random()]).collect()
@@ -261,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn the_deepest_come_first_and_the_rest_is_announced() {
+    fn the_deepest_are_first_and_more_are_announced() {
         let points: Vec<Point2> = (0..100).map(|i| [f64::from(i) / 100.0, 0.25]).collect();
         let circle = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.5]];
         let found = deepest(&points, &[circle], 3, 1, &Watch::idle()).unwrap();
@@ -272,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn none_is_an_answer() {
+    fn an_empty_answer_is_complete() {
         let circle = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.5]];
         let found = deepest(&[[5.0, 5.0], [1.0, 0.0]], &[circle], 3, 1, &Watch::idle()).unwrap();
         assert_eq!((found.starts, found.all), (vec![0, 0], vec![true]));
@@ -281,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_points_in_any_number_end_the_tree() {
+    fn trees_of_equal_points_end() {
         let points = vec![[1.0, 1.0]; 100];
         let circle = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]];
         let found = deepest(&points, &[circle], 2, 1, &Watch::idle()).unwrap();

@@ -1,25 +1,26 @@
-//! Disks that hold the closed circumdisk of a triangle, in doubles, rounded outward.
+//! Disks that contain the closed circumdisk of a triangle, in doubles, rounded outward.
 //!
-//! With b and c the corners as seen from a, D their cross product and N the vector
-//! |b|² (c.y, -c.x) - |c|² (b.y, -b.x), the centre is a + N / 2D. Write u = 2^-53 for the unit
-//! roundoff, P for the sum of the absolute products in D and Q for that in a coordinate of N. A
-//! product in D carries at most 4 roundings and one in N at most 7, so that D is wrong by less than
-//! 5 u P and N by less than 8 u Q, P and Q as computed. From N' = N + e, D' = D + f follows
+//! With b and c the corners relative to a, D their cross product and N the vector |b|² (c.y,
+//! -c.x) - |c|² (b.y, -b.x), the center is a + N / 2D. Write u = 2^-53 for the unit roundoff, P for the
+//! sum of the absolute products in D and Q for that in a coordinate of N. A product in D has at
+//! most 4 roundings and one in N at most 7, so D errs by less than 5 u P and N by less than 8 u Q,
+//! with P and Q as computed. From N' = N + e, D' = D + f it follows that
 //!
 //! ```text
 //! |N/D - N'/D'| = |N' f - e D'| / |D D'| <= (|e| + |N'/D'| |f|) / (|D'| - |f|)
 //! ```
 //!
-//! `ROUND` = 16 u stands for both 5 u and 8 u and takes in what rounds in the bound itself, as long as
-//! |D'| > 2 ROUND P. The radius is at most the length of the computed vector and its error, and the
-//! last addition of a moves the centre by u times the result: `PAD` = 64 u of radius and centre covers
-//! these, and the caller's centre ± radius.
+//! `ROUND` = 16 u covers 5 u, 8 u and the rounding of the bound itself, provided that |D'| > 2
+//! ROUND P. The radius is at most the length of the computed vector plus its error, and the final
+//! addition of a moves the center by u times the result: `PAD` = 64 u of radius and center covers
+//! these, and the caller's center ± radius.
 //!
-//! Large and small b and c are measured in a power of two, so that their products are doubles. Underflow
-//! changes a coordinate or a product by less than 2^-1074. Where |D| > `TINY` = 1e-200 one of b and c is
-//! longer than 1e-100, the radius is more than half of that, and PAD times the radius exceeds all
-//! that underflow can have done, which has been divided by D. `LEAST` stands for what underflows on the way
-//! back. Overflow makes infinities or NaN, and a comparison fail. Whatever fails is answered by the whole plane.
+//! Large and small b and c are measured in a power of two, so that their products are doubles.
+//! Underflow changes a coordinate or a product by less than 2^-1074. If |D| > `TINY` = 1e-200, then
+//! b or c is longer than 1e-100, the radius is more than half of that, and PAD times the radius
+//! exceeds all effects of underflow, divided by D. `LEAST` covers underflow when converting back.
+//! Overflow produces infinities or NaN, and a comparison fails. Whenever a check fails, the result
+//! is the whole plane.
 
 use delone_predicates::Point2;
 
@@ -36,11 +37,11 @@ const TINY: f64 = 1e-200;
 /// Eight times the smallest double.
 pub const LEAST: f64 = f64::from_bits(8);
 
-/// Triangles that one thread looks at before it takes the next ones.
+/// Triangles per task.
 const TASK: usize = 1 << 16;
 
-/// Centre and radius of a disk that holds the closed circumdisk of the triangle; the radius is
-/// infinite where none is certain.
+/// Center and radius of a disk that contains the closed circumdisk of the triangle; the radius is
+/// infinite if no finite one is certain.
 pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
     let whole = [0.0, 0.0, f64::INFINITY];
     let ([b, c], unit) = seen_from(a, [b, c]);
@@ -68,8 +69,8 @@ pub fn disk([a, b, c]: [Point2; 3]) -> [f64; 3] {
     }
 }
 
-/// Which triangles have all corners among the first `own` points and their disks in a closed box: left,
-/// bottom, right, top.
+/// Which triangles have all corners among the first `own` points and their disks in a closed box,
+/// given as left, bottom, right, top.
 pub fn within(
     points: &[Point2],
     simplices: &[[i32; 3]],
@@ -79,7 +80,7 @@ pub fn within(
     watch: &Watch,
 ) -> Result<Vec<bool>> {
     let [left, bottom, right, top] = bounds;
-    // Where nothing lies beyond, no disk need be computed.
+    // If the box is the whole plane, no disk needs to be computed.
     let whole = [left, bottom, -right, -top] == [f64::NEG_INFINITY; 4];
     let inside = |corners: [Point2; 3]| {
         let [x, y, r] = disk(corners);
@@ -106,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_within_a_box_are_told_from_others() {
+    fn triangles_within_a_box_are_distinguished() {
         let points = [[0.0, 0.0], [6.0, 0.0], [0.0, 8.0], [6.0, 8.0]];
         let both = [[0, 1, 2], [1, 3, 2]];
         let look = |own, bounds| within(&points, &both, own, bounds, 2, &Watch::idle()).unwrap();
@@ -125,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_right_triangle_has_its_hypotenuse_for_a_diameter() {
+    fn the_hypotenuse_of_a_right_triangle_is_a_diameter() {
         let [x, y, r] = disk([[0.0, 0.0], [6.0, 0.0], [0.0, 8.0]]);
         assert_eq!([x, y], [3.0, 4.0]);
         assert!((5.0..5.0 + 1e-12).contains(&r));
@@ -142,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_certain_is_the_whole_plane() {
+    fn uncertain_disks_are_the_whole_plane() {
         for corners in [
             [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
             [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0 + 1e-15]],
@@ -168,7 +169,7 @@ mod tests {
             let corners = [0; 3].map(|_| [far + random(), -far + flat * random()]);
             let [x, y, r] = disk(corners);
             for p in corners {
-                // The distance is rounded by far less than the radius is wide.
+                // The distance is rounded by far less than the padding of the radius.
                 let distance = (p[0] - x).hypot(p[1] - y);
                 assert!(distance <= r * (1.0 + 2.0 * f64::EPSILON), "{corners:?}");
             }

@@ -1,8 +1,9 @@
-//! Queries for triangulations in tiles: disks rounded outward, and the points deepest in circles.
+//! Queries for tiled triangulations: disks rounded outward, and the points deepest in
+//! circumcircles.
 //!
-//! A tile certifies a triangle where `disk` lies in the space that the tile knows; of every other
-//! tile that the disk touches it asks for the `deepest` points. Which tiles there are, and what goes
-//! between them, is the business of the caller.
+//! A tile certifies a triangle if the triangle's `disk` lies in the region that the tile knows; it
+//! queries every other tile that the disk touches for the `deepest` points. The caller manages the
+//! tiles and the messages between them.
 
 mod deepest;
 mod disk;

@@ -1,17 +1,19 @@
-//! Directions in cells: which points go farthest in each, and what is surely inside of a hull.
+//! Cells of directions: the farthest point in each, and a test for points certainly inside the
+//! hull.
 //!
-//! Seen from the inner point o, directions are cells on the six sides of a cube. The deepest point of each cell
-//! is most likely at the hull, and so are few others. Once these are inserted, for each corner of the
-//! cells one point on its ray is known to be in the hull; so is the pyramid from o to the four points of
-//! a cell, and in it all of the cell up to the depth of the least deep of them.
+//! Seen from the inner point o, directions are cells on the six sides of a cube. The deepest point
+//! of each cell is likely to be on the hull, and few others are. Once these are inserted, one point
+//! on the ray through each corner of the cells is known to be in the hull. So is the pyramid from o
+//! to the four points of a cell, and with it all of the cell up to the least of their depths.
 //!
 //! # Rounding
 //!
-//! The points of corners are rounded, but as such they are in the hull, by exact predicates. A point is
-//! taken for inside only if its direction, which has a relative error of a few 2^-53, is farther from the
-//! bounds of its cell than `MARGIN` of it, and if it is less deep by `MARGIN`; a corner's point may be off
-//! its ray by a unit in the last place of the coordinates, and counts only where that is less than a
-//! hundredth of `MARGIN` of its depth.
+//! The points on the corners' rays are rounded, but the rounded points are in the hull, by exact
+//! predicates. A point is taken to be inside only if its direction, which has a relative error of a
+//! few 2^-53, is farther from the bounds of its cell than a share `MARGIN` of the cell, and if it
+//! is less deep by the share `MARGIN`. A corner's point may be off its ray by a unit in the last
+//! place of the coordinates, and counts only if that is less than a hundredth of `MARGIN` of its
+//! depth.
 
 use delone_predicates::{Point3, Sign};
 
@@ -20,38 +22,39 @@ use super::insertion::{Hull, Towards};
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// Points between two looks at the watch.
+/// Points between two checks for interruption.
 const LOT: usize = 1 << 16;
-/// Points for each cell: its walks, to one point and one corner, are then worth a small part of what walks to
-/// all points would be.
+/// Points per cell: the walks of a cell, to one point and one corner, then cost a small part of
+/// what walks to all points would.
 const POINTS: usize = 16;
-/// Cells along each edge of the cube: with more, what they add is less than what they cost.
+/// The most cells along each edge of the cube: more cost more than they save.
 const MOST: usize = 32;
-/// Share of a cell, and of a depth, that rounding stays below by far.
+/// Share of a cell, and of a depth, that is far above rounding errors.
 const MARGIN: f64 = 1e-6;
-/// Planes that are met from outside before a corner is given up.
+/// Facet planes that a ray may meet from outside before its corner is given up.
 const TRIES: usize = 16;
-/// Sizes of hulls whose planes are computed without over- or underflow.
+/// Sizes of hulls whose planes are computed without overflow or underflow.
 const SAFE: std::ops::Range<f64> = 1e-90..1e90;
 
 /// Cells of directions from a point.
 #[derive(Clone, Copy)]
 pub struct Grid {
     o: Point3,
-    /// Cells along each edge of the cube.
+    /// The number of cells along each edge of the cube.
     cells: usize,
 }
 
-/// Where a grid has a point.
+/// The cell of a point.
 struct Place {
     cell: usize,
     depth: f64,
-    /// Whether rounding cannot have brought it here from another cell.
+    /// Whether rounding cannot have moved it here from another cell.
     sure: bool,
 }
 
 impl Grid {
-    /// A grid for so many points around the inner point of a hull; nothing where that is beyond doubles.
+    /// A grid for this many points around the inner point of a hull; `None` if the inner point is
+    /// not a double.
     pub fn of(hull: &Hull, points: usize) -> Option<Self> {
         let Inner::At(o) = hull.inner else {
             return None;
@@ -74,7 +77,7 @@ impl Grid {
         let (half, last) = (self.cells as f64 / 2.0, self.cells - 1);
         let along = |k: usize| {
             let place = (way[(axis + k) % 3] / size[axis] + 1.0) * half;
-            // NaN, at o itself, becomes zero, and then is within no margin.
+            // NaN, at o itself, becomes 0, and then is not within the margin.
             let whole = (place as usize).min(last);
             let rest = place - whole as f64;
             (whole, rest > MARGIN && rest < 1.0 - MARGIN)
@@ -88,7 +91,7 @@ impl Grid {
         }
     }
 
-    /// The deepest point of each cell that has one.
+    /// The deepest point of each nonempty cell.
     pub fn deepest(&self, points: &[Point3], watch: &Watch) -> Result<Vec<u32>> {
         let mut most = vec![(0.0, u32::MAX); 6 * self.cells * self.cells];
         for (first, lot) in (0u32..).step_by(LOT).zip(points.chunks(LOT)) {
@@ -105,24 +108,24 @@ impl Grid {
     }
 }
 
-/// Depths by side of the cube and cell.
+/// Depths for each side of the cube and each cell.
 pub struct Cells {
     grid: Grid,
     depths: Vec<f64>,
 }
 
 impl Cells {
-    /// The depths of a hull; nothing where its size is beyond doubles.
+    /// The depths of a hull; `None` if its size is out of range.
     pub fn of(hull: &Hull, grid: Grid) -> Option<Self> {
         let Grid { o, cells } = grid;
         let (size, most) = hull.reach(o);
         if !SAFE.contains(&size) || !most.is_finite() {
             return None;
         }
-        // What a coordinate is rounded by, over the share of a depth that is little enough.
+        // The rounding of a coordinate, over the share of a depth that is negligible.
         let least = most * f64::EPSILON / (MARGIN / 100.0 / cells as f64);
-        // In turns, so that each walk is short.
-        let to_and_fro = |i: usize, j: usize| match i & 1 {
+        // Alternating directions, so that each walk is short.
+        let back_and_forth = |i: usize, j: usize| match i & 1 {
             0 => j,
             _ => cells - j,
         };
@@ -136,11 +139,11 @@ impl Cells {
                 let mut way = [0.0; 3];
                 way[side / 2] = if side % 2 == 0 { 1.0 } else { -1.0 };
                 way[(side / 2 + 1) % 3] = of(i);
-                way[(side / 2 + 2) % 3] = of(to_and_fro(i, j));
+                way[(side / 2 + 2) % 3] = of(back_and_forth(i, j));
                 let found = depth_along(hull, o, way, 2.0 * size, &mut near);
                 *depth = if found > least { found } else { 0.0 };
             }
-            let corner = |i: usize, j: usize| corners[i * (cells + 1) + to_and_fro(i, j)];
+            let corner = |i: usize, j: usize| corners[i * (cells + 1) + back_and_forth(i, j)];
             for i in 0..cells {
                 for j in 0..cells {
                     let four = [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)];
@@ -153,7 +156,7 @@ impl Cells {
         Some(Self { grid, depths })
     }
 
-    /// Whether `p` is surely in the hull, and no extreme point of it.
+    /// Whether `p` is certainly in the hull and not an extreme point.
     #[inline]
     pub fn holds(&self, p: Point3) -> bool {
         let Place { cell, depth, sure } = self.grid.place(p);
@@ -161,8 +164,8 @@ impl Cells {
     }
 }
 
-/// How far along a way from `o` a rounded point is in the hull, nearly as far as can be; 0 where none
-/// is found. The way has a largest coordinate of 1, and ends outside.
+/// How far along a ray from `o` a rounded point is in the hull, nearly maximal; 0 if none is found.
+/// The direction has a largest coordinate of 1, and the ray's end is outside.
 fn depth_along(hull: &Hull, o: Point3, way: Point3, end: f64, near: &mut u32) -> f64 {
     let mut depth = end;
     for _ in 0..TRIES {
@@ -170,7 +173,7 @@ fn depth_along(hull: &Hull, o: Point3, way: Point3, end: f64, near: &mut u32) ->
         match hull.towards(at, *near) {
             Towards::Before(facet) => {
                 *near = facet;
-                // On a facet it might be an extreme point.
+                // A point on a facet might be extreme.
                 let inside = hull.side(at, facet) == Sign::Negative;
                 return if inside { depth } else { 0.0 };
             }

@@ -1,8 +1,8 @@
-//! The sides of a polytope: coplanar triangles of its surface merged to polygons of extreme points.
+//! Merges coplanar triangles of a convex surface into polygons of extreme points.
 //!
-//! A plane that supports the polytope meets it in one convex polygon, so triangles are of one side
-//! exactly where they are joined by edges whose two triangles are coplanar, and the rim of a side is
-//! one cycle.
+//! A supporting plane meets the polytope in one convex polygon. So triangles belong to one side
+//! exactly if they are joined by edges whose two triangles are coplanar, and the boundary of a side
+//! is one cycle.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -10,12 +10,12 @@ use super::insertion::{Facet, in_line};
 use crate::error::{Error, Result};
 use crate::memory::filled;
 
-/// Lists of vertices, one after the other.
+/// Lists of vertices, concatenated.
 #[derive(Debug, Default)]
 pub struct Polygons {
-    /// The vertices of all.
+    /// The vertices of all polygons.
     pub vertices: Vec<u32>,
-    /// Where each begins, and the end.
+    /// Where each polygon begins, plus the end.
     pub starts: Vec<u32>,
 }
 
@@ -27,10 +27,10 @@ impl Polygons {
     }
 }
 
-/// The corners of each side, counter-clockwise seen from outside.
+/// The corners of each side, counterclockwise seen from outside.
 pub fn polygons(points: &[Point3], facets: &[Facet]) -> Result<Polygons> {
     let mut met = filled(facets.len(), false)?;
-    // The next vertex on the rim of the side in work, for those on it.
+    // For each vertex on the boundary of the current side, the next one.
     let mut after = filled(points.len(), 0)?;
     let mut rim = Vec::new();
     let mut open = Vec::new();
@@ -65,8 +65,8 @@ pub fn polygons(points: &[Point3], facets: &[Facet]) -> Result<Polygons> {
     Ok(found)
 }
 
-/// Whether a triangle lies in the plane of another. Of what they have in common it need not be asked, which
-/// is worth much: a predicate goes through all of its stages before it says zero.
+/// Whether a triangle lies in the plane of another. Shared corners are not tested, which saves much
+/// time: a predicate goes through all of its stages before it says zero.
 fn lies_in(points: &[Point3], plane: [u32; 3], corners: [u32; 3]) -> bool {
     let [a, b, c] = plane.map(|v| points[v as usize]);
     corners
@@ -74,16 +74,16 @@ fn lies_in(points: &[Point3], plane: [u32; 3], corners: [u32; 3]) -> bool {
         .all(|v| plane.contains(v) || orient3d(a, b, c, points[*v as usize]) == Sign::Zero)
 }
 
-/// Adds the cycle of a rim, without the vertices in the middle of an edge.
+/// Adds a boundary cycle, without the vertices in the interior of an edge.
 fn add_corners(points: &[Point3], rim: &[u32], after: &[u32], found: &mut Polygons) -> Result<()> {
-    let broken = || Error::Internal("the rim of a side is no cycle".into());
+    let broken = || Error::Internal("the boundary of a side is not a cycle".into());
     let &start = rim.first().ok_or_else(broken)?;
     let at = |v: u32| points[v as usize];
     let mut v = start;
     for step in 0..rim.len() {
         let next = after[v as usize];
         let next_but_one = after[next as usize];
-        // No triangle is flat.
+        // No triangle is degenerate.
         if rim.len() == 3 || !in_line(at(v), at(next), at(next_but_one)) {
             found.vertices.push(next);
         }

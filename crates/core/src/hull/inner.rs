@@ -1,17 +1,17 @@
-//! A point strictly inside of a tetrahedron, and on which side of planes through it others are.
+//! A point strictly inside a tetrahedron, and orientation tests with it.
 
 use delone_predicates::{Point3, Sign, orient3d};
 use num_bigint::{BigInt, Sign as Turn};
 
 use crate::wide::{lowest, scaled};
 
-/// The mean of four points: rounded where that is strictly inside of them; else the exact one, as where
-/// two of their planes are neighbouring doubles.
+/// The mean of four points: rounded if that is strictly inside their tetrahedron; otherwise exact,
+/// as when two of their planes are at neighboring doubles.
 #[derive(Debug, Clone, Copy)]
 pub enum Inner {
     /// The rounded mean.
     At(Point3),
-    /// What it is the mean of.
+    /// The exact mean of these points.
     Mean([Point3; 4]),
 }
 
@@ -32,7 +32,7 @@ impl Inner {
         }
     }
 
-    /// The orientation of the point with three others.
+    /// The orientation of this point and three others.
     #[inline]
     pub fn side(&self, u: Point3, v: Point3, p: Point3) -> Sign {
         match self {
@@ -42,7 +42,7 @@ impl Inner {
     }
 }
 
-/// Differences within these bounds have products that neither over- nor underflow.
+/// Differences within these bounds have products that neither overflow nor underflow.
 const SAFE: std::ops::Range<f64> = 1e-90..1e90;
 
 #[cold]
@@ -61,9 +61,9 @@ fn of_mean(corners: &[Point3; 4], u: Point3, v: Point3, p: Point3) -> Sign {
                 .all(|x| *x == 0.0 || SAFE.contains(&x.abs()));
         }
     }
-    // 12 terms of 6 roundings each, and their sums: less than 32 units of rounding.
+    // 12 terms with 6 roundings each, and their sums: less than 32 units of rounding.
     if safe && sum.abs() > 16.0 * f64::EPSILON * size {
-        // Seen from the last point the determinant is that of the first with the other sign.
+        // Relative to the last point, the determinant has the opposite sign.
         return Sign::of(-sum);
     }
     let [a, b, c, d] = *corners;
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_mean_of_neighbouring_planes_is_between_them() {
+    fn the_mean_of_neighboring_planes_is_between_them() {
         let up = 1f64.next_up();
         let corners = [
             [0.0, 0.0, 1.0],
@@ -111,7 +111,7 @@ mod tests {
             let corners = corners.map(|p| [p[0] * scale, p[1] * scale, p[2]]);
             let exact = Inner::Mean(corners);
             let at = |x: f64, y: f64, z: f64| [x * scale, y * scale, z];
-            // The line through both has the mean on it; the plane x = 1 has it, too.
+            // The mean is on the line through both, and in the plane x = 1.
             let (u, v) = (at(1.0, 1.0, 0.0), at(1.0, 1.0, 2.0));
             assert_eq!(exact.side(u, v, at(9.0, 1.0, 1.0)), Sign::Zero);
             let (u, v) = (at(1.0, 0.0, 0.0), at(1.0, 0.0, 2.0));

@@ -1,24 +1,27 @@
-//! The convex hull in space by insertion.
+//! The 3-D convex hull by insertion.
 //!
 //! K. L. Clarkson and P. W. Shor, "Applications of random sampling in computational geometry, II"
-//! (1989): points come in random order; the facets that a point *sees*, being strictly beyond their
-//! planes, go, and a cone of new ones comes, from the point to their rim. In place of lists of conflicts
-//! there is a walk: seen from an inner point o, the facets tile the sphere, and a point that is outside
-//! sees the facet towards which it lies. `surface` says in which order they come.
+//! (1989): points are inserted in random order. The facets that a point *sees*, because it is
+//! strictly beyond their planes, are removed, and replaced by a cone of new ones from the point to
+//! the horizon. Instead of conflict lists there is a walk: seen from an inner point o, the facets
+//! tile the sphere, and a point outside the hull sees the facet in its direction. `surface` decides
+//! the order of the points.
 //!
 //! # Points in the planes of facets
 //!
-//! No point is moved. The facets that p sees are the union of whole sides of the polytope, and so a
-//! disc, whose rim is one cycle. A new triangle is never flat: were p in line with an edge of the rim,
-//! then in the planes of both facets there, and would see neither. New triangles may be coplanar with
-//! old ones, and vertices may come to lie in the middle of a side or an edge; `faces` takes them out.
+//! No point is moved. The facets that p sees are a union of whole sides of the polytope, hence a
+//! disk, whose horizon is one cycle. A new triangle is never degenerate: if p were collinear with
+//! an edge of the horizon, it would be in the planes of both facets there, and see neither. New
+//! triangles may be coplanar with old ones, and vertices may end up in the interior of a side or an
+//! edge; `faces` removes them.
 //!
 //! # The walk
 //!
-//! From a facet to the one across an edge, where p lies beyond the plane through o and the edge. Of the
-//! planes of facets that of the next one is met later on the way from o to p, or at the same place where
-//! both are coplanar; so a walk comes back to no side of the polytope, and within one it may turn in
-//! circles: it has a budget, and then all facets are asked. It may end at any facet that p sees.
+//! The walk goes from a facet across an edge if p lies beyond the plane through o and the edge. On
+//! the way from o to p, the plane of the next facet is met later than that of the current one, or
+//! at the same point if both are coplanar. So a walk never returns to a side of the polytope, but
+//! it may cycle within one: it has a budget, and if that is spent, all facets are tested. It may
+//! end at any facet that p sees.
 
 use delone_predicates::{Point3, Sign, orient2d, orient3d};
 
@@ -27,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::memory::filled;
 use crate::watch::Watch;
 
-/// Insertions between two looks at the watch.
+/// Insertions between two checks for interruption.
 const WATCH_EVERY: usize = 1024;
 /// No facet.
 const NONE: u32 = u32::MAX;
@@ -39,45 +42,45 @@ pub struct Facet {
     pub corners: [u32; 3],
     /// The facet across the edge opposite each.
     pub beyond: [u32; 3],
-    /// Whether it is still there.
+    /// Whether it is still on the surface.
     pub alive: bool,
 }
 
-/// Whether three points lie on one line: all projections do.
+/// Whether three points are collinear: all projections are.
 pub fn in_line(a: Point3, b: Point3, c: Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)]
         .iter()
         .all(|&(i, j)| orient2d([a[i], a[j]], [b[i], b[j]], [c[i], c[j]]) == Sign::Zero)
 }
 
-/// The hull so far.
+/// The hull of the points so far.
 pub struct Hull<'a> {
     points: &'a [Point3],
     pub facets: Vec<Facet>,
     /// A point strictly inside.
     pub inner: Inner,
-    /// Where the next walk begins: a facet that is there.
+    /// Where the next walk begins: a live facet.
     near: u32,
-    /// Facets that may be used again.
+    /// Records of facets that may be reused.
     free: Vec<u32>,
-    /// For each vertex of the rim the new facet whose edge begins there.
+    /// For each vertex of the horizon, the new facet whose edge begins there.
     spoke: Vec<u32>,
     seen: Vec<u32>,
     rim: Vec<(u32, u32, u32)>,
 }
 
-/// Where a point is.
+/// The result of a walk.
 pub enum Towards {
     /// Outside, strictly beyond this facet.
     Beyond(u32),
-    /// In the hull, on the way from the inner point to this facet.
+    /// In the hull, on the ray from the inner point to this facet.
     Before(u32),
 }
 
 impl<'a> Hull<'a> {
     /// The surface of a tetrahedron, positively oriented.
     pub fn start(points: &'a [Point3], [a, b, c, d]: [u32; 4]) -> Result<Self> {
-        // Opposite a, b, c and d, counter-clockwise seen from outside.
+        // Opposite a, b, c and d, counterclockwise seen from outside.
         let corners = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]];
         let beyond = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
         let facets = [0, 1, 2, 3].map(|i| Facet {
@@ -97,7 +100,7 @@ impl<'a> Hull<'a> {
         })
     }
 
-    /// Inserts points, one after the other.
+    /// Inserts points, one at a time.
     pub fn insert_all(&mut self, rows: &[u32], watch: &Watch) -> Result<()> {
         for (done, &p) in rows.iter().enumerate() {
             if done % WATCH_EVERY == 0 {
@@ -106,8 +109,8 @@ impl<'a> Hull<'a> {
             match self.towards(self.at(p), self.near) {
                 Towards::Before(facet) => self.near = facet,
                 Towards::Beyond(facet) => {
-                    self.look(p, facet);
-                    self.raise_cone(p)?;
+                    self.find_horizon(p, facet);
+                    self.build_cone(p)?;
                 }
             }
         }
@@ -123,19 +126,19 @@ impl<'a> Hull<'a> {
         self.facets[facet as usize].corners.map(|v| self.at(v))
     }
 
-    /// The side of a facet on which `p` is; positive is beyond.
+    /// The side of a facet on which `p` is; positive is outside.
     #[inline]
     pub fn side(&self, p: Point3, facet: u32) -> Sign {
         let [a, b, c] = self.corners(facet);
         orient3d(a, b, c, p)
     }
 
-    /// A facet that is there.
+    /// A live facet.
     pub fn near(&self) -> u32 {
         self.near
     }
 
-    /// How far from a point the hull reaches along an axis, and the largest coordinate.
+    /// How far the hull extends from a point along an axis, and the largest coordinate.
     pub fn reach(&self, o: Point3) -> (f64, f64) {
         let alive = (0u32..).zip(&self.facets).filter(|(_, f)| f.alive);
         let corners = alive.flat_map(|(i, _)| self.corners(i));
@@ -145,12 +148,12 @@ impl<'a> Hull<'a> {
         })
     }
 
-    /// Where `p` is, by a walk from a facet.
+    /// Locates `p` by a walk from a facet.
     pub fn towards(&self, p: Point3, near: u32) -> Towards {
         let mut facet = near;
         let mut from = NONE;
-        // Far more than walks have between neighbours on the curve, but where thin facets stand side by
-        // side; and fewer than asking all facets is worth.
+        // Far more steps than walks between consecutive points on the curve need, except across
+        // thin facets side by side; and fewer than testing all facets is worth.
         for step in 0..64 + self.facets.len() / 8 {
             if self.side(p, facet) == Sign::Positive {
                 return Towards::Beyond(facet);
@@ -174,8 +177,9 @@ impl<'a> Hull<'a> {
         seen.map_or(Towards::Before(near), Towards::Beyond)
     }
 
-    /// Finds the facets that `p` sees, which go, and the edges of their rim with what is beyond.
-    fn look(&mut self, p: u32, seed: u32) {
+    /// Finds the facets that `p` sees, marks them as removed, and collects the horizon with the
+    /// facets beyond.
+    fn find_horizon(&mut self, p: u32, seed: u32) {
         let point = self.at(p);
         self.seen.clear();
         self.rim.clear();
@@ -203,12 +207,12 @@ impl<'a> Hull<'a> {
         }
     }
 
-    /// Joins `p` to the rim.
-    fn raise_cone(&mut self, p: u32) -> Result<()> {
+    /// Joins `p` to the horizon.
+    fn build_cone(&mut self, p: u32) -> Result<()> {
         self.free.append(&mut self.seen);
         for i in 0..self.rim.len() {
             let (u, v, beyond) = self.rim[i];
-            let facet = self.fresh();
+            let facet = self.new_facet();
             self.facets[facet as usize] = Facet {
                 corners: [p, u, v],
                 beyond: [beyond, NONE, NONE],
@@ -220,8 +224,8 @@ impl<'a> Hull<'a> {
             self.spoke[u as usize] = facet;
             self.near = facet;
         }
-        // Once round, from edge to edge.
-        let broken = || Error::Internal("the rim of a cone is no cycle".into());
+        // Once around, from edge to edge.
+        let broken = || Error::Internal("the horizon is not a cycle".into());
         let (start, ..) = self.rim[0];
         let mut u = start;
         for count in 1.. {
@@ -245,7 +249,7 @@ impl<'a> Hull<'a> {
         Ok(())
     }
 
-    fn fresh(&mut self) -> u32 {
+    fn new_facet(&mut self) -> u32 {
         if let Some(facet) = self.free.pop() {
             return facet;
         }

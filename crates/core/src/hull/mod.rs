@@ -1,9 +1,10 @@
 //! 2-D and 3-D convex hulls: exact, each vertex extreme, each facet canonical.
 //!
-//! `plane` is one chain below and one above. In space `surface` makes one of triangles, by `insertion`, which walks
-//! round an `inner` point; `cells` keep from it most of what is inside. In the surface vertices may lie in
-//! the middle of flat facets; `faces` merges coplanar triangles to polygons of extreme vertices; `polygon` triangulates those by coordinates alone. Orders and numbers of
-//! insertion leave no trace.
+//! `plane` builds a lower and an upper chain. In 3-D `surface` builds a surface of triangles by
+//! `insertion`, which walks around an `inner` point; `cells` skip most of the points inside.
+//! Vertices of the surface may lie in the interior of flat facets; `faces` merges coplanar
+//! triangles into polygons of extreme vertices; `polygon` triangulates these by coordinates only.
+//! So the result is independent of the insertion order and of row numbers.
 
 mod cells;
 mod faces;
@@ -22,25 +23,25 @@ use crate::memory::{filled, with_room};
 use crate::watch::Watch;
 use faces::Polygons;
 
-/// The hull of points in space.
+/// The convex hull of points in 3-D.
 #[derive(Debug, Default)]
 pub struct Hull3 {
-    /// Triangles, counter-clockwise seen from outside, each from its smallest vertex on; in
+    /// Triangles, counterclockwise seen from outside, each from its smallest vertex on, in
     /// lexicographic order of their vertices.
     pub simplices: Vec<[u32; 3]>,
     /// The triangle across the edge opposite each vertex.
     pub neighbors: Vec<[u32; 3]>,
     /// The facet of each triangle.
     pub facet: Vec<u32>,
-    /// The vertices of each facet, counter-clockwise from the smallest on, one facet after the other.
+    /// The vertices of all facets, each counterclockwise from its smallest vertex on, concatenated.
     pub polygons: Vec<u32>,
-    /// Where the vertices of each facet begin, and the end.
+    /// Where the vertices of each facet begin, plus the end.
     pub starts: Vec<u32>,
     /// `[row, vertex]` for rows that repeat a vertex, ascending.
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// The hull of finite points; nothing where they span no volume.
+/// The convex hull of finite points; `None` if they span no volume.
 pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
     let Some(surface) = surface::surface(points, watch)? else {
         return Ok(None);
@@ -52,7 +53,7 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
         rank,
         duplicates,
     } = first_rows(points, &found.vertices, &surface.rows)?;
-    // From here on vertices go by their places in lexicographic order.
+    // From here on vertices are numbered in lexicographic order.
     let Polygons { vertices, starts } = in_order(found, &rank);
     watch.check()?;
     let at: Vec<Point3> = rows.iter().map(|&row| points[row as usize]).collect();
@@ -64,7 +65,7 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
             continue;
         }
         let made = polygon::triangulate(&at, polygon, surface.first)?;
-        triangles.extend(made.into_iter().map(|t| (turned(t), i)));
+        triangles.extend(made.into_iter().map(|t| (smallest_first(t), i)));
     }
     triangles.sort_unstable();
     let (simplices, facet): (Vec<[u32; 3]>, Vec<u32>) = triangles.into_iter().unzip();
@@ -83,13 +84,13 @@ pub fn hull3(points: &[Point3], watch: &Watch) -> Result<Option<Hull3>> {
 struct Vertices {
     /// The first row of each.
     rows: Vec<u32>,
-    /// The place of each row that stands for a vertex of the surface.
+    /// The rank of each row that represents a vertex of the surface.
     rank: Vec<u32>,
     /// `[row, vertex]` for rows that repeat a vertex, ascending.
     duplicates: Vec<[u32; 2]>,
 }
 
-/// Puts vertices of a surface in order; `rows`, which ascend, are those that may be at one.
+/// Sorts the vertices of a surface; `rows`, ascending, are those that may coincide with one.
 fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Vertices> {
     let mut rank = filled(points.len(), u32::MAX)?;
     let mut order: Vec<u32> = with_room(vertices.len())?;
@@ -102,7 +103,7 @@ fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Verti
     for (i, &v) in (0u32..).zip(&order) {
         rank[v as usize] = i;
     }
-    // Of rows with the same coordinates any may be the vertex of the surface.
+    // Any of the rows with equal coordinates may be the vertex of the surface.
     let others = || rows.iter().filter(|&&row| rank[row as usize] == u32::MAX);
     let place = |row: u32| {
         let p = points[row as usize];
@@ -126,7 +127,7 @@ fn first_rows(points: &[Point3], vertices: &[u32], rows: &[u32]) -> Result<Verti
     })
 }
 
-/// Polygons by places, each from its smallest vertex on, in the order of their vertices.
+/// Polygons by rank, each from its smallest vertex on, sorted by their vertices.
 fn in_order(mut found: Polygons, rank: &[u32]) -> Polygons {
     for v in &mut found.vertices {
         *v = rank[*v as usize];
@@ -149,8 +150,8 @@ fn in_order(mut found: Polygons, rank: &[u32]) -> Polygons {
     sorted
 }
 
-/// A triangle from its smallest vertex on.
-fn turned(t: [u32; 3]) -> [u32; 3] {
+/// Rotates a triangle so that its smallest vertex is first.
+fn smallest_first(t: [u32; 3]) -> [u32; 3] {
     let least = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
     [0, 1, 2].map(|k| t[(least + k) % 3])
 }
@@ -158,7 +159,7 @@ fn turned(t: [u32; 3]) -> [u32; 3] {
 /// The triangle across each edge of a closed surface on `n` vertices.
 fn across(simplices: &[[u32; 3]], n: usize) -> Result<Vec<[u32; 3]>> {
     let edges = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[(k + 1) % 3], t[(k + 2) % 3]));
-    // The heads of the edges that begin at each vertex, with their triangles.
+    // For each vertex, the heads of the edges that begin there, with their triangles.
     let mut starts = filled(n + 1, 0u32)?;
     for &v in simplices.as_flattened() {
         starts[v as usize + 1] += 1;
@@ -176,7 +177,7 @@ fn across(simplices: &[[u32; 3]], n: usize) -> Result<Vec<[u32; 3]>> {
         }
     }
     let of = |v: usize| starts[v] as usize..starts[v + 1] as usize;
-    // A vertex may have very many.
+    // Sorted, since a vertex may have a very high degree.
     (0..n).for_each(|v| heads[of(v)].sort_unstable());
     let mut beyond = with_room(simplices.len())?;
     for t in simplices {

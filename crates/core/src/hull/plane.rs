@@ -1,6 +1,7 @@
-//! The convex hull in the plane: A. M. Andrew, "Another efficient algorithm for convex hulls in two
-//! dimensions" (1979), of the points that are not strictly inside of a polygon of extreme points (S. G.
-//! Akl and G. T. Toussaint, "A fast convex hull algorithm", 1978).
+//! The 2-D convex hull: two monotone chains over the points outside an octagon of extreme points.
+//!
+//! A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions" (1979), after S.
+//! G. Akl and G. T. Toussaint, "A fast convex hull algorithm" (1978).
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
@@ -8,14 +9,14 @@ use crate::error::Result;
 use crate::order::{sort, sort_by};
 use crate::watch::{Pace, Watch};
 
-/// Points between two looks at the watch.
+/// Points between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// Rows of a hull, and rows that repeat one of these with it.
+/// Rows of a hull, and rows that repeat one of these, each with it.
 pub type Chain = (Vec<u32>, Vec<[u32; 2]>);
 
-/// The extreme points, counter-clockwise from the lexicographically smallest on, each by its first
-/// row; fewer than three where there is no area. And `[row, vertex]` for rows that repeat one.
+/// The extreme points, counterclockwise from the lexicographically smallest on, each by its first
+/// row; fewer than three if there is no area. And `[row, vertex]` for rows that repeat one.
 pub fn hull2(points: &[Point2], watch: &Watch) -> Result<Chain> {
     let mut rows = outside_of_octagon(points, watch)?;
     let at = |v: u32| points[v as usize];
@@ -45,7 +46,7 @@ pub fn hull2(points: &[Point2], watch: &Watch) -> Result<Chain> {
     Ok((hull, repeats))
 }
 
-/// The chain of left turns over points in order.
+/// The chain of left turns over sorted points.
 fn chain(points: &[Point2], rows: impl Iterator<Item = u32>, watch: &Watch) -> Result<Vec<u32>> {
     let mut pace = Pace::new(watch, LOT);
     let at = |v: u32| points[v as usize];
@@ -62,8 +63,7 @@ fn chain(points: &[Point2], rows: impl Iterator<Item = u32>, watch: &Watch) -> R
     Ok(kept)
 }
 
-/// Rows of points that are not known to be inside of the polygon of the extreme ones in eight
-/// directions.
+/// Rows of points not known to be inside the polygon of the extreme points in eight directions.
 fn outside_of_octagon(points: &[Point2], watch: &Watch) -> Result<Vec<u32>> {
     let mut pace = Pace::new(watch, LOT);
     let rows = || (0u32..).zip(points);
@@ -82,7 +82,7 @@ fn outside_of_octagon(points: &[Point2], watch: &Watch) -> Result<Vec<u32>> {
     for (row, p) in rows() {
         pace.spend(1)?;
         for k in 0..8 {
-            // Any point will do as a corner: rounding and overflow choose a worse one.
+            // Any point is a valid corner: rounding and overflow only choose a worse one.
             let along = directions[k][0] * p[0] + directions[k][1] * p[1];
             if along > most[k] {
                 (most[k], corners[k]) = (along, row as usize);
@@ -95,11 +95,11 @@ fn outside_of_octagon(points: &[Point2], watch: &Watch) -> Result<Vec<u32>> {
     let polygon: Vec<Point2> = corners.iter().map(|&c| points[c]).collect();
     let inside = |p: Point2| {
         let sides = (0..8).map(|k| (polygon[k], polygon[(k + 1) % 8]));
-        // Equal corners have no side between them; a polygon of one point has no inside.
+        // Equal corners have no side between them; a polygon of one point has no interior.
         let mut proper = sides.filter(|(a, b)| a != b).peekable();
         proper.peek().is_some() && proper.all(|(a, b)| orient2d(a, b, p) == Sign::Positive)
     };
-    // Most points lie in a box that is inside, and four comparisons say so.
+    // Most points lie in a box inside the polygon: four comparisons suffice.
     let [_, ne, _, nw, _, sw, _, se] = polygon[..] else {
         unreachable!("eight directions have eight corners")
     };
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn extreme_points_alone_are_vertices() {
+    fn only_extreme_points_are_vertices() {
         let points: Vec<Point2> = (0..5)
             .flat_map(|x| (0..5).map(move |y| [f64::from(x), f64::from(y)]))
             .chain([[0.0, 0.0], [4.0, 4.0], [2.0, 2.0]])

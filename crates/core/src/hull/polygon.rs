@@ -1,10 +1,12 @@
-//! The canonical Delaunay triangulation of a convex polygon in space, whose corners are all extreme.
+//! The canonical Delaunay triangulation of a convex polygon in 3-D, all of whose corners are
+//! extreme.
 //!
 //! L. P. Chew, "Building Voronoi diagrams for convex polygons in linear expected time" (1990): the
-//! corners are taken away in random order, which leaves each with its two neighbours at that time, and
-//! come back in the opposite order, each beyond the edge between those two. A circle in the plane of
-//! the polygon is asked for by a sphere through it and a point off the plane, and ties by
-//! coordinates, so that the order leaves no trace. Each corner comes once: it ends.
+//! corners are removed in random order, which records the two neighbors that each has at that time,
+//! and inserted again in the opposite order, each beyond the edge between those two. The in-circle
+//! test in the plane of the polygon is an in-sphere test with a point off the plane, with ties
+//! broken by coordinates, so the result is independent of the order. Terminates because each corner
+//! is inserted once.
 
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
@@ -13,8 +15,8 @@ use crate::error::{Error, Result};
 /// No triangle.
 const NONE: usize = usize::MAX;
 
-/// The triangles of a polygon, which is counter-clockwise seen from outside; `first` are four points
-/// of the hull that are not in one plane.
+/// The triangles of a polygon, which is counterclockwise seen from outside; `first` are four points
+/// of the hull that are not coplanar.
 pub fn triangulate(
     points: &[Point3],
     polygon: &[u32],
@@ -30,7 +32,7 @@ pub fn triangulate(
     let inner = first
         .into_iter()
         .find(|&p| orient3d(a, b, c, p) == Sign::Negative)
-        .ok_or_else(|| Error::Internal("all of the hull is beyond a facet".into()))?;
+        .ok_or_else(|| Error::Internal("the whole hull is beyond a facet".into()))?;
     let mut mesh = Mesh {
         at: polygon.iter().map(|&v| points[v as usize]).collect(),
         inner,
@@ -46,8 +48,8 @@ pub fn triangulate(
     Ok(alive.map(|t| t.corners.map(|i| polygon[i])).collect())
 }
 
-/// The three corners that stay, counter-clockwise, and for each other one itself and its neighbours
-/// when it is taken away.
+/// The three corners that stay, counterclockwise, and for each other one itself and its neighbors
+/// when it is removed.
 fn thinned(n: usize) -> ([usize; 3], Vec<[usize; 3]>) {
     let mut order: Vec<usize> = (0..n).collect();
     let mut state = 0x9e37_79b9_7f4a_7c15u64;
@@ -72,7 +74,7 @@ fn thinned(n: usize) -> ([usize; 3], Vec<[usize; 3]>) {
     ([a, next[a], prev[a]], removed)
 }
 
-/// A triangle of corner numbers and what lies opposite each.
+/// A triangle of corner numbers and the triangles opposite each.
 struct Triangle {
     corners: [usize; 3],
     beyond: [usize; 3],
@@ -83,12 +85,12 @@ struct Mesh {
     at: Vec<Point3>,
     inner: Point3,
     triangles: Vec<Triangle>,
-    /// For each corner the triangle at the boundary edge that begins there.
+    /// For each corner, the triangle at the boundary edge that begins there.
     outer: Vec<usize>,
 }
 
 impl Mesh {
-    /// Puts a triangle of which nothing is beyond any edge.
+    /// Adds a triangle without neighbors.
     fn add(&mut self, corners: [usize; 3]) {
         let t = self.triangles.len();
         self.triangles.push(Triangle {
@@ -101,25 +103,25 @@ impl Mesh {
         }
     }
 
-    /// Whether `v` is inside the circle of a triangle.
+    /// Whether `v` is inside the circumcircle of a triangle.
     fn holds(&self, t: usize, v: usize) -> bool {
         let [a, b, c] = self.triangles[t].corners.map(|i| self.at[i]);
-        // Outer sides are counter-clockwise: the inner point makes a negative tetrahedron.
+        // Facets are counterclockwise from outside, so the inner point is on the negative side.
         debug_assert!(orient3d(a, b, c, self.inner) == Sign::Negative);
         insphere_canonical(a, c, b, self.inner, self.at[v]) == Sign::Positive
     }
 
-    /// Puts a corner back beyond the edge from `left` to `right`.
+    /// Inserts a corner again beyond the edge from `left` to `right`.
     ///
     /// ```text
-    ///       v                 the triangles whose circles hold v go; v is joined to all their
-    ///      / \                corners, from right round to left
+    ///       v                 the triangles whose circumcircles contain v are removed;
+    ///      / \                v is joined to all their corners, from right around to left
     ///  left---right
     ///      \ t /
     /// ```
     fn insert(&mut self, v: usize, left: usize, right: usize) -> Result<()> {
-        // Edges of the hole as seen from v: tail, head and what is beyond; depth first, they come
-        // in order from left, clockwise round the hole.
+        // Edges of the cavity as seen from v: tail, head and the code beyond; depth-first, in order
+        // from left, clockwise around the cavity.
         let mut chain: Vec<(usize, usize, usize)> = Vec::new();
         let mut open = vec![(left, right, self.outer[left], NONE)];
         while let Some((tail, head, t, from)) = open.pop() {
@@ -129,8 +131,8 @@ impl Mesh {
             }
             let triangle = &mut self.triangles[t];
             triangle.alive = false;
-            // The corner opposite the edge through which it was reached.
-            let lost = || Error::Internal("a polygon's triangles are not linked".into());
+            // The corner opposite the edge through which the triangle was reached.
+            let lost = || Error::Internal("the triangles of a polygon are not linked".into());
             let k = match from {
                 NONE => triangle
                     .corners
@@ -141,7 +143,7 @@ impl Mesh {
             let k = k.ok_or_else(lost)?;
             let apex = triangle.corners[k];
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            // Beyond the edge from the apex to the head is what is opposite the tail.
+            // Across the edge from the apex to the head is the triangle opposite the tail.
             let [at_tail, at_head] =
                 [tail, head].map(|c| if triangle.corners[i] == c { i } else { j });
             let (to_head, to_tail) = (triangle.beyond[at_tail], triangle.beyond[at_head]);
@@ -154,7 +156,7 @@ impl Mesh {
             let t = first + i;
             let before = if i > 0 { t - 1 } else { NONE };
             let after = if i + 1 < count { t + 1 } else { NONE };
-            // The edge was seen from its other side.
+            // The edge was reached from its other side.
             self.triangles.push(Triangle {
                 corners: [head, tail, v],
                 beyond: [before, after, beyond],

@@ -1,9 +1,9 @@
-//! The surface around points: in which order they are inserted, and which need not be.
+//! The insertion order of a 3-D hull: extreme points first, points certainly inside skipped.
 //!
-//! Points that go farthest come first; what their hull has inside is left out by `Cells` without a walk,
-//! and without being looked at again. The rest comes in rounds in which the number of points doubles,
-//! each along a curve (N. Amenta, S. Choi and G. Rote, "Incremental constructions con BRIO", 2003):
-//! O(n log n) expected, with walks of a few steps.
+//! Points that are extreme in some direction are inserted first; points inside their hull are
+//! removed by `Cells` without a walk, and are not visited again. The others are inserted in rounds
+//! in which the number of points doubles, each along a curve (N. Amenta, S. Choi and G. Rote,
+//! "Incremental constructions con BRIO", 2003): O(n log n) expected, with walks of a few steps.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -14,13 +14,13 @@ use crate::memory::{filled, with_room};
 use crate::order::order_of;
 use crate::watch::Watch;
 
-/// Directions along which extreme points are taken first, on a spiral over the sphere.
+/// The number of directions whose extreme points are inserted first, on a spiral over the sphere.
 const DIRECTIONS: usize = 40;
-/// Points of a sample that is enough for them.
+/// The size of a sample that suffices for them.
 const SAMPLE: usize = 1 << 9;
-/// Points from which on cells of directions save more walks than they take.
+/// From this many points on, cells of directions save more walks than they cost.
 const MANY: usize = 1 << 8;
-/// Points between two looks at the watch.
+/// Points between two checks for interruption.
 const LOT: usize = 1 << 16;
 /// No row.
 const NONE: u32 = u32::MAX;
@@ -28,15 +28,15 @@ const NONE: u32 = u32::MAX;
 /// A closed surface of triangles around all points.
 #[derive(Debug)]
 pub struct Surface {
-    /// Counter-clockwise seen from outside; none is flat.
+    /// Counterclockwise seen from outside; none is degenerate.
     pub facets: Vec<Facet>,
-    /// Four points that are not in one plane.
+    /// Four points that are not coplanar.
     pub first: [Point3; 4],
-    /// The rows that may be at a vertex, ascending.
+    /// The rows that may coincide with a vertex, ascending.
     pub rows: Vec<u32>,
 }
 
-/// The surface around finite points; nothing where they span no volume.
+/// The surface around finite points; `None` if they span no volume.
 pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
     let mut rows = with_room(points.len())?;
     rows.extend(0..points.len() as u32);
@@ -73,14 +73,14 @@ pub fn surface(points: &[Point3], watch: &Watch) -> Result<Option<Surface>> {
     let late = rows.iter().copied().filter(|&row| !done[row as usize]);
     hull.insert_all(&rounds(points, late.collect(), watch)?, watch)?;
     Ok(Some(Surface {
-        facets: living(&hull.facets),
+        facets: live_facets(&hull.facets),
         first: first.map(|v| points[v as usize]),
         rows,
     }))
 }
 
-/// The facets that are there, numbered anew.
-fn living(facets: &[Facet]) -> Vec<Facet> {
+/// The live facets, renumbered.
+fn live_facets(facets: &[Facet]) -> Vec<Facet> {
     let mut number = Vec::with_capacity(facets.len());
     let mut count = 0;
     for facet in facets {
@@ -95,7 +95,7 @@ fn living(facets: &[Facet]) -> Vec<Facet> {
     alive.map(renumbered).collect()
 }
 
-/// Rows in random rounds, each twice as large as the one before and along a curve.
+/// Rows in random rounds, each twice as large as the one before and sorted along a curve.
 fn rounds(points: &[Point3], rows: Vec<u32>, watch: &Watch) -> Result<Vec<u32>> {
     let mut at = with_room(rows.len())?;
     at.extend(rows.iter().map(|&row| points[row as usize]));
@@ -123,7 +123,7 @@ fn rounds(points: &[Point3], rows: Vec<u32>, watch: &Watch) -> Result<Vec<u32>> 
     Ok(last)
 }
 
-/// The finaliser of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
+/// The finalizer of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
 fn random(v: u32) -> u64 {
     let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -131,7 +131,7 @@ fn random(v: u32) -> u64 {
     x ^ x >> 31
 }
 
-/// The points farthest along directions all around, as far as rounding tells; any will do.
+/// The farthest points in directions all around, up to rounding; any points are valid.
 fn extreme_points(points: &[Point3], rows: &[u32]) -> Vec<u32> {
     let at = |&row: &u32| points[row as usize];
     let largest = rows
@@ -153,7 +153,7 @@ fn extreme_points(points: &[Point3], rows: &[u32]) -> Vec<u32> {
     let directions = &directions[directions.len() - few..];
     let mut most = vec![(f64::NEG_INFINITY, NONE); few];
     for row in rows {
-        // Products of doubles near the largest must not overflow, all of them to one infinity.
+        // Scaled, so that products of very large doubles do not all overflow to one infinity.
         let p = if largest > 1e300 {
             at(row).map(|x| x / 8.0)
         } else {
@@ -173,7 +173,7 @@ fn extreme_points(points: &[Point3], rows: &[u32]) -> Vec<u32> {
     found
 }
 
-/// Four points that are not in one plane, positively oriented; of the extreme ones where those do.
+/// Four points that are not coplanar, positively oriented; extreme ones if possible.
 fn first_tetrahedron(points: &[Point3], extreme: &[u32], all: &[u32]) -> Option<[u32; 4]> {
     let rows = || extreme.iter().chain(all).copied();
     let at = |v: u32| points[v as usize];

@@ -1,51 +1,51 @@
-//! Removal of an edge: the tetrahedra around it are replaced by two for each triangle of their ring.
+//! Edge removal: the tetrahedra around an edge are replaced by two for each triangle of their ring.
 //!
 //! ```text
 //!            b                      b
 //!          / | \                  / | \        The ring v0 v1 ... is triangulated, here by one
-//!        v0--|--v2     ->       v0-----v2      triangle, and both ends see each triangle:
-//!          \ | /                  \ | /        3-2, 4-4, 5-6 and so on.
+//!        v0--|--v2     ->       v0-----v2      triangle, and each triangle is joined to both
+//!          \ | /                  \ | /        ends: 3-2, 4-4, 5-6 and so on.
 //!            a                      a
 //! ```
 //!
 //! The best triangulation of the ring is found by dynamic programming: G. T. Klincsek, "Minimal
-//! triangulations of polygonal domains", Annals of Discrete Mathematics 9 (1980); used so by
-//! J. R. Shewchuk, "Two discrete optimization algorithms for the topological improvement of
-//! tetrahedral meshes" (2002). O(m^3) measures for a ring of m vertices.
+//! triangulations of polygonal domains", Annals of Discrete Mathematics 9 (1980), as in J. R.
+//! Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral
+//! meshes" (2002). O(m^3) measures for a ring of m vertices.
 
 use super::measure::quality;
 use super::store::{Corners, NONE, Store};
 
-/// Longest ring that is tried: the chance falls quickly beyond 7.
+/// The longest ring that is tried: the chance of success falls quickly beyond 7.
 const LONGEST: usize = 10;
 
-/// What may be put in the place of some tetrahedra.
+/// A replacement for some tetrahedra.
 #[derive(Debug, Clone, Default)]
 pub struct Plan {
-    /// Those that go.
+    /// The tetrahedra that are removed.
     pub old: Vec<u32>,
-    /// Those that come.
+    /// The new tetrahedra.
     pub new: Vec<Corners>,
-    /// The smallest quality of those that come.
+    /// The smallest quality of the new ones.
     pub least: f64,
-    /// Whether walls turn in their plane.
+    /// Whether walls are flipped in their plane.
     pub turning: bool,
 }
 
-/// What the search for triangulations keeps between calls.
+/// Buffers of the search, reused between calls.
 #[derive(Debug, Default)]
 pub struct Ring {
     /// The vertices around the edge.
     vertices: Vec<u32>,
     /// The tetrahedra between them.
     tetrahedra: Vec<u32>,
-    /// Whether it comes back to its start.
+    /// Whether it closes up.
     closed: bool,
 }
 
 impl Ring {
-    /// Walks around the edge from corner `i` to corner `j` of a tetrahedron. False where the ring is
-    /// too long, or meets itself.
+    /// Walks around the edge from corner `i` to corner `j` of a tetrahedron. False if the ring is
+    /// too long or meets itself.
     fn walk(&mut self, store: &Store, t: u32, i: usize, j: usize) -> bool {
         let v = store.corners[t as usize];
         let (a, b) = (v[i], v[j]);
@@ -54,7 +54,7 @@ impl Ring {
         self.tetrahedra.clear();
         self.closed = self.follow(store, t, [a, b, v[k], v[l]]);
         if !self.closed && self.tetrahedra.len() <= LONGEST {
-            // Back to the wall on the other side: the mirrored walk, read backwards.
+            // Back to the wall on the other side: the mirrored walk, reversed.
             self.vertices.clear();
             self.tetrahedra.clear();
             self.follow(store, t, [b, a, v[l], v[k]]);
@@ -72,8 +72,8 @@ impl Ring {
         self.tetrahedra.len() <= LONGEST && distinct && n > 2
     }
 
-    /// Goes from the tetrahedron of `a, b, c, d` over the face `a, b, d` and on, until it is there
-    /// again (true) or at a wall.
+    /// Walks from the tetrahedron of `a, b, c, d` across the face `a, b, d` and on, until it
+    /// returns (true) or reaches a wall.
     fn follow(&mut self, store: &Store, start: u32, [a, b, c, d]: Corners) -> bool {
         let (mut t, mut c, mut d) = (start, c, d);
         self.vertices.push(c);
@@ -99,7 +99,7 @@ impl Ring {
     }
 }
 
-/// The two other corners, such that the four are an even permutation.
+/// The other two corners, such that the four are an even permutation.
 fn others(i: usize, j: usize) -> (usize, usize) {
     const OTHERS: [[(usize, usize); 4]; 4] = [
         [(0, 0), (2, 3), (3, 1), (1, 2)],
@@ -110,8 +110,9 @@ fn others(i: usize, j: usize) -> (usize, usize) {
     OTHERS[i][j]
 }
 
-/// The best removal of the edge between two corners, where it is better than both `above` and what
-/// is there now. An edge between walls goes only where they are one plane and may turn.
+/// The best removal of the edge between two corners, if it is better than both `above` and the
+/// present tetrahedra. An edge between walls is removed only if these are coplanar and may be
+/// flipped.
 pub fn remove(
     store: &Store,
     ring: &mut Ring,
@@ -120,7 +121,7 @@ pub fn remove(
     may_turn: bool,
 ) -> Option<Plan> {
     let [a, b] = [i, j].map(|k| store.corners[t as usize][k]);
-    // Most edges of walls are seen to be such before any walk.
+    // Most edges on walls are rejected here, before any walk.
     if !may_turn && store.fixed[a as usize] && store.fixed[b as usize] {
         let (k, l) = others(i, j);
         store.beyond(t, k)?;
@@ -150,7 +151,8 @@ pub fn remove(
     })
 }
 
-/// Whether an edge of two walls of nothing lies in one plane with them, and they are convex.
+/// Whether an edge of two boundary walls lies in one plane with them, and they form a convex
+/// quadrilateral.
 fn turns(store: &Store, ring: &Ring, a: u32, b: u32) -> bool {
     use delone_predicates::{Sign, orient3d};
     let (Some(&first), Some(&last)) = (ring.vertices.first(), ring.vertices.last()) else {
@@ -165,13 +167,13 @@ fn turns(store: &Store, ring: &Ring, a: u32, b: u32) -> bool {
     if nothing(ends[0], second) != Some(NONE) || nothing(ends[1], before) != Some(NONE) {
         return false;
     }
-    // Positive tetrahedra on both sides of the new edge are asked for later on, which makes the four
-    // convex; here the plane.
+    // Tetrahedra on both sides of the new edge are tested for positivity later, which implies
+    // convexity; here only the plane is tested.
     let p = [a, b, first, last].map(|v| store.points[v as usize]);
     orient3d(p[0], p[1], p[2], p[3]) == Sign::Zero
 }
 
-/// The triangulation of a polygon whose worst triangle is best, where that is better than `above`.
+/// The triangulation of a polygon whose worst triangle is best, if that is better than `above`.
 fn triangulate(
     polygon: &[u32],
     above: f64,
@@ -232,7 +234,7 @@ mod tests {
 
     #[test]
     fn the_best_triangulation_avoids_the_worst_triangles() {
-        // Of the fans of a pentagon only that from vertex 3 has no triangle that holds both 0 and 2.
+        // Of the fans of a pentagon, only that from vertex 3 has no triangle with both 0 and 2.
         let worth = |t: [u32; 3]| if t.contains(&3) { 1.0 } else { 0.5 };
         let (least, triangles) = triangulate(&[0, 1, 2, 3, 4], 0.0, worth).unwrap();
         assert_eq!((least, triangles.len()), (1.0, 3));

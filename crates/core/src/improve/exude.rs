@@ -1,13 +1,15 @@
-//! Exudation: a vertex gets the weight with which its tetrahedra in the regular triangulation are best.
+//! Sliver exudation: gives a vertex the weight that makes its tetrahedra in the regular
+//! triangulation best.
 //!
-//! S.-W. Cheng, T. K. Dey, H. Edelsbrunner, M. A. Facello and S.-H. Teng, "Sliver exudation", Journal
-//! of the ACM 47 (2000). As the weight of one vertex grows, tetrahedra around its star join it, each
-//! at the weight that is the power of the vertex to the sphere orthogonal to its corners; the star is
-//! then that of the vertex over the boundary of what has joined. Below a quarter of the squared
-//! distance to the nearest vertex no vertex is hidden; the largest weight here is a fifth of it.
+//! S.-W. Cheng, T. K. Dey, H. Edelsbrunner, M. A. Facello and S.-H. Teng, "Sliver exudation",
+//! Journal of the ACM 47 (2000). As the weight of one vertex grows, tetrahedra around its star join
+//! it, each at the weight that equals the power of the vertex with respect to the sphere orthogonal
+//! to its corners. The star then joins the vertex to the boundary of the joined tetrahedra. Below a
+//! quarter of the squared distance to the nearest vertex no vertex is hidden; the largest weight
+//! here is a fifth of it.
 //!
-//! Powers are rounded. They only say what is tried in which order: what is carried out passes the
-//! same proof as every other change.
+//! Powers are rounded. They only decide which changes are tried in which order: each change must
+//! pass the same proof as every other change.
 
 use std::collections::BTreeSet;
 
@@ -16,13 +18,13 @@ use super::measure::{cross, dot, minus, quality};
 use super::store::{Corners, FACES, NONE, Store};
 use crate::error::Result;
 
-/// The largest weight, in squared distances to the nearest vertex.
+/// The largest weight, relative to the squared distance to the nearest vertex.
 const MOST: f64 = 0.2;
-/// Most tetrahedra that a star takes in; a few are enough.
+/// The most tetrahedra that join a star; a few suffice.
 const LONGEST: usize = 40;
 
-/// The best weight of a vertex, in a star that is `star` with the weight that it has now: what it
-/// changes, and the weight. `None` where nothing is better than `above`.
+/// The best weight of a vertex, whose star is `star` at its present weight: the changes and the
+/// weight. `None` if nothing is better than `above`.
 pub fn pump(
     store: &Store,
     weights: &[f64],
@@ -44,7 +46,7 @@ pub fn pump(
         }
         cavity.push(next);
         before = before.min(store.quality[next as usize]);
-        // As long as others join at the same weight, nothing is there in between.
+        // While others join at the same weight, there is no triangulation in between.
         let until = first(store, weights, v, &cavity).map_or(f64::INFINITY, |(power, _)| power);
         let weight = 0.5 * (power.max(weights[v as usize]) + until.min(MOST * nearest));
         if !(weight > power && weight < until) {
@@ -73,7 +75,7 @@ fn least(store: &Store, all: &[u32]) -> f64 {
     qualities.fold(f64::INFINITY, f64::min)
 }
 
-/// The square of the distance to the nearest vertex of the star.
+/// The squared distance to the nearest vertex of the star.
 fn nearest(store: &Store, v: u32, star: &[u32]) -> f64 {
     let here = store.points[v as usize];
     let others = star.iter().flat_map(|&t| store.corners[t as usize]);
@@ -84,7 +86,7 @@ fn nearest(store: &Store, v: u32, star: &[u32]) -> f64 {
     squares.fold(f64::INFINITY, f64::min)
 }
 
-/// The faces of the boundary of a cavity that do not have the vertex: tetrahedron and corner.
+/// The faces of the boundary of a cavity that do not contain the vertex: tetrahedron and corner.
 fn boundary<'a>(store: &'a Store, v: u32, cavity: &'a [u32]) -> impl Iterator<Item = (u32, usize)> {
     let faces = cavity.iter().flat_map(|&t| (0..4).map(move |k| (t, k)));
     faces.filter(move |&(t, k)| {
@@ -94,7 +96,7 @@ fn boundary<'a>(store: &'a Store, v: u32, cavity: &'a [u32]) -> impl Iterator<It
     })
 }
 
-/// The tetrahedron that joins a cavity first, and its power.
+/// The first tetrahedron to join a cavity, and its power.
 fn first(store: &Store, weights: &[f64], v: u32, cavity: &[u32]) -> Option<(f64, u32)> {
     let beyond = boundary(store, v, cavity).filter_map(|(t, k)| store.beyond(t, k));
     let powers = beyond.map(|u| (power(store, weights, v, u), u));
@@ -103,7 +105,7 @@ fn first(store: &Store, weights: &[f64], v: u32, cavity: &[u32]) -> Option<(f64,
         .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
 }
 
-/// The power of a vertex to the sphere that is orthogonal to the corners of a tetrahedron.
+/// The power of a vertex with respect to the sphere orthogonal to the corners of a tetrahedron.
 fn power(store: &Store, weights: &[f64], v: u32, t: u32) -> f64 {
     let corners = store.corners[t as usize];
     let [a, b, c, d] = store.places_of(corners);
@@ -116,7 +118,7 @@ fn power(store: &Store, weights: &[f64], v: u32, t: u32) -> f64 {
     dot(x, x) + wa - sum / dot(sides[0], b)
 }
 
-/// The tetrahedra of a vertex and each face of the boundary of a cavity.
+/// The tetrahedra formed by a vertex and each boundary face of a cavity.
 fn cone(store: &Store, v: u32, cavity: &[u32]) -> Vec<Corners> {
     let tetrahedron = |(t, k): (u32, usize)| {
         let [p, q, r] = FACES[k].map(|i: usize| store.corners[t as usize][i]);

@@ -1,23 +1,23 @@
-//! Removal of faces between two vertices: the inverse of the removal of an edge.
+//! Face removal: removes the faces between two vertices; the inverse of edge removal.
 //!
 //! ```text
 //!            a                      a
-//!          / | \                  / | \        Faces that both a and b see go, with the two
-//!        u---+---v     ->       u   |   v      tetrahedra at each; the new edge ab is joined to
-//!          \ | /                  \ | /        each edge around them: 2-3, 4-4, 6-5 and so on.
+//!          / | \                  / | \        Faces that both a and b see are removed, with the
+//!        u---+---v     ->       u   |   v      two tetrahedra at each; the new edge ab is joined
+//!          \ | /                  \ | /        to each edge around them: 2-3, 4-4, 6-5 and so on.
 //!            b                      b
 //! ```
 //!
-//! Which of the faces around the first one go is found on the way, as in J. R. Shewchuk, "Two
+//! Which faces around the first one are removed is decided on the way, as in J. R. Shewchuk, "Two
 //! discrete optimization algorithms for the topological improvement of tetrahedral meshes" (2002):
-//! beyond each edge either the tetrahedron of this edge and ab is the better one, or the next face
-//! goes too. Linear in the faces that go.
+//! beyond each edge, either the tetrahedron of this edge and ab is better, or the next face is
+//! removed, too. Linear in the number of faces removed.
 
 use super::edge::Plan;
 use super::measure::quality;
 use super::store::{Corners, FACES, Store};
 
-/// Most faces that go at once.
+/// The most faces removed at once.
 const MOST: usize = 12;
 
 /// The search from one face.
@@ -29,7 +29,7 @@ struct Search<'a> {
     plan: Plan,
 }
 
-/// The best removal of the face opposite a corner and of faces around it, where it is better than
+/// The best removal of the face opposite a corner and of faces around it, if it is better than
 /// `above`.
 pub fn remove(store: &Store, (t, k): (u32, usize), above: f64) -> Option<Plan> {
     let below = store.beyond(t, k)?;
@@ -59,8 +59,8 @@ fn beyond(store: &Store, t: u32, k: usize, below: u32) -> u32 {
 }
 
 impl Search<'_> {
-    /// Finds what is best at the edge `p`, `q` of the face between the tetrahedra `upper` and
-    /// `lower`; `None` where nothing is above the bound.
+    /// Finds the best option at the edge `p`, `q` of the face between the tetrahedra `upper` and
+    /// `lower`; `None` if nothing is above the bound.
     fn close(&mut self, upper: u32, lower: u32, p: u32, q: u32) -> Option<()> {
         let [a, b] = self.ends;
         let tetrahedron = [b, a, p, q];
@@ -68,7 +68,7 @@ impl Search<'_> {
         let length = (self.plan.old.len(), self.plan.new.len());
         let least = self.plan.least;
         if let Some((upper, lower, r)) = self.next(upper, lower, p, q) {
-            // The face beyond is p, r, q, seen from above as this one is.
+            // The face beyond is p, r, q, seen from above like this one.
             self.plan.old.extend([upper, lower]);
             let both = self
                 .close(upper, lower, p, r)
@@ -88,7 +88,7 @@ impl Search<'_> {
         Some(())
     }
 
-    /// The face beyond an edge that both ends see: its tetrahedra, and its third vertex.
+    /// The face beyond an edge that both ends see: its two tetrahedra and its third vertex.
     fn next(&self, upper: u32, lower: u32, p: u32, q: u32) -> Option<(u32, u32, u32)> {
         let store = self.store;
         if self.plan.old.len() >= 2 * MOST {

@@ -1,35 +1,37 @@
-//! How good a tetrahedron is: the sines of its dihedral angles, and how far rounding can be off.
+//! The quality of a tetrahedron: the sines of its dihedral angles, with bounds of their rounding
+//! errors.
 //!
-//! With the vectors N of the faces (twice their areas, inwards) and the determinant D, six times the
-//! volume, the angle at the edge of length e between two faces has the sine D e / (|N| |N'|) and the
-//! cosine -N N' / (|N| |N'|). The *quality* is the smallest sine, where those of obtuse angles count
-//! [`OBTUSE`] times. The smallest angle of a tetrahedron is at most acos(1/3), about 70.53 degrees,
-//! so its sine is the smallest one of acute angles: the *acute* measure.
+//! With the face vectors N (twice their areas, inward) and the determinant D, six times the volume,
+//! the angle at the edge of length e between two faces has the sine D e / (|N| |N'|) and the cosine
+//! -N N' / (|N| |N'|). The *quality* is the smallest sine, where those of obtuse angles are
+//! multiplied by [`OBTUSE`]. The smallest angle of a tetrahedron is at most acos(1/3), about 70.53
+//! degrees, so its sine is the smallest one of acute angles: the *acute* measure.
 //!
 //! # Rounding
 //!
-//! With L the longest edge and u = 2^-53: a difference of coordinates is off by u, relatively, a
-//! component of N by 4 u of the sum of the magnitudes of its two products, so N by less than
-//! 7 u L^2; D is off by less than 8 u of its six monomials, together below 3 sqrt(3) L^3, so by 42 u
-//! L^3. Where it is below [`FLAT`] L^3 it is computed again in pairs of doubles, and off by less than
-//! 30 u^2 times as much, 2^-98 L^3. A sine is off by the error of D, relatively, twice that of the
+//! With L the longest edge and u = 2^-53: a difference of coordinates errs by u, relatively, a
+//! component of N by 4 u of the sum of the magnitudes of its two products, so N by less than 7 u
+//! L^2; D errs by less than 8 u of its six monomials, together below 3 sqrt(3) L^3, so by 42 u L^3.
+//! If D is below [`FLAT`] L^3 it is recomputed in double-double arithmetic, and errs by less than
+//! 30 u^2 times as much, 2^-98 L^3. A sine errs by the relative error of D, twice that of the
 //! smallest N, 14 u L^2 / |N|, and some ten further roundings: [`SLACK`] (1 + L^2 / |N|) with 64 u
-//! leaves room for terms of second order. Where D is lost in its error the angle is at most what the
-//! largest D would give, and that is known as long as the vectors N are.
+//! leaves room for terms of second order. If D is lost in its error, the angle is at most what the
+//! largest possible D would give, which is known as long as the vectors N are.
 
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, Sign, orient3d};
 
-/// How much a sine of an obtuse angle counts. With 1 the largest angles come first, and mending them is
-/// often refused for the sake of small ones; of 1, 1.5, 2, 2.5 and 100, on 5000 uniform points, 2 and
-/// 2.5 left the fewest small angles, and much more leaves large ones.
+/// The factor of the sine of an obtuse angle. With 1, the largest angles are treated first, and
+/// improving them is often refused for the sake of small ones. Of 1, 1.5, 2, 2.5 and 100, on 5000
+/// uniform points, 2 and 2.5 left the fewest small angles, and a much larger factor leaves large
+/// ones.
 pub const OBTUSE: f64 = 2.0;
 
 /// 64 u.
 const SLACK: f64 = 32.0 * f64::EPSILON;
-/// Determinants below this part of L^3 are computed again: they have lost half of their digits.
+/// Determinants below this share of L^3 are recomputed: they have lost half of their digits.
 const FLAT: f64 = 1e-8;
-/// The error of that as a part of L^3: 2^-98.
+/// The error of the recomputed determinant as a share of L^3: 2^-98.
 const PRECISE: f64 = 1.0 / ((1_u128 << 98) as f64);
 
 /// A vector.
@@ -63,21 +65,21 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
     ]
 }
 
-/// The numbers of which all measures are made.
+/// The numbers from which all measures are computed.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// Six times the volume, and how far it may be off.
+    /// Six times the volume, and a bound of its error.
     pub volume: f64,
     pub error: f64,
-    /// Squares of the lengths of the edges 01, 02, 03, 12, 13, 23.
+    /// Squared lengths of the edges 01, 02, 03, 12, 13, 23.
     pub edges: [f64; 6],
-    /// Squares of the vectors of the faces opposite each corner.
+    /// Squared lengths of the face vectors opposite each corner.
     pub faces: [f64; 4],
-    /// Cosines at the edges times the lengths of both vectors.
+    /// Cosines at the edges times the lengths of both face vectors.
     pub cosines: [f64; 6],
 }
 
-/// The faces at each edge, by the corner opposite.
+/// The two faces at each edge, by their opposite corners.
 const AT_EDGE: [[usize; 2]; 6] = [[2, 3], [1, 3], [1, 2], [0, 3], [0, 2], [0, 1]];
 
 /// The shape of a tetrahedron.
@@ -105,7 +107,7 @@ pub fn shape([a, b, c, d]: [Point3; 4]) -> Shape {
     }
 }
 
-/// Six times the volume, in pairs of doubles.
+/// Six times the volume, in double-double arithmetic.
 #[cold]
 fn precise([a, b, c, d]: [Point3; 4]) -> f64 {
     let [b, c, d] = [b, c, d].map(|p| [0, 1, 2].map(|k| Pair::difference(p[k], a[k])));
@@ -114,7 +116,8 @@ fn precise([a, b, c, d]: [Point3; 4]) -> f64 {
 }
 
 impl Shape {
-    /// Squares of the smallest sine of all angles, weighted, and of the acute ones alone.
+    /// Squares of the smallest weighted sine of all angles, and of the smallest sine of acute
+    /// angles.
     #[inline]
     fn squares(&self) -> [f64; 2] {
         let (mut least, mut acute) = (f64::INFINITY, f64::INFINITY);
@@ -131,7 +134,7 @@ impl Shape {
         [least * volume, acute * volume]
     }
 
-    /// The quality; 0 where the determinant is not positive or nothing can be told.
+    /// The quality; 0 if the determinant is not positive or nothing is certain.
     #[inline]
     pub fn quality(&self) -> f64 {
         let [square, _] = self.squares();
@@ -142,12 +145,12 @@ impl Shape {
         }
     }
 
-    /// How far the quality and the acute measure may be from what they would be without rounding.
+    /// Bounds of the exact quality and acute measure.
     pub fn bounds(&self) -> Bounds {
         let squared = self.edges.iter().fold(0.0_f64, |m, &e| m.max(e));
         let smallest = self.faces.iter().fold(f64::INFINITY, |m, &n| m.min(n));
         let thin = squared / smallest.sqrt();
-        // Vectors of faces that are known to a hundredth; NaN is not.
+        // Whether the face vectors are known to a hundredth; false for NaN.
         let known = SLACK * thin < 1e-2;
         let off = SLACK * (1.0 + thin) + self.error / self.volume;
         if known && self.volume > 0.0 && off < 0.01 {
@@ -175,23 +178,23 @@ impl Shape {
     }
 }
 
-/// Between which numbers the quality and the acute measure lie.
+/// Lower and upper bounds of the quality and the acute measure.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
-    /// Of the quality.
+    /// Bounds of the quality.
     pub least: [f64; 2],
-    /// Of the smallest sine of acute angles.
+    /// Bounds of the smallest sine of acute angles.
     pub acute: [f64; 2],
 }
 
 impl Bounds {
-    /// Those of no tetrahedron.
+    /// The bounds of an empty set of tetrahedra.
     pub const NONE: Self = Self {
         least: [f64::INFINITY; 2],
         acute: [f64::INFINITY; 2],
     };
 
-    /// Those of the worse of two.
+    /// The bounds of the worse of two.
     pub fn worse(self, other: Self) -> Self {
         let worse = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].min(b[1])];
         Self {
@@ -200,7 +203,7 @@ impl Bounds {
         }
     }
 
-    /// Whether this is better than `other` for certain, and its smallest angle not smaller.
+    /// Whether this is certainly better than `other`, without a smaller smallest angle.
     pub fn surely_better(self, other: Self) -> bool {
         self.least[0] > other.least[1] && self.acute[0] >= other.acute[1]
     }

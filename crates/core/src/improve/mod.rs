@@ -1,5 +1,5 @@
-//! Improvement of tetrahedral meshes: edge and face removal and smoothing, as long as the worst
-//! tetrahedron involved gets better.
+//! Improves tetrahedral meshes: edge and face removal and smoothing, while the worst tetrahedron
+//! gets better.
 //!
 //! L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
 //! International Journal for Numerical Methods in Engineering 40 (1997); J. R. Shewchuk, "Two
@@ -7,24 +7,24 @@
 //! B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement", 16th International
 //! Meshing Roundtable (2007).
 //!
-//! # What holds at every moment
+//! # Invariants
 //!
-//! Tetrahedra are positively oriented, exactly; walls stay. A change takes place only if the bounds of
-//! `measure` prove, rounding included, that the worst quality of what comes is above that of what
-//! goes, and that the smallest dihedral angle among them is not smaller. So the mesh's smallest angle
-//! never falls. As old and new tetrahedra fill the same place and all new ones are positive, they
-//! cover it once.
+//! Tetrahedra are positively oriented, exactly; walls do not change. A change is made only if the
+//! bounds of `measure` prove, rounding included, that the worst quality of the new tetrahedra is
+//! above that of the old ones, and that their smallest dihedral angle is not smaller. So the
+//! smallest angle of the mesh never decreases. Since old and new tetrahedra fill the same region
+//! and all new ones are positive, they cover it once.
 //!
-//! # Why it ends
+//! # Why it terminates
 //!
-//! Each change makes the ascending list of all qualities larger in lexicographic order, so none comes
-//! back, and there are finitely many meshes on doubles. Passes are limited as well, and a pass that
-//! gains nothing is the last one.
+//! Each change makes the ascending list of all qualities lexicographically larger, so no mesh
+//! repeats, and there are finitely many meshes on doubles. The number of passes is also limited,
+//! and a pass that gains nothing is the last one.
 //!
-//! # One answer
+//! # Determinism
 //!
-//! Vertices and tetrahedra are first put in the order of their coordinates, and everything goes on in
-//! that order on one thread: the result does not hang on the order of the rows.
+//! Vertices and tetrahedra are first sorted by coordinates, and everything runs in that order on
+//! one thread: the result is independent of the order of the rows.
 
 mod edge;
 mod exude;

@@ -1,4 +1,5 @@
-//! The way in and out: vertices and tetrahedra in the order of coordinates, and back into rows.
+//! Import and export: sorts vertices and tetrahedra by coordinates, and maps the result back to
+//! rows.
 
 use delone_predicates::{Point3, Sign, lexicographic, orient3d};
 
@@ -8,18 +9,18 @@ use super::work::Work;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room};
 
-/// Tetrahedra in the order of coordinates.
+/// Tetrahedra sorted by coordinates.
 pub struct Imported {
     /// The tetrahedra.
     pub store: Store,
     /// The row of each vertex.
     pub rows: Vec<u32>,
-    /// What coordinates were multiplied by.
+    /// The factor by which coordinates were multiplied.
     pub scale: f64,
 }
 
-/// The power of two that brings coordinates near 1, where products of their differences neither
-/// over- nor underflow; 1 where it would round some of them.
+/// The power of two that scales coordinates to near 1, where products of their differences neither
+/// overflow nor underflow; 1 if it would round some of them.
 fn scale(points: &[Point3]) -> f64 {
     let all = points.as_flattened();
     let largest = all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -31,7 +32,7 @@ fn scale(points: &[Point3]) -> f64 {
     if all.iter().all(exact) { scale } else { 1.0 }
 }
 
-/// The even permutation of corners that has the smallest vertex first and the next one second.
+/// The even permutation of corners with the smallest vertex first and the next one second.
 fn rotated(v: Corners) -> Corners {
     const EVEN: [[usize; 4]; 12] = [
         [0, 1, 2, 3],
@@ -51,7 +52,7 @@ fn rotated(v: Corners) -> Corners {
     all.into_iter().fold(v, |least, other| least.min(other))
 }
 
-/// Puts everything in order, and checks it.
+/// Sorts and checks everything.
 pub fn import(task: Task) -> Result<Imported> {
     let mut used = filled(task.points.len(), false)?;
     for v in task.simplices.as_flattened() {
@@ -63,7 +64,7 @@ pub fn import(task: Task) -> Result<Imported> {
     rows.sort_unstable_by(|a, b| lexicographic(at(a), at(b)).then(a.cmp(b)));
     if let Some(same) = rows.windows(2).find(|w| at(&w[0]) == at(&w[1])) {
         return Err(Error::Shape(format!(
-            "rows {} and {} are one point: tetrahedra have one vertex for each",
+            "rows {} and {} are the same point, but both are vertices",
             same[0], same[1]
         )));
     }
@@ -98,7 +99,7 @@ pub fn import(task: Task) -> Result<Imported> {
     Ok(Imported { store, rows, scale })
 }
 
-/// Refuses a vertex that may move and has tetrahedra that its star does not reach: they overlap.
+/// Rejects a movable vertex that has tetrahedra outside its connected star: they overlap.
 fn whole_stars(store: &Store, rows: &[u32]) -> Result<()> {
     let mut degree = filled(store.points.len(), 0_u32)?;
     for v in store.corners.as_flattened() {
@@ -109,7 +110,7 @@ fn whole_stars(store: &Store, rows: &[u32]) -> Result<()> {
         if star_size(store, v, &mut star)? != degree[v as usize] {
             let row = rows[v as usize];
             return Err(Error::Shape(format!(
-                "the tetrahedra around row {row} do not join to one ball: some overlap"
+                "the tetrahedra around row {row} do not form one ball: some overlap"
             )));
         }
     }
@@ -121,7 +122,7 @@ fn star_size(store: &Store, v: u32, star: &mut Vec<u32>) -> Result<u32> {
     Ok(star.len() as u32)
 }
 
-/// Everything in rows, tetrahedra in the order of their vertices.
+/// Converts everything to rows, with tetrahedra sorted by their vertices.
 pub fn export(
     work: Work,
     task: Task,
@@ -137,9 +138,10 @@ pub fn export(
     }
     let mut weights = filled(task.points.len(), 0.0)?;
     for (&row, w) in rows.iter().zip(&work.weights) {
-        // Twice, as the square of the scale may be beyond the range.
+        // Divided twice, as the square of the scale may be out of range.
         weights[row as usize] = w / scale / scale;
     }
+    // The remaining tetrahedra, sorted by their vertices.
     let mut order: Vec<(Corners, u32)> = with_room(store.corners.len())?;
     let there = (0..store.places()).filter(|&t| store.is_there(t));
     order.extend(there.map(|t| (rotated(store.corners[t as usize]), t)));

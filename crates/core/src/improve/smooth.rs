@@ -1,11 +1,11 @@
-//! A vertex moves to where the worst tetrahedron around it is best.
+//! Smoothing: moves a vertex to where the worst tetrahedron around it is best.
 //!
-//! The smallest of many smooth functions is climbed along the shortest vector in the convex hull of
-//! the gradients of those that are smallest: L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh
+//! Maximizes the minimum of many smooth functions along the shortest vector in the convex hull of
+//! the gradients of the smallest ones: L. A. Freitag and C. Ollivier-Gooch, "Tetrahedral mesh
 //! improvement using swapping and smoothing", International Journal for Numerical Methods in
-//! Engineering 40 (1997). That vector is found as the distance of two convex bodies is:
-//! E. G. Gilbert, D. W. Johnson and S. S. Keerthi (1988). How far to go is where, to first order,
-//! another function becomes the smallest. It ends after [`STEPS`] steps, each of which gains.
+//! Engineering 40 (1997). That vector is found by the distance algorithm of E. G. Gilbert, D. W.
+//! Johnson and S. S. Keerthi (1988). The step length is where, to first order, another function
+//! becomes the smallest. It ends after [`STEPS`] steps, each of which gains.
 
 use std::cmp::Ordering;
 
@@ -13,25 +13,27 @@ use delone_predicates::Point3;
 
 use super::measure::{OBTUSE, Vector, cross, dot, minus, plus};
 
-/// Most steps of one climb; more are rarely taken, and the vertex comes again in the next pass.
+/// The most steps of one ascent; more are rarely needed, and the vertex is tried again in the next
+/// pass.
 const STEPS: usize = 8;
 /// How often a step is halved.
 const HALVINGS: usize = 5;
-/// A step that gains a smaller part ends the climb.
+/// A step with a smaller relative gain ends the ascent.
 const GAIN: f64 = 1e-3;
-/// Functions within this part of the smallest count as smallest.
+/// Functions within this share of the smallest count as smallest.
 const ACTIVE: f64 = 0.03;
-/// Functions so many times as large as the smallest are not looked at before a step.
+/// Functions this many times as large as the smallest are ignored in a step.
 const FAR: f64 = 4.0;
-/// Turns of the search for the shortest vector, far more than it needs.
+/// Iterations of the search for the shortest vector, far more than it needs.
 const TURNS: usize = 24;
 
-/// A tetrahedron as its moving vertex sees it: the face opposite, on whose positive side it is.
+/// A tetrahedron relative to its moving vertex: the opposite face, with the vertex on its positive
+/// side.
 #[derive(Debug, Clone, Copy)]
 struct Cone {
     /// The corners of the face.
     corners: [Point3; 3],
-    /// The vector of the face, towards the vertex.
+    /// The face vector, towards the vertex.
     base: Vector,
     /// Its length.
     area: f64,
@@ -70,7 +72,7 @@ impl Cone {
         }
     }
 
-    /// Edges to the corners, six times the volume, and the vectors of the faces opposite each corner,
+    /// Edges to the corners, six times the volume, and the face vectors opposite each corner,
     /// towards it.
     #[inline(always)]
     fn around(&self, x: Point3) -> ([Vector; 3], f64, [Vector; 3]) {
@@ -78,7 +80,7 @@ impl Cone {
         (
             [p, q, r],
             -dot(self.base, p),
-            // Of x and two corners, with the third on the positive side.
+            // The faces of x and two corners, with the third on the positive side.
             [cross(r, q), cross(p, r), cross(q, p)],
         )
     }
@@ -113,11 +115,11 @@ impl Cone {
         volume * least.sqrt()
     }
 
-    /// All sines that are below a bound, with their gradients.
+    /// All sines below a bound, with their gradients.
     fn slopes(&self, x: Point3, bound: f64, out: &mut Vec<Slope>) {
         let (to, volume, sides) = self.around(x);
         let lengths = sides.map(|n| dot(n, n).sqrt());
-        // The logarithm of the length of a side's vector grows across its edge on the base.
+        // The gradient of the logarithm of a side vector's length is across its edge on the base.
         let growth: [Vector; 3] = std::array::from_fn(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             let edge = minus(self.corners[j], self.corners[i]);
@@ -146,7 +148,7 @@ impl Cone {
 }
 
 impl Slope {
-    /// From the gradient of the logarithm.
+    /// Builds it from the gradient of the logarithm.
     fn new(value: f64, relative: Vector) -> Self {
         Self {
             value,
@@ -156,23 +158,23 @@ impl Slope {
 }
 
 impl Star {
-    /// Forgets all tetrahedra.
+    /// Removes all tetrahedra.
     pub fn clear(&mut self) {
         self.cones.clear();
     }
 
-    /// Adds the tetrahedron of the vertex and a face, with the vertex on its positive side.
+    /// Adds the tetrahedron of the vertex and a face that has the vertex on its positive side.
     pub fn push(&mut self, face: [Point3; 3]) {
         self.cones.push(Cone::new(face));
     }
 
-    /// The worst quality with the vertex at `x`; of no use below `above`.
+    /// The worst quality with the vertex at `x`; not meaningful below `above`.
     fn worst(&mut self, x: Point3, above: f64) -> f64 {
         let mut worst = f64::INFINITY;
         for i in 0..self.cones.len() {
             worst = worst.min(self.cones[i].quality(x));
             if worst <= above {
-                // What stopped this step is likely to stop the next one.
+                // The cone that stopped this step is likely to stop the next one.
                 self.cones.swap(0, i);
                 break;
             }
@@ -180,11 +182,11 @@ impl Star {
         worst
     }
 
-    /// Climbs from `x`; where that gains, the new place and its worst quality.
+    /// Ascends from `x`; if that gains, returns the new position and its worst quality.
     pub fn climb(&mut self, mut x: Point3) -> Option<(Point3, f64)> {
         let mut value = self.worst(x, 0.0);
         let start = value;
-        // So flat that its gradients are noise: there are removals for that.
+        // So flat that its gradients are noise: left to edge and face removal.
         if start <= 0.0 {
             return None;
         }
@@ -201,7 +203,7 @@ impl Star {
         (value > start).then_some((x, value))
     }
 
-    /// One step that gains.
+    /// One step with a gain.
     fn step(&mut self, x: Point3, value: f64) -> Option<(Point3, f64)> {
         self.slopes.clear();
         for cone in &self.cones {
@@ -217,7 +219,7 @@ impl Star {
         self.active.extend(active.map(|s| s.gradient));
         let direction = shortest(&self.active)?;
         let squared = dot(direction, direction);
-        // As far as doubles the worst, if no other becomes the worst before.
+        // Far enough to double the worst, unless another becomes the worst before.
         let mut length = least / squared;
         for slope in self.slopes.iter().filter(|s| s.value > limit) {
             let slower = squared - dot(slope.gradient, direction);
@@ -237,7 +239,7 @@ impl Star {
     }
 }
 
-/// The vector that is least along `direction`.
+/// The vector with the least component along `direction`.
 fn least_along(vectors: &[Vector], direction: Vector) -> Option<Vector> {
     let mut all = vectors.iter().map(|&v| (dot(v, direction), v));
     let first = all.next()?;
@@ -245,11 +247,11 @@ fn least_along(vectors: &[Vector], direction: Vector) -> Option<Vector> {
     Some(least.1)
 }
 
-/// The shortest vector of the convex hull of vectors; `None` where that is nought, or none is given.
+/// The shortest vector of the convex hull of vectors; `None` if it is zero, or none is given.
 fn shortest(vectors: &[Vector]) -> Option<Vector> {
     let largest = vectors.iter().fold(0.0_f64, |m, &v| m.max(dot(v, v)));
     let mut found = Simplex::of(*vectors.first()?);
-    // Each turn shortens the vector.
+    // Each iteration shortens the vector.
     for _ in 0..TURNS {
         let v = found.vector;
         let squared = dot(v, v);
@@ -286,9 +288,9 @@ impl Simplex {
         }
     }
 
-    /// The part that has the shortest vector, once another one is there.
+    /// The subset that contains the shortest vector, after adding another one.
     fn with(mut self, next: Vector) -> Self {
-        // The shortest of three is in a triangle at most; a full one is nought, and ended before.
+        // At most three are kept: a full simplex contains zero, and ended the search before.
         let place = self.count.min(3);
         self.corners[place] = next;
         let count = place + 1;
@@ -328,7 +330,7 @@ fn foot(v: &[Vector]) -> Option<Vector> {
             (s > 0.0 && t > 0.0 && s + t < 1.0).then(|| plus(plus(a, s, ab), t, ac))
         }
         [a, b, c, d] => {
-            // Inside of a tetrahedron: nought.
+            // Zero is inside a tetrahedron.
             let side = |p, q, r, s| {
                 let n = cross(minus(q, p), minus(r, p));
                 (-dot(n, p) > 0.0) == (dot(n, minus(s, p)) > 0.0)
@@ -397,7 +399,7 @@ mod tests {
 
     #[test]
     fn a_vertex_climbs_to_the_middle() {
-        // An octahedron: with its centre all angles are 90 degrees or those of the outside.
+        // An octahedron: with its center all angles are 90 degrees or those of the outside.
         let mut star = Star::default();
         for [x, y, z] in [
             [1.0, 1.0, 1.0],

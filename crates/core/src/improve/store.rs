@@ -1,9 +1,10 @@
-//! Tetrahedra that change: corners, the tetrahedron across each face, and one tetrahedron of each
-//! vertex. Knows coordinates only to hold them.
+//! A mutable tetrahedral mesh: corners, the neighbor across each face, one tetrahedron per vertex.
+//!
+//! Stores coordinates but does not use them.
 //!
 //! Corner `k` of a positively oriented tetrahedron lies on the positive side of its face [`FACES`]`[k]`.
-//! A face is a *wall* where nothing lies behind it, or something of another label. Walls never
-//! change, except that [`Store::replace`] may turn two of them in one plane.
+//! A face is a *wall* if nothing lies behind it, or a tetrahedron with another label. Walls never
+//! change, except that [`Store::replace`] may flip two of them in one plane.
 
 use delone_predicates::Point3;
 
@@ -24,23 +25,24 @@ pub type Corners = [u32; 4];
 pub struct Store {
     /// Coordinates of the vertices.
     pub points: Vec<Point3>,
-    /// The corners of each tetrahedron; [`NONE`] where there is none any more.
+    /// The corners of each tetrahedron; [`NONE`] if it was removed.
     pub corners: Vec<Corners>,
-    /// What lies across the face opposite each corner.
+    /// The tetrahedron across the face opposite each corner.
     pub across: Vec<[u32; 4]>,
     /// The label of each.
     pub label: Vec<i32>,
-    /// A measure of each, kept by who changes coordinates or asks for a replacement.
+    /// A measure of each, maintained by the code that changes coordinates or requests a
+    /// replacement.
     pub quality: Vec<f64>,
     /// A tetrahedron of each vertex.
     pub at: Vec<u32>,
-    /// Vertices that stay where they are.
+    /// Vertices that do not move.
     pub fixed: Vec<bool>,
     free: Vec<u32>,
     faces: Vec<Side>,
 }
 
-/// A face, its vertices ascending, and the tetrahedron and corner that it is seen from.
+/// A face with its vertices ascending, and the tetrahedron and corner from which it is seen.
 type Side = ([u32; 3], u32, usize);
 
 /// Three numbers, ascending.
@@ -50,7 +52,7 @@ fn ascending(mut v: [u32; 3]) -> [u32; 3] {
 }
 
 impl Store {
-    /// Joins tetrahedra by their faces. Refuses a face that three of them have.
+    /// Links tetrahedra by their faces. Rejects a face that belongs to three of them.
     pub fn new(points: Vec<Point3>, corners: Vec<Corners>, label: Vec<i32>) -> Result<Self> {
         let (n, m) = (points.len(), corners.len());
         let mut at = filled(n, NONE)?;
@@ -78,7 +80,7 @@ impl Store {
                 _ => {
                     let [a, b, c] = face;
                     return Err(Error::Shape(format!(
-                        "more than two tetrahedra have the face of vertices {a}, {b} and {c}"
+                        "more than two tetrahedra share the face of vertices {a}, {b} and {c}"
                     )));
                 }
             }
@@ -103,12 +105,12 @@ impl Store {
         })
     }
 
-    /// How many places for tetrahedra there are, empty ones included.
+    /// How many slots for tetrahedra there are, empty ones included.
     pub fn places(&self) -> u32 {
         self.corners.len() as u32
     }
 
-    /// Whether there is a tetrahedron in a place.
+    /// Whether there is a tetrahedron in a slot.
     #[inline]
     pub fn is_there(&self, t: u32) -> bool {
         self.corners[t as usize][0] != NONE
@@ -133,7 +135,8 @@ impl Store {
         (u != NONE && self.label[u as usize] == self.label[t as usize]).then_some(u)
     }
 
-    /// Collects the tetrahedra of a vertex that faces without walls join to `at[v]`.
+    /// Collects the tetrahedra of a vertex that are connected to `at[v]` by faces that are not
+    /// walls.
     pub fn star(&self, v: u32, found: &mut Vec<u32>) -> Result<()> {
         found.clear();
         push(found, self.at[v as usize])?;
@@ -154,8 +157,8 @@ impl Store {
         Ok(())
     }
 
-    /// Puts new tetrahedra into the place of old ones of one label, and returns their numbers in
-    /// `made`. Both fill the same place; with `turning` two walls in one plane may differ.
+    /// Replaces old tetrahedra of one label by new ones, and returns their numbers in `made`. Both
+    /// fill the same region; with `turning` two walls in one plane may differ.
     pub fn replace(
         &mut self,
         old: &[u32],
@@ -165,6 +168,7 @@ impl Store {
     ) -> Result<()> {
         let mut faces = std::mem::take(&mut self.faces);
         faces.clear();
+        // The outer faces of the old tetrahedra, as seen from the outside.
         for &t in old {
             for (k, corners) in FACES.iter().enumerate() {
                 let u = self.across[t as usize][k];
@@ -176,11 +180,14 @@ impl Store {
                     NONE => 0,
                     _ => (0..4)
                         .find(|&i| self.across[u as usize][i] == t)
-                        .ok_or_else(|| Error::Internal("a face without a way back".into()))?,
+                        .ok_or_else(|| {
+                            Error::Internal("a face whose neighbor does not link back".into())
+                        })?,
                 };
                 push(&mut faces, (ascending(face), u, back))?;
             }
         }
+        // Reuse the old slots for the new tetrahedra and add all of their faces.
         let label = self.label[old[0] as usize];
         for &t in old {
             self.corners[t as usize] = [NONE; 4];
@@ -199,13 +206,14 @@ impl Store {
         for &t in old.iter().skip(new.len()) {
             push(&mut self.free, t)?;
         }
+        // Sorting brings the two sides of each face together.
         faces.sort_unstable();
         let joined = self.join(&faces, turning);
         self.faces = faces;
         joined
     }
 
-    /// A place for a tetrahedron: the one offered, an empty one or another one.
+    /// A slot for a tetrahedron: the one offered, an empty one or a new one.
     fn place(&mut self, offered: Option<u32>) -> Result<u32> {
         if let Some(t) = offered.or_else(|| self.free.pop()) {
             return Ok(t);
@@ -217,7 +225,7 @@ impl Store {
         Ok(self.places() - 1)
     }
 
-    /// Joins the sides of faces, sorted: two of each, or one where walls turn.
+    /// Links the sides of faces, sorted: two per face, or one if walls are flipped.
     fn join(&mut self, faces: &[Side], turning: bool) -> Result<()> {
         let mut rest = faces;
         while let Some((&(face, t, k), others)) = rest.split_first() {
@@ -237,7 +245,7 @@ impl Store {
                     }
                     rest = others;
                 }
-                _ => return Err(Error::Internal("a face that fits no other".into())),
+                _ => return Err(Error::Internal("a face without a partner".into())),
             }
         }
         Ok(())

@@ -1,32 +1,32 @@
-//! What is to be improved, and what has been.
+//! The input and the result of an improvement.
 
 use delone_predicates::Point3;
 
 use crate::error::Result;
 
-/// Tetrahedra to be improved, and how.
+/// Tetrahedra to improve, and options.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a> {
     /// Rows of coordinates, finite.
     pub points: &'a [Point3],
     /// Positively oriented tetrahedra that do not overlap.
     pub simplices: &'a [[i32; 4]],
-    /// A label of each; faces between labels stay. Empty where all have one.
+    /// A label of each; faces between labels are kept. Empty if all have the same.
     pub labels: &'a [i32],
-    /// For each row, whether it stays where it is. Empty where none must.
+    /// For each row, whether it is fixed. Empty if none is.
     pub fixed: &'a [bool],
-    /// Tetrahedra with a smaller dihedral angle are worked on, in degrees; and with an obtuse angle
-    /// of a smaller weighted sine.
+    /// Tetrahedra with a smaller dihedral angle, in degrees, are improved; so are those with an
+    /// obtuse angle of a smaller weighted sine.
     pub min_angle: f64,
     /// Whether edges and faces are removed.
     pub flips: bool,
     /// Whether vertices move.
     pub smooth: bool,
-    /// Whether vertices inside get weights, before all else.
+    /// Whether interior vertices get weights, before all else.
     pub exude: bool,
-    /// Whether faces of the boundary in one plane may be flipped.
+    /// Whether coplanar faces of the boundary may be flipped.
     pub turn: bool,
-    /// Most passes.
+    /// The limit on passes.
     pub passes: usize,
 }
 
@@ -41,19 +41,19 @@ pub struct Counts {
     pub faces: usize,
     /// Moves of vertices.
     pub moves: usize,
-    /// Weights given.
+    /// Weights assigned.
     pub weights: usize,
     /// Passes.
     pub passes: usize,
-    /// Changes that would have raised the worst quality and were not made: a smallest angle would
-    /// have become smaller, or rounding did not allow to tell.
+    /// Changes that would have raised the worst quality but were not made: a smallest angle would
+    /// have become smaller, or rounding left it undecided.
     pub refused: usize,
 }
 
 /// Improved tetrahedra.
 #[derive(Debug)]
 pub struct Improved {
-    /// Rows of coordinates, where moved ones are.
+    /// Rows of coordinates, with the moved ones at their new positions.
     pub points: Vec<Point3>,
     /// Tetrahedra in rows.
     pub simplices: Vec<[i32; 4]>,
@@ -61,14 +61,14 @@ pub struct Improved {
     pub neighbors: Vec<[i32; 4]>,
     /// The label of each.
     pub labels: Vec<i32>,
-    /// The weight of each row, nought for most.
+    /// The weight of each row, zero for most.
     pub weights: Vec<f64>,
-    /// What was done.
+    /// Counts of the changes.
     pub counts: Counts,
     /// Whether the limit on passes ended it while it still gained.
     pub exhausted: bool,
 }
 
-/// Called after each pass with its number and how many tetrahedra are below the bound; an error ends
-/// the work.
+/// Called after each pass with its number and the number of tetrahedra below the bound; an error
+/// ends the work.
 pub type Tell<'a> = &'a mut dyn FnMut(usize, usize) -> Result<()>;

@@ -1,4 +1,5 @@
-//! The passes: removals for each tetrahedron below the bound, worst first; then moves of its vertices.
+//! The passes: removals for each tetrahedron below the bound, worst first; then moves of its
+//! vertices.
 
 use super::edge::{self, Plan, Ring};
 use super::measure::{Bounds, are_positive, bounds, quality};
@@ -10,47 +11,48 @@ use crate::error::Result;
 use crate::memory::{filled, push, with_room};
 use crate::watch::Watch;
 
-/// Tetrahedra or vertices between two looks at the watch.
+/// Tetrahedra or vertices between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 10;
-/// A removal that gains a smaller part is none.
+/// A removal must gain more than this factor.
 const GAIN: f64 = 1.0 + 1e-9;
-/// A pass that takes away a smaller part of what is missing to the bound gains nothing. Of flat
-/// points, as those of a survey of the ground, half of the tetrahedra stay below the bound, and every
-/// pass takes as long as the one before: with a hundredth here, half of the time went for the last
-/// twentieth of what is gained.
+/// A pass that removes a smaller share of the total shortfall from the bound counts as stalled. For
+/// flat point sets, such as terrain surveys, half of the tetrahedra stay below the bound, and every
+/// pass takes as long as the one before: with a hundredth here, half of the time went into the last
+/// twentieth of the gain.
 const STALLED: f64 = 3e-2;
-/// So many of these end it.
+/// This many stalled passes end the work.
 const PATIENCE: usize = 2;
 /// The edges of a tetrahedron.
 const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
-/// The state.
+/// The state of an improvement.
 pub struct Work<'a> {
     pub store: Store,
     pub counts: Counts,
     /// The weight of each vertex.
     pub weights: Vec<f64>,
     task: Task<'a>,
-    /// Quality below which a tetrahedron is worked on.
+    /// The quality below which a tetrahedron is improved.
     bound: f64,
     ring: Ring,
     star: Star,
     made: Vec<u32>,
     around: Vec<u32>,
-    /// The number of the next attempt: what has not changed since the last one is not tried again.
+    /// The number of the next attempt: what has not changed since its last attempt is not tried
+    /// again.
     clock: u64,
-    /// For each vertex, when a tetrahedron at it has changed, and when it was to move.
+    /// For each vertex, when a tetrahedron at it last changed, and when a move was last tried.
     touched: Vec<u64>,
     moved: Vec<u64>,
-    /// For each tetrahedron, when its removal was tried.
+    /// For each tetrahedron, when its removal was last tried.
     tried: Vec<u64>,
 }
 
-/// What a pass is judged by: how many are below the bound, and by how much all together.
+/// The measure of progress: how many are below the bound, and by how much in total.
 type Standing = (usize, f64);
 
 impl<'a> Work<'a> {
-    /// Measures all there is.
+    /// Measures all tetrahedra.
     pub fn new(mut store: Store, task: Task<'a>) -> Result<Self> {
         for t in 0..store.corners.len() {
             store.quality[t] = quality(store.places_of(store.corners[t]));
@@ -73,7 +75,8 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Passes until all is done (true), nothing more is gained (true), or there were enough (false).
+    /// Runs passes until all are above the bound (true), nothing more is gained (true), or the
+    /// limit is reached (false).
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         if self.task.exude {
             self.weigh_all(watch)?;
@@ -104,7 +107,7 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Whether a tetrahedron is to be worked on.
+    /// Whether a tetrahedron is to be improved.
     fn is_below(&self, t: u32) -> bool {
         self.store.is_there(t) && self.store.quality[t as usize] < self.bound
     }
@@ -121,7 +124,7 @@ impl<'a> Work<'a> {
             .fold((0, 0.0), |(count, sum), m| (count + 1, sum + m))
     }
 
-    /// Those below the bound, worst first.
+    /// The tetrahedra below the bound, worst first.
     fn below(&self) -> Result<Vec<u32>> {
         let store = &self.store;
         let all = (0..store.places()).filter(|&t| self.is_below(t));
@@ -134,7 +137,7 @@ impl<'a> Work<'a> {
         Ok(found)
     }
 
-    /// Tries to remove an edge or faces of each tetrahedron below the bound, and of what comes.
+    /// Tries to remove an edge or faces of each tetrahedron below the bound, and of the new ones.
     fn remove_all(&mut self, watch: &Watch) -> Result<()> {
         let mut waiting = self.below()?;
         waiting.reverse();
@@ -206,7 +209,7 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Replaces tetrahedra where that is better for certain.
+    /// Replaces tetrahedra if the new ones are certainly better.
     fn carry_out(&mut self, plan: &Plan) -> Result<bool> {
         let store = &mut self.store;
         let new = || plan.new.iter().map(|&v| store.places_of(v));
@@ -228,12 +231,12 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Gives weights to free vertices of tetrahedra below the bound, each at most once.
+    /// Assigns weights to free vertices of tetrahedra below the bound, each at most once.
     fn weigh_all(&mut self, watch: &Watch) -> Result<()> {
         let mut met = filled(self.store.points.len(), false)?;
         let mut steps = 0;
         for t in self.below()? {
-            // Those whose place another tetrahedron has taken have other corners now.
+            // A slot that was reused has other corners now.
             if !self.is_below(t) {
                 continue;
             }
@@ -255,7 +258,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Gives a vertex a weight where that is better for certain.
+    /// Assigns a vertex a weight if the new tetrahedra are certainly better.
     fn weigh_one(&mut self, v: u32) -> Result<()> {
         self.store.star(v, &mut self.around)?;
         let found = exude::pump(&self.store, &self.weights, v, &self.around, 0.0)?;
@@ -295,7 +298,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Moves a vertex where that is better for certain.
+    /// Moves a vertex if the tetrahedra around it are certainly better afterwards.
     fn move_one(&mut self, v: u32) -> Result<bool> {
         let store = &mut self.store;
         store.star(v, &mut self.around)?;

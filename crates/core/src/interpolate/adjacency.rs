@@ -1,8 +1,8 @@
-//! Which vertices share an edge.
+//! Vertex adjacency: which vertices share an edge.
 
 use crate::error::{Error, Result};
 
-/// The neighbours of each vertex, in compressed rows.
+/// The neighbors of each vertex, in compressed rows.
 #[derive(Debug, Clone, Copy)]
 pub struct Adjacency<'a> {
     indptr: &'a [i32],
@@ -20,7 +20,7 @@ impl<'a> Adjacency<'a> {
         let inside = |&v: &i32| v >= 0 && (v as usize) < vertices;
         if !fits || !indices.iter().all(inside) {
             return Err(Error::Shape(format!(
-                "indptr and indices are no rows of {vertices} vertices"
+                "indptr and indices are not compressed rows of {vertices} vertices"
             )));
         }
         Ok(Self { indptr, indices })
@@ -36,9 +36,9 @@ impl<'a> Adjacency<'a> {
         self.indptr[v] as usize..self.indptr[v + 1] as usize
     }
 
-    /// The neighbours of a vertex.
+    /// The neighbors of a vertex.
     #[inline]
-    pub fn neighbours(&self, v: usize) -> &'a [i32] {
+    pub fn neighbors(&self, v: usize) -> &'a [i32] {
         &self.indices[self.range(v)]
     }
 }

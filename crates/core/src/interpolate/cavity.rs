@@ -1,12 +1,14 @@
-//! The cavity of a query: the Delaunay triangles whose circles have it inside, which are those that
-//! its insertion would remove (A. Bowyer and D. F. Watson, both 1981).
+//! The cavity of a query: the Delaunay triangles whose circumcircles contain it.
 //!
-//! Strictly inside counts. That is enough on any Delaunay triangulation, however cocircular
-//! polygons are cut: the triangles are connected through their edges, the query sees each boundary
-//! edge from strictly inside (one on the line of such an edge would be in the circle beyond, too),
-//! and triangles left out for a tie would take no area from anyone. No vertex is inside the cavity,
-//! so its triangles form a tree, and each adds one vertex to the boundary. A barrier ends the cavity
-//! like the hull; the triangles are then Delaunay among what the query can see.
+//! These are the triangles that its insertion would remove (A. Bowyer and D. F. Watson, both 1981).
+//!
+//! Only points strictly inside count. That suffices on any Delaunay triangulation, however
+//! cocircular polygons are triangulated: the triangles are connected through their edges, the query
+//! sees each boundary edge from strictly inside (a query on the line of such an edge would be in
+//! the circle beyond, too), and triangles left out because of a tie would contribute no area. No
+//! vertex is inside the cavity, so its triangles form a tree, and each adds one vertex to the
+//! boundary. A barrier bounds the cavity like the hull; the triangles are then constrained
+//! Delaunay.
 
 use delone_predicates::{Point2, Sign, incircle};
 
@@ -15,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::locate::{Side, next, prev};
 use crate::watch::Pace;
 
-/// Edges that are closed, by the corner opposite; empty where none is.
+/// Edges that are closed, by the opposite corner; empty if there are none.
 pub type Barrier<'a> = &'a [[bool; 3]];
 
 /// Whether the edge opposite a corner is closed.
@@ -26,26 +28,26 @@ pub fn is_closed(barrier: Barrier, side: Side) -> bool {
         .is_some_and(|row| row[side.corner])
 }
 
-/// A cavity. Its vertices have slots, in the order found.
+/// A cavity. Its vertices have slots, in the order in which they were found.
 #[derive(Debug, Default)]
 pub struct Cavity {
     /// The vertex in each slot.
     pub vertices: Vec<i32>,
     /// Its coordinates.
     pub points: Vec<Point2>,
-    /// The triangles, by slots, counter-clockwise.
+    /// The triangles, by slots, counterclockwise.
     pub triangles: Vec<[u32; 3]>,
-    /// The boundary, by slots, counter-clockwise.
+    /// The boundary, by slots, counterclockwise.
     pub ring: Vec<u32>,
-    /// Which edge of the ring has the query on it, by the slot it starts at: a closed edge.
+    /// The edge of the ring, by the slot at which it starts, that is closed and contains the query.
     pub flat: Option<u32>,
-    /// Edges to look beyond, with the slots of their ends, the cavity on their left.
+    /// Edges yet to be crossed, with the slots of their ends, and the cavity on their left.
     open: Vec<(Side, u32, u32)>,
 }
 
 impl Cavity {
     /// Finds the cavity of `q`, which is in the closed triangle `seed`, on its edge opposite `on`
-    /// where there is such, and at no vertex. The triangles count as work.
+    /// if given, and not at a vertex. The triangles count as work.
     pub fn find(
         &mut self,
         given: &Triangles,
@@ -64,7 +66,7 @@ impl Cavity {
         self.vertices.extend_from_slice(&given.simplices[seed]);
         self.points.extend_from_slice(&given.corners(seed));
         self.triangles.push([0, 1, 2]);
-        // The last comes first: the edge from slot 0 to slot 1.
+        // Pushed in reverse: the edge from slot 0 to slot 1 is popped first.
         for k in [1, 0, 2] {
             let side = Side {
                 triangle: seed,
@@ -95,7 +97,7 @@ impl Cavity {
             if self.triangles.len() > given.simplices.len() {
                 self.open.clear();
                 return Err(Error::Internal(
-                    "natural neighbours need a Delaunay triangulation".into(),
+                    "natural neighbors need a Delaunay triangulation".into(),
                 ));
             }
             pace.spend(1)?;

@@ -1,14 +1,14 @@
-//! Interpolation by cubics on triangles split in three, with a continuous gradient.
+//! Clough-Tocher interpolation: cubics on triangles split in three, with a continuous gradient.
 //!
-//! The scheme of R. W. Clough and J. L. Tocher (1965) in the reduced form that SciPy has: values and
-//! gradients at the vertices are given, and across each edge the derivative in one direction is
+//! The scheme of R. W. Clough and J. L. Tocher (1965) in the reduced form that SciPy has: values
+//! and gradients at the vertices are given, and across each edge the derivative in one direction is
 //! linear. That direction is the line between the centroids of the two triangles, as P. Alfeld ("A
-//! trivariate Clough-Tocher scheme for tetrahedral data", 1984) and G. Farin ("A modified Clough-
-//! Tocher interpolant", 1985) propose: it is the same from both sides, and affine maps keep it. At
-//! the boundary it is the median.
+//! trivariate Clough-Tocher scheme for tetrahedral data", 1984) and G. Farin ("A modified
+//! Clough-Tocher interpolant", 1985) propose: it is the same from both sides, and affine maps
+//! preserve it. At the boundary it is the median.
 //!
-//! A cubic is held by its Bezier ordinates. With the corners i, j, k and the centroid c, `iij` is the
-//! ordinate a third of the way from i to j.
+//! A cubic is represented by its Bezier ordinates. With the corners i, j, k and the centroid c,
+//! `iij` is the ordinate a third of the way from i to j.
 
 use delone_predicates::Point2;
 
@@ -22,19 +22,19 @@ use crate::locate::{
     Batch, Located, Output, Place, Side, barycentric, cross, next, prev, seen_from,
 };
 
-/// What of a triangle the cubics depend on, apart from values and gradients.
+/// The part of a triangle's cubics that is independent of values and gradients.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
-    /// For each corner the way to the next and to the previous one.
-    ways: [[Point2; 2]; 3],
-    /// For the edge opposite each corner k the direction across: this many times the way from j to i,
-    /// and that from the middle of the edge to the centroid.
+    /// For each corner the vectors to the next and to the previous one.
+    edges: [[Point2; 2]; 3],
+    /// For the edge opposite each corner k, the direction across: this multiple of the vector from
+    /// j to i, plus the vector from the middle of the edge to the centroid.
     across: [f64; 3],
 }
 
-/// The most of the edge that a direction across may have. Where an edge is far shorter than the
-/// triangles beside it, the rounding of the values at its ends would show as many times; and what
-/// the cubic along it departs there from its chord is of its length cubed.
+/// The largest multiple of the edge in a direction across. If an edge is far shorter than the
+/// triangles beside it, the rounding of the values at its ends would be amplified as many times;
+/// and the cubic along it differs from its chord only by a multiple of its length cubed.
 const OBLIQUE: f64 = 1e5;
 
 impl Frame {
@@ -47,7 +47,8 @@ impl Frame {
                 corner: k,
             };
             let beyond = given.beyond(side).filter(|_| !is_closed(barrier, side));
-            // The far apex in coordinates of this triangle; at the boundary the middle of the edge.
+            // The opposite apex in coordinates of this triangle; at the boundary the edge's
+            // midpoint.
             let [xi, xj, xk] = match beyond {
                 Some(there) => {
                     let x = coordinates(corners, given.point(given.vertex(there)));
@@ -55,18 +56,18 @@ impl Frame {
                 }
                 None => [0.5, 0.5, 0.0],
             };
-            // From corner k to there are three times the way between the centroids.
+            // The vector from corner k to it is three times that between the centroids.
             let share = (xi - xj) / (6.0 * (xk - 1.0));
             share.clamp(-OBLIQUE, OBLIQUE)
         };
         Self {
-            ways: std::array::from_fn(|k| [way(k, next(k)), way(k, prev(k))]),
+            edges: std::array::from_fn(|k| [way(k, next(k)), way(k, prev(k))]),
             across: std::array::from_fn(across),
         }
     }
 }
 
-/// Barycentric coordinates of any point, of either sign.
+/// Barycentric coordinates of any point, inside or outside.
 fn coordinates(corners: [Point2; 3], x: Point2) -> [f64; 3] {
     let (seen, unit) = seen_from(x, corners);
     let areas: [f64; 3] = std::array::from_fn(|k| {
@@ -100,35 +101,35 @@ struct Ordinates {
     /// icc
     deep: [f64; 3],
     /// ccc
-    centre: f64,
+    center: f64,
 }
 
 impl Ordinates {
     fn of(frame: &Frame, values: [f64; 3], gradients: [[f64; 2]; 3]) -> Self {
         let along: [[f64; 2]; 3] = std::array::from_fn(|i| {
             let [gx, gy] = gradients[i];
-            frame.ways[i].map(|way| values[i] + (gx * way[0] + gy * way[1]) / 3.0)
+            frame.edges[i].map(|way| values[i] + (gx * way[0] + gy * way[1]) / 3.0)
         });
         let inner: [f64; 3] =
             std::array::from_fn(|i| (values[i] + along[i][0] + along[i][1]) / 3.0);
         let middle: [f64; 3] = std::array::from_fn(|k| {
-            // The derivative across the edge is a parabola along it; its middle ordinate is made
-            // the mean of the outer two. What it takes from the edge is how the slopes of the ends
-            // depart from the chord, which cancels nothing but values.
+            // The derivative across the edge is a parabola along it; its middle ordinate is set to
+            // the mean of the outer two. The share of the edge in it multiplies the difference of
+            // the end slopes from the chord, in which only values cancel.
             let (i, j) = (next(k), prev(k));
             let [gx, gy] = [0, 1].map(|l| gradients[i][l] + gradients[j][l]);
-            let (from_i, from_j) = (frame.ways[i][1], frame.ways[j][0]);
+            let (from_i, from_j) = (frame.edges[i][1], frame.edges[j][0]);
             let up = gx * (from_i[0] + from_j[0]) + gy * (from_i[1] + from_j[1]);
-            let edge = frame.ways[j][1];
+            let edge = frame.edges[j][1];
             let along_edge = 0.5 * (gx * edge[0] + gy * edge[1]);
             let bend = along_edge - (values[i] - values[j]);
             0.5 * (along[i][0] + along[j][1]) + up / 36.0 + frame.across[k] * bend
         });
         let deep: [f64; 3] =
             std::array::from_fn(|i| (inner[i] + middle[next(i)] + middle[prev(i)]) / 3.0);
-        let centre = (deep[0] + deep[1] + deep[2]) / 3.0;
-        // All others come into the centre; finite sums of it may still pass the range.
-        if !(3.0 * centre).is_finite() && values.iter().all(|v| v.is_finite()) {
+        let center = (deep[0] + deep[1] + deep[2]) / 3.0;
+        // All others enter the center; finite sums with it may still overflow.
+        if !(3.0 * center).is_finite() && values.iter().all(|v| v.is_finite()) {
             return Self::linear(values);
         }
         Self {
@@ -137,30 +138,30 @@ impl Ordinates {
             inner,
             middle,
             deep,
-            centre,
+            center,
         }
     }
 
-    /// The plane through the values, where doubles do not hold a cubic.
+    /// The plane through the values, if doubles cannot represent a cubic.
     #[cold]
     fn linear(values: [f64; 3]) -> Self {
         let thirds = values.map(|v| v / 3.0);
-        let centre = thirds[0] + thirds[1] + thirds[2];
-        let inner = thirds.map(|v| 2.0 * v + centre / 3.0);
+        let center = thirds[0] + thirds[1] + thirds[2];
+        let inner = thirds.map(|v| 2.0 * v + center / 3.0);
         Self {
             at: values,
             along: std::array::from_fn(|i| [next(i), prev(i)].map(|j| 2.0 * thirds[i] + thirds[j])),
             inner,
-            middle: std::array::from_fn(|k| thirds[next(k)] + thirds[prev(k)] + centre / 3.0),
-            deep: thirds.map(|v| v + centre / 1.5),
-            centre,
+            middle: std::array::from_fn(|k| thirds[next(k)] + thirds[prev(k)] + center / 3.0),
+            deep: thirds.map(|v| v + center / 1.5),
+            center,
         }
     }
 
     /// The value at barycentric coordinates.
     #[inline]
     fn value<T: Number>(&self, b: [T; 3]) -> T {
-        // The part of the triangle is that opposite the corner of least weight.
+        // The subtriangle is the one opposite the corner of least weight.
         let mut k = 0;
         for l in 1..3 {
             if b[l].value() < b[k].value() {
@@ -178,11 +179,11 @@ impl Ordinates {
             + by(2.0 * self.middle[k]) * bi * bj
             + by(self.inner[j]) * bj * bj;
         let second = by(self.deep[i]) * bi + by(self.deep[j]) * bj;
-        edge + bc * (three * first + bc * (three * second + by(self.centre) * bc))
+        edge + bc * (three * first + bc * (three * second + by(self.center) * bc))
     }
 }
 
-/// The cubics of the triangle that was asked for last: queries near each other share it.
+/// The cubics of the last triangle: nearby queries share it.
 #[derive(Default)]
 struct Last {
     triangle: Option<usize>,
@@ -206,7 +207,7 @@ impl Last {
     }
 }
 
-/// Barycentric coordinates as functions of the place.
+/// Barycentric coordinates as functions of position.
 fn jets(given: &Triangles, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
     let corners = given.corners(triangle);
     let ([u, v], unit) = seen_from(corners[0], [corners[1], corners[2]]);
@@ -223,7 +224,7 @@ fn jets(given: &Triangles, triangle: usize, b: [f64; 3]) -> [Jet; 3] {
     })
 }
 
-/// Values, gradients or Hessians at the queries, a row each; NaN outside.
+/// Values, gradients or Hessians at the queries, one row each; NaN outside.
 pub fn clough_tocher(
     batch: &Batch,
     field: Field,
@@ -272,9 +273,9 @@ pub fn clough_tocher(
 pub struct CornerWeights {
     /// The triangle, or -1.
     pub triangle: Vec<i32>,
-    /// Three a row; NaN outside.
+    /// Three per row; NaN outside.
     pub weights: Vec<f64>,
-    /// Three times two a row; NaN outside.
+    /// Three pairs per row; NaN outside.
     pub slopes: Vec<f64>,
 }
 
@@ -304,7 +305,7 @@ pub fn clough_tocher_weights(batch: &Batch, barrier: Barrier) -> Result<CornerWe
     })
 }
 
-/// Values of the nine functions with one value or derivative 1 and all others 0.
+/// Values of the nine basis functions, each with one value or derivative 1 and all others 0.
 fn basis(
     given: &Triangles,
     barrier: Barrier,

@@ -1,11 +1,11 @@
-//! Natural neighbour weights where doubles do not tell them: the formula of `weights` in integers.
+//! Exact natural neighbor weights in integers, for queries where doubles are not certain.
 //!
 //! All coordinates are multiples of a power of two; in that unit the query has a distance of at
-//! least 1 from every site. Each term is a quotient of integers, taken in fixed point with `DIGITS`
-//! binary places. Terms cancel, but their sum does not vanish: the cell of the query has the circle
-//! of half the least distance inside, so eight times its area is at least 6, and the Laplace weights
-//! sum to about 1/2 at least, as the wall that is nearest or those that cut it short have that length over
-//! their distances. So nearly all of the digits are left, whatever the sites are.
+//! least 1 from every site. Each term is a quotient of integers, computed in fixed point with
+//! `DIGITS` binary places. Terms cancel, but their sum does not vanish: the cell of the query
+//! contains the circle of half the least distance, so eight times its area is at least 6. The
+//! Laplace weights sum to at least about 1/2, as the nearest wall, or those that cut it short, have
+//! that length relative to their distances. So nearly all of the digits are left, for any sites.
 
 use delone_predicates::Point2;
 use delone_predicates::arithmetic::decode_odd;
@@ -21,15 +21,15 @@ use crate::wide::{lowest, ratio, scaled};
 /// Binary places of a term.
 const DIGITS: usize = 160;
 
-/// Triangles of a cavity whose search takes about as long as one term here: 4 us and more.
+/// Triangles of a cavity whose search takes about as long as one term here: at least 4 us.
 const TERM: usize = 40;
 
-/// An integer that depends on the place of the query; by it the derivatives x, y, xx, xy and yy,
-/// where they are asked for.
+/// An integer that depends on the position of the query, followed by its derivatives x, y, xx, xy
+/// and yy if they are requested.
 #[derive(Debug, Clone)]
 struct Jets(Vec<BigInt>);
 
-/// For each second derivative the first ones, among the parts of a number.
+/// For each second derivative, the first derivatives it is made of, as indices of parts.
 const SECOND: [(usize, usize); 3] = [(1, 1), (1, 2), (2, 2)];
 
 impl Jets {
@@ -39,8 +39,8 @@ impl Jets {
         Self(all)
     }
 
-    /// A coordinate of a site as seen from the query.
-    fn seen(value: BigInt, axis: usize, parts: usize) -> Self {
+    /// A coordinate of a site relative to the query.
+    fn relative(value: BigInt, axis: usize, parts: usize) -> Self {
         let mut all = Self::constant(value, parts);
         if parts > 1 {
             all.0[1 + axis] = BigInt::from(-1);
@@ -73,7 +73,7 @@ impl Jets {
         Self(all)
     }
 
-    /// The parts of the quotient of two, each as numerator and denominator.
+    /// The parts of a quotient, each as numerator and denominator.
     fn over(&self, other: &Self) -> Vec<(BigInt, BigInt)> {
         let (n, d) = (&self.0, &other.0);
         let mut all = vec![(n[0].clone(), d[0].clone())];
@@ -91,25 +91,25 @@ impl Jets {
         all
     }
 
-    /// The quotient of two in fixed point.
+    /// A quotient in fixed point.
     fn quotient(&self, other: &Self) -> Self {
         let parts = self.over(other).into_iter();
         Self(parts.map(|(n, d)| (n << DIGITS) / d).collect())
     }
 }
 
-/// What the terms are made of.
+/// The quantities of which the terms are made.
 struct Terms {
-    /// Sites as seen from the query.
-    seen: Vec<[Jets; 2]>,
-    /// The flat triangle's area, by which all is multiplied.
+    /// Sites relative to the query.
+    relative: Vec<[Jets; 2]>,
+    /// The area of the degenerate triangle, by which everything is multiplied.
     scale: Option<Jets>,
-    /// Sums, by slot.
+    /// The sums, by slot.
     sums: Vec<Jets>,
 }
 
-/// The weights of the slots of a cavity for `q`, derivatives by lengths in `unit`; false where there
-/// are none: the triangles are no Delaunay triangles then.
+/// The weights of the slots of a cavity for `q`, with derivatives per length in `unit`; false if
+/// there are none: then the triangles are not Delaunay.
 #[cold]
 #[inline(never)]
 pub fn weights<T: Number>(
@@ -123,10 +123,11 @@ pub fn weights<T: Number>(
     let mut all = cavity.points.clone();
     all.push(q);
     let low = lowest(&all, &[]);
-    let seen =
-        |p: &Point2| [0, 1].map(|k| Jets::seen(scaled(p[k], low) - scaled(q[k], low), k, T::PARTS));
+    let relative = |p: &Point2| {
+        [0, 1].map(|k| Jets::relative(scaled(p[k], low) - scaled(q[k], low), k, T::PARTS))
+    };
     let mut terms = Terms {
-        seen: cavity.points.iter().map(seen).collect(),
+        relative: cavity.points.iter().map(relative).collect(),
         scale: None,
         sums: vec![Jets::constant(BigInt::ZERO, T::PARTS); cavity.points.len()],
     };
@@ -167,19 +168,19 @@ fn cross(a: &[Jets; 2], b: &[Jets; 2]) -> Jets {
 }
 
 impl Terms {
-    /// The way from one slot to another, which does not depend on the query.
-    fn way(&self, from: usize, to: usize) -> [Jets; 2] {
-        [0, 1].map(|k| self.seen[to][k].minus(&self.seen[from][k]))
+    /// The vector from one slot to another, which is independent of the query.
+    fn vector(&self, from: usize, to: usize) -> [Jets; 2] {
+        [0, 1].map(|k| self.relative[to][k].minus(&self.relative[from][k]))
     }
 
-    /// Adds the triangles from the query to the ring.
+    /// Adds the triangles between the query and the ring.
     fn add_fans(&mut self, kind: Kind, cavity: &Cavity, pace: &mut Pace) -> Result<bool> {
         let ring = &cavity.ring;
         let ends = |i: usize| (ring[i] as usize, ring[(i + 1) % ring.len()] as usize);
         let crosses: Vec<Jets> = (0..ring.len())
             .map(|i| {
                 let (u, v) = ends(i);
-                cross(&self.seen[u], &self.way(u, v))
+                cross(&self.relative[u], &self.vector(u, v))
             })
             .collect();
         let is_flat = |x: &Jets| x.value().sign() == Sign::NoSign;
@@ -191,8 +192,8 @@ impl Terms {
         for (i, area) in crosses.iter().enumerate() {
             pace.spend(2 * TERM)?;
             let (u, v) = ends(i);
-            let (a, b, edge) = (&self.seen[u], &self.seen[v], self.way(u, v));
-            let (mut at_u, mut at_v) = (dot(&edge, b), dot(&self.way(v, u), a));
+            let (a, b, edge) = (&self.relative[u], &self.relative[v], self.vector(u, v));
+            let (mut at_u, mut at_v) = (dot(&edge, b), dot(&self.vector(v, u), a));
             if kind != Kind::Laplace {
                 let wall = dot(&edge, &edge).times(&dot(a, b));
                 let zero = wall.minus(&wall);
@@ -206,10 +207,10 @@ impl Terms {
         Ok(true)
     }
 
-    /// Adds the parts of the cells of its corners in a triangle of the cavity.
+    /// Adds the parts of the corners' cells in a triangle of the cavity.
     fn add_triangle(&mut self, slots: [usize; 3]) -> bool {
         let ways: [_; 3] =
-            std::array::from_fn(|k| self.way(slots[(k + 1) % 3], slots[(k + 2) % 3]));
+            std::array::from_fn(|k| self.vector(slots[(k + 1) % 3], slots[(k + 2) % 3]));
         let area = cross(&ways[2], &ways[0]);
         if area.value().sign() != Sign::Plus {
             return false;
@@ -229,7 +230,8 @@ impl Terms {
         true
     }
 
-    /// Adds to a slot what is over `area`, or that of the flat triangle, which cancels then.
+    /// Adds to a slot a term over `area`, or over that of the degenerate triangle, which then
+    /// cancels.
     fn add(&mut self, slot: usize, part: &Jets, area: Option<&Jets>) {
         let one = Jets::constant(BigInt::from(1), part.0.len());
         let term = match (area, &self.scale) {

@@ -1,14 +1,14 @@
-//! Values at the vertices, and sums of them.
+//! Values and gradients at the vertices, as columns of fields.
 
 use crate::arrays::Triangles;
 use crate::error::{Error, Result};
 
-/// Columns of values at the vertices, with gradients where there are some.
+/// Columns of values at the vertices, with gradients if given.
 #[derive(Debug, Clone, Copy)]
 pub struct Field<'a> {
     values: &'a [f64],
     gradients: Option<&'a [f64]>,
-    /// How many columns.
+    /// The number of columns.
     pub columns: usize,
 }
 
@@ -23,7 +23,7 @@ impl<'a> Field<'a> {
         Self::of_rows(given.points.len(), values, gradients, columns)
     }
 
-    /// The same for a number of vertices.
+    /// The same for a given number of vertices.
     pub fn of_rows(
         rows: usize,
         values: &'a [f64],
@@ -34,7 +34,7 @@ impl<'a> Field<'a> {
         let fits = values.len() == items && gradients.is_none_or(|g| g.len() == 2 * items);
         if !fits {
             return Err(Error::Shape(format!(
-                "values and gradients need a row for each of the {rows} points"
+                "values and gradients must have one row for each of the {rows} points"
             )));
         }
         Ok(Self {
@@ -50,7 +50,7 @@ impl<'a> Field<'a> {
         self.values[vertex as usize * self.columns + column]
     }
 
-    /// The gradient at a vertex; zero where none are known.
+    /// The gradient at a vertex; zero if gradients are not given.
     #[inline]
     pub fn gradient(&self, vertex: i32, column: usize) -> [f64; 2] {
         let i = 2 * (vertex as usize * self.columns + column);

@@ -1,4 +1,4 @@
-//! Gradients at the vertices, estimated from values.
+//! Estimates gradients at the vertices from the values around them.
 
 use delone_predicates::Point2;
 
@@ -11,36 +11,38 @@ use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
-/// Vertices between two looks at the watch, and for a thread at once.
+/// Vertices between two checks for interruption, and per task.
 const SHARE: usize = 1 << 12;
 
-/// Edges of vertices between two looks at the watch.
+/// Visited edges between two checks for interruption.
 const EDGES: usize = 1 << 17;
 
-/// Share of the longest edge below which an edge counts in a local fit no more than if it were as long. The rounding
-/// of two values makes a slope between them, the larger the nearer they are; and the nearer they are,
-/// the more they would count. So about 1e-11 of the values over the distances is left of that.
+/// Share of the longest edge below which an edge counts in a local fit only as if it were that
+/// long. The rounding of two values causes a slope between them, the larger the nearer they are;
+/// and the nearer they are, the more they would count. So about 1e-11 of the values over the
+/// distances is left of that slope.
 pub const NEAR: f64 = 1e-5;
 
 /// An edge from a vertex.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     way: [f64; 2],
-    /// One over the cube of its length.
+    /// The inverse of the cube of its length.
     weight: f64,
 }
 
-/// Gradients that make the curves along all edges bend least in total: G. M. Nielson, "A method for
-/// interpolating scattered data based upon a minimum norm network", 1983.
+/// Gradients that minimize the total bending of the curves along all edges: G. M. Nielson, "A
+/// method for interpolating scattered data based upon a minimum norm network", 1983.
 ///
-/// A cubic along an edge of length L with ends f, f' and derivatives p, p' by the edge (not by its
-/// length) bends by 4 (p^2 + p p' + p'^2 - 3 (p + p')(f' - f) + 3 (f' - f)^2) / L^3. The minimum over
-/// one gradient, all others fixed, is a system of two equations; sweeps over all vertices go on until
-/// none changes its gradient by more than `tol` of that, or of a floor if that is larger (R. J. Renka
-/// and A. K. Cline, 1984, and SciPy, whose sweeps are the same). `floor` is 1 in SciPy, which hangs on
-/// the units of points and values; without one it is the slope of a plane that has the range of the
-/// values over the longer side of the box of the points. Returns gradients, and for each column the
-/// sweeps, or 0 where `maxiter` were not enough.
+/// A cubic along an edge of length L with end values f, f' and derivatives p, p' along the edge
+/// (not per unit of length) bends by 4 (p^2 + p p' + p'^2 - 3 (p + p')(f' - f) + 3 (f' - f)^2) /
+/// L^3. The minimum over one gradient, all others fixed, is a system of two equations. Sweeps over
+/// all vertices continue until none changes its gradient by more than `tol` of that gradient, or of
+/// a floor if that is larger (R. J. Renka and A. K. Cline, 1984, and SciPy, whose sweeps are the
+/// same). `floor` is 1 in SciPy, which depends on the units of points and values; if it is not
+/// given, it is the slope of a plane with the range of the values over the longer side of the box
+/// of the points. Returns gradients, and for each column the number of sweeps, or 0 if `maxiter`
+/// did not suffice.
 #[expect(clippy::too_many_arguments, reason = "two ends, threads and the watch")]
 pub fn global_gradients(
     points: &[Point2],
@@ -62,7 +64,7 @@ pub fn global_gradients(
         floor,
         maxiter,
     };
-    // All columns without gaps have the same equations.
+    // All columns without missing values share the same equations.
     let common = Network::of(&plan, |_| true, watch)?;
     let columns = (0..field.columns).collect();
     let solved = parallel::map(workers, columns, |column| {
@@ -89,12 +91,12 @@ pub fn global_gradients(
     Ok((gradients, counts))
 }
 
-/// A gradient that doubles can hold. Where they cannot, the estimate is that nothing rises.
+/// A gradient, if doubles can represent it. If not, the estimate is zero.
 fn finite(g: [f64; 2]) -> Option<[f64; 2]> {
     (g[0].is_finite() && g[1].is_finite()).then_some(g)
 }
 
-/// What all sweeps have in common.
+/// The parameters that all sweeps share.
 struct Sweeps<'a> {
     points: &'a [Point2],
     adjacency: Adjacency<'a>,
@@ -106,7 +108,7 @@ struct Sweeps<'a> {
 }
 
 impl Sweeps<'_> {
-    /// The size of gradients of a column below which changes are not measured against themselves.
+    /// The size of gradients of a column below which changes are measured against it instead.
     fn floor(&self, field: &Field, column: usize) -> f64 {
         if let Some(floor) = self.floor {
             return floor;
@@ -117,20 +119,21 @@ impl Sweeps<'_> {
             (low, high) = (low.min(value), high.max(value));
         }
         let floor = (high - low).min(f64::MAX) / self.side;
-        // No value, or one that all have, has no slope; neither have points in one place.
+        // Missing or constant values have no slope, and neither have coincident points.
         if floor.is_finite() { floor } else { 0.0 }
     }
 }
 
 /// The equations of all vertices.
 struct Network {
-    /// Beside the indices of the adjacency; of no weight where they lead to an unknown value.
+    /// Parallel to the indices of the adjacency; the weight is zero if they lead to an unknown
+    /// value.
     edges: Vec<Edge>,
     /// For each vertex the inverse of its matrix: xx, xy, yy.
     inverses: Vec<[f64; 3]>,
 }
 
-/// The inverse of a symmetric matrix (xx, xy, yy); that on its line where all edges lie on one.
+/// The inverse of a symmetric matrix (xx, xy, yy); on its line if all edges are collinear.
 fn inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let det = xx * yy - xy * xy;
     if det > 0.0 {
@@ -147,9 +150,9 @@ impl Network {
         let mut edges = with_room(plan.adjacency.indices.len())?;
         let mut inverses = with_room(plan.points.len())?;
         for (v, &p) in plan.points.iter().enumerate() {
-            pace.spend(1 + plan.adjacency.neighbours(v).len())?;
+            pace.spend(1 + plan.adjacency.neighbors(v).len())?;
             let mut m = [0.0; 3];
-            for &other in plan.adjacency.neighbours(v) {
+            for &other in plan.adjacency.neighbors(v) {
                 let way = in_unit(p, plan.points[other as usize], plan.unit);
                 let length = way[0].hypot(way[1]);
                 let weight = if known(other) {
@@ -167,7 +170,7 @@ impl Network {
         Ok(Self { edges, inverses })
     }
 
-    /// Sweeps over one column until its gradients are still.
+    /// Sweeps over one column until its gradients converge.
     fn sweep(
         &self,
         plan: &Sweeps,
@@ -182,7 +185,7 @@ impl Network {
         for sweep in 1..=plan.maxiter {
             let mut worst: f64 = 0.0;
             for v in 0..n {
-                pace.spend(1 + plan.adjacency.neighbours(v).len())?;
+                pace.spend(1 + plan.adjacency.neighbors(v).len())?;
                 let Some(new) = self.solve(plan, field, column, v, &gradients) else {
                     continue;
                 };
@@ -200,7 +203,7 @@ impl Network {
         Ok((gradients, 0))
     }
 
-    /// The best gradient at one vertex; nothing where there is none, and for a value not known.
+    /// The best gradient at one vertex; `None` if there is none or the value is unknown.
     #[inline]
     fn solve(
         &self,
@@ -230,12 +233,12 @@ impl Network {
     }
 }
 
-/// Gradients of polynomials of degree 1 or 2 through each vertex that fit its surroundings in the
-/// least squares sense, nearer ones by the inverse square of their distance more.
+/// Gradients of polynomials of degree 1 or 2 through each vertex that fit its surroundings by least
+/// squares, weighted by the inverse squared distance.
 ///
-/// Degree 1 takes the neighbours; degree 2 takes their neighbours, too, but of a hub's those around
-/// the vertex alone: see `hubs`. Where those do not determine it, or hardly, it is degree 1: see
-/// `SWING`. So all takes O(n log n).
+/// Degree 1 uses the neighbors. Degree 2 also uses their neighbors, but of a hub's neighbors only
+/// those around the vertex: see `hubs`. If those do not determine it, or hardly, degree 1 is used:
+/// see `SWING`. The total time is O(n log n).
 pub fn local_gradients(
     points: &[Point2],
     adjacency: Adjacency,
@@ -253,9 +256,10 @@ pub fn local_gradients(
         let mut wide = Vec::new();
         let mut work = 0;
         for v in start..points.len().min(start + SHARE) {
-            let near = adjacency.neighbours(v);
+            let near = adjacency.neighbors(v);
             surroundings(&hubs, v, degree, &mut wide);
             let of_near = || Fit::of(points, unit, v, near, 1);
+            // Neighbors that do not determine a plane need a wider ring.
             if degree == 1 && of_near().is_none_or(|plane| plane.is_noisy()) {
                 surroundings(&hubs, v, 2, &mut wide);
             }
@@ -265,6 +269,7 @@ pub fn local_gradients(
                 watch.check()?;
             }
             let common = Fit::best(points, unit, v, near, &wide, degree);
+            // Columns without missing values share one fit.
             for column in 0..field.columns {
                 let known = |u: &i32| field.value(*u, column).is_finite();
                 let gradient = if wide.iter().all(known) {
@@ -289,9 +294,9 @@ pub fn local_gradients(
     Ok(out.into_vec())
 }
 
-/// The neighbours of a vertex, for degree 2 theirs as well, itself left out.
+/// The neighbors of a vertex, for degree 2 theirs as well, without the vertex itself.
 fn surroundings(hubs: &Hubs, v: usize, degree: usize, ring: &mut Vec<i32>) {
-    let near = hubs.adjacency.neighbours(v);
+    let near = hubs.adjacency.neighbors(v);
     ring.clear();
     ring.extend_from_slice(near);
     if degree > 1 {
@@ -304,17 +309,17 @@ fn surroundings(hubs: &Hubs, v: usize, degree: usize, ring: &mut Vec<i32>) {
     }
 }
 
-/// How many times as much as that of the plane the gradient of a quadric may move with the values.
-/// In spread and gridded points it is about half as much inside and up to 2.4 times on the hull, so
-/// that quadrics are reproduced; between tracks of soundings it is up to 10^12 times, and the
-/// quadric swings. There any bound from 0.7 to 10 is as good.
+/// How much more the gradient of a quadric may change with the values than that of the plane. For
+/// scattered and gridded points it changes about half as much inside and up to 2.4 times as much on
+/// the hull, so quadrics are reproduced; between survey tracks it is up to 10^12 times, and the
+/// quadric oscillates. There any bound from 0.7 to 10 is as good.
 const SWING: f64 = 3.0;
 
-/// How much a gradient may move with the values, over their distances, before the plane of a wider
-/// ring is asked: where the neighbours are on a line but for one that all but coincides.
+/// How much a gradient may change with the values, over their distances, before the plane of a
+/// wider ring is used: as when the neighbors are collinear except for one that nearly coincides.
 pub const NOISY: f64 = 1e5;
 
-/// The factors by which differences to surrounding values make a gradient.
+/// The factors that turn differences to surrounding values into a gradient.
 struct Fit<'a> {
     /// The distance of the farthest.
     size: f64,
@@ -323,7 +328,8 @@ struct Fit<'a> {
 }
 
 impl<'a> Fit<'a> {
-    /// The fit of the wider ring, where that is of degree 2 and steady; else that of the nearer.
+    /// The fit of the wider ring, if that is of degree 2 and steady; otherwise that of the
+    /// neighbors.
     fn best(
         points: &[Point2],
         unit: f64,
@@ -352,22 +358,24 @@ impl<'a> Fit<'a> {
         plane
     }
 
-    /// The slope along the line on which all of them lie, as far as doubles tell.
+    /// The slope along the line on which all of them lie, up to rounding.
     fn along(points: &[Point2], unit: f64, v: usize, ring: &'a [i32]) -> Option<Self> {
         let p = points[v];
-        let ways = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
-        let ways: Vec<Point2> = ways.collect();
+        let edges_along = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
+        let edges_along: Vec<Point2> = edges_along.collect();
         let length = |w: &Point2| w[0].hypot(w[1]);
-        let far = *ways.iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
+        let far = *edges_along
+            .iter()
+            .max_by(|a, b| length(a).total_cmp(&length(b)))?;
         let size = length(&far);
         let line = far.map(|x| x / size);
-        // Weights by distance make each the sign of its direction.
-        let signs = ways
+        // With weights by inverse distance, each counts by the sign of its direction only.
+        let signs = edges_along
             .iter()
             .map(|w| (w[0] * line[0] + w[1] * line[1]) / length(w));
         let signs: Vec<f64> = signs.collect();
         let sum: f64 = signs.iter().map(|s| s * s).sum();
-        let factors = signs.iter().zip(&ways);
+        let factors = signs.iter().zip(&edges_along);
         let factors = factors
             .map(|(s, w)| line.map(|x| x * s / length(w) / sum))
             .collect();
@@ -379,21 +387,21 @@ impl<'a> Fit<'a> {
     }
 
     /// Solves the least squares problem by orthogonal columns (modified Gram-Schmidt), for the
-    /// gradient alone, which takes the first two unknowns last.
+    /// gradient only; the first two unknowns are eliminated last.
     fn of(points: &[Point2], unit: f64, v: usize, ring: &'a [i32], degree: usize) -> Option<Self> {
         let p = points[v];
-        let ways = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
-        let ways: Vec<Point2> = ways.collect();
-        let size = ways
+        let edges_along = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
+        let edges_along: Vec<Point2> = edges_along.collect();
+        let size = edges_along
             .iter()
             .fold(0.0, |most: f64, w| most.max(w[0].hypot(w[1])));
         if !(size > 0.0 && size.is_finite()) {
             return None;
         }
         let weight = |w: &Point2| size / w[0].hypot(w[1]).max(NEAR * size);
-        let weights: Vec<f64> = ways.iter().map(weight).collect();
+        let weights: Vec<f64> = edges_along.iter().map(weight).collect();
         let column = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
-            let scaled = ways.iter().map(|w| f(w[0] / size, w[1] / size));
+            let scaled = edges_along.iter().map(|w| f(w[0] / size, w[1] / size));
             scaled.zip(&weights).map(|(x, w)| x * w).collect()
         };
         let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -415,17 +423,17 @@ impl<'a> Fit<'a> {
         })
     }
 
-    /// Whether errors of the values move its gradient little more than that of a plane.
+    /// Whether errors of the values change its gradient little more than that of a plane.
     fn is_steady_beside(&self, plane: &Self) -> bool {
         self.norm() <= SWING * plane.norm()
     }
 
-    /// Whether rounding of the values shows in it.
+    /// Whether the rounding of values would show in it.
     fn is_noisy(&self) -> bool {
         self.norm() * self.size > NOISY
     }
 
-    /// The root of the sum of squares of all factors.
+    /// The square root of the sum of squares of all factors.
     fn norm(&self) -> f64 {
         let factors = self.factors.as_flattened();
         factors.iter().fold(0.0, |norm: f64, f| norm.hypot(*f))
@@ -442,12 +450,12 @@ impl<'a> Fit<'a> {
     }
 }
 
-/// The rows of the pseudo-inverse for the last two of the columns; nothing where the columns are
+/// The rows of the pseudo-inverse for the last two of the columns; `None` if the columns are
 /// dependent, or nearly so.
 fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
-    /// Below this share of its length, a column is one of those before.
+    /// Below this share of its length, a column depends on those before.
     const DEPENDENT: f64 = 1e-10;
-    /// Squares of lengths below this have lost digits at the lower end of the range.
+    /// Squared lengths below this have lost digits to underflow.
     const LEAST: f64 = 1e-140;
     let n = columns.len();
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
@@ -468,7 +476,7 @@ fn last_two(columns: &mut [Vec<f64>]) -> Option<(Vec<f64>, Vec<f64>)> {
                 column.iter_mut().zip(q).for_each(|(x, y)| *x -= part * y);
             }
             left = dot(column, column).sqrt();
-            // Where little is left, rounding has kept it from being orthogonal: once more.
+            // If little is left, rounding has made it non-orthogonal: orthogonalize again.
             if left.is_nan() || left > 0.5 * longer || left <= DEPENDENT * length {
                 break;
             }

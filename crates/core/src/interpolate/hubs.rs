@@ -1,9 +1,11 @@
-//! Neighbours of neighbours, where some vertices have very many: the centre of a circle of n points
-//! has n, and if each of them took all of those, the surroundings together would be of n^2.
+//! Second neighbors around vertices of high degree, bounded so that the total stays linear.
 //!
-//! Of a hub's neighbours a vertex takes those that follow and precede it around the hub, and as many
+//! The center of a circle of n points has n neighbors, and if each of them used all of those, the
+//! total would be n^2.
+//!
+//! Of a hub's neighbors a vertex uses those that precede and follow it around the hub, and as many
 //! that are spread evenly around, as an arc alone hardly determines a quadric. Directions are
-//! compared exactly, so that they depend on the coordinates alone.
+//! compared exactly, so the choice depends on the coordinates only.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -14,39 +16,40 @@ use super::adjacency::Adjacency;
 use crate::error::Result;
 use crate::watch::{Pace, Watch};
 
-/// Neighbours above which a vertex is a hub. Among spread points none has half as many.
+/// The number of neighbors above which a vertex is a hub. Among scattered points none has half as
+/// many.
 const MANY: usize = 32;
-/// Vertices, and neighbors of hubs, between two looks at the watch.
+/// Vertices, and neighbors of hubs, between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// The neighbours of a hub.
+/// The neighbors of a hub.
 struct Ring {
-    /// Counter-clockwise.
+    /// Counterclockwise.
     around: Vec<i32>,
-    /// Each with its place in the above, by vertex.
+    /// Each with its index in `around`, sorted by vertex.
     places: Vec<(i32, usize)>,
 }
 
-/// Vertices with the neighbours of their neighbours.
+/// Vertices with the neighbors of their neighbors.
 pub struct Hubs<'a> {
-    /// The neighbours.
+    /// The neighbors.
     pub adjacency: Adjacency<'a>,
     rings: HashMap<i32, Ring>,
 }
 
 impl<'a> Hubs<'a> {
-    /// Sorts the neighbours of hubs.
+    /// Sorts the neighbors of hubs.
     pub fn of(points: &[Point2], adjacency: Adjacency<'a>, watch: &Watch) -> Result<Self> {
         let mut pace = Pace::new(watch, LOT);
         let mut rings = HashMap::new();
         let all = 0..adjacency.vertices();
         for v in all {
             pace.spend(1)?;
-            if adjacency.neighbours(v).len() <= MANY {
+            if adjacency.neighbors(v).len() <= MANY {
                 continue;
             }
-            pace.spend(adjacency.neighbours(v).len())?;
-            let mut around = adjacency.neighbours(v).to_vec();
+            pace.spend(adjacency.neighbors(v).len())?;
+            let mut around = adjacency.neighbors(v).to_vec();
             let at = |u: i32| points[u as usize];
             around.sort_unstable_by(|&a, &b| turn(points[v], at(a), at(b)).then(a.cmp(&b)));
             let places = around.iter().enumerate().map(|(i, &u)| (u, i));
@@ -57,10 +60,10 @@ impl<'a> Hubs<'a> {
         Ok(Self { adjacency, rings })
     }
 
-    /// Adds the neighbours of `u` that count for its neighbour `v`.
+    /// Adds the neighbors of `u` that count for its neighbor `v`.
     pub fn extend(&self, u: i32, v: i32, found: &mut Vec<i32>) {
         let Some(ring) = self.rings.get(&u) else {
-            found.extend_from_slice(self.adjacency.neighbours(u as usize));
+            found.extend_from_slice(self.adjacency.neighbors(u as usize));
             return;
         };
         let known = ring.places.binary_search_by_key(&v, |&(vertex, _)| vertex);
@@ -72,7 +75,7 @@ impl<'a> Hubs<'a> {
     }
 }
 
-/// The order of directions from `o`, counter-clockwise from that of the x-axis.
+/// The order of directions from `o`, counterclockwise from the x-axis.
 fn turn(o: Point2, a: Point2, b: Point2) -> Ordering {
     let is_low = |p: Point2| p[1] < o[1] || (p[1] == o[1] && p[0] < o[0]);
     is_low(a)

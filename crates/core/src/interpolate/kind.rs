@@ -1,6 +1,6 @@
-//! The kinds of natural neighbour interpolation.
+//! The kinds of natural neighbor interpolation.
 
-/// Which weights.
+/// The kind of weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Areas.

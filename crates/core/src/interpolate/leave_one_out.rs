@@ -1,11 +1,12 @@
-//! Weights of all other vertices for the value at each vertex, as if it were not there: what cross
-//! validation needs, without a triangulation for each.
+//! Leave-one-out weights: those of all other vertices for the value at each vertex.
 //!
-//! Without an inner vertex its star becomes a hole, and the Delaunay triangles of that hole are
-//! those that the vertex, taken as a query, would remove: the hole is the cavity. It is cut off ear by
-//! ear: an ear whose circle has no vertex of the hole inside is a Delaunay triangle. Ties go as
-//! everywhere, by the coordinates of what is left, so the triangles are those of a triangulation
-//! that never had the vertex.
+//! Cross-validation needs them, without a triangulation for each vertex.
+//!
+//! The star of an inner vertex becomes a hole when the vertex is removed, and the Delaunay
+//! triangles of that hole are those that the vertex, taken as a query, would remove: the hole is
+//! the cavity. It is triangulated ear by ear: an ear whose circumcircle contains no vertex of the
+//! hole is a Delaunay triangle. Ties are broken as everywhere, by coordinates, so the triangles are
+//! those of a triangulation that never had the vertex.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, nearer, orient2d};
 
@@ -22,28 +23,29 @@ use crate::memory::filled;
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
-/// Vertices that a thread takes at once.
+/// Vertices per task.
 const SHARE: usize = 1 << 10;
-/// Vertices of holes between two looks at the watch.
+/// Vertices of holes between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;
-/// Triangles to set out from between two looks at the watch.
+/// Initial triangles between two checks for interruption.
 const LOT: usize = 1 << 16;
-/// Vertices of a hole up to which ears are tried one by one, in cubic time.
+/// The most vertices of a hole for which ears are tried one by one, in cubic time.
 const SMALL: usize = 32;
 
-/// What is validated.
+/// The interpolation method that is validated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Linear interpolation.
     Linear,
     /// The nearest vertex.
     Nearest,
-    /// Natural neighbours.
+    /// Natural neighbors.
     Natural(Kind),
 }
 
 impl Method {
-    /// The method of that name; kinds with gradients are none, as those depend on the vertex, too.
+    /// The method with this name; kinds with gradients are excluded, as their gradients depend on
+    /// the vertex, too.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "linear" => Some(Self::Linear),
@@ -55,8 +57,8 @@ impl Method {
     }
 }
 
-/// For each vertex the weights of the others; empty for corners of the hull and for rows that are no
-/// vertex. The triangulation must be Delaunay.
+/// For each vertex the weights of the others; empty for corners of the hull and for rows that are
+/// not vertices. The triangulation must be Delaunay.
 pub fn leave_one_out(
     given: Triangles,
     method: Method,
@@ -91,7 +93,7 @@ pub fn leave_one_out(
     Rows::of_parts(n, &parts, false, workers, watch)
 }
 
-/// The star of a vertex without it.
+/// The star of a vertex without the vertex.
 #[derive(Default)]
 struct Hole {
     /// The vertex.
@@ -104,7 +106,7 @@ struct Hole {
 }
 
 impl Hole {
-    /// The ring around the vertex at a corner, counter-clockwise; on the hull from boundary to
+    /// The ring around the vertex at a corner, counterclockwise; on the hull from boundary to
     /// boundary.
     fn open(&mut self, given: &Triangles, side: Side) {
         self.vertex = given.vertex(side);
@@ -156,7 +158,7 @@ impl Hole {
         if self.cavity.points.len() > SMALL {
             return self.weigh_large(q, method, part, pace);
         }
-        self.cut_ears();
+        self.clip_ears();
         match method {
             Method::Natural(kind) => {
                 if self.weights.compute(kind, &self.cavity, q, pace)? {
@@ -170,7 +172,8 @@ impl Hole {
         Ok(())
     }
 
-    /// The nearest neighbour, of several the first row: a Delaunay neighbour is nearest of all.
+    /// The nearest neighbor, the first row of several: the nearest vertex is always a Delaunay
+    /// neighbor.
     fn nearest(&self, q: Point2) -> i32 {
         let slots = self.cavity.vertices.iter().zip(&self.cavity.points);
         let best = slots.reduce(|a, b| match nearer(q, *a.1, *b.1) {
@@ -181,7 +184,7 @@ impl Hole {
         best.map_or(-1, |(&v, _)| v)
     }
 
-    /// On the hull: nothing, unless the vertex is in the middle of a side.
+    /// On the hull: no entry, unless the vertex is in the interior of a side.
     fn between_ends(&self, q: Point2, part: &mut Part) {
         let points = &self.cavity.points;
         let (Some(&a), Some(&b)) = (points.first(), points.last()) else {
@@ -199,8 +202,8 @@ impl Hole {
         part.entry(vertices[points.len() - 1], share, [0.0; 2]);
     }
 
-    /// Cuts the hole into Delaunay triangles.
-    fn cut_ears(&mut self) {
+    /// Triangulates the hole with Delaunay triangles.
+    fn clip_ears(&mut self) {
         let Cavity {
             points, triangles, ..
         } = &mut self.cavity;
@@ -217,7 +220,7 @@ impl Hole {
                             || incircle_canonical(a, b, c, points[s as usize]) != Sign::Positive
                     })
             });
-            // There always is one, in a hole of a Delaunay triangulation.
+            // A hole of a Delaunay triangulation always has one.
             let Some(i) = ear else { break };
             triangles.push([
                 self.rest[(i + n - 1) % n],
@@ -231,7 +234,7 @@ impl Hole {
         }
     }
 
-    /// The weights in the triangle of the hole that has the vertex.
+    /// The weights in the triangle of the hole that contains the vertex.
     fn linear(&self, q: Point2, part: &mut Part) {
         for slots in &self.cavity.triangles {
             let corners = slots.map(|s| self.cavity.points[s as usize]);
@@ -248,7 +251,7 @@ impl Hole {
         }
     }
 
-    /// The same by a triangulation of the ring, which has all natural neighbours.
+    /// The same by a triangulation of the ring, which contains all natural neighbors.
     fn weigh_large(
         &mut self,
         q: Point2,

@@ -8,7 +8,7 @@ use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::{Batch, Located, Output, Place, barycentric, cross, seen_from};
 
-/// Values, or gradients, at the queries, a row each; NaN outside.
+/// Values, or gradients, at the queries, one row each; NaN outside.
 pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
     let given = &batch.locator.given;
     let width = field.columns * order.components();
@@ -36,7 +36,7 @@ pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
     Ok(out.into_vec())
 }
 
-/// Vertices of no weight are not read, so that what is missing there stays there.
+/// Vertices of zero weight are not read, so that a missing value there does not spread.
 #[inline]
 fn value(
     given: &Triangles,

@@ -1,7 +1,7 @@
 //! 2-D interpolation of scattered data on a triangulation and its locator.
 //!
-//! `linear` in each triangle, `clough_tocher` on each split in three, `natural` by the cavity that a
-//! query would leave. All are linear in the values (and gradients), so weights serve many fields.
+//! `linear` in each triangle, `clough_tocher` on each triangle split in three, `natural` by the
+//! cavity of a query. All are linear in the values (and gradients), so weights serve many fields.
 
 mod adjacency;
 mod cavity;
@@ -29,7 +29,7 @@ pub use linear::linear;
 pub use natural::{natural, natural_values};
 pub use rows::{Part, Rows, Table};
 
-/// What of an interpolant is asked for.
+/// What is requested of an interpolant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// Its value.
@@ -41,14 +41,14 @@ pub enum Order {
 }
 
 impl Order {
-    /// The order that a number names.
+    /// The order with this number of derivatives.
     pub fn of(number: usize) -> Option<Self> {
         [Self::Value, Self::Gradient, Self::Hessian]
             .get(number)
             .copied()
     }
 
-    /// How many numbers it has.
+    /// How many components it has.
     pub fn components(self) -> usize {
         match self {
             Self::Value => 1,

@@ -1,4 +1,4 @@
-//! Natural neighbour interpolation of batches: weights as rows of a sparse matrix, or values.
+//! Natural neighbor interpolation of batches: weights as rows of a sparse matrix, or values.
 
 use delone_predicates::Point2;
 
@@ -14,15 +14,15 @@ use crate::error::Result;
 use crate::locate::{Batch, Located, Output, Place, Side, barycentric};
 use crate::watch::Pace;
 
-/// Triangles of cavities between two looks at the watch, beside those before each lot of queries: a query
-/// may have very many neighbors.
+/// Triangles of cavities between two checks for interruption, besides those before each lot of
+/// queries: a query may have very many neighbors.
 const WATCH_EVERY: usize = 1 << 14;
 
 fn pace<'a>(batch: &Batch<'a>) -> Pace<'a> {
     Pace::new(batch.watch, WATCH_EVERY)
 }
 
-/// What a thread computes with.
+/// Buffers of a thread.
 #[derive(Default)]
 struct Room<T> {
     cavity: Cavity,
@@ -30,7 +30,7 @@ struct Room<T> {
 }
 
 impl<T: Number> Room<T> {
-    /// The weights of `q`, which is at no vertex.
+    /// The weights of `q`, which is not at a vertex.
     #[inline]
     fn compute(
         &mut self,
@@ -86,7 +86,7 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
     Ok((rows, triangles.into_vec()))
 }
 
-/// Values, gradients or Hessians at the queries, a row each; NaN outside.
+/// Values, gradients or Hessians at the queries, one row each; NaN outside.
 pub fn natural_values(
     batch: &Batch,
     kind: Kind,
@@ -189,7 +189,8 @@ fn value(room: &Room<f64>, field: &Field, column: usize) -> f64 {
     sum
 }
 
-/// The same with derivatives. Values count from the first, as the weights' derivatives sum to zero.
+/// The same with derivatives. Values are taken relative to the first, as the derivatives of the
+/// weights sum to zero.
 fn derivatives(room: &Room<Jet>, field: &Field, column: usize) -> Jet {
     let Room { cavity, weights } = room;
     let base = field.value(cavity.vertices[0], column);

@@ -1,12 +1,13 @@
-//! Numbers that formulas are written for once: a double, or a double with its derivatives by the
-//! place of the query, which the same formula then has, too (R. E. Wengert, "A simple automatic
-//! derivative evaluation program", 1964).
+//! Numbers with automatic differentiation: a double, or a double with its derivatives.
+//!
+//! Formulas are written once for both. Derivatives are with respect to the position of the query
+//! (R. E. Wengert, "A simple automatic derivative evaluation program", 1964).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use delone_predicates::Point2;
 
-/// What formulas need of a number.
+/// The operations that formulas need.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -15,21 +16,21 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// How many numbers it is: the value, or with it derivatives by x, y, xx, xy and yy.
+    /// How many doubles it has: the value, or with it the derivatives by x, y, xx, xy and yy.
     const PARTS: usize;
-    /// The number of these parts.
+    /// Builds the number from these parts.
     fn of_parts(parts: &[f64]) -> Self;
-    /// A number that does not depend on the query.
+    /// A number that is independent of the query.
     fn constant(value: f64) -> Self;
-    /// A number with this value and this gradient, linear in the place of the query.
+    /// A number with this value and this gradient, linear in the position of the query.
     fn linear(value: f64, gradient: Point2) -> Self;
     /// The number without its derivatives.
     fn value(self) -> f64;
-    /// The same derivatives on another value.
+    /// The same derivatives with another value.
     fn with_value(self, value: f64) -> Self;
     /// The square root, of a positive number.
     fn sqrt(self) -> Self;
-    /// The same with derivatives by lengths, where they were by multiples of `unit`.
+    /// The same with derivatives per length, if they were per multiple of `unit`.
     fn per_length(self, unit: f64) -> Self;
 }
 
@@ -76,7 +77,7 @@ pub struct Jet {
     pub hessian: [f64; 3],
 }
 
-/// Which pairs of axes the entries of a Hessian belong to.
+/// The pair of axes of each entry of a Hessian.
 const PAIRS: [(usize, usize); 3] = [(0, 0), (0, 1), (1, 1)];
 
 impl Jet {

@@ -1,4 +1,4 @@
-//! Sparse rows of weights, and what they make of values.
+//! Sparse rows of weights, and their products with values.
 
 use super::field::Field;
 use crate::error::{Error, Result};
@@ -7,12 +7,12 @@ use crate::memory::{filled, zeroed};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
-/// Rows that a thread takes at once.
+/// Rows per task.
 const SHARE: usize = 1 << 13;
-/// Rows that are put in place between two looks at the watch.
+/// Rows copied between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// Rows in the order in which a thread has met them.
+/// Rows in the order in which a thread computed them.
 #[derive(Debug, Default)]
 pub struct Part {
     /// The row in the query, and where its entries end.
@@ -21,13 +21,13 @@ pub struct Part {
     pub indices: Vec<i32>,
     /// The weights of their values.
     pub weights: Vec<f64>,
-    /// The weights of their gradients, where there are some.
+    /// The weights of their gradients, if any.
     pub slopes: Vec<[f64; 2]>,
     sloped: bool,
 }
 
 impl Part {
-    /// No row yet; with weights of gradients or without.
+    /// Without rows yet; with or without weights of gradients.
     pub fn with_slopes(sloped: bool) -> Self {
         Self {
             sloped,
@@ -35,7 +35,7 @@ impl Part {
         }
     }
 
-    /// Adds an entry, unless it is nothing.
+    /// Adds an entry, unless it is zero.
     #[inline]
     pub fn entry(&mut self, vertex: i32, weight: f64, slope: [f64; 2]) {
         if weight != 0.0 || slope != [0.0; 2] {
@@ -57,18 +57,18 @@ impl Part {
 /// A sparse matrix in compressed rows.
 #[derive(Debug)]
 pub struct Rows {
-    /// Where each row begins, and the end.
+    /// Where each row begins, plus the end.
     pub indptr: Vec<i64>,
     /// Vertices.
     pub indices: Vec<i32>,
     /// Weights of their values.
     pub weights: Vec<f64>,
-    /// Weights of their gradients, two each; empty where there are none.
+    /// Weights of their gradients, two each; empty if there are none.
     pub slopes: Vec<f64>,
 }
 
 impl Rows {
-    /// Puts `count` rows in order; those that are in no part are empty.
+    /// Sorts `count` rows; those that are in no part are empty.
     pub fn of_parts(
         count: usize,
         parts: &[Part],
@@ -78,7 +78,7 @@ impl Rows {
     ) -> Result<Self> {
         let mut pace = Pace::new(watch, LOT);
         let mut indptr = filled(count + 1, 0i64)?;
-        // In which part each row is, and where it begins there.
+        // The part of each row, and where it begins there.
         let mut places = filled(count, (0u32, 0usize))?;
         for (i, part) in (0u32..).zip(parts) {
             let mut start = 0;
@@ -104,7 +104,7 @@ impl Rows {
         Ok(rows)
     }
 
-    /// Copies the entries of all rows from their places, each share of rows by one thread.
+    /// Copies the entries of all rows, each share of rows by one thread.
     fn fill(
         &mut self,
         parts: &[Part],
@@ -135,7 +135,7 @@ impl Rows {
                 for (pair, &(part, start)) in ends.windows(2).zip(places) {
                     let [from, to] = [pair[0], pair[1]].map(|end| (end - ends[0]) as usize);
                     if from == to {
-                        // An empty row is in no part, and there may be none.
+                        // An empty row is in no part, and there may be no parts.
                         continue;
                     }
                     let part = &parts[part as usize];
@@ -154,10 +154,10 @@ impl Rows {
     }
 }
 
-/// Sparse rows as a caller holds them.
+/// Sparse rows given by a caller.
 #[derive(Debug, Clone, Copy)]
 pub struct Table<'a> {
-    /// Where each row begins, and the end.
+    /// Where each row begins, plus the end.
     pub indptr: &'a [i64],
     /// Vertices.
     pub indices: &'a [i32],
@@ -168,7 +168,7 @@ pub struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Checks that rows are within the entries, and entries among `vertices`.
+    /// Checks that rows are within the entries, and that indices are below `vertices`.
     fn check(&self, vertices: usize) -> Result<()> {
         let n = self.indices.len();
         let ascending = self.indptr.is_sorted() && self.indptr.first() == Some(&0);
@@ -185,7 +185,7 @@ impl Table<'_> {
         }
     }
 
-    /// Weights times values, row by row; NaN for an empty row. Entries of no weight are not read.
+    /// Weights times values, row by row; NaN for an empty row. Entries of zero weight are not read.
     pub fn combine(
         &self,
         vertices: usize,
@@ -216,8 +216,8 @@ impl Table<'_> {
             &self.weights[entries.clone()],
         );
         for column in 0..field.columns {
-            // The first that counts is where the sum begins, so that one value of weight 1 comes
-            // out as it is, its sign of zero included.
+            // The sum starts with the first entry that counts, so that one value of weight 1 is
+            // returned unchanged, including the sign of zero.
             let mut sum = None;
             let mut add = |x: f64| sum = Some(sum.map_or(x, |sum: f64| sum + x));
             for (&vertex, &w) in indices.iter().zip(weights) {

@@ -1,26 +1,30 @@
-//! Natural neighbour weights from a cavity: the area that the cell of the query would take from
-//! each neighbour (R. Sibson, "A vector identity for the Dirichlet tessellation", 1980), or the length of
-//! the wall between them over their distance (Laplace weights: N. H. Christ, R. Friedberg and T. D.
-//! Lee, 1982; V. V. Belikov et al., 1997), and what Sibson (1981) and Farin (1990) make of the first
-//! and of gradients to be smooth.
+//! Natural neighbor weights from a cavity: Sibson's areas, Laplace's lengths, and their smooth
+//! variants.
 //!
-//! # Areas without centres
+//! Sibson weights are the area that the cell of the query would take from each neighbor (R. Sibson,
+//! "A vector identity for the Dirichlet tessellation", 1980). Laplace weights are the length of the
+//! wall between them over their distance (N. H. Christ, R. Friedberg and T. D. Lee, 1982; V. V.
+//! Belikov et al., 1997). Sibson (1981) and Farin (1990) combine the former with gradients into
+//! smooth interpolants.
+//!
+//! # Areas without centers
 //!
 //! The part of a cell that lies in a triangle, counted with its sign, has at corner a the area
-//! (|ab|^2 cot c + |ac|^2 cot b) / 8. The area taken from a neighbour is the sum of these over the
-//! triangles of the cavity less the sum over the triangles from the query to the ring. So neither
-//! centres of circles nor their intersections are needed (compare L. Liang and D. Hale, "A stable
+//! (|ab|^2 cot c + |ac|^2 cot b) / 8. The area taken from a neighbor is the sum of these over the
+//! triangles of the cavity minus the sum over the triangles from the query to the ring. So neither
+//! circumcenters nor intersections of circles are needed (compare L. Liang and D. Hale, "A stable
 //! and fast implementation of natural neighbor interpolation", 2010), and each cotangent is a dot
-//! product over a cross product, whose relative accuracy `locate::cross` sees to. All areas are of
-//! the size of the largest circle times the distance to the nearest site at least, and so are the
-//! terms at most, beside a factor of edge over distance that cancels at a site.
+//! product over a cross product, whose relative accuracy `locate::cross` guarantees. All areas are
+//! at least of the order of the largest circle times the distance to the nearest site, and so are
+//! the terms at most, besides a factor of edge over distance that cancels at a site.
 //!
 //! # Near the hull
 //!
-//! Beside a hull edge one new triangle is flat: its terms pass all bounds, and on the edge they are
-//! infinite. Weights do not change when all areas are multiplied by the area of that triangle; then
-//! its own terms are dot products, and on the edge, where all others vanish, they are linear between
-//! its ends. So the limit is part of the formula, and derivatives are those from inside.
+//! Beside a hull edge one new triangle is flat: its terms are unbounded, and on the edge they are
+//! infinite. Weights do not change if all areas are multiplied by the area of that triangle; then
+//! its own terms are dot products, and on the edge, where all others vanish, they are linear
+//! between its ends. So the limit is part of the formula, and derivatives are one-sided, from
+//! inside.
 
 use delone_predicates::Point2;
 
@@ -35,14 +39,14 @@ use crate::watch::Pace;
 /// Squared sine of the angle below which a new triangle counts as flat.
 const FLAT: f64 = 1e-6;
 
-/// Size of all terms over their sum above which more than nine bits are lost: about 1e-13 is left.
-/// It is 20 between spread points, and some hundreds between points on lines.
+/// Ratio of the size of all terms to their sum above which more than nine bits are lost: about
+/// 1e-13 is left. The ratio is 20 for scattered points, and some hundreds for points on lines.
 const LOST: f64 = 512.0;
 
-/// Cross products below this may have lost digits at the lower end of the range.
+/// Cross products below this may have lost digits to underflow.
 const LEAST: f64 = 1e-250;
 
-/// Area from which on its square is far above the lower end of the range.
+/// Areas above this have squares far above the underflow range.
 const SMALL: f64 = 1e-120;
 
 /// Weights of the slots of a cavity.
@@ -52,11 +56,11 @@ pub struct Weights<T> {
     pub values: Vec<T>,
     /// For each slot the weights of its gradient; empty for kinds without.
     pub slopes: Vec<[T; 2]>,
-    /// The vertices as seen from the query, in the unit.
-    seen: Vec<[T; 2]>,
-    /// The triangles from the query to the ring.
+    /// The vertices relative to the query, in the unit.
+    relative: Vec<[T; 2]>,
+    /// The triangles between the query and the ring.
     fans: Vec<Fan<T>>,
-    /// The sum of the sizes of all terms; NaN where one is not certain.
+    /// The sum of the sizes of all terms; NaN if one is uncertain.
     size: f64,
 }
 
@@ -65,19 +69,19 @@ impl<T> Default for Weights<T> {
         Self {
             values: Vec::new(),
             slopes: Vec::new(),
-            seen: Vec::new(),
+            relative: Vec::new(),
             fans: Vec::new(),
             size: 0.0,
         }
     }
 }
 
-/// A triangle from the query to an edge of the ring, from slot u to slot v.
+/// The triangle of the query and an edge of the ring, from slot u to slot v.
 #[derive(Debug, Clone, Copy)]
 struct Fan<T> {
     u: usize,
     v: usize,
-    /// The square of the length of the edge.
+    /// The squared length of the edge.
     wall: f64,
     /// Twice its area.
     cross: T,
@@ -86,7 +90,8 @@ struct Fan<T> {
 }
 
 impl<T: Number> Weights<T> {
-    /// Computes the weights of `q`; false where arithmetic gives none. What integers do counts as work.
+    /// Computes the weights of `q`; false if arithmetic gives none. Integer arithmetic counts as
+    /// work.
     pub fn compute(
         &mut self,
         kind: Kind,
@@ -94,7 +99,7 @@ impl<T: Number> Weights<T> {
         q: Point2,
         pace: &mut Pace,
     ) -> Result<bool> {
-        let unit = self.look(cavity, q);
+        let unit = self.set_vertices(cavity, q);
         self.fan(cavity, q, unit);
         let flat = self.flattest();
         self.values.clear();
@@ -105,7 +110,7 @@ impl<T: Number> Weights<T> {
             self.areas(cavity, flat, unit);
         }
         self.slopes.clear();
-        if !self.normalise() && !exact::weights(kind, cavity, q, unit, &mut self.values, pace)? {
+        if !self.normalize() && !exact::weights(kind, cavity, q, unit, &mut self.values, pace)? {
             return Ok(false);
         }
         match kind {
@@ -114,7 +119,7 @@ impl<T: Number> Weights<T> {
             Kind::Sibson | Kind::Laplace => {}
         }
         if kind.is_smooth() && !self.is_finite() {
-            // What tangent planes say is beyond the range; what values say is not.
+            // The tangent planes are out of range, but the values are not.
             let there = self.compute(Kind::Sibson, cavity, q, pace)?;
             self.slopes.resize(self.values.len(), [T::constant(0.0); 2]);
             return Ok(there);
@@ -130,29 +135,29 @@ impl<T: Number> Weights<T> {
         all.into_iter().all(|x| x.value().is_finite())
     }
 
-    /// The vertices from the query, and the unit of length.
-    fn look(&mut self, cavity: &Cavity, q: Point2) -> f64 {
-        // One unit for all: that of the first triangle, the others are of like size or larger.
+    /// The vertices relative to the query, and the unit of length.
+    fn set_vertices(&mut self, cavity: &Cavity, q: Point2) -> f64 {
+        // One unit for all, that of the first triangle; the others are of similar size or larger.
         let (_, unit) = seen_from(q, [cavity.points[0], cavity.points[1], cavity.points[2]]);
-        self.seen.clear();
-        self.seen.extend(cavity.points.iter().map(|&p| {
-            let seen = in_unit(q, p, unit);
+        self.relative.clear();
+        self.relative.extend(cavity.points.iter().map(|&p| {
+            let relative = in_unit(q, p, unit);
             [
-                T::linear(seen[0], [-1.0, 0.0]),
-                T::linear(seen[1], [0.0, -1.0]),
+                T::linear(relative[0], [-1.0, 0.0]),
+                T::linear(relative[1], [0.0, -1.0]),
             ]
         }));
         unit
     }
 
-    /// The triangles to the ring.
+    /// The triangles between the query and the ring.
     fn fan(&mut self, cavity: &Cavity, q: Point2, unit: f64) {
         self.fans.clear();
         let ring = &cavity.ring;
         for (i, &u) in ring.iter().enumerate() {
             let after = if i + 1 < ring.len() { i + 1 } else { 0 };
             let (u, v) = (u as usize, ring[after] as usize);
-            let (a, b) = (self.seen[u], self.seen[v]);
+            let (a, b) = (self.relative[u], self.relative[v]);
             let (p, r) = (cavity.points[u], cavity.points[v]);
             let edge = in_unit(p, r, unit);
             let area = if cavity.flat == Some(u as u32) {
@@ -172,15 +177,16 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// The fan of least angle at the query, where it is flat.
+    /// The fan with the least angle at the query, if it is flat.
     fn flattest(&self) -> Option<usize> {
         let mut found = None;
         let mut least = FLAT;
         for (i, fan) in self.fans.iter().enumerate() {
-            let (a, b) = (values(self.seen[fan.u]), values(self.seen[fan.v]));
+            let (a, b) = (values(self.relative[fan.u]), values(self.relative[fan.v]));
             let lengths = (a[0] * a[0] + a[1] * a[1]) * (b[0] * b[0] + b[1] * b[1]);
             let cross = fan.cross.value();
-            // A short wall has a small angle at the query, too; flat are those with it between.
+            // A short wall has a small angle at the query, too; a fan is flat if the query is
+            // between its ends.
             if cross * cross < least * lengths && fan.at[0].value() < 0.0 {
                 least = cross * cross / lengths;
                 found = Some(i);
@@ -189,7 +195,7 @@ impl<T: Number> Weights<T> {
         found
     }
 
-    /// Laplace weights, twice over.
+    /// Laplace weights, times two.
     fn lengths(&mut self, flat: Option<usize>) {
         let scale = flat.map(|i| self.fans[i].cross);
         self.size = 0.0;
@@ -202,12 +208,12 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Areas taken, eight times over.
+    /// Areas taken, times eight.
     fn areas(&mut self, cavity: &Cavity, flat: Option<usize>, unit: f64) {
         let scale = flat.map(|i| self.fans[i].cross);
         self.size = 0.0;
         for (i, fan) in self.fans.iter().enumerate() {
-            let (a, b) = (self.seen[fan.u], self.seen[fan.v]);
+            let (a, b) = (self.relative[fan.u], self.relative[fan.v]);
             let (aa, bb) = (dot(a, a), dot(b, b));
             let factor = factor(fan.cross, scale, flat == Some(i));
             let (before, after) = around(fan.cross.value(), factor, T::constant(1.0));
@@ -216,7 +222,7 @@ impl<T: Number> Weights<T> {
             let (at_u, at_v) = (aa * at_u, bb * at_v);
             self.values[fan.u] = self.values[fan.u] - (wall + at_u) * after;
             self.values[fan.v] = self.values[fan.v] - (wall + at_v) * after;
-            // A cotangent is off by a rounding of 1 + its size.
+            // A cotangent errs by a rounding of 1 + its size.
             let squares = 2.0 * fan.wall + aa.value() + bb.value();
             let [wall, u, v] = [wall, at_u, at_v].map(|x| x.value().abs());
             self.size += (2.0 * wall + u + v) * after.value()
@@ -236,7 +242,7 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Weights where the arithmetic has given none: those of the first three slots.
+    /// The fallback if arithmetic gave no weights: those of the first three slots.
     pub fn fall_back(&mut self, kind: Kind, corners: [f64; 3], slots: usize) {
         let zero = T::constant(0.0);
         self.values.clear();
@@ -248,9 +254,9 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Divides by the sum; what is below zero by rounding becomes zero. False where the sum is not
-    /// certain, or NaN.
-    fn normalise(&mut self) -> bool {
+    /// Divides by the sum; what is negative because of rounding becomes zero. False if the sum is
+    /// uncertain or NaN.
+    fn normalize(&mut self) -> bool {
         let mut sum = T::constant(0.0);
         for value in &mut self.values {
             if value.value() < 0.0 {
@@ -268,21 +274,25 @@ impl<T: Number> Weights<T> {
         true
     }
 
-    /// Sibson's C1 blend: what the neighbours' tangent planes say, by weights over distances, and
-    /// the values, so that x^2 + y^2 is reproduced ("A brief description of natural neighbour
-    /// interpolation", 1981).
+    /// Sibson's C1 blend: the neighbors' tangent planes, weighted by distances, and the values,
+    /// such that x^2 + y^2 is reproduced ("A brief description of natural neighbour interpolation",
+    /// 1981).
     fn blend(&mut self, unit: f64) {
         let zero = T::constant(0.0);
         let distance = |p: &[T; 2]| dot(*p, *p).sqrt();
-        if let Some(here) = self.seen.iter().position(|p| distance(p).value() == 0.0) {
-            // As near to a site as that, all planes say what it says.
+        if let Some(here) = self
+            .relative
+            .iter()
+            .position(|p| distance(p).value() == 0.0)
+        {
+            // So near to a site, only its own plane counts.
             self.values.fill(zero);
             self.values[here] = T::constant(1.0);
             self.slopes.resize(self.values.len(), [zero; 2]);
             return;
         }
         let (mut over, mut times, mut squares) = (zero, zero, zero);
-        for (w, p) in self.values.iter().zip(&self.seen) {
+        for (w, p) in self.values.iter().zip(&self.relative) {
             let r = distance(p);
             over = over + *w / r;
             times = times + *w * r;
@@ -290,7 +300,7 @@ impl<T: Number> Weights<T> {
         }
         let alpha = times / over;
         let sum = alpha + squares;
-        for (w, p) in self.values.iter_mut().zip(&self.seen) {
+        for (w, p) in self.values.iter_mut().zip(&self.relative) {
             let planes = squares / sum * (*w / distance(p) / over);
             *w = alpha / sum * *w + planes;
             let factor = -planes * T::constant(unit);
@@ -298,20 +308,20 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Farin's C1 cubic over the weights as coordinates ("Surfaces over Dirichlet tessellations",
-    /// 1990), its sum over triples reduced to sums over neighbours: with S the sum of squared
-    /// weights and M that of squared weights times the neighbours as seen from the query, the factor
+    /// Farin's C1 cubic in the weights as coordinates ("Surfaces over Dirichlet tessellations",
+    /// 1990), its sum over triples reduced to sums over neighbors: with S the sum of squared
+    /// weights and M that of squared weights times the neighbors relative to the query, the factor
     /// of a value is w (1 - S + w), that of a gradient -w ((1 - S + w) p + M) / 2.
     fn cubic(&mut self, unit: f64) {
         let zero = T::constant(0.0);
         let (mut s, mut m) = (zero, [zero; 2]);
-        for (w, p) in self.values.iter().zip(&self.seen) {
+        for (w, p) in self.values.iter().zip(&self.relative) {
             let square = *w * *w;
             s = s + square;
             m = [m[0] + square * p[0], m[1] + square * p[1]];
         }
         let half = T::constant(-0.5 * unit);
-        for (w, p) in self.values.iter_mut().zip(&self.seen) {
+        for (w, p) in self.values.iter_mut().zip(&self.relative) {
             let share = T::constant(1.0) - s + *w;
             let factor = half * *w;
             let slope = [0, 1].map(|k| factor * (share * p[k] + m[k]));
@@ -320,7 +330,7 @@ impl<T: Number> Weights<T> {
         }
     }
 
-    /// Derivatives were by lengths in the unit.
+    /// Converts derivatives to lengths; they were in the unit.
     fn in_units(&mut self, unit: f64) {
         for value in &mut self.values {
             *value = value.per_length(unit);
@@ -340,7 +350,7 @@ fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// One over twice the area of a fan, times that of the flat one where there is such.
+/// One over twice the area of a fan, times that of the flat one if there is one.
 #[inline]
 fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
     match scale {
@@ -350,8 +360,8 @@ fn factor<T: Number>(cross: T, scale: Option<T>, is_flat: bool) -> T {
     }
 }
 
-/// The factor of cosines before they meet squares, and that after: as a rule the latter, which rounds
-/// lattices least; cotangents first where those products may fall below the range.
+/// The factor of cosines before they are multiplied by squares, and that after: usually the latter,
+/// which rounds least on lattices; cotangents first if those products may underflow.
 #[inline]
 fn around<T>(area: f64, factor: T, one: T) -> (T, T) {
     if area > SMALL {
@@ -361,7 +371,7 @@ fn around<T>(area: f64, factor: T, one: T) -> (T, T) {
     }
 }
 
-/// The cross product of the edges `op` and `or`; NaN where it is not certain.
+/// The cross product of the edges `op` and `or`; NaN if it is uncertain.
 #[inline]
 fn area(o: Point2, p: Point2, r: Point2, op: Point2, or: Point2, unit: f64) -> f64 {
     match plain(op, or) {

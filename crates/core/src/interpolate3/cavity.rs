@@ -1,10 +1,13 @@
-//! The cavity of a query: the Delaunay tetrahedra whose spheres have it inside, which are those that
-//! its insertion would remove (A. Bowyer and D. F. Watson, both 1981), and its boundary, the *rim*.
+//! The cavity of a 3-D query: the Delaunay tetrahedra whose circumspheres contain it, and their
+//! boundary.
 //!
-//! Strictly inside counts. That is enough on any Delaunay triangulation, however sites of one sphere are
-//! cut into tetrahedra: those left out for a tie would take no volume from anyone. The query sees each
-//! face of the rim from strictly inside, except for faces of the hull: one in the plane of another
-//! face would be in the sphere beyond, too.
+//! These are the tetrahedra that its insertion would remove (A. Bowyer and D. F. Watson, both
+//! 1981); the boundary is called the *rim*.
+//!
+//! Only points strictly inside count. That suffices on any Delaunay triangulation, however
+//! cospherical sites are divided into tetrahedra: those left out because of a tie would contribute
+//! no volume. The query sees each face of the rim from strictly inside, except for faces of the
+//! hull: a query in the plane of another face would be in the sphere beyond, too.
 
 use std::collections::HashMap;
 
@@ -14,10 +17,10 @@ use crate::error::{Error, Result};
 use crate::locate3::{FACES, Tetrahedra};
 use crate::watch::Pace;
 
-/// Up to here a list is searched from its beginning; more go to a table.
+/// Up to this length a list is searched linearly; longer ones use a table.
 const FEW: usize = 64;
 
-/// Numbers for keys, in the order in which they come.
+/// Consecutive numbers for keys, in the order of insertion.
 #[derive(Debug, Default)]
 pub struct Numbers {
     keys: Vec<i32>,
@@ -44,7 +47,7 @@ impl Numbers {
         place.map(|i| i as u32)
     }
 
-    /// The number of a key, a new one where it has none.
+    /// The number of a key, a new one if it has none.
     fn number(&mut self, key: i32) -> u32 {
         self.find(key).unwrap_or_else(|| self.add(key))
     }
@@ -64,16 +67,16 @@ impl Numbers {
 /// A face of the rim.
 #[derive(Debug, Clone, Copy)]
 pub struct Face {
-    /// Numbers of its corners, counter-clockwise as seen from outside.
+    /// Numbers of its corners, counterclockwise as seen from outside.
     pub corners: [u32; 3],
-    /// Whether it is one of the hull that has the query in its plane.
+    /// Whether it is a hull face whose plane contains the query.
     pub flat: bool,
 }
 
-/// A cavity, for one query after the other.
+/// A cavity, reused from query to query.
 #[derive(Debug, Default)]
 pub struct Cavity {
-    /// The vertices of the rim: the natural neighbours.
+    /// The vertices of the rim: the natural neighbors.
     pub vertices: Numbers,
     /// The rim.
     pub rim: Vec<Face>,
@@ -82,9 +85,8 @@ pub struct Cavity {
 }
 
 impl Cavity {
-    /// Finds the cavity of `q`, which is in the closed tetrahedron `seed` and at no vertex; `on` tells
-    /// whether it is on a face of that.
-    /// Tetrahedra count as work.
+    /// Finds the cavity of `q`, which is in the closed tetrahedron `seed` and not at a vertex; `on`
+    /// tells whether it is on a face of the seed. Tetrahedra count as work.
     pub fn find(
         &mut self,
         given: &Tetrahedra,
@@ -99,7 +101,7 @@ impl Cavity {
         self.outside.clear();
         self.inside.add(seed as i32);
         let mut next = 0;
-        // Each tetrahedron comes once.
+        // Each tetrahedron is added once.
         while next < self.inside.keys.len() {
             pace.spend(1)?;
             let t = self.inside.keys[next] as usize;
@@ -117,14 +119,14 @@ impl Cavity {
             }
             if self.inside.keys.len() > given.simplices.len() {
                 return Err(Error::Internal(
-                    "natural neighbours need a Delaunay triangulation".into(),
+                    "natural neighbors need a Delaunay triangulation".into(),
                 ));
             }
         }
         Ok(())
     }
 
-    /// Whether a tetrahedron is in the cavity, which it then joins.
+    /// Whether a tetrahedron is in the cavity; if so, it is added.
     fn takes(&mut self, given: &Tetrahedra, t: i32, q: Point3) -> bool {
         if self.inside.find(t).is_some() {
             return true;

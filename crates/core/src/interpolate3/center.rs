@@ -1,30 +1,31 @@
-//! Centres of spheres through the query and three of its neighbours, and how sure they are.
+//! Centers of spheres through the query and three of its neighbors, with bounds of their errors.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 
-/// Magnitude of the products over volume above which plain floating point does not do.
+/// Ratio of the magnitude of the products to the volume above which plain floating point does not
+/// suffice.
 const THIN: f64 = 32.0;
-/// What a rounding in pairs of doubles is of one in doubles, and a little more.
+/// The rounding of double-double arithmetic relative to that of doubles, with some room.
 const REST: f64 = 1.0 / (1u64 << 48) as f64;
-/// The square of a product of three distances, each at most 4, below which products may lose digits at
-/// the lower end of the range.
+/// The square of a product of three distances, each at most 4, below which products may lose digits
+/// to underflow.
 const LEAST: f64 = 1e-280;
 
-/// A centre as seen from the query.
+/// A center relative to the query.
 #[derive(Debug, Clone, Copy)]
 pub struct Center {
-    /// Where it is.
+    /// Its position.
     pub at: Point3,
-    /// How far away.
+    /// Its distance.
     pub radius: f64,
-    /// By how many roundings of the radius it is off, about: at least 1.
+    /// About how many roundings of the radius it is off: at least 1.
     pub doubt: f64,
 }
 
 impl Center {
-    /// The centre of the sphere through the origin and three points, positively oriented, none of
-    /// whose coordinates is beyond 2; nothing where the four are too nearly in one plane.
+    /// The center of the sphere through the origin and three points, positively oriented, none of
+    /// whose coordinates exceeds 2; `None` if the four are too nearly coplanar.
     #[inline]
     pub fn plain([a, b, c]: [Point3; 3]) -> Option<Self> {
         let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
@@ -43,8 +44,8 @@ impl Center {
         Some(Self { at, radius, doubt })
     }
 
-    /// By how many roundings of 1 each coordinate is off, about: no less than that of itself.
-    /// `corners` are those of which `plain` has made it, or of which it has made none.
+    /// About how many roundings of 1 each coordinate is off: at least that of the coordinate
+    /// itself. `corners` are those from which `plain` computed it, or failed to.
     pub fn doubts(&self, [a, b, c]: [Point3; 3]) -> Point3 {
         let (bc, ca, ab) = (terms(b, c), terms(c, a), terms(a, b));
         let det = dot(a, cross(b, c));
@@ -61,7 +62,8 @@ impl Center {
         })
     }
 
-    /// The same of three points as seen from `q`, in pairs of doubles; coordinates are divided by `unit`.
+    /// The same for three points relative to `q`, in double-double arithmetic; coordinates are
+    /// divided by `unit`.
     #[cold]
     #[inline(never)]
     pub fn paired(corners: [Point3; 3], q: Point3, unit: f64) -> Option<Self> {
@@ -96,7 +98,7 @@ impl Center {
     }
 }
 
-/// The sizes of coordinates.
+/// The absolute values of the coordinates.
 #[inline]
 pub fn sizes(p: Point3) -> Point3 {
     p.map(f64::abs)

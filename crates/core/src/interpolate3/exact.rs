@@ -1,26 +1,26 @@
-//! Laplace weights in space where doubles do not tell them: their formulas in integers.
+//! Exact 3-D Laplace weights in integers, for queries where doubles are not certain.
 //!
 //! All coordinates are multiples of a power of two; in that unit the query has a distance of at
-//! least 1 from every site. Each term is a quotient of integers, taken in fixed point with `DIGITS`
-//! binary places. Terms cancel, but their sum does not vanish:
+//! least 1 from every site. Each term is a quotient of integers, computed in fixed point with
+//! `DIGITS` binary places. Terms cancel, but their sum does not vanish:
 //!
-//! - In space, let r be the distance from the query to the wall of its cell in some direction, and h
-//!   that of the plane of the wall, half of the way to its neighbour. A solid angle there has the
-//!   area r^3 / h on the wall, so it adds r^3 / (2 h^2) >= r / 2 to the weights. The circle of half
-//!   the least distance is in the cell, so the sum is at least pi; here all is taken eight times.
+//! - Inside the hull, let r be the distance from the query to the wall of its cell in some direction,
+//!   and h that of the plane of the wall, half of the distance to its neighbor. A solid angle there has
+//!   the area r^3 / h on the wall, so it adds r^3 / (2 h^2) >= r / 2 to the weights. The circle of half
+//!   the least distance is in the cell, so the sum is at least pi; here everything is taken eight times.
 //! - In a plane of the hull that circle is part of the area taken, eight times which is at least 6.
 //!
-//! So nearly all of the digits are left, whatever the sites are.
+//! So nearly all of the digits are left, for any sites.
 //!
-//! # No roots
+//! # No square roots
 //!
-//! The share of a tetrahedron from the query to a, b and c in the face towards a has two triangles.
-//! One of them lies between the middle of the way to a, the centre of the circle through the query,
-//! a and b, and the centre of the sphere. Its legs are |a| / 2 times the cotangent at b and, with
-//! n = a x b, the height of the centre m of the sphere over the plane of that circle, m . n / |n|. The
-//! cotangent is b . (b - a) / |n|, so the root cancels, and the area over |a| is
-//! b . (b - a) m . n / (4 n . n). In a plane of the hull all areas have a common factor to their
-//! shadows along an axis, which cancels, too.
+//! The share of a tetrahedron from the query to a, b and c in the face towards a consists of two
+//! triangles. One of them lies between the midpoint of the segment to a, the center of the circle
+//! through the query, a and b, and the center of the sphere. Its legs are |a| / 2 times the
+//! cotangent at b and, with n = a x b, the height of the center m of the sphere over the plane of
+//! that circle, m . n / |n|. The cotangent is b . (b - a) / |n|, so the root cancels, and the area
+//! over |a| is b . (b - a) m . n / (4 n . n). In a plane of the hull the ratio of all areas to
+//! their projections along an axis is the same, and cancels, too.
 
 use delone_predicates::Point3;
 use num_bigint::{BigInt, Sign};
@@ -38,14 +38,14 @@ const FACE: usize = 40;
 
 type Vector = [BigInt; 3];
 
-/// Sites as seen from a query, in integers.
+/// Sites relative to a query, in integers.
 struct Seen(Vec<Vector>);
 
-/// The weights of a query inside the hull, with its neighbours and the rim of its cavity; nothing
-/// where there are none: the tetrahedra are no Delaunay tetrahedra then.
+/// The weights of a query inside the hull, with its neighbors and the rim of its cavity; `None` if
+/// there are none: then the tetrahedra are not Delaunay.
 #[cold]
 #[inline(never)]
-pub fn in_space(
+pub fn inside(
     points: &[Point3],
     rim: &[Face],
     q: Point3,
@@ -63,7 +63,7 @@ pub fn in_space(
         if volume.sign() != Sign::Plus {
             return Ok(None);
         }
-        // The centre of the sphere, times twice the volume.
+        // The center of the sphere, times twice the volume.
         let center = [0, 1, 2].map(|x| (0..3).map(|k| &squares[k] * &turns[k][x]).sum());
         for (k, turn) in turns.iter().enumerate() {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -85,11 +85,11 @@ pub fn in_space(
     Ok(shares(sums))
 }
 
-/// The same of a query in the plane of some hull faces: the areas that it would take there. Each of
-/// `edges`, around those faces, has them on its left.
+/// The same for a query in the plane of some hull faces: the areas that it would take there. Each
+/// of `edges`, around those faces, has them on its left.
 #[cold]
 #[inline(never)]
-pub fn in_plane(
+pub fn on_hull(
     points: &[Point3],
     faces: &[[u32; 3]],
     edges: &[[u32; 2]],
@@ -123,8 +123,9 @@ pub fn in_plane(
     Ok(shares(sums))
 }
 
-/// Eight times the area of a triangle that lies nearest to each corner, over the cosine of its plane and
-/// the axis, which is found for the first one; nothing where it is not counter-clockwise.
+/// Eight times the area of a triangle that is nearest to each corner, over the cosine of the angle
+/// between its plane and the axis, which is chosen at the first call; `None` if it is not
+/// counterclockwise.
 fn parts(corners: [&Vector; 3], axis: &mut Option<(usize, Sign)>) -> Option<[(BigInt, BigInt); 3]> {
     let [a, b, c] = corners;
     let sides = [minus(c, b), minus(a, c), minus(b, a)];
@@ -162,9 +163,9 @@ fn add(sum: &mut BigInt, n: BigInt, d: &BigInt) {
     *sum += (n << DIGITS) / d;
 }
 
-/// Makes the sum 1.
+/// Normalizes the sum to 1.
 fn shares(mut sums: Vec<BigInt>) -> Option<Vec<f64>> {
-    // Below zero is the rounding of terms that cancel.
+    // A negative sum is the rounding of terms that cancel.
     for part in &mut sums {
         if part.sign() == Sign::Minus {
             *part = BigInt::ZERO;

@@ -1,8 +1,8 @@
 //! Gradients at vertices of a 3-D triangulation, estimated from the values around them.
 //!
-//! The method is that of `interpolate::gradients` for planes: a least squares fit to the neighbors, to
-//! theirs as well where the neighbors alone leave too much to the rounding of the values, and along the
-//! directions that the points do span where these are fewer than three.
+//! The method is that of `interpolate::gradients` for planes: a least squares fit to the neighbors.
+//! A wider ring is used if the neighbors are too sensitive to the rounding of the values; if the
+//! points span fewer than three directions, the gradient is along those.
 
 use std::array::from_fn;
 use std::collections::HashMap;
@@ -15,30 +15,30 @@ use crate::locate::{Output, in_unit, length, longest_side, unit_of};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
 
-/// Vertices for a thread at once.
+/// Vertices per task.
 const SHARE: usize = 1 << 9;
 
-/// Neighbors of all vertices that were looked at between two looks at the watch.
+/// Visited neighbors between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;
 
-/// Neighbors above which a vertex is a hub, of which each neighbor takes as many at most. A vertex among
-/// uniform points has 15.5.
+/// The number of neighbors above which a vertex is a hub, of which each neighbor uses at most as
+/// many. A vertex among uniform points has 15.5.
 const MANY: usize = 64;
 
 /// Share of the largest singular value below which a direction is not spanned.
 const DEPENDENT: f64 = 1e-10;
 
-/// Share of the longest side of all points below which a ring is too small for the rounding of values, of
-/// which it leaves more than 1e-6 of their slope.
+/// Share of the longest side of the bounding box below which a ring is too small for the rounding
+/// of values, which would be more than 1e-6 of their slope.
 const CLOSE: f64 = 1e-10;
 
-/// Vertices of a ring that is not made wider, and how often it may be.
+/// Rings of this many vertices are not widened, and a ring is widened at most `WIDER` times.
 const WIDE: usize = 1 << 10;
 const WIDER: usize = 8;
 
-/// Gradients at the vertices `rows`, three numbers for each row and column, of the linear functions through
-/// the vertex that fit the values around it best; nearer ones count more, by the inverse square of the
-/// distance. Zero across the directions that the points around do not span, and where doubles cannot hold
+/// Gradients at the vertices `rows`, three numbers for each row and column, of the linear functions
+/// through the vertex that best fit the values around it, weighted by the inverse squared distance.
+/// Zero across the directions that the points around do not span, and if doubles cannot represent
 /// the gradient.
 pub fn local_gradients(
     points: &[Point3],
@@ -61,7 +61,7 @@ pub fn local_gradients(
     parallel::map_watched(workers, tasks, watch, |(first, rows): (usize, &[i32])| {
         let mut pace = Pace::new(watch, WATCH_EVERY);
         for (i, &v) in (first..).zip(rows) {
-            pace.spend(adjacency.neighbours(v as usize).len())?;
+            pace.spend(adjacency.neighbors(v as usize).len())?;
             for (column, g) in around.gradients(&field, v).into_iter().enumerate() {
                 out.set_all(3 * (i * field.columns + column), &g);
             }
@@ -78,7 +78,7 @@ fn hubs(points: &[Point3], adjacency: Adjacency, watch: &Watch) -> Result<HashMa
         if v % WATCH_EVERY == 0 {
             watch.check()?;
         }
-        let near = adjacency.neighbours(v);
+        let near = adjacency.neighbors(v);
         if near.len() > MANY {
             let mut sorted = near.to_vec();
             let at = |u: i32| points[u as usize];
@@ -89,11 +89,11 @@ fn hubs(points: &[Point3], adjacency: Adjacency, watch: &Watch) -> Result<HashMa
     Ok(found)
 }
 
-/// What is around vertices.
+/// The surroundings of vertices.
 struct Around<'a> {
     points: &'a [Point3],
     unit: f64,
-    /// The size from which on a ring is large enough.
+    /// The least size of a ring that is large enough.
     least: f64,
     adjacency: Adjacency<'a>,
     hubs: HashMap<i32, Vec<i32>>,
@@ -102,7 +102,7 @@ struct Around<'a> {
 impl Around<'_> {
     /// The gradient of each column at a vertex.
     fn gradients(&self, field: &Field, v: i32) -> Vec<[f64; 3]> {
-        let near = self.adjacency.neighbours(v as usize);
+        let near = self.adjacency.neighbors(v as usize);
         let common = self.fit(v, |_| true);
         let gradient = |column: usize| {
             let known = |u: i32| field.value(u, column).is_finite();
@@ -123,10 +123,10 @@ impl Around<'_> {
         (0..field.columns).map(gradient).collect()
     }
 
-    /// The fit to the neighbors that count, or to a wider ring where that is steady and this is not: one
-    /// with their neighbors, and further ones where all of them nearly coincide.
+    /// The fit to the neighbors that count, or to a wider ring if that is steady and this is not:
+    /// one with their neighbors, and further ones if all of them nearly coincide.
     fn fit(&self, v: i32, counts: impl Fn(i32) -> bool) -> Fit {
-        let mut ring = self.adjacency.neighbours(v as usize).to_vec();
+        let mut ring = self.adjacency.neighbors(v as usize).to_vec();
         let of = |ring: &[i32]| {
             let ring = ring.iter().copied().filter(|&u| counts(u)).collect();
             Fit::of(self.points, self.unit, v, ring)
@@ -148,13 +148,14 @@ impl Around<'_> {
         near
     }
 
-    /// A ring around a vertex and the neighbors of all in it, but of a hub's those before and after the vertex
-    /// and as many that are spread evenly: all of them would make time quadratic.
+    /// A ring around a vertex extended by the neighbors of all in it, but of a hub only those
+    /// before and after the vertex and as many that are spread evenly: using all of them would take
+    /// quadratic time.
     fn wider(&self, v: i32, mut ring: Vec<i32>) -> Vec<i32> {
         for i in 0..ring.len() {
             let u = ring[i];
             let Some(sorted) = self.hubs.get(&u) else {
-                ring.extend_from_slice(self.adjacency.neighbours(u as usize));
+                ring.extend_from_slice(self.adjacency.neighbors(u as usize));
                 continue;
             };
             let at = |u: i32| self.points[u as usize];
@@ -171,7 +172,7 @@ impl Around<'_> {
     }
 }
 
-/// The factors by which differences to surrounding values make a gradient.
+/// The factors that turn differences to surrounding values into a gradient.
 struct Fit {
     ring: Vec<i32>,
     factors: Vec<Point3>,
@@ -182,8 +183,8 @@ struct Fit {
 }
 
 impl Fit {
-    /// Solves the least squares problem of a ring by the singular values of its matrix: of all solutions
-    /// the shortest.
+    /// Solves the least squares problem of a ring by the singular value decomposition of its
+    /// matrix: the shortest of all solutions.
     fn of(points: &[Point3], unit: f64, v: i32, ring: Vec<i32>) -> Self {
         let p = points[v as usize];
         let ways = ring.iter().map(|&u| in_unit(p, points[u as usize], unit));
@@ -215,7 +216,8 @@ impl Fit {
         }
     }
 
-    /// Whether it spans all directions, is as large as `least`, and the rounding of values does not show.
+    /// Whether it spans all directions, is at least as large as `least`, and the rounding of values
+    /// does not show.
     fn is_steady(&self, least: f64) -> bool {
         let factors = self.factors.as_flattened();
         let norm = factors.iter().fold(0.0, |norm: f64, f| norm.hypot(*f));
@@ -233,13 +235,13 @@ impl Fit {
     }
 }
 
-/// Turns the axes until the columns of a matrix are orthogonal (M. R. Hestenes, "Inversion of matrices by
-/// biorthogonalization and related results", 1958), which keeps the digits of small singular values; the
-/// new axes.
+/// Rotates the axes until the columns of a matrix are orthogonal (one-sided Jacobi rotations: M. R.
+/// Hestenes, "Inversion of matrices by biorthogonalization and related results", 1958), which
+/// preserves the digits of small singular values; returns the new axes.
 fn orthogonal(rows: &mut [Point3]) -> [Point3; 3] {
     /// Cosines below this are zero up to rounding.
     const STILL: f64 = 1e-15;
-    /// More sweeps than three columns need, which converge quadratically.
+    /// More sweeps than three columns need; convergence is quadratic.
     const SWEEPS: usize = 30;
     let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..SWEEPS {
@@ -297,7 +299,7 @@ mod tests {
         (0..3).for_each(|k| assert!((found[k] - [1.0, 2.0, 3.0][k]).abs() < 1e-14));
         let plane = [[0.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [3.0, 2.0, 1.0]];
         let (found, rank) = slope(&plane, [1.0, 1.0, 1.0]);
-        // The shortest: less its part along the normal (1, -1, -1) / sqrt(3).
+        // The shortest: without its component along the normal (1, -1, -1) / sqrt(3).
         assert_eq!(rank, 2);
         (0..3).for_each(|k| assert!((found[k] - [4.0, 2.0, 2.0][k] / 3.0).abs() < 1e-14));
         let (found, rank) = slope(&[[0.0; 3], [1.0, 2.0, 2.0]], [1.0, 1.0, 1.0]);
@@ -307,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_twin_counts_no_more_than_rounding_allows() {
+    fn a_near_duplicate_counts_no_more_than_rounding_allows() {
         let twin = 2f64.powi(-52);
         let points = [
             [1.0, 1.0, 1.0],

@@ -1,30 +1,34 @@
-//! Laplace weights in space: the area of the face that the cell of the query would have in common with
-//! that of a neighbour, over their distance (N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and
-//! plaquettes in a random lattice", 1982; V. V. Belikov et al., 1997).
+//! 3-D Laplace weights: the area of the face between the cells of the query and a neighbor, over
+//! their distance.
 //!
-//! The corners of those faces are the centres of the spheres through the query and each face of the rim of
-//! its cavity. A rim edge from v to w lies between two of these faces, and the segment between their
-//! centres is an edge of the cell's faces towards v and towards w. So each rim edge adds to both
-//! a triangle with the middle of the way to the neighbour, counted with its sign. The areas, each in the
-//! direction of its neighbour, sum to zero around the cell: the query is the mean of its neighbours.
+//! N. H. Christ, R. Friedberg and T. D. Lee, "Weights of links and plaquettes in a random lattice",
+//! 1982; V. V. Belikov et al., 1997.
+//!
+//! The corners of those faces are the centers of the spheres through the query and each face of the
+//! rim of its cavity. A rim edge from v to w lies between two of these faces, and the segment
+//! between their centers is an edge of the cell's faces towards v and towards w. So each rim edge
+//! adds to both a triangle with the midpoint of the segment to the neighbor, counted with its sign.
+//! The areas, each in the direction of its neighbor, sum to zero around the cell: the query is the
+//! weighted mean of its neighbors.
 //!
 //! # On the hull
 //!
-//! Let the query come near a face of the hull, to a height z above its plane. Outside, at depth t / z, its
-//! cell is cut by x . v <= |v|^2 / 2 - t, for each neighbour v of that plane as seen from the query: the
-//! cell in the plane, whose walls move inwards as t grows. The wall towards v has, in all depths together, an
-//! area that goes to infinity as the integral of its length over t. A place x beyond the wall, in what was
-//! the cell of v, is met at t = |v|^2 / 2 - x . v, which is |v| times its distance from the wall: so that
-//! integral, over |v|, is the area that the query takes from v in the plane. Hence the limit on the
-//! hull are Sibson's weights in the plane (see `interpolate::weights` for their formula), and on an
-//! edge between two planes the interpolant is linear.
+//! Let the query approach a face of the hull, at a height z above its plane. Outside, at depth t /
+//! z, its cell is cut by x . v <= |v|^2 / 2 - t, for each neighbor v in that plane relative to the
+//! query: the cell in the plane, whose walls move inward as t grows. The total area of the wall
+//! towards v, over all depths, diverges like the integral of its length over t. A location x beyond
+//! the wall, in what was the cell of v, is reached at t = |v|^2 / 2 - x . v, which is |v| times its
+//! distance from the wall: so that integral, over |v|, is the area that the query takes from v in
+//! the plane. Hence the limits on the hull are Sibson's weights in the plane (see
+//! `interpolate::weights` for their formula), and on an edge between two planes the interpolant is
+//! linear.
 //!
-//! # What rounding takes
+//! # Loss by rounding
 //!
-//! Near a plane of the hull centres are far away. One such does not matter: areas are as large. Of
-//! two, side by side, the cross product goes by the product of their distances, and cancels. So with
-//! each sum goes the sum of the sizes of its terms, and where that is too much, by distances and
-//! then by coordinates, integers give the weights (see `exact`).
+//! Near a plane of the hull, centers are far away. A single one does not matter: areas are as
+//! large. For two, side by side, the cross product grows with the product of their distances, and
+//! cancels. So the size of the terms is summed along with each sum, and if that is too large, by
+//! distances and then by coordinates, integers give the weights (see `exact`).
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -37,29 +41,30 @@ use crate::locate::Output;
 use crate::locate3::{Batch, Located, Place, Side, Tetrahedra, barycentric};
 use crate::watch::Pace;
 
-/// Size of all terms over their sum above which too many digits are lost: about 1e-13 is left. It is
-/// 10 to 200 among spread points.
+/// Ratio of the size of all terms to their sum above which too many digits are lost: about 1e-13 is
+/// left. It is 10 to 200 among scattered points.
 const LOST: f64 = 4096.0;
-/// The square of an area below which it may have lost digits at the lower end of the range.
+/// The square of an area below which it may have lost digits to underflow.
 const LEAST: f64 = 1e-250;
 
-/// Tetrahedra and faces of cavities between two looks at the watch, beside those before each lot of queries: a
-/// query may have very many neighbors.
+/// Tetrahedra and faces of cavities between two checks for interruption, besides those before each
+/// lot of queries: a query may have very many neighbors.
 const WATCH_EVERY: usize = 1 << 14;
 
-/// What a thread computes with.
+/// Buffers of a thread.
 #[derive(Debug, Default)]
 struct Room {
     cavity: Cavity,
-    /// The neighbours.
+    /// The neighbors.
     sites: Vec<Point3>,
-    /// The same as seen from the query, in the unit.
+    /// The neighbors relative to the query, in the unit.
     seen: Vec<Point3>,
     /// The unit of length.
     unit: f64,
-    /// The centre of each face of the rim, likewise.
+    /// The center for each face of the rim, likewise.
     centers: Vec<Center>,
-    /// Rim edges: both ends, the smaller first; the face; whether it has the edge that way round.
+    /// Rim edges: both ends, the smaller first; the face; whether the face has the edge in that
+    /// direction.
     edges: Vec<(u32, u32, u32, bool)>,
     /// The faces of the cell of the query.
     walls: Vec<Wall>,
@@ -68,16 +73,17 @@ struct Room {
     size: f64,
 }
 
-/// The face of the cell towards a neighbour.
+/// The face of the cell towards a neighbor.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wall {
-    /// Twice its area, in its direction.
+    /// Twice its area, as a vector.
     area: Point3,
-    /// The size of the terms of that.
+    /// The size of its terms.
     size: f64,
 }
 
-/// The weights of each query, as sparse rows, empty outside; and the tetrahedron that holds it, or -1.
+/// The weights of each query, as sparse rows, empty outside; and the tetrahedron that contains it,
+/// or -1.
 pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
     let given = &batch.locator.given;
     let simplices = Output::filled(batch.queries.len(), -1, batch.watch)?;
@@ -118,8 +124,8 @@ pub fn natural(batch: &Batch) -> Result<(Rows, Vec<i32>)> {
 }
 
 impl Room {
-    /// Computes the weights of `q`, which is at no vertex; false where they are those of its
-    /// tetrahedron.
+    /// Computes the weights of `q`, which is not at a vertex; false if the caller must use those of
+    /// its tetrahedron.
     fn compute(
         &mut self,
         given: &Tetrahedra,
@@ -130,29 +136,29 @@ impl Room {
         let on = place.on.contains(&true);
         self.cavity.find(given, place.simplex, on, q, pace)?;
         pace.spend(self.cavity.rim.len())?;
-        self.look(given, q);
+        self.set_sites(given, q);
         self.size = 0.0;
         if self.cavity.rim.iter().any(|face| face.flat) {
             if !self.is_in_one_plane() {
                 return Ok(false);
             }
-            self.in_plane();
-            return Ok(self.normalise() || self.exactly_in_plane(q, pace)?);
+            self.on_hull();
+            return Ok(self.normalize() || self.exactly_on_hull(q, pace)?);
         }
-        if self.in_space(q) {
-            if self.normalise() {
+        if self.inside(q) {
+            if self.normalize() {
                 return Ok(true);
             }
             self.resize();
-            if self.normalise() {
+            if self.normalize() {
                 return Ok(true);
             }
         }
-        self.exactly_in_space(q, pace)
+        self.exactly_inside(q, pace)
     }
 
-    /// Neighbours as seen from `q`, in a unit in which the farthest coordinate is 1 to 2.
-    fn look(&mut self, given: &Tetrahedra, q: Point3) {
+    /// Neighbors relative to `q`, in a unit in which the farthest coordinate is 1 to 2.
+    fn set_sites(&mut self, given: &Tetrahedra, q: Point3) {
         let keys = self.cavity.vertices.keys();
         self.sites.clear();
         self.sites.extend(keys.iter().map(|&v| given.point(v)));
@@ -160,7 +166,7 @@ impl Room {
         self.seen.extend(self.sites.iter().map(|&p| minus(p, q)));
         let far = |most: f64, x: &f64| most.max(x.abs());
         let most = self.seen.as_flattened().iter().fold(0.0, far);
-        // A power of two, so that nothing is rounded; none where that is no double.
+        // A power of two, so that nothing is rounded; `None` if it is not a double.
         let unit = f64::from_bits(most.to_bits() & !((1 << 52) - 1));
         self.unit = 1.0;
         if unit.is_normal() && (1.0 / unit).is_normal() {
@@ -171,8 +177,8 @@ impl Room {
         }
     }
 
-    /// The weights inside; false where some centre is not known.
-    fn in_space(&mut self, q: Point3) -> bool {
+    /// The weights inside; false if some center is unknown.
+    fn inside(&mut self, q: Point3) -> bool {
         self.weights.clear();
         self.centers.clear();
         for face in &self.cavity.rim {
@@ -192,7 +198,7 @@ impl Room {
         true
     }
 
-    /// Each segment between the centres of two faces adds to the cell's faces towards both ends of
+    /// The segment between the centers of two faces adds to the cell's faces towards both ends of
     /// their edge.
     fn add_walls(&mut self) {
         self.pair_edges(|_| true);
@@ -202,7 +208,7 @@ impl Room {
             let &[(v, w, one, forward), (.., other, _)] = pair else {
                 continue;
             };
-            // Seen from outside, the face that has v -> w lies left of it.
+            // Seen from outside, the face with the edge v -> w is on its left.
             let (left, right) = if forward { (one, other) } else { (other, one) };
             let (l, r) = (&self.centers[left as usize], &self.centers[right as usize]);
             let area = cross(r.at, l.at);
@@ -216,7 +222,8 @@ impl Room {
         }
     }
 
-    /// The size of all terms once more, by axes: sheets and boxes do not look worse than they are.
+    /// Recomputes the size of all terms by axes, so that sheets and boxes do not look worse than
+    /// they are.
     #[cold]
     #[inline(never)]
     fn resize(&mut self) {
@@ -240,7 +247,7 @@ impl Room {
         self.size = sizes_of.iter().zip(&self.seen).map(size).sum();
     }
 
-    /// Lists the edges of some faces, those of two faces side by side.
+    /// Lists the edges of some faces, with those of adjacent faces next to each other.
     fn pair_edges(&mut self, which: impl Fn(&Face) -> bool) {
         self.edges.clear();
         for (j, face) in (0..).zip(&self.cavity.rim).filter(|(_, face)| which(face)) {
@@ -252,7 +259,7 @@ impl Room {
         self.edges.sort_unstable();
     }
 
-    /// Whether all faces that have the query in their plane are in one; if not, it is on an edge.
+    /// Whether all faces whose plane contains the query are in one plane; if not, it is on an edge.
     fn is_in_one_plane(&self) -> bool {
         let at = |i: u32| self.sites[i as usize];
         let mut flat = self.cavity.rim.iter().filter(|face| face.flat);
@@ -264,7 +271,7 @@ impl Room {
     }
 
     /// The weights on a plane of the hull.
-    fn in_plane(&mut self) {
+    fn on_hull(&mut self) {
         self.weights.clear();
         self.weights.resize(self.seen.len(), 0.0);
         let way = |i: u32, j: u32| {
@@ -293,18 +300,18 @@ impl Room {
 
     #[cold]
     #[inline(never)]
-    fn exactly_in_space(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
-        let found = exact::in_space(&self.sites, &self.cavity.rim, q, pace)?;
+    fn exactly_inside(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
+        let found = exact::inside(&self.sites, &self.cavity.rim, q, pace)?;
         Ok(self.take(found))
     }
 
     #[cold]
     #[inline(never)]
-    fn exactly_in_plane(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
+    fn exactly_on_hull(&mut self, q: Point3, pace: &mut Pace) -> Result<bool> {
         let flat = self.cavity.rim.iter().filter(|face| face.flat);
         let faces: Vec<[u32; 3]> = flat.map(|face| face.corners).collect();
         let edges: Vec<[u32; 2]> = outer(&self.edges).collect();
-        let found = exact::in_plane(&self.sites, &faces, &edges, q, pace)?;
+        let found = exact::on_hull(&self.sites, &faces, &edges, q, pace)?;
         Ok(self.take(found))
     }
 
@@ -314,9 +321,9 @@ impl Room {
         known
     }
 
-    /// Makes the sum 1; false where it is not certain.
-    fn normalise(&mut self) -> bool {
-        // Below zero is rounding alone; what is no number stays so.
+    /// Normalizes the sum to 1; false if it is uncertain.
+    fn normalize(&mut self) -> bool {
+        // Negative weights are rounding; NaN stays NaN.
         for w in &mut self.weights {
             if *w < 0.0 {
                 *w = 0.0;
@@ -331,7 +338,7 @@ impl Room {
     }
 }
 
-/// The edges of one face alone, which has them on its left.
+/// The edges that belong to only one face, which is on their left.
 fn outer(edges: &[(u32, u32, u32, bool)]) -> impl Iterator<Item = [u32; 2]> {
     let same = |i: usize, j: usize| {
         let ends = |e: &(u32, u32, u32, bool)| (e.0, e.1);
@@ -344,8 +351,8 @@ fn outer(edges: &[(u32, u32, u32, bool)]) -> impl Iterator<Item = [u32; 2]> {
     })
 }
 
-/// The area of a triangle with these sides that lies nearest to the corner opposite each, counted with
-/// its sign, times 8; and the size of the terms, not a number where they are not certain.
+/// The area of a triangle with these sides that is nearest to the corner opposite each, counted
+/// with its sign, times 8; and the size of the terms, NaN if they are uncertain.
 fn parts(sides: [Point3; 3]) -> ([f64; 3], f64) {
     let squares = sides.map(|side| dot(side, side));
     let longest = (1..3).fold(0, |i, k| if squares[k] > squares[i] { k } else { i });
@@ -356,7 +363,7 @@ fn parts(sides: [Point3; 3]) -> ([f64; 3], f64) {
         return ([0.0; 3], f64::NAN);
     }
     let one = 1.0 / area.sqrt();
-    // By the sine of the largest angle.
+    // Relative to the sine of the largest angle.
     let doubt = (squares[i] * squares[j]).sqrt() * one;
     let terms = [0, 1, 2].map(|k| {
         let cotangent = -dot(sides[(k + 1) % 3], sides[(k + 2) % 3]) * one;

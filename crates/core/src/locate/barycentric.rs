@@ -1,5 +1,8 @@
-//! Barycentric coordinates (A. F. Möbius, 1827) of a point in a triangle: accurate beside large
-//! offsets and in thin triangles, exact at corners, and zero opposite the edges that hold the point.
+//! Barycentric coordinates of a point in a triangle, accurate at large offsets and in thin
+//! triangles.
+//!
+//! They are exact at corners, and zero opposite the edges that contain the point (A. F. Möbius,
+//! 1827).
 
 use delone_predicates::Point2;
 use num_bigint::BigInt;
@@ -11,34 +14,34 @@ use super::tiling::{next, prev};
 use crate::arrays::Triangles;
 use crate::wide::{lowest, ratio, scaled};
 
-/// Areas below this may have lost digits at the lower end of the range.
+/// Areas below this may have lost digits to underflow.
 const LEAST: f64 = 1e-250;
 
-/// The weights of the corners of the triangle at `place` for `q`: not negative, of sum 1.
+/// The weights of the corners of the triangle at `place` for `q`: nonnegative, with sum 1.
 #[inline]
 pub fn barycentric(given: &Triangles, place: &Place, q: Point2) -> [f64; 3] {
     let corners = given.corners(place.triangle);
     weights(corners, place.on, q)
 }
 
-/// The same for corners by themselves; `on` tells on which edges `q` is exactly.
+/// The same for given corners; `on` tells on which edges `q` is exactly.
 #[inline]
 pub fn weights(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
-    // At a corner no arithmetic is asked: beside a tiny edge of a huge triangle it would vanish.
+    // No arithmetic at a corner: at a tiny edge of a huge triangle it would vanish.
     match on {
         [false, true, true] => return [1.0, 0.0, 0.0],
         [true, false, true] => return [0.0, 1.0, 0.0],
         [true, true, false] => return [0.0, 0.0, 1.0],
         _ => {}
     }
-    let (seen, unit) = seen_from(q, corners);
+    let (relative, unit) = seen_from(q, corners);
     let mut areas = [0.0; 3];
     for k in 0..3 {
-        areas[k] = plain(seen[next(k)], seen[prev(k)]).unwrap_or(f64::NAN); // not accurate
+        areas[k] = plain(relative[next(k)], relative[prev(k)]).unwrap_or(f64::NAN); // not accurate
     }
     let sum = areas[0] + areas[1] + areas[2];
     if sum.is_nan() || sum <= LEAST || on != [false; 3] || areas.iter().any(|&a| a < 0.0) {
-        return with_care(corners, seen, unit, on, q);
+        return with_care(corners, relative, unit, on, q);
     }
     areas.map(|a| a / sum)
 }
@@ -46,7 +49,7 @@ pub fn weights(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
 #[inline(never)]
 fn with_care(
     corners: [Point2; 3],
-    seen: [Point2; 3],
+    relative: [Point2; 3],
     unit: f64,
     on: [bool; 3],
     q: Point2,
@@ -57,7 +60,7 @@ fn with_care(
     let mut areas = [0.0; 3];
     for (k, area) in areas.iter_mut().enumerate() {
         let (i, j) = (next(k), prev(k));
-        *area = match plain(seen[i], seen[j]) {
+        *area = match plain(relative[i], relative[j]) {
             Some(area) if area > LEAST => area,
             _ if unit == 1.0 => match certain(q, corners[i], corners[j]) {
                 Some(area) => area.max(0.0),
@@ -70,13 +73,13 @@ fn with_care(
     areas.map(|a| a / sum)
 }
 
-/// The weights by areas in integers, where doubles do not tell them.
+/// The weights from areas in integers, if doubles are uncertain.
 #[cold]
 fn exact(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
     let low = lowest(&[corners[0], corners[1], corners[2], q], &[]);
-    let seen = corners.map(|p| [0, 1].map(|k| scaled(p[k], low) - scaled(q[k], low)));
+    let relative = corners.map(|p| [0, 1].map(|k| scaled(p[k], low) - scaled(q[k], low)));
     let areas: [BigInt; 3] = std::array::from_fn(|k| {
-        let (a, b) = (&seen[next(k)], &seen[prev(k)]);
+        let (a, b) = (&relative[next(k)], &relative[prev(k)]);
         (&a[0] * &b[1] - &a[1] * &b[0]).max(BigInt::ZERO)
     });
     let sum = &areas[0] + &areas[1] + &areas[2];
@@ -86,12 +89,12 @@ fn exact(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
     areas.map(|area| ratio(&area, &sum, 0).unwrap_or(0.0))
 }
 
-/// The weights on the edge that has the point; in what is no triangle, on the longest edge.
+/// The weights on the edge that contains the point; in a degenerate triangle, on the longest edge.
 #[cold]
 fn along_edge(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
-    let (mut seen, _) = seen_from(q, corners);
+    let (mut relative, _) = seen_from(q, corners);
     let length = |k: usize| {
-        let (u, v) = (seen[next(k)], seen[prev(k)]);
+        let (u, v) = (relative[next(k)], relative[prev(k)]);
         (v[0] - u[0]).hypot(v[1] - u[1])
     };
     let mut k = 0;
@@ -100,13 +103,13 @@ fn along_edge(corners: [Point2; 3], on: [bool; 3], q: Point2) -> [f64; 3] {
             k = i;
         }
     }
-    // The edge may be so short beside the triangle that it needs a unit of its own.
+    // The edge may be so short that it needs a unit of its own.
     if let Some(edge) = (0..3).find(|&i| on[i]) {
         k = edge;
         let (ends, _) = seen_from(q, [corners[next(k)], corners[prev(k)]]);
-        [seen[next(k)], seen[prev(k)]] = ends;
+        [relative[next(k)], relative[prev(k)]] = ends;
     }
-    let [du, dv] = [next(k), prev(k)].map(|i| seen[i][0].hypot(seen[i][1]));
+    let [du, dv] = [next(k), prev(k)].map(|i| relative[i][0].hypot(relative[i][1]));
     let mut weights = [0.0; 3];
     weights[next(k)] = if du + dv > 0.0 { dv / (du + dv) } else { 1.0 };
     weights[prev(k)] = 1.0 - weights[next(k)];

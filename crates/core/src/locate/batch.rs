@@ -1,4 +1,4 @@
-//! Batches of queries, in the plane and in space: in which order, and by which threads.
+//! Batches of point queries in 2-D and 3-D: their order, and their distribution over threads.
 
 use super::{Kept, Locator, Output};
 use crate::error::Result;
@@ -8,44 +8,44 @@ use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Fewest queries that are put in order: below, each walk starts from the tree.
+/// The fewest queries that are sorted: below, each walk starts from the tree.
 const FEW: usize = 32;
-/// Fewest queries that a thread is worth, times 2^D: in space each takes longer.
+/// The fewest queries that are worth a thread, times 2^D: in 3-D each takes longer.
 const SHARE: usize = 1 << 13;
-/// Pairs of successive queries that are looked at to tell whether they come in a good order.
+/// Pairs of successive queries that are sampled to tell whether their order is good.
 const PROBES: usize = 256;
-/// Queries that are gathered ahead of the walk; before each lot the watch is asked.
+/// Queries that are gathered ahead of the walk, between two checks for interruption.
 const GATHER: usize = 1 << 9;
 
-/// Queries of one call; of the plane, if nothing else is said.
+/// The queries of one call; 2-D by default.
 pub struct Batch<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
-    /// Where to look.
+    /// The triangulation.
     pub locator: Locator<'a, K, D, N>,
-    /// What for.
+    /// The points to locate.
     pub queries: &'a [[f64; D]],
-    /// How many threads may work.
+    /// The number of threads.
     pub workers: usize,
-    /// Asked now and then whether to stop.
+    /// Checked for interruption.
     pub watch: &'a Watch<'a>,
 }
 
-/// How a batch goes from query to query, with what is kept for a triangulation.
+/// How a batch goes from query to query, given the cache of a triangulation.
 pub trait Walks<const D: usize, const N: usize>: Sized + Sync {
-    /// Where a point is.
+    /// The location of a point.
     type Located;
 
-    /// What tells where a query is, and remembers it for the next.
+    /// Returns a function that locates a query, starting from the previous one.
     fn walker(
         locator: &Locator<Self, D, N>,
     ) -> impl FnMut([f64; D]) -> Result<Self::Located> + Send;
 
-    /// The simplex that holds what is there, or -1.
+    /// The simplex that contains the location, or -1.
     fn holder(at: &Self::Located) -> i32;
 }
 
 impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
-    /// Goes to each finite query, in an order and by threads of its own choice; `visit` gets the
-    /// state of its part of the queries, the row, the query and where that is. Returns the states.
+    /// Locates each finite query, in an order and on threads of its own choice; `visit` gets the
+    /// state of its part of the queries, the row, the query and its location. Returns the states.
     pub fn each<S: Send>(
         &self,
         state: impl Fn() -> S + Sync,
@@ -59,14 +59,14 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
         Ok(ends.into_iter().map(|(_, state)| state).collect())
     }
 
-    /// The same without going anywhere.
+    /// The same without locating the queries.
     pub fn along<S: Send>(
         &self,
         state: impl Fn() -> S + Sync,
         visit: impl Fn(&mut S, usize, [f64; D]) -> Result<()> + Sync,
     ) -> Result<Vec<S>> {
         let (queries, workers) = (self.queries, self.workers);
-        if queries.len() <= FEW || comes_in_order(queries) {
+        if queries.len() <= FEW || is_in_good_order(queries) {
             let share = queries.len().div_ceil(4 * workers.max(1)).max(SHARE >> D);
             let tasks = (0..).step_by(share).zip(queries.chunks(share)).collect();
             let ends = parallel::map(workers, tasks, |(first, part): (usize, &[_])| {
@@ -80,7 +80,7 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
         }
         let parts = order_of(queries, workers, self.watch)?;
         let ends = parallel::map(workers, parts, |rows| {
-            // Loads that do not wait for each other: gathering ahead hides that they miss the cache.
+            // Independent loads: gathering ahead hides cache misses.
             let mut gathered = with_room(GATHER)?;
             let mut state = state();
             for lot in rows.chunks(GATHER) {
@@ -110,7 +110,8 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
     }
 }
 
-/// For each query the first simplex that holds it, boundary included, or -1: outside, or not finite.
+/// For each query the first simplex that contains it, boundary included, or -1 if it is outside or
+/// not finite.
 pub fn find<K: Walks<D, N>, const D: usize, const N: usize>(
     batch: &Batch<K, D, N>,
 ) -> Result<Vec<i32>> {
@@ -125,9 +126,9 @@ pub fn find<K: Walks<D, N>, const D: usize, const N: usize>(
     Ok(found.into_vec())
 }
 
-/// Whether most queries are about as near to the one before as an order along the curve would make
-/// them: rows of a raster, slices of a grid, tracks.
-fn comes_in_order<const D: usize>(queries: &[[f64; D]]) -> bool {
+/// Whether most queries are about as near to the previous one as if sorted along the curve: rows of
+/// a raster, slices of a grid, tracks.
+fn is_in_good_order<const D: usize>(queries: &[[f64; D]]) -> bool {
     let step = (queries.len() - 1).div_ceil(PROBES).max(1);
     let probes = || queries.windows(2).step_by(step);
     let finite = probes().map(|w| w[0]).filter(is_finite);
@@ -138,7 +139,7 @@ fn comes_in_order<const D: usize>(queries: &[[f64; D]]) -> bool {
     10 * probes().filter(is_near).count() >= 9 * probes().count()
 }
 
-/// Whether the point is one.
+/// Whether all coordinates are finite.
 pub fn is_finite<const D: usize>(q: &[f64; D]) -> bool {
     q.iter().all(|x| x.is_finite())
 }

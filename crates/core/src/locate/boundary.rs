@@ -1,4 +1,4 @@
-//! The boundary of a tiling: whether it is convex, and its nearest point.
+//! The boundary of a tiling: whether it is convex, and its nearest point to a query.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
@@ -11,24 +11,24 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use crate::wide::{lowest, ratio, scaled, sign};
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// The boundary edges of a tiling.
 #[derive(Debug)]
 pub struct Boundary {
-    /// Each boundary edge; where the boundary is convex, in order, counter-clockwise.
+    /// The boundary edges; if the boundary is convex, in counterclockwise order.
     pub sides: Vec<Side>,
-    /// Whether the triangles fill one convex area.
+    /// Whether the triangles fill one convex region.
     pub convex: bool,
-    /// Where each edge is in `sides`, by edge.
+    /// The index of each edge in `sides`, sorted by edge.
     places: Vec<(Side, usize)>,
-    /// The edges by place, where the boundary is not convex.
+    /// The edges in boxes, if the boundary is not convex.
     boxes: Option<Boxes<2>>,
 }
 
 impl Boundary {
-    /// Reads the boundary off the arrays.
+    /// Extracts the boundary from the arrays.
     pub fn of(given: &Triangles, watch: &Watch) -> Result<Self> {
         let mut sides = Vec::new();
         for (triangle, row) in given.neighbors.iter().enumerate() {
@@ -57,10 +57,11 @@ impl Boundary {
         })
     }
 
-    /// The boundary edge with the nearest point to `q`, which is outside, and how far along that is.
+    /// The boundary edge nearest to `q`, which is outside, and how far along it the nearest point
+    /// is.
     ///
-    /// On a convex boundary in as many steps as there are edges between `from`, which has `q` beyond
-    /// it, and the answer; elsewhere by boxes.
+    /// On a convex boundary it takes as many steps as there are edges between `from`, which has `q`
+    /// beyond it, and the result; otherwise it uses boxes.
     pub fn nearest(&self, given: &Triangles, from: Side, q: Point2) -> (Side, f64) {
         if let Some(boxes) = &self.boxes {
             let found = boxes.nearest(q, None, |i, unit| measure(given, self.sides[i], q, unit));
@@ -73,7 +74,7 @@ impl Boundary {
             .map_or(0, |i| self.places[i].1);
         let mut i = start;
         let mut forward = None;
-        // One way round at most: a change of direction ends at the vertex between.
+        // At most once around: a change of direction ends at the vertex in between.
         for _ in 0..count {
             let along = project(given, self.sides[i], q);
             let ahead = along > 1.0;
@@ -87,11 +88,11 @@ impl Boundary {
     }
 }
 
-/// Error of a share of an edge up to which rounding will do.
+/// Error of a position along an edge up to which rounding is acceptable.
 const NEAR: f64 = 1e-12;
 
 fn clamp(along: f64) -> f64 {
-    // Of NaN, where the edge has no length, its start.
+    // NaN, for an edge of zero length, gives its start.
     if along > 0.0 { along.min(1.0) } else { 0.0 }
 }
 
@@ -101,17 +102,17 @@ fn ends(given: &Triangles, side: Side) -> [Point2; 2] {
         .map(|corner| given.point(given.vertex(Side { corner, ..side })))
 }
 
-/// Where `q` is beside a boundary edge, 0 at its start and 1 at its end.
+/// The position of `q` along a boundary edge, 0 at its start and 1 at its end.
 fn project(given: &Triangles, side: Side, q: Point2) -> f64 {
     let [u, v] = ends(given, side);
-    // Each in a unit of its own: the edge may be very short beside the distance.
+    // Each in its own unit: the edge may be very short compared with the distance.
     let ([d], short) = seen_from(u, [v]);
     let ([w], long) = seen_from(u, [q]);
     let terms = [w[0] * d[0], w[1] * d[1]];
     let square = d[0] * d[0] + d[1] * d[1];
     let share = |x: f64| x / square * (long / short);
     let along = share(terms[0] + terms[1]);
-    // Four roundings in each term, and one of the sum.
+    // Four roundings in each term, and one in the sum.
     let error = 5.0 * f64::EPSILON * share(terms[0].abs() + terms[1].abs());
     if error <= NEAR || along < -error || along > 1.0 + error || u == v {
         along
@@ -120,7 +121,7 @@ fn project(given: &Triangles, side: Side, q: Point2) -> f64 {
     }
 }
 
-/// The same from integers: far away all digits cancel where the foot is on the edge.
+/// The same in integers: far away all digits cancel if the foot is on the edge.
 #[cold]
 fn project_exactly([u, v]: [Point2; 2], q: Point2) -> f64 {
     let low = lowest(&[u, v, q], &[]);
@@ -136,7 +137,8 @@ fn project_exactly([u, v]: [Point2; 2], q: Point2) -> f64 {
     ratio(&along, &square, 0).unwrap_or(beyond)
 }
 
-/// The distance of `q` from a boundary edge, of coordinates times `unit`, and how far along that is.
+/// The distance of `q` from a boundary edge, of coordinates times `unit`, and the position along
+/// it.
 fn measure(given: &Triangles, side: Side, q: Point2, unit: f64) -> (f64, f64) {
     let t = clamp(project(given, side, q));
     let [u, v] = ends(given, side).map(|p| p.map(|x| x * unit));
@@ -144,7 +146,7 @@ fn measure(given: &Triangles, side: Side, q: Point2, unit: f64) -> (f64, f64) {
     (length(away), t)
 }
 
-/// The boundary edges in order, where they are one cycle.
+/// The boundary edges in order, if they are one cycle.
 fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
     let Some(&start) = sides.first() else {
         return Ok(None);
@@ -154,7 +156,7 @@ fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
     let mut steps = 4 * given.simplices.len() + 4;
     loop {
         cycle.push(side);
-        // The next edge starts where this one ends: turn right around that vertex.
+        // The next edge starts where this one ends: rotate clockwise around that vertex.
         let mut at = Side {
             corner: prev(side.corner),
             ..side
@@ -162,7 +164,7 @@ fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
         while let Some(beside) = given.turn_right(at) {
             at = beside;
             steps = steps.checked_sub(1).ok_or_else(|| {
-                Error::Internal("the triangles around a vertex do not end".into())
+                Error::Internal("the triangles around a boundary vertex form a cycle".into())
             })?;
         }
         side = Side {
@@ -178,8 +180,8 @@ fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
     }
 }
 
-/// Whether a closed chain never turns right, and winds round once: then it goes through one
-/// lexicographic minimum.
+/// Whether a closed chain never turns right and winds once: then it has exactly one lexicographic
+/// minimum.
 fn is_convex(given: &Triangles, cycle: &[Side]) -> bool {
     let start = |side: &Side| {
         given.point(given.vertex(Side {

@@ -1,7 +1,9 @@
-//! Items by their boxes: those whose boxes hold a point, and the nearest one. For arrays with holes or
-//! a concave boundary, where a walk that leaves proves nothing, and for faces of a boundary.
+//! A tree of bounding boxes: finds the items whose boxes contain a point, and the nearest item.
 //!
-//! Items are taken along the curve, eight to a box, eight boxes to the next, and so on (as in an
+//! For arrays with holes or a concave boundary, where a walk that leaves the tiling proves nothing,
+//! and for faces of a boundary.
+//!
+//! Items are sorted along the curve, eight to a box, eight boxes to the next, and so on (like an
 //! R-tree packed along the Hilbert curve: I. Kamel and C. Faloutsos, 1993).
 
 use crate::error::Result;
@@ -10,18 +12,18 @@ use crate::order::order_of;
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
 
-/// Boxes, or items, in a box.
+/// Boxes, or items, per box.
 const WIDTH: usize = 8;
 
-/// Items between two looks at the watch.
+/// Items between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// The tree.
+/// The tree of boxes.
 #[derive(Debug)]
 pub struct Boxes<const D: usize> {
     /// Items along the curve.
     order: Vec<u32>,
-    /// The boxes of each level, from the items up to one.
+    /// The boxes of each level, from the items up to a single one.
     levels: Vec<Vec<Extent<D>>>,
 }
 
@@ -39,7 +41,7 @@ impl<const D: usize> Boxes<D> {
         Self::packed(order, box_of, watch)
     }
 
-    /// The same of items that are in order.
+    /// The same for items that are already sorted.
     pub fn packed(
         order: Vec<u32>,
         box_of: impl Fn(usize) -> Extent<D>,
@@ -64,8 +66,8 @@ impl<const D: usize> Boxes<D> {
         Ok(Self { order, levels })
     }
 
-    /// The item of least distance from `q`, of several the first, and what came with the distance; on
-    /// the way from `hint`. Distances are asked for as in [`Self::toward`].
+    /// The item nearest to `q`, the first of several, and the value returned with its distance; the
+    /// search starts at `hint`. Distances are requested as in [`Self::toward`].
     pub fn nearest<T: Copy>(
         &self,
         q: [f64; D],
@@ -86,9 +88,10 @@ impl<const D: usize> Boxes<D> {
         best.map(|(item, _, with)| (item, with))
     }
 
-    /// Calls `visit` on items, nearer boxes first, `hint` before all; no more on those whose boxes are
-    /// farther from `q` than it has answered last. It gets the factor of coordinates by which distances
-    /// are doubles: 1 but for the largest. No item may be nearer than its box, but for rounding.
+    /// Calls `visit` on items, nearer boxes first, `hint` before all, and skips those whose boxes
+    /// are farther from `q` than its last answer. It gets the factor of coordinates in which
+    /// distances are doubles: 1 except for the largest. No item may be nearer than its box, up to
+    /// rounding.
     pub fn toward(
         &self,
         q: [f64; D],
@@ -108,7 +111,7 @@ impl<const D: usize> Boxes<D> {
         self.search(hint, bound, |item| visit(item, unit));
     }
 
-    /// The same by any measure of which `bound` tells the least that it can be in a box.
+    /// The same by any measure, where `bound` gives a lower bound of it in a box.
     #[inline]
     pub fn search(
         &self,
@@ -141,7 +144,7 @@ impl<const D: usize> Boxes<D> {
                 let away = bound(extent);
                 if away <= within {
                     open.push((away, level - 1, child));
-                    // The nearest box comes last, that is, next.
+                    // The nearest box goes last on the stack, so it is next.
                     let mut at = open.len() - 1;
                     while at > from && open[at - 1].0 < away {
                         open.swap(at - 1, at);
@@ -152,7 +155,7 @@ impl<const D: usize> Boxes<D> {
         }
     }
 
-    /// Calls `visit` on each item that is in one box with `q`.
+    /// Calls `visit` on each item whose box contains `q`.
     pub fn around(&self, q: [f64; D], mut visit: impl FnMut(usize)) {
         let holds = |e: &Extent<D>| (0..D).all(|k| e.min[k] <= q[k] && q[k] <= e.max[k]);
         let mut open = vec![(self.levels.len() - 1, 0)];
@@ -173,10 +176,11 @@ impl<const D: usize> Boxes<D> {
     }
 }
 
-/// Sums of squares within these bounds have lost nothing to speak of by underflow, and not overflowed.
+/// Sums of squares within these bounds have neither overflowed nor lost significant digits to
+/// underflow.
 const SAFE: std::ops::Range<f64> = 1e-290..1e300;
 
-/// The length of a vector, whatever its exponents.
+/// The length of a vector with any exponents.
 pub fn length<const D: usize>(v: [f64; D]) -> f64 {
     let squares: f64 = v.iter().map(|x| x * x).sum();
     if SAFE.contains(&squares) {
@@ -185,7 +189,7 @@ pub fn length<const D: usize>(v: [f64; D]) -> f64 {
     v.iter().fold(0.0, |sum: f64, x| sum.hypot(*x))
 }
 
-/// A distance that nothing in the box falls short of, roundings of both allowed for.
+/// A lower bound of the distance to the box, roundings allowed for.
 #[inline]
 fn bound_from<const D: usize>(extent: &Extent<D>, q: [f64; D], unit: f64) -> f64 {
     let gaps: [f64; D] = std::array::from_fn(|k| {

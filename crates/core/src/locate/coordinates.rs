@@ -1,25 +1,25 @@
-//! Triangles with barycentric coordinates, and outside the nearest point of the boundary.
+//! Locates queries with barycentric coordinates; outside, with the nearest point of the boundary.
 
 use super::tiling::{Side, next, prev};
 use super::{Batch, Located, Output, barycentric};
 use crate::error::Result;
 
-/// Where queries are, row by row.
+/// The locations of queries, row by row.
 #[derive(Debug)]
 pub struct Coordinates {
-    /// The first triangle that holds the query, or -1.
+    /// The first triangle that contains the query, or -1.
     pub triangle: Vec<i32>,
-    /// The weights of its corners, three a row; NaN outside.
+    /// The weights of its corners, three per row; NaN outside.
     pub weights: Vec<f64>,
-    /// Outside: the triangle at the boundary edge with the nearest point; else -1.
+    /// For a query outside: the triangle at the nearest boundary edge; else -1.
     pub beside: Vec<i32>,
-    /// The ends of that edge, two a row, the triangle on its left; else -1.
+    /// The ends of that edge, two per row, with the triangle on its left; else -1.
     pub edge: Vec<i32>,
     /// How far along that edge the nearest point is, from 0 to 1; else NaN.
     pub along: Vec<f64>,
 }
 
-/// Locates queries; those that are not finite are nowhere.
+/// Locates queries; those that are not finite have no location.
 pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
     let n = batch.queries.len();
     let locator = &batch.locator;

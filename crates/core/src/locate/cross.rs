@@ -1,19 +1,20 @@
-//! Cross products of differences, to a relative accuracy that survives thin triangles.
+//! Cross products of differences, with a relative accuracy that survives thin triangles.
 //!
 //! A cross product in plain floating point errs by a few units of its two products, however small
-//! itself is. Where that is too much for a weight, differences and products are taken as unevaluated
-//! sums of two doubles (T. J. Dekker, "A floating-point technique for extending the available
-//! precision", 1971), which leaves about 2^-100 of the products.
+//! it is itself. If that is too much for a weight, differences and products are computed as
+//! unevaluated sums of two doubles (T. J. Dekker, "A floating-point technique for extending the
+//! available precision", 1971), which errs by about 2^-100 of the products.
 
 use delone_predicates::Point2;
 
-/// Products over cross product above which plain floating point does not do: it leaves about 1e-14.
+/// Ratio of products to cross product above which plain floating point does not suffice: about
+/// 1e-14 is left.
 const THIN: f64 = 32.0;
 
 /// A difference of doubles as head and tail: no rounding.
 type Exact = (f64, f64);
 
-/// `a x b`; nothing where that is too small beside its products.
+/// `a x b`; `None` if it is too small compared with its products.
 #[inline]
 pub fn plain(a: Point2, b: Point2) -> Option<f64> {
     let (left, right) = (a[0] * b[1], a[1] * b[0]);
@@ -37,11 +38,11 @@ pub fn accurate(o: Point2, p: Point2, r: Point2) -> f64 {
     with_products(o, p, r).0
 }
 
-/// The same where it is right in nearly all of its digits.
+/// The same if it is correct in nearly all of its digits.
 #[cold]
 #[inline(never)]
 pub fn certain(o: Point2, p: Point2, r: Point2) -> Option<f64> {
-    // What is left of 2^-100 of the products, and far above what underflow takes.
+    // The rest of 2^-100 of the products, and a bound far above underflow.
     const SHARE: f64 = (1_u64 << 45) as f64;
     const LEAST: f64 = 1e-250;
     let (cross, products) = with_products(o, p, r);
@@ -58,7 +59,7 @@ fn with_products(o: Point2, p: Point2, r: Point2) -> (f64, f64) {
     (cross, left.abs() + right.abs())
 }
 
-/// `a - b` without a rounding (D. E. Knuth's two-sum).
+/// `a - b` without rounding (D. E. Knuth's two-sum).
 fn difference(a: f64, b: f64) -> Exact {
     let head = a - b;
     let b_part = a - head;

@@ -1,8 +1,9 @@
 //! 2-D point location: exact, boundary included, for any tiling in exported arrays.
 //!
-//! `Locator` keeps what calls have in common: a tree of starts, the boundary. `batch` takes queries
-//! along the curve, or as they come where that is as good, and `walker` goes from each to the next.
-//! What knows no triangle, such as `batch` and `boxes`, serves tetrahedra as well.
+//! `Locator` holds what calls share: a tree of starting simplices, the boundary. `batch` takes
+//! queries in curve order, or in their given order if that is as good, and `walker` goes from each
+//! to the next. Modules that are independent of triangles, such as `batch` and `boxes`, serve
+//! tetrahedra as well.
 
 mod barycentric;
 mod batch;
@@ -48,19 +49,19 @@ use crate::points::Extent;
 use crate::watch::Watch;
 use walk::{Found, walk};
 
-/// What is kept between calls for one triangulation.
+/// What is cached between calls for one triangulation.
 #[derive(Debug)]
 pub struct Kept {
     start: Start<2>,
     boundary: OnceLock<Boundary>,
     boxes: OnceLock<Boxes<2>>,
     sites: OnceLock<Sites<2>>,
-    /// How many neighbors queries for the nearest vertex have asked in vain.
+    /// How many neighbors nearest-vertex queries have tested without finding the answer.
     strayed: AtomicUsize,
 }
 
 impl Kept {
-    /// A tree of starts for many calls; the rest is made when it is needed.
+    /// A tree of starting triangles for many calls; the rest is built when needed.
     pub fn of(given: &Triangles, watch: &Watch) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
@@ -73,18 +74,18 @@ impl Kept {
     }
 }
 
-/// A triangulation and what is kept for it; of the plane, if nothing else is said.
+/// A triangulation and its cache; 2-D by default.
 pub struct Locator<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
     /// The arrays.
     pub given: Given<'a, D, N>,
     pub(crate) kept: &'a K,
-    /// Asked when something is made that is kept.
+    /// Checked while something to be cached is built.
     pub(crate) watch: &'a Watch<'a>,
 }
 
 impl<K, const D: usize, const N: usize> Copy for Locator<'_, K, D, N> {}
 
-// Derived, it would ask the same of what is kept.
+// Not derived: that would require `Clone` of the cache.
 impl<K, const D: usize, const N: usize> Clone for Locator<'_, K, D, N> {
     fn clone(&self) -> Self {
         *self
@@ -92,18 +93,18 @@ impl<K, const D: usize, const N: usize> Clone for Locator<'_, K, D, N> {
 }
 
 impl<'a, K, const D: usize, const N: usize> Locator<'a, K, D, N> {
-    /// A locator of what was kept for the same arrays.
+    /// A locator with the cache of the same arrays.
     pub fn new(given: Given<'a, D, N>, kept: &'a K, watch: &'a Watch<'a>) -> Self {
         Self { given, kept, watch }
     }
 }
 
-/// Where a point is.
+/// The location of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Located {
     /// In a triangle.
     Inside(Place),
-    /// Outside of all, strictly beyond this boundary edge where the boundary is convex.
+    /// Outside of all triangles, strictly beyond this boundary edge if the boundary is convex.
     Outside(Side),
 }
 
@@ -121,8 +122,8 @@ impl<'a> Locator<'a> {
         self.kept.start.near(q)
     }
 
-    /// The vertices by boxes, where queries have asked as many neighbors in vain, `more` of them now, as
-    /// there are points: about what it costs to make the boxes.
+    /// The vertices in boxes, once queries have tested in vain as many neighbors, now `more` of
+    /// them, as there are points: about the cost of building the boxes.
     fn sites(&self, more: usize) -> Result<Option<&'a Sites<2>>> {
         let asked = self.kept.strayed.fetch_add(more, Ordering::Relaxed) + more;
         if asked < self.given.points.len() {
@@ -131,7 +132,7 @@ impl<'a> Locator<'a> {
         kept(&self.kept.sites, || Sites::of(&self.given, self.watch)).map(Some)
     }
 
-    /// Where `q` is, on the way from triangle `from`.
+    /// Locates `q` by a walk from triangle `from`.
     #[inline]
     pub fn locate_from(&self, from: usize, q: Point2, star: &mut Star) -> Result<Located> {
         match walk(&self.given, from, q)? {
@@ -147,7 +148,7 @@ impl<'a> Locator<'a> {
         }
     }
 
-    /// Where `q` is; nothing for what is not finite, or where there is no triangle.
+    /// Locates `q`; `None` if it is not finite or there is no triangle.
     pub fn locate(&self, q: Point2) -> Result<Option<Located>> {
         if !is_finite(&q) || self.given.simplices.is_empty() {
             return Ok(None);
@@ -156,7 +157,8 @@ impl<'a> Locator<'a> {
         Ok(Some(located))
     }
 
-    /// What lies beyond a boundary edge: more triangles, unless the boundary is convex.
+    /// What lies beyond a boundary edge: unless the boundary is convex, there may be more
+    /// triangles.
     fn beyond(&self, side: Side, q: Point2) -> Result<Located> {
         if self.boundary()?.convex {
             return Ok(Located::Outside(side));
@@ -167,7 +169,7 @@ impl<'a> Locator<'a> {
         })
     }
 
-    /// The first triangle that holds `q`, of all.
+    /// The first of all triangles that contain `q`.
     fn first_of_all(&self, q: Point2) -> Result<Option<Place>> {
         let given = &self.given;
         let boxes = kept(&self.kept.boxes, || {
@@ -189,14 +191,15 @@ impl<'a> Locator<'a> {
     }
 }
 
-/// On which edges `q` is, where the closed triangle has it.
+/// On which edges `q` is, if the closed triangle contains it.
 fn holds(given: &Triangles, t: usize, q: Point2) -> Option<[bool; 3]> {
     let [a, b, c] = given.corners(t);
     let signs = [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)];
     (!signs.contains(&Sign::Negative)).then(|| signs.map(|s| s == Sign::Zero))
 }
 
-/// What is in the cell, or is made now; where two threads make it, one of the two equal values.
+/// The value in the cell, built now if it is empty; if two threads build it, one of the two equal
+/// values.
 pub fn kept<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
     match cell.get() {
         Some(value) => Ok(value),

@@ -1,13 +1,13 @@
-//! The nearest vertex, by a walk over the edges of a Delaunay triangulation.
+//! The nearest vertex, by a greedy walk over the edges of a Delaunay triangulation.
 //!
-//! From any vertex that is not the nearest, some Delaunay neighbour is nearer: the segment to the
-//! point leaves the vertex's cell through the face to such a one. So a walk that always goes to a
-//! nearer neighbour ends at a nearest vertex; distances fall, so it ends. All nearest ones lie on an
-//! empty circle around the point, whose polygon has Delaunay edges alone, so they are found from one
-//! to the next.
+//! If a vertex is not the nearest, some Delaunay neighbor is nearer: the segment to the query
+//! leaves the vertex's cell through the face to such a neighbor. So a walk that always goes to a
+//! nearer neighbor ends at a nearest vertex; it terminates because distances decrease. All nearest
+//! vertices lie on an empty circle around the query, and consecutive ones are joined by Delaunay
+//! edges, so they are found from one to the next.
 //!
-//! That the last vertex is the nearest is known when all of its neighbors have been asked, which may be
-//! very many. So a walk that has asked more than a few dozen gives up, and boxes over the vertices tell.
+//! The last vertex is known to be the nearest only after all of its neighbors are tested, which may
+//! be very many. So a walk gives up after a few dozen tests, and boxes over the vertices are used.
 
 use delone_predicates::{Point2, Sign, nearer};
 
@@ -17,13 +17,14 @@ use super::{Batch, Locator, Output};
 use crate::arrays::Triangles;
 use crate::error::Result;
 
-/// Neighbors that a walk asks. Among uniform points it takes about ten, and boxes cost as much as thirty.
+/// Neighbors that a walk tests. Among uniform points it needs about ten, and boxes cost as much as
+/// thirty.
 const PATIENCE: usize = 64;
-/// How far, in lengths of an edge beside the last vertex, a walk goes; from further on the tree of
-/// starts is cheaper. Squared.
+/// How far a walk goes, in lengths of an edge at the last vertex, squared; beyond that the tree of
+/// starting points is cheaper.
 const REACH: f64 = 64.0;
 
-/// For each query the nearest vertex, of several the first row; -1 for what is not finite.
+/// For each query the nearest vertex, the first row of several; -1 if the query is not finite.
 pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;
     if batch.locator.given.simplices.is_empty() {
@@ -44,16 +45,16 @@ pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     Ok(found.into_vec())
 }
 
-/// Goes from query to query of a batch.
+/// Answers the queries of a batch one after another.
 struct Walk<'a> {
     locator: &'a Locator<'a>,
-    /// A corner at the nearest vertex of a query before, and that query.
+    /// A corner at the nearest vertex of the previous query, and that query.
     here: Option<Side>,
     last: Point2,
     reach: f64,
-    /// The same in boxes.
+    /// The same for the boxes.
     hint: Option<usize>,
-    /// Room for vertices as near as the nearest.
+    /// Buffer for vertices that are equally near.
     ties: Vec<Side>,
 }
 
@@ -72,14 +73,14 @@ impl Walk<'_> {
             self.locator.sites(usize::MAX - left)?;
             return Ok(vertex);
         }
-        // Very many vertices are equally near.
+        // Too many neighbors, or too many equally near vertices: use boxes.
         let sites = self.locator.sites(self.locator.given.points.len())?;
         Ok(sites.map_or(-1, |sites| sites.nearest(q, &mut self.hint, nearer)))
     }
 
     /// A corner near `q`.
     fn start(&self, q: Point2) -> Side {
-        // False for NaN, at first and where squares overflow: then the tree knows where to start.
+        // False for NaN, initially and if squares overflow: then the tree gives the start.
         if squared(q, self.last) <= self.reach
             && let Some(here) = self.here
         {
@@ -91,7 +92,8 @@ impl Walk<'_> {
         }
     }
 
-    /// The nearest vertex to `q`, of several the first row, on the way from `best`; nothing after `left` neighbors.
+    /// The nearest vertex to `q`, the first row of several, by a walk from `best`; `None` after
+    /// `left` neighbors.
     fn walk(&mut self, mut best: Side, q: Point2, left: &mut usize) -> Option<i32> {
         let given = &self.locator.given;
         let at = |side: Side| given.point(given.vertex(side));
@@ -99,7 +101,7 @@ impl Walk<'_> {
             let here = at(best);
             let mut closer = None;
             self.ties.clear();
-            neighbours(given, best, |side| {
+            neighbors(given, best, |side| {
                 match nearer(q, at(side), here) {
                     Sign::Positive => closer = Some(side),
                     Sign::Zero => self.ties.push(side),
@@ -123,16 +125,17 @@ impl Walk<'_> {
     }
 }
 
-/// The neighbours of the vertex at a corner, until `visit` answers `false`; some twice.
-fn neighbours(given: &Triangles, start: Side, mut visit: impl FnMut(Side) -> bool) {
+/// Calls `visit` on the neighbors of the vertex at a corner until it answers `false`; some occur
+/// twice.
+fn neighbors(given: &Triangles, start: Side, mut visit: impl FnMut(Side) -> bool) {
     given.around(start, |side| {
         let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
         visit(u) && (given.neighbors[side.triangle][u.corner] >= 0 || visit(v))
     });
 }
 
-/// The first row among all vertices as near as the one at `start`, where that is the least; nothing where they
-/// are many, or `left` neighbors do not tell.
+/// The first row among all vertices as near as the one at `start`, if no vertex is nearer; `None`
+/// if they are many, or `left` neighbors do not suffice.
 #[cold]
 fn first_of_ties(
     given: &Triangles,
@@ -149,7 +152,7 @@ fn first_of_ties(
             continue;
         }
         met.push(vertex);
-        neighbours(given, side, |side| {
+        neighbors(given, side, |side| {
             let p = given.point(given.vertex(side));
             if nearer(q, p, here) == Sign::Zero {
                 open.push(side);

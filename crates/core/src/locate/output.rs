@@ -1,4 +1,4 @@
-//! Numbers that many threads write, each to rows of its own.
+//! Output arrays that many threads write, each to its own rows.
 
 use std::sync::atomic::{AtomicI32, AtomicU64, Ordering};
 
@@ -6,28 +6,28 @@ use crate::error::Result;
 use crate::memory::with_room;
 use crate::watch::Watch;
 
-/// Numbers that are filled in between two looks at the watch: their pages are fresh.
+/// Numbers initialized between two checks for interruption: their pages are new.
 const LOT: usize = 1 << 18;
 
-/// Numbers that threads write to rows of their own, in any order.
+/// Numbers that threads write to their own rows, in any order.
 pub struct Output<T: Word> {
     cells: Vec<T::Cell>,
 }
 
 /// A number of one word.
 pub trait Word: Copy {
-    /// The same, to be shared.
+    /// The same number in a form that threads can share.
     type Cell: Send + Sync;
     /// A cell with the number.
     fn cell(self) -> Self::Cell;
-    /// Puts the number into a cell.
+    /// Stores the number in a cell.
     fn put(self, cell: &Self::Cell);
     /// The number in a cell.
     fn take(cell: Self::Cell) -> Self;
 }
 
-// Rows are written once and read after the threads have ended: no order is needed, and the cells
-// are as fast as plain numbers.
+// Rows are written once and read after the threads have ended: relaxed ordering suffices, and the
+// cells are as fast as plain numbers.
 impl Word for i32 {
     type Cell = AtomicI32;
     fn cell(self) -> AtomicI32 {
@@ -59,7 +59,7 @@ impl Word for f64 {
 }
 
 impl<T: Word> Output<T> {
-    /// `n` times the same number.
+    /// `n` copies of a number.
     pub fn filled(n: usize, value: T, watch: &Watch) -> Result<Self> {
         let mut cells = with_room(n)?;
         while cells.len() < n {

@@ -1,14 +1,14 @@
-//! Points as seen from another, in a unit in which their products neither overflow nor vanish.
+//! Points relative to an origin, in a unit in which their products neither overflow nor underflow.
 
 use std::array::from_fn;
 
 use crate::points::Extent;
 
-/// Differences within these bounds are left as they are: their fourth powers are doubles.
+/// Differences within these bounds are not scaled: their fourth powers are doubles.
 const SAFE: std::ops::Range<f64> = 1e-60..1e60;
 
-/// `points` minus `origin`, divided by a power of two, and that power; 1 unless the differences are
-/// very large or all very small.
+/// `points` minus `origin`, divided by a power of two, and that power; it is 1 unless some
+/// difference is very large or all are very small.
 #[inline]
 pub fn seen_from<const N: usize, const D: usize>(
     origin: [f64; D],
@@ -21,7 +21,7 @@ pub fn seen_from<const N: usize, const D: usize>(
     scaled(origin, points)
 }
 
-/// `p` minus `origin` in a unit that [`seen_from`] has given.
+/// `p` minus `origin` in a unit returned by [`seen_from`].
 #[inline]
 pub fn in_unit<const D: usize>(origin: [f64; D], p: [f64; D], unit: f64) -> [f64; D] {
     if unit == 1.0 {
@@ -34,7 +34,7 @@ pub fn in_unit<const D: usize>(origin: [f64; D], p: [f64; D], unit: f64) -> [f64
 }
 
 /// A unit of length in which no power of the distances leaves the range of doubles, unless they
-/// differ by as much among themselves.
+/// differ as much among themselves.
 pub fn unit_of<const D: usize>(points: &[[f64; D]]) -> f64 {
     let extent = Extent::of(points.iter().copied());
     if extent.min[0] > extent.max[0] {
@@ -43,7 +43,7 @@ pub fn unit_of<const D: usize>(points: &[[f64; D]]) -> f64 {
     seen_from(extent.min, [extent.max]).1
 }
 
-/// The longest side of the box of points, in a unit.
+/// The longest side of the bounding box of points, in a unit.
 pub fn longest_side<const D: usize>(points: &[[f64; D]], unit: f64) -> f64 {
     let extent = Extent::of(points.iter().copied());
     let sides = in_unit(extent.min, extent.max, unit);
@@ -64,7 +64,7 @@ fn scaled<const N: usize, const D: usize>(
     origin: [f64; D],
     points: [[f64; D]; N],
 ) -> ([[f64; D]; N], f64) {
-    // Quarters cannot overflow; they lose nothing where the differences are large.
+    // Quarters cannot overflow, and they lose no digits if the differences are large.
     let (lead, unit) = if largest(&points).max(largest(&[origin])) > 1e300 {
         (0.25, 4.0)
     } else {
@@ -75,8 +75,8 @@ fn scaled<const N: usize, const D: usize>(
     if most == 0.0 {
         return (seen, 1.0);
     }
-    // Twice a square root of the power, since 2^1074 is no double.
-    // The unit itself is one, so that differences beyond all doubles are up to 8 units.
+    // Twice a square root of the power, since 2^1074 is not a double. The unit itself is one, so
+    // that differences beyond all doubles are up to 8 units.
     let root = ((most.log2() / 2.0).round() as i32).min(510);
     let factor = 2f64.powi(-root);
     let seen = seen.map(|p: [f64; D]| p.map(|x| x * factor * factor));

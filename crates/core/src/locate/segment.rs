@@ -7,19 +7,21 @@ use super::tiling::{Side, next, prev};
 use super::{Located, Locator, Place, Star, is_finite};
 use crate::error::{Error, Result};
 
-/// The triangles that the segment from `a` to `b` meets in more than a point, in order; the one
-/// that holds `a` where `a` is `b`. Of the two beside an edge on the segment the left one counts,
-/// at the boundary the one there is. Parts outside the convex hull are skipped.
+/// The triangles that the segment from `a` to `b` meets in more than a point, in order; if `a`
+/// equals `b`, the one that contains it. Of the two triangles beside an edge on the segment the
+/// left one is reported, at the boundary the only one. Parts outside the convex hull are skipped.
 pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
     if !is_finite(&a) || !is_finite(&b) {
-        return Err(Error::Shape("an end of the segment is not finite".into()));
+        return Err(Error::Shape(
+            "the ends of the segment must be finite".into(),
+        ));
     }
     if locator.given.simplices.is_empty() {
         return Ok(Vec::new());
     }
     if !locator.boundary()?.convex {
         return Err(Error::Shape(
-            "a walk along a segment needs triangles of the whole convex hull".into(),
+            "a walk along a segment needs triangles that fill the convex hull".into(),
         ));
     }
     let given = &locator.given;
@@ -50,13 +52,13 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
 }
 
 /// The boundary edge through which, or through an end of which, the segment between two points
-/// outside comes in.
+/// outside enters the hull.
 fn entry(locator: &Locator, a: Point2, b: Point2) -> Result<Option<Side>> {
     let given = &locator.given;
     let enters = |side: &&Side| {
         let [u, v] = [next(side.corner), prev(side.corner)]
             .map(|corner| given.point(given.vertex(Side { corner, ..**side })));
-        // a is strictly beyond the edge and b strictly before it; u is left of the line.
+        // a is strictly outside the edge and b strictly inside; u is left of the line.
         orient2d(u, v, a) == Sign::Negative
             && orient2d(u, v, b) == Sign::Positive
             && orient2d(a, b, u) != Sign::Negative

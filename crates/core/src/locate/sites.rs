@@ -1,8 +1,8 @@
-//! The nearest vertex, by boxes over the vertices along the curve, of either dimension.
+//! The nearest vertex in 2-D or 3-D, by boxes over the vertices along the curve.
 //!
-//! A walk over the edges of a Delaunay triangulation finds it, too, but asks all neighbors of a vertex: 27
-//! tetrahedra around each on the way in 3-D, and any number of triangles in the plane. Boxes need no
-//! triangulation, and ask some twenty points.
+//! A walk over the edges of a Delaunay triangulation finds it, too, but tests all neighbors of each
+//! vertex: in 3-D 27 tetrahedra around each on the way, in 2-D any number of triangles. Boxes need
+//! no triangulation, and test some twenty points.
 
 use delone_predicates::Sign;
 
@@ -14,10 +14,10 @@ use crate::order::order_of;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Tetrahedra between two looks at the watch.
+/// Tetrahedra between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// The vertices of simplices along the curve, and boxes over them.
+/// The vertices of simplices sorted along the curve, and boxes over them.
 #[derive(Debug)]
 pub struct Sites<const D: usize> {
     rows: Vec<i32>,
@@ -26,7 +26,7 @@ pub struct Sites<const D: usize> {
 }
 
 impl<const D: usize> Sites<D> {
-    /// The vertices that simplices have.
+    /// The vertices of all simplices.
     pub fn of<const N: usize>(given: &Given<D, N>, watch: &Watch) -> Result<Self> {
         let mut used = filled(given.points.len(), false)?;
         for lot in given.simplices.chunks(LOT) {
@@ -59,8 +59,9 @@ impl<const D: usize> Sites<D> {
         })
     }
 
-    /// The nearest one to `q`, of several the first row; `last` is the one before, of a query near by.
-    /// `nearer` tells, exactly, whether the second point is nearer to the first than the third is.
+    /// The vertex nearest to `q`, the first row of several; `last` is the answer for the previous
+    /// query, which is nearby. `nearer` tells, exactly, whether the second point is nearer to the
+    /// first than the third is.
     pub fn nearest(
         &self,
         q: [f64; D],
@@ -79,7 +80,7 @@ impl<const D: usize> Sites<D> {
                 best = Some(i);
                 let away: [f64; D] =
                     std::array::from_fn(|k| self.points[i][k] * unit - q[k] * unit);
-                // A little more, so that no rounding leaves a box out.
+                // A little more, so that rounding excludes no box.
                 within = length(away) * (1.0 + 1e-14) + f64::MIN_POSITIVE;
             }
             within

@@ -1,8 +1,8 @@
-//! The first of the triangles that hold a point.
+//! The first of the triangles that contain a point.
 //!
 //! A query on an edge or a vertex is in several triangles. The one with the smallest number is the
-//! answer, so that it depends neither on where a walk came from nor, thereby, on the other queries
-//! and the threads.
+//! answer, so it is independent of where a walk came from, and thus of the other queries and the
+//! threads.
 
 use super::tiling::Side;
 use crate::arrays::Triangles;
@@ -10,14 +10,14 @@ use crate::arrays::Triangles;
 /// A point in a closed triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// The triangle, the first one that has the point.
+    /// The triangle, the first one that contains the point.
     pub triangle: usize,
     /// Whether the point is on the edge opposite each corner.
     pub on: [bool; 3],
 }
 
 impl Place {
-    /// The corner that the point is at.
+    /// The corner at which the point is.
     #[inline]
     pub fn site(&self) -> Option<usize> {
         match self.on {
@@ -28,7 +28,7 @@ impl Place {
         }
     }
 
-    /// The corner opposite the open edge that the point is on.
+    /// The corner opposite the open edge on which the point is.
     pub fn edge(&self) -> Option<usize> {
         match self.on {
             [true, false, false] => Some(0),
@@ -53,8 +53,8 @@ impl Place {
     }
 }
 
-/// The answer for the vertex that was asked for last: equal queries follow each other along the
-/// curve, and a vertex may have very many triangles.
+/// The answer for the last vertex: equal queries are consecutive along the curve, and a vertex may
+/// have very many triangles.
 #[derive(Debug, Default)]
 pub struct Star {
     last: Option<(Side, First)>,
@@ -63,15 +63,15 @@ pub struct Star {
 /// The first of the triangles that can be reached around a vertex or an edge.
 #[derive(Debug, Clone, Copy)]
 pub struct First {
-    /// The place there.
+    /// The place in that triangle.
     pub place: Place,
-    /// Whether the point is a vertex of the boundary: where that is not convex, there may be
-    /// triangles that only touch those.
+    /// Whether the point is a boundary vertex: if the boundary is not convex, there may be
+    /// triangles that touch it without being reached.
     pub open: bool,
 }
 
 impl Star {
-    /// The first of the triangles that hold the point at `place`.
+    /// The first of the triangles that contain the point at `place`.
     #[inline]
     pub fn first(&mut self, given: &Triangles, place: Place) -> First {
         if place.on == [false; 3] {
@@ -105,7 +105,7 @@ impl Star {
             true
         });
         let place = Place::at_corner(least);
-        // The next walk to this vertex starts in the triangle that was found.
+        // The next walk to this vertex starts in the triangle found now.
         self.last = Some((least, First { place, open }));
         First { place, open }
     }

@@ -1,22 +1,23 @@
-//! Where walks start: a k-d tree over a sample of the triangles, or tetrahedra, kept between calls.
+//! Starting simplices for walks: a k-d tree over a sample of the simplices, kept between calls.
 //!
-//! One triangle in eight to sixteen is a node, by the place of its first corner (J. L. Bentley,
-//! "Multidimensional binary search trees used for associative searching", 1975). A query goes down
-//! one path and takes the nearest node of it: near enough for a walk of a few steps, wherever the
-//! points are dense. The tree is perfect and in the order of its levels, so it needs no links and
-//! its top stays in the cache.
+//! One simplex in eight to sixteen is a node, by the position of its first corner (J. L. Bentley,
+//! "Multidimensional binary search trees used for associative searching", 1975). A query descends
+//! one path and uses the nearest node on it: near enough for a walk of a few steps, wherever the
+//! points are dense. The tree is perfect and stored level by level, so it needs no links and its
+//! top stays in the cache.
 
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::watch::{Pace, Watch};
 
-/// Simplices a node, at least.
+/// The fewest simplices per node.
 const SHARE: usize = 8;
 
-/// Nodes of samples between two looks at the watch.
+/// Nodes of samples between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// A node. Its left subtree has nothing beyond it along its axis, its right one nothing before it.
+/// A node. Nothing in its left subtree is beyond it along its axis, nothing in its right one before
+/// it.
 #[derive(Debug, Clone, Copy)]
 struct Node<const D: usize> {
     at: [f64; D],
@@ -31,9 +32,9 @@ pub struct Start<const D: usize> {
 }
 
 impl<const D: usize> Start<D> {
-    /// A tree over some of `m` simplices, evenly spread, whose first corners `corner` knows.
+    /// A tree over an evenly spaced sample of `m` simplices; `corner` gives their first corners.
     pub fn of(m: usize, corner: impl Fn(usize) -> [f64; D], watch: &Watch) -> Result<Self> {
-        // The largest perfect tree of at most m / SHARE nodes, and of one at least.
+        // The largest perfect tree of at most m / SHARE nodes, but at least one.
         let levels = (m / SHARE + 1).ilog2();
         let count = ((1 << levels) - 1).max(1).min(m);
         let mut sample = with_room(count)?;
@@ -71,11 +72,11 @@ impl<const D: usize> Start<D> {
         best
     }
 
-    /// Loads the eight nodes from `i` on, the ones three levels further down of which the way takes
-    /// one: a cold query waits for memory a third as often.
+    /// Loads the eight nodes from `i` on, three levels down, of which the path visits one: a cold
+    /// query waits for memory a third as often.
     #[inline]
     fn touch(&self, i: usize) {
-        // One load in each line of the cache.
+        // One load per cache line.
         if let Some(nodes) = self.nodes.get(i..i + 8) {
             for k in [0, 3, 5, 7] {
                 std::hint::black_box(nodes[k].simplex);
@@ -108,7 +109,7 @@ fn fill<const D: usize>(
     fill(nodes, 2 * i + 2, right, pace)
 }
 
-/// The axis along which a sample is longest, the first of several.
+/// The axis along which a sample is longest, the first if there are several.
 fn longest<const D: usize>(sample: &[([f64; D], u32)]) -> usize {
     let half = |k: usize| {
         let ends = sample
@@ -116,7 +117,7 @@ fn longest<const D: usize>(sample: &[([f64; D], u32)]) -> usize {
             .fold((f64::MAX, f64::MIN), |(least, most), s| {
                 (least.min(s.0[k]), most.max(s.0[k]))
             });
-        // Halves, so that no difference overflows.
+        // Halved, so that no difference overflows.
         ends.1 / 2.0 - ends.0 / 2.0
     };
     (1..D).fold(0, |best, k| if half(k) > half(best) { k } else { best })

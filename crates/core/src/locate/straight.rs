@@ -1,10 +1,10 @@
 //! The straight walk: the triangles that a segment meets, in order.
 //!
-//! Every decision is the exact side of a vertex on the line through the two given ends, so each
-//! triangle of the line is met once and the walk ends on any tiling (the "straight walk" of O.
-//! Devillers, S. Pion and M. Teillaud, "Walking in a triangulation", 2002, with the degenerate
-//! cases). The walk is in one of two states: at a vertex that is exactly on the segment, or in the
-//! middle of an edge that the segment crosses.
+//! Every decision is the exact side of a vertex relative to the line through the two given ends, so
+//! each triangle on the line is visited once and the walk terminates on any tiling (the "straight
+//! walk" of O. Devillers, S. Pion and M. Teillaud, "Walking in a triangulation", 2002, with the
+//! degenerate cases). The walk is in one of two states: at a vertex that is exactly on the segment,
+//! or in the interior of an edge that the segment crosses.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
@@ -15,9 +15,9 @@ use crate::error::{Error, Result};
 /// How a trace ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// In a triangle whose closed area has the far end.
+    /// In a triangle whose closed area contains the target.
     Reached(usize),
-    /// At a boundary edge beyond which, or at whose end, the segment goes on outside.
+    /// At a boundary edge beyond which, or at whose end, the segment continues outside.
     Left(Side),
 }
 
@@ -37,7 +37,8 @@ pub struct Trace<'a> {
     given: &'a Triangles<'a>,
     a: Point2,
     b: Point2,
-    /// Of the triangles beside an edge on the segment: the left one first, or the right one.
+    /// Which of the triangles beside an edge on the segment is visited: the left one or the right
+    /// one.
     prefer_left: bool,
     state: State,
 }
@@ -54,8 +55,8 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// From `a`, which is in the closed area of triangle `t` and on its edges `on`, to `b`, another
-    /// point.
+    /// From `a`, which is in the closed area of triangle `t` and on its edges `on`, to a different
+    /// point `b`.
     pub fn from_inside(
         given: &'a Triangles<'a>,
         t: usize,
@@ -78,13 +79,13 @@ impl<'a> Trace<'a> {
         trace.state = match corners[..] {
             [] => State::Within(t),
             [k] => trace.leave_edge(side(k)),
-            // Of three corners the one that is opposite neither edge.
+            // The corner that is opposite neither edge.
             [k, l, ..] => State::Vertex(side(3 - k - l)),
         };
         trace
     }
 
-    /// From beyond boundary edge `side`, which the segment meets, to `b`.
+    /// From outside boundary edge `side`, which the segment meets, to `b`.
     pub fn from_outside(given: &'a Triangles<'a>, side: Side, a: Point2, b: Point2) -> Self {
         let mut trace = Self {
             given,
@@ -102,13 +103,13 @@ impl<'a> Trace<'a> {
         trace
     }
 
-    /// The same walk with the right one of two triangles beside an edge.
+    /// The same walk, visiting the right one of two triangles beside an edge.
     pub fn right_handed(mut self) -> Self {
         self.prefer_left = false;
         self
     }
 
-    /// Walks to the end; `meet` gets each triangle.
+    /// Walks to the end; calls `meet` for each triangle.
     pub fn run(&mut self, mut meet: impl FnMut(usize)) -> Result<End> {
         // Each triangle is entered once; a vertex or an edge on the way adds two steps.
         let mut left = 4 * self.given.simplices.len() + 4;
@@ -134,7 +135,7 @@ impl<'a> Trace<'a> {
         orient2d(self.a, self.b, p)
     }
 
-    /// Whether `b` is in the closed area of a triangle.
+    /// Whether the closed area of a triangle contains `b`.
     fn holds_end(&self, t: usize) -> bool {
         let [p, q, r] = self.given.corners(t);
         [(p, q), (q, r), (r, p)]
@@ -142,7 +143,7 @@ impl<'a> Trace<'a> {
             .all(|(u, v)| orient2d(u, v, self.b) != Sign::Negative)
     }
 
-    /// Through the edge opposite a corner, or out.
+    /// Crosses the edge opposite a corner, or leaves the tiling.
     fn through(&self, side: Side) -> State {
         match self.given.beyond(side) {
             Some(across) => State::Enter(across),
@@ -150,7 +151,7 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// The start in the open edge opposite a corner.
+    /// The start, on the open edge opposite a corner.
     fn leave_edge(&self, side: Side) -> State {
         let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
         let [p, q] = [u, v].map(|s| self.given.point(self.given.vertex(s)));
@@ -158,14 +159,15 @@ impl<'a> Trace<'a> {
             Sign::Positive => State::Within(side.triangle),
             Sign::Negative => self.through(side),
             Sign::Zero => {
-                // Along the edge: as from its end behind.
+                // Along the edge: as if from the end behind.
                 let ahead = lexicographic(self.a, self.b) == lexicographic(p, q);
                 State::Vertex(if ahead { u } else { v })
             }
         }
     }
 
-    /// In `t`, from a point that is no corner and from which the segment goes inwards.
+    /// Inside `t`: from a point that is not a corner and from which the segment goes into the
+    /// interior.
     fn leave_inside(&self, t: usize, meet: &mut impl FnMut(usize)) -> State {
         meet(t);
         if self.holds_end(t) {
@@ -177,27 +179,27 @@ impl<'a> Trace<'a> {
                 triangle: t,
                 corner,
             };
-            // Seen from inside, what is left of the line comes after what is right of it.
+            // Counterclockwise from inside, corners right of the line precede those left of it.
             match (signs[corner], signs[next(corner)], signs[prev(corner)]) {
                 (Sign::Zero, Sign::Positive, Sign::Negative) => return State::Vertex(side),
                 (_, Sign::Negative, Sign::Positive) => return self.through(side),
                 _ => {}
             }
         }
-        // Only in triangles that are no triangles.
+        // Only in degenerate triangles.
         State::Done(End::Left(Side {
             triangle: t,
             corner: 0,
         }))
     }
 
-    /// Into the triangle through the open edge opposite the corner, and on.
+    /// Enters the triangle through the open edge opposite the corner, and continues.
     fn cross(&self, side: Side, meet: &mut impl FnMut(usize)) -> State {
         meet(side.triangle);
         if self.holds_end(side.triangle) {
             return State::Done(End::Reached(side.triangle));
         }
-        // Seen along the segment the edge has its `next` corner on the left.
+        // Seen along the segment, the `next` corner of the edge is on the left.
         match self.side(self.given.point(self.given.vertex(side))) {
             Sign::Zero => State::Vertex(side),
             Sign::Positive => self.through(Side {
@@ -211,7 +213,7 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// From a vertex on the segment into the triangle, or along the edge, that leads on to `b`.
+    /// From a vertex on the segment into the triangle, or along the edge, towards `b`.
     fn leave_vertex(&self, at: Side, meet: &mut impl FnMut(usize)) -> Result<State> {
         let p = self.given.point(self.given.vertex(at));
         let mut found = None;
@@ -221,7 +223,7 @@ impl<'a> Trace<'a> {
                 .map(|corner| self.given.point(self.given.vertex(Side { corner, ..side })));
             let (right, left) = (orient2d(p, u, self.b), orient2d(p, v, self.b));
             if right == Sign::Negative || left == Sign::Positive {
-                // At the boundary the edge that has b beyond: seen from p, to its left or right.
+                // At the boundary: the edge with b outside, which is left or right of p.
                 if right == Sign::Negative && self.given.turn_right(side).is_none() {
                     rim = Side {
                         corner: prev(side.corner),
@@ -243,7 +245,7 @@ impl<'a> Trace<'a> {
             return Ok(State::Done(End::Left(rim)));
         };
         if right == Sign::Zero && left == Sign::Zero {
-            // The far end is this vertex.
+            // The target is this vertex.
             meet(side.triangle);
             return Ok(State::Done(End::Reached(side.triangle)));
         }
@@ -255,7 +257,7 @@ impl<'a> Trace<'a> {
             return Ok(self.along_edge(side, p, u, end, meet));
         }
         if left == Sign::Zero {
-            // The same edge seen from its other side, unless that is outside.
+            // The same edge from its other side, unless that is outside.
             let (beside, end) = match self.given.turn_left(side) {
                 Some(across) => (
                     across,

@@ -1,9 +1,10 @@
-//! Exported arrays as a tiling: from triangle to triangle by codes, never by vertex numbers, so that
-//! the two sides of an edge may name different rows with equal coordinates.
+//! Exported arrays as a tiling: steps from triangle to triangle by codes, never by vertex numbers.
+//!
+//! So the two sides of an edge may name different rows with equal coordinates.
 
 use crate::arrays::Triangles;
 
-/// A corner of a triangle, and the edge opposite.
+/// A corner of a triangle, and the opposite edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
     /// The triangle.
@@ -12,7 +13,7 @@ pub struct Side {
     pub corner: usize,
 }
 
-/// The corner after `k`, counter-clockwise.
+/// The corner after `k`, counterclockwise.
 #[inline]
 pub fn next(k: usize) -> usize {
     if k == 2 { 0 } else { k + 1 }
@@ -31,7 +32,7 @@ impl Triangles<'_> {
         self.simplices[side.triangle][side.corner]
     }
 
-    /// The same edge seen from the triangle beyond; nothing at the boundary.
+    /// The same edge seen from the triangle beyond; `None` at the boundary.
     ///
     /// ```text
     ///        a                 the edge from s[next(k)] to s[next(next(k))] of the one
@@ -52,12 +53,12 @@ impl Triangles<'_> {
         let corner = usize::from(back[1] == here) + 2 * usize::from(back[2] == here);
         Some(Side {
             triangle: t as usize,
-            // Two triangles share one edge; arrays that say otherwise must not lead out of range.
+            // Invalid arrays, in which no edge is shared, must not lead out of range.
             corner: corner.min(2),
         })
     }
 
-    /// The next triangle counter-clockwise around the vertex at a corner.
+    /// The next triangle counterclockwise around the vertex at a corner.
     #[inline]
     pub fn turn_left(&self, side: Side) -> Option<Side> {
         let across = self.beyond(Side {
@@ -83,10 +84,10 @@ impl Triangles<'_> {
         })
     }
 
-    /// Calls `visit` on each triangle around the vertex at a corner, once, until it answers `false`:
-    /// counter-clockwise until the turn is complete; where the boundary is met, on from the first
-    /// one clockwise. It ends after as many steps as there are triangles, whatever the arrays say.
-    /// Returns whether the boundary was met.
+    /// Calls `visit` on each triangle around the vertex at a corner, once, until it answers
+    /// `false`: counterclockwise until the turn is complete; if it reaches the boundary, clockwise
+    /// from the first one. It ends after at most as many steps as there are triangles, even if the
+    /// arrays are invalid. Returns whether the boundary was reached.
     #[inline]
     pub fn around(&self, start: Side, mut visit: impl FnMut(Side) -> bool) -> bool {
         let mut left = self.simplices.len();

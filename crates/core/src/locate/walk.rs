@@ -1,9 +1,9 @@
-//! The walk through exported arrays to the triangle that holds a point.
+//! The walk through exported arrays to the triangle that contains a point.
 //!
 //! The remembering visibility walk (O. Devillers, S. Pion and M. Teillaud, "Walking in a
-//! triangulation", 2002) goes across an edge that has the point on its other side. It ends on
-//! Delaunay triangulations; on others it may turn in circles, so it has a budget, and then the
-//! straight walk takes over, which meets each triangle of a line once.
+//! triangulation", 2002) crosses an edge that has the point on its other side. It terminates on
+//! Delaunay triangulations; on others it may cycle, so it has a budget, and then the straight walk
+//! takes over, which visits each triangle on a line once.
 
 use delone_predicates::{Point2, Sign, orient2d};
 
@@ -12,17 +12,18 @@ use super::tiling::{Side, next, prev};
 use crate::arrays::Triangles;
 use crate::error::Result;
 
-/// Where a walk ends.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
-    /// In a triangle whose closed area has the point: it is on the edges opposite these corners.
+    /// In a triangle whose closed area contains the point, which is on the edges opposite these
+    /// corners.
     Inside(usize, [bool; 3]),
-    /// At a boundary edge that has the point strictly beyond.
+    /// At a boundary edge that has the point strictly outside.
     Beyond(Side),
 }
 
 /// Steps of the visibility walk before the straight walk takes over: several times what a walk
-/// across a whole mesh of uniform points takes.
+/// across a whole mesh of uniform points needs.
 fn budget(triangles: usize) -> usize {
     64 + 8 * triangles.isqrt()
 }
@@ -36,7 +37,7 @@ pub fn walk(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
     }
 }
 
-/// On which side of the directed edge from `a` to `b` the point lies.
+/// On which side of the directed edge from `a` to `b` the point is.
 #[inline]
 fn side_of(a: Point2, b: Point2, q: Point2) -> Sign {
     orient2d(a, b, q)
@@ -71,7 +72,7 @@ pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> O
             on[prev(side.corner)] = right == Sign::Zero;
             return Some(Found::Inside(side.triangle, on));
         }
-        // Selections: which way it goes is a coin that no branch predictor knows.
+        // Selections instead of branches, which would be unpredictable.
         at.corner = if turns_left {
             next(side.corner)
         } else {
@@ -83,9 +84,9 @@ pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> O
     None
 }
 
-/// Loads the vertices of the two triangles that may come next, so that those that are far away in
-/// memory come while the signs are computed: a tenth of the time where the points are in no order.
-/// Where an edge has different rows on its sides, other points may be loaded; nothing hangs on it.
+/// Loads the vertices of the two triangles that may be next, so that distant memory arrives while
+/// the signs are computed: a tenth of the time if the points are unsorted. If an edge has different
+/// rows on its sides, other points may be loaded; nothing depends on it.
 #[inline]
 fn touch(given: &Triangles, side: Side) {
     let sum = |s: &[i32; 3]| s[0].wrapping_add(s[1]).wrapping_add(s[2]);
@@ -134,7 +135,7 @@ pub fn straight(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
 mod tests {
     use super::*;
 
-    /// A centre, two rings of points around it, the outer one turned by some phase, and triangles
+    /// A center, two rings of points around it, the outer one rotated by a phase, and triangles
     /// (after L. De Floriani et al., 1991).
     fn pinwheel(phase: f64) -> (Vec<Point2>, Vec<[i32; 3]>, Vec<[i32; 3]>) {
         let turn = |r: f64, i: i32, phase: f64| {
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn the_straight_walk_ends_where_the_other_turns_in_circles() {
+    fn the_straight_walk_ends_where_the_visibility_walk_cycles() {
         let (points, simplices, neighbors) = pinwheel(1.2);
         let given = Triangles {
             points: &points,

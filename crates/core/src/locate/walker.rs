@@ -1,4 +1,4 @@
-//! Walks from query to query of a batch.
+//! Walks from query to query of a 2-D batch.
 
 use delone_predicates::Point2;
 
@@ -7,8 +7,8 @@ use super::tiling::Side;
 use super::{Kept, Located, Locator, Star};
 use crate::error::Result;
 
-/// How far, in lengths of an edge of the last triangle, a walk goes; from further on the tree of
-/// starts is cheaper: its depth costs about as much as a dozen triangles. Squared.
+/// How far a walk goes, in lengths of an edge of the last triangle, squared; beyond that the tree
+/// of starting triangles is cheaper: its depth costs about as much as a dozen triangles.
 const REACH: f64 = 64.0;
 
 impl Walks<2, 3> for Kept {
@@ -34,7 +34,7 @@ impl Walks<2, 3> for Kept {
     }
 }
 
-/// Where the last query was; the next one is looked for from there, or from the tree of starts.
+/// The location of the last query; the next walk starts there, or from the tree.
 struct Walker<'a> {
     locator: &'a Locator<'a>,
     star: Star,
@@ -46,7 +46,7 @@ struct Walker<'a> {
 impl Walker<'_> {
     #[inline]
     fn go(&mut self, q: Point2) -> Result<Located> {
-        // False for NaN, at first and where squares overflow: then the tree knows where to start.
+        // False for NaN, initially and if squares overflow: then the tree gives the start.
         let close = squared(q, self.last) <= self.reach;
         if !close {
             self.near = self.locator.near(q);

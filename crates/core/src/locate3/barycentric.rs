@@ -1,10 +1,12 @@
-//! Barycentric coordinates of a point in a tetrahedron: accurate beside large offsets and in slivers,
-//! exact at corners, and zero opposite the faces that hold the point.
+//! Barycentric coordinates of a point in a tetrahedron, accurate at large offsets and in slivers.
 //!
-//! Each weight is a volume over the sum of all four. A volume that cancels in plain floating point is
-//! taken from pairs of doubles (T. J. Dekker, "A floating-point technique for extending the available
-//! precision", 1971), and from integers where those do not do. Weights do not change when an axis is
-//! scaled, so each axis gets a unit of its own, in which nothing over- or underflows.
+//! They are exact at corners, and zero opposite the faces that contain the point.
+//!
+//! Each weight is a volume over the sum of all four. A volume that cancels in plain floating point
+//! is computed in double-double arithmetic (T. J. Dekker, "A floating-point technique for extending
+//! the available precision", 1971), and in integers if that does not suffice. Weights do not change
+//! when an axis is scaled, so each axis gets its own unit, in which nothing overflows or
+//! underflows.
 
 use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
@@ -14,15 +16,16 @@ use super::star::Place;
 use super::tiling::Tetrahedra;
 use crate::wide::{ratio, scaled};
 
-/// Magnitude of the products over volume above which plain floating point does not do: it leaves
-/// about 1e-14. The same for pairs, which leave about 2^-50 of 2^-50.
+/// Ratio of the magnitude of the products to the volume above which plain floating point does not
+/// suffice: about 1e-14 is left. The same for double-double arithmetic, which leaves about 2^-50 of
+/// 2^-50.
 const THIN: f64 = 16.0;
 const THINNEST: f64 = (1u64 << 48) as f64;
-/// Differences within these bounds are left as they are: their third powers are doubles, and their
-/// products lose nothing by underflow.
+/// Differences within these bounds are not scaled: their third powers are doubles, and their
+/// products lose nothing to underflow.
 const SAFE: std::ops::Range<f64> = 1e-80..1e80;
 
-/// The weights of the corners of the tetrahedron at `place` for `q`: not negative, of sum 1.
+/// The weights of the corners of the tetrahedron at `place` for `q`: nonnegative, with sum 1.
 pub fn barycentric(given: &Tetrahedra, place: &Place, q: Point3) -> [f64; 4] {
     if let Some(corner) = place.site() {
         let mut weights = [0.0; 4];
@@ -33,7 +36,7 @@ pub fn barycentric(given: &Tetrahedra, place: &Place, q: Point3) -> [f64; 4] {
     weights(corners, place.on, q)
 }
 
-/// The same for corners by themselves; `on` tells on which faces `q` is exactly.
+/// The same for given corners; `on` tells on which faces `q` is exactly.
 fn weights(corners: [Point3; 4], on: [bool; 4], q: Point3) -> [f64; 4] {
     let seen = corners.map(|p| [0, 1, 2].map(|k| p[k] - q[k]));
     let least = |least: f64, x: &f64| if *x == 0.0 { least } else { least.min(x.abs()) };
@@ -49,7 +52,7 @@ fn weights(corners: [Point3; 4], on: [bool; 4], q: Point3) -> [f64; 4] {
         let Some(volume) = plain(others).or_else(|| paired(without(&corners, k), q)) else {
             return exactly(corners, on, q);
         };
-        // From a face to the point the volumes are positive but for the sign of the permutation.
+        // The volumes from a face to the point are positive up to the sign of the permutation.
         volumes[k] = if k % 2 == 0 { volume } else { -volume };
     }
     let sum: f64 = volumes.iter().sum();
@@ -64,7 +67,7 @@ fn without<T: Copy>(corners: &[T; 4], k: usize) -> [T; 3] {
     [0, 1, 2].map(|i| corners[i + usize::from(i >= k)])
 }
 
-/// The determinant of three vectors; nothing where it is too small beside its products.
+/// The determinant of three vectors; `None` if it is too small compared with its products.
 fn plain([a, b, c]: [Point3; 3]) -> Option<f64> {
     let products = [
         (a[0], b[1] * c[2], b[2] * c[1]),
@@ -79,7 +82,7 @@ fn plain([a, b, c]: [Point3; 3]) -> Option<f64> {
     (volume.abs() * THIN >= size).then_some(volume)
 }
 
-/// The same of three points as seen from `q`, in pairs of doubles.
+/// The same for three points relative to `q`, in double-double arithmetic.
 #[cold]
 fn paired(corners: [Point3; 3], q: Point3) -> Option<f64> {
     let [a, b, c] = corners.map(|p| [0, 1, 2].map(|k| Pair::difference(p[k], q[k])));

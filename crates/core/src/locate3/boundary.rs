@@ -1,12 +1,14 @@
-//! The boundary of a tiling: whether it is convex, and its nearest point, exactly.
+//! The boundary of a 3-D tiling: whether it is convex, and its nearest point to a query, exactly.
 //!
-//! Of any boundary that is found among all faces (`excess`), on a convex one from face to face. From a face that the query does not lie behind, a walk goes on to faces with
-//! nearer points: where the foot is on an edge, to the face across if the query is on that face's side
-//! of the edge; where it is a corner x, to a face there, not to be behind, along one of whose edges the query q lies
-//! ahead. Distances fall, so it ends. Where it ends the point is the nearest one of the body: otherwise some d
-//! from x into the body has d . (q - x) > 0; as q - x does not lead inside, the way from d in that direction
-//! leaves the cone of the body at x through a face that q is not behind, in a d' with d' . (q - x) > 0; and d'
-//! lies between two edges of that face, one of which would have been taken.
+//! For a general boundary all faces are searched (`excess`), for a convex one there is a walk from
+//! face to face. From a face that does not have the query behind it, the walk goes on to faces with
+//! nearer points: if the foot is on an edge, to the face across it if the query is on that face's
+//! side of the edge; if it is a corner x, to a face there that does not have the query behind it
+//! and along one of whose edges the query q lies ahead. It terminates because distances decrease.
+//! At its end the point is the nearest one of the body. Otherwise some direction d from x into the
+//! body has d . (q - x) > 0. As q - x does not point inside, moving from d in that direction leaves
+//! the cone of the body at x through a face that does not have q behind it, at a d' with d' . (q -
+//! x) > 0; and d' lies between two edges of that face, one of which would have been taken.
 
 use std::sync::OnceLock;
 
@@ -21,10 +23,11 @@ use crate::locate::{Boxes, kept};
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
 
-/// Root of how many sizes of the boundary away rounded distances still tell one face from another.
+/// Square root of the distance, in sizes of the boundary, up to which rounded distances distinguish
+/// faces.
 const REMOTE: f64 = 1024.0;
 
-/// Tetrahedra between two looks at the watch.
+/// Tetrahedra between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// The boundary faces of a tiling.
@@ -32,18 +35,19 @@ const LOT: usize = 1 << 16;
 pub struct Boundary {
     /// Each boundary face, ascending.
     sides: Vec<Side>,
-    /// Whether the tetrahedra fill one convex body, so that nothing lies beyond what is strictly
-    /// outside.
+    /// Whether the tetrahedra fill one convex body, so that a point strictly outside a face is
+    /// outside of all.
     pub convex: bool,
-    /// Of a convex body: the face across each edge, first that from the first corner to the next.
+    /// For a convex body: the face across each edge, first across that from the first corner to the
+    /// next.
     across: Vec<[u32; 3]>,
     extent: Extent<3>,
-    /// The faces by place, for the nearest one.
+    /// The faces in boxes, for nearest-face queries.
     boxes: OnceLock<Boxes<3>>,
 }
 
 impl Boundary {
-    /// Reads the boundary off the arrays.
+    /// Extracts the boundary from the arrays.
     pub fn of(given: &Tetrahedra, watch: &Watch) -> Result<Self> {
         let mut sides = Vec::new();
         let (mut from, count) = (0, given.simplices.len());
@@ -64,8 +68,8 @@ impl Boundary {
         })
     }
 
-    /// The boundary face with the nearest point to `q`, of several the first, and how its corners share in
-    /// that; `last` is the one before, of a query near by.
+    /// The boundary face nearest to `q`, the first of several, and the weights of its corners in
+    /// the nearest point; `last` is the answer for the previous query, which is nearby.
     pub fn nearest(
         &self,
         given: &Tetrahedra,
@@ -74,7 +78,7 @@ impl Boundary {
         watch: &Watch,
     ) -> Result<Option<(Side, [f64; 3])>> {
         if !self.convex {
-            let found = self.of_any_shape(given, q, *last, watch)?;
+            let found = self.of_general_boundary(given, q, *last, watch)?;
             *last = found.map(|(i, _)| i);
             return Ok(found.map(|(i, shares)| (self.sides[i], shares)));
         }
@@ -92,7 +96,7 @@ impl Boundary {
         Ok(found.map(|(i, shares)| (self.sides[i], shares)))
     }
 
-    /// The same by rounded distances.
+    /// The same by rounded distances, with boxes.
     fn by_boxes(
         &self,
         given: &Tetrahedra,
@@ -105,8 +109,8 @@ impl Boundary {
         Ok(boxes.nearest(q, last, |i, unit| on_face(corners(i), q, unit)))
     }
 
-    /// The same by exact ones, of any boundary.
-    fn of_any_shape(
+    /// The same by exact distances, for any boundary.
+    fn of_general_boundary(
         &self,
         given: &Tetrahedra,
         q: Point3,
@@ -128,7 +132,7 @@ impl Boundary {
         })
     }
 
-    /// Whether `q` is so far away that rounded distances tell nothing of the boundary.
+    /// Whether `q` is so far away that rounded distances do not distinguish the faces.
     fn is_remote(&self, q: Point3) -> bool {
         let Extent { min, max } = self.extent;
         let size = |k: usize| max[k] / REMOTE - min[k] / REMOTE;
@@ -136,13 +140,14 @@ impl Boundary {
         (0..3).any(|k| (q[k] / 4.0 - min[k] / 4.0).abs() > size * (REMOTE / 4.0 * REMOTE))
     }
 
-    /// On which side of a face `q` lies; positive is outside.
+    /// On which side of a face `q` is; positive is outside.
     fn turn(&self, given: &Tetrahedra, i: usize, q: Point3) -> Sign {
         let [a, b, c] = given.face(self.sides[i]).map(|v| given.point(v));
         orient3d(a, b, c, q)
     }
 
-    /// The face with the nearest point of a convex body, on the way from one that `q` is not behind.
+    /// The face of a convex body nearest to `q`, by a walk from one that does not have `q` behind
+    /// it.
     fn walk(&self, given: &Tetrahedra, start: usize, q: Point3) -> (usize, [f64; 3]) {
         let triangle = |i: usize| {
             let face = given.face(self.sides[i]);
@@ -158,6 +163,7 @@ impl Boundary {
                     (nearer.then_some(next), here.min(next))
                 }
                 Foot::Corner(k) => {
+                    // Rotate around the corner until a face leads to a nearer point.
                     let mut around = (here, k);
                     let mut first = here;
                     let nearer = loop {
@@ -186,7 +192,7 @@ impl Boundary {
         (first, face.shares(face.foot()))
     }
 
-    /// The face across edge `k` of another, and which of its edges that is.
+    /// The face across edge `k` of another, and the index of the shared edge there.
     fn beyond(&self, given: &Tetrahedra, i: usize, k: usize) -> (usize, usize) {
         let next = self.across[i][k] as usize;
         let start = given.face(self.sides[i])[(k + 1) % 3];
@@ -196,8 +202,9 @@ impl Boundary {
     }
 }
 
-/// The faces across the edges of all boundary faces, where these are one surface that is convex at
-/// each edge: then it is the convex hull (Tietze's theorem), and all other tetrahedra are inside of it.
+/// The faces across the edges of all boundary faces, if these are one surface that is convex at
+/// each edge: then it is the convex hull (Tietze's theorem), and all other tetrahedra are inside
+/// it.
 fn across_edges(
     given: &Tetrahedra,
     sides: &[Side],
@@ -225,7 +232,7 @@ fn across_edges(
             let shared = given.simplices[side.simplex];
             for corner in FACES[next.corner] {
                 let far = given.vertex(Side { corner, ..next });
-                // Seen from outside, faces are counter-clockwise; what is positive is beyond.
+                // Seen from outside, faces are counterclockwise; positive is outside.
                 let beyond = orient3d(u, v, w, given.point(far));
                 if !shared.contains(&far) && beyond == Sign::Positive {
                     return Ok(None);
@@ -245,10 +252,10 @@ fn across_edges(
     Ok((count == sides.len()).then_some(across))
 }
 
-/// The boundary face on the other side of the edge of `side` opposite its corner `w`, through the
-/// tetrahedra around the edge, and how many these are; nothing where they go in circles.
+/// The boundary face on the other side of the edge of `side` opposite its corner `w`, found through
+/// the tetrahedra around the edge, and their number; `None` if they form a cycle.
 fn around_edge(given: &Tetrahedra, side: Side, w: Side) -> (Option<Side>, usize) {
-    // The edge is opposite the corners side.corner and w.corner: leave across the face opposite w.
+    // The edge is opposite the corners side.corner and w.corner: leave through the face opposite w.
     let mut exit = w.corner;
     let mut entry = side.corner;
     let mut simplex = side.simplex;
@@ -260,7 +267,7 @@ fn around_edge(given: &Tetrahedra, side: Side, w: Side) -> (Option<Side>, usize)
         let Some(next) = given.beyond(leave) else {
             return (Some(leave), step);
         };
-        // In the next one the edge is opposite the corner across, and the vertex at the old entry.
+        // In the next one the edge is opposite the corner across and the vertex at the old entry.
         let pivot = given.simplices[simplex][entry];
         let corners = given.simplices[next.simplex];
         let Some(corner) = corners.iter().position(|&v| v == pivot) else {

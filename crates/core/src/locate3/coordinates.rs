@@ -1,35 +1,35 @@
-//! Tetrahedra with barycentric coordinates, and outside, where that is asked for, the nearest point of the
-//! boundary.
+//! Locates queries in 3-D with barycentric coordinates; outside, on request, with the nearest point
+//! of the boundary.
 
 use super::{Batch, Located, barycentric};
 use crate::error::Result;
 use crate::locate::Output;
 
-/// Where queries are, row by row.
+/// The locations of queries, row by row.
 #[derive(Debug)]
 pub struct Coordinates {
-    /// The first tetrahedron that holds the query, or -1.
+    /// The first tetrahedron that contains the query, or -1.
     pub simplex: Vec<i32>,
-    /// The weights of its corners, four a row; NaN outside.
+    /// The weights of its corners, four per row; NaN outside.
     pub weights: Vec<f64>,
-    /// Outside: the tetrahedron at the boundary face with the nearest point; else -1.
+    /// For a query outside: the tetrahedron at the nearest boundary face; else -1.
     pub beside: Vec<i32>,
-    /// The corners of that face, three a row, counter-clockwise seen from outside; else -1.
+    /// The corners of that face, three per row, counterclockwise seen from outside; else -1.
     pub face: Vec<i32>,
-    /// How they share in the nearest point; else NaN.
+    /// Their weights in the nearest point; else NaN.
     pub shares: Vec<f64>,
 }
 
-/// What is told of queries that are inside.
+/// The locations of queries that are inside.
 #[derive(Debug)]
 pub struct Within {
-    /// The first tetrahedron that holds the query, or -1.
+    /// The first tetrahedron that contains the query, or -1.
     pub simplex: Vec<i32>,
-    /// The weights of its corners, four a row; NaN outside.
+    /// The weights of its corners, four per row; NaN outside.
     pub weights: Vec<f64>,
 }
 
-/// Locates queries, and says no more of those that are outside.
+/// Locates queries; returns nothing more for those that are outside.
 pub fn within(batch: &Batch) -> Result<Within> {
     let n = batch.queries.len();
     let given = &batch.locator.given;
@@ -51,7 +51,7 @@ pub fn within(batch: &Batch) -> Result<Within> {
     })
 }
 
-/// Locates queries; those that are not finite are nowhere.
+/// Locates queries; those that are not finite have no location.
 pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
     let n = batch.queries.len();
     let locator = &batch.locator;

@@ -1,10 +1,11 @@
-//! The nearest of many triangles, exactly, whatever their boundary is like and however far the query.
+//! The nearest of many triangles in 3-D, exactly, for any boundary and any distance.
 //!
-//! Let r be the point of a box around all triangles that is nearest to the query q, which is a matter of
-//! comparisons. The square of the distance of a point p exceeds that of r by the sum, over the axes, of
-//! |p - r| (|p - r| + 2 |q - r|): where q is beside the box, the box lies on the other side of r. No
-//! term is below zero, so that sum keeps its digits where both distances are one double, and has a bound
-//! of its error. What that bound leaves is compared in integers.
+//! Let r be the point of a box around all triangles that is nearest to the query q, which takes
+//! only comparisons to find. The squared distance of a point p exceeds that of r by the sum, over
+//! the axes, of |p - r| (|p - r| + 2 |q - r|): on an axis where q is outside the range of the box,
+//! the box lies on the other side of r. No term is negative, so that sum keeps its digits even if
+//! both distances round to the same double, and has an error bound of its own. What that bound
+//! leaves undecided is compared in integers.
 
 use std::array::from_fn;
 
@@ -16,32 +17,32 @@ use crate::locate::Boxes;
 use crate::points::Extent;
 use crate::wide::lowest;
 
-/// Bound of what a coordinate of the nearest point of a triangle loses, as a share of the largest
-/// one of its corners: shares of three corners, each to some roundings.
+/// Error bound of a coordinate of the nearest point of a triangle, relative to the largest
+/// coordinate of its corners: weights of three corners, each with a few roundings.
 const PLACE: f64 = 16.0 * f64::EPSILON;
-/// Bound of what a sum of such products loses, as a share of it.
+/// Relative error bound of a sum of such products.
 const SUM: f64 = 16.0 * f64::EPSILON;
-/// More than all that underflows.
+/// Larger than the sum of all underflow errors.
 const NOTHING: f64 = 1e-290;
-/// Beyond it, differences of coordinates may pass the range.
+/// Above this, differences of coordinates may overflow.
 const LARGE: f64 = 1e300;
 
-/// Of points in a box, by how much the square of their distance exceeds that of its nearest point, in
-/// a unit of its own.
+/// For points in a box, by how much their squared distance exceeds that of its nearest point, in a
+/// unit of its own.
 #[derive(Debug)]
 pub struct Excess {
-    /// The nearest point of the box, and twice the way from there to the query, times units.
+    /// The nearest point of the box, and twice the vector from there to the query, in units.
     origin: Point3,
     reach: Point3,
-    /// Factors of coordinates, first one that keeps differences within the range.
+    /// Factors of coordinates, first one that keeps differences in range.
     halved: f64,
     unit: f64,
-    /// What brings coordinates in this unit to that of the reach.
+    /// The factor from coordinates in this unit to those of the reach.
     across: f64,
 }
 
 impl Excess {
-    /// Of points in `extent`, for query `q`.
+    /// For points in `extent` and query `q`.
     pub fn over(extent: &Extent<3>, q: Point3) -> Self {
         let Extent { min, max } = extent;
         let origin: Point3 = from_fn(|k| q[k].clamp(min[k], max[k]));
@@ -55,7 +56,7 @@ impl Excess {
         let side = (0..3).fold(0.0_f64, |m, k| m.max(max[k] * halved - min[k] * halved));
         let way: Point3 = from_fn(|k| (q[k] * away - origin[k] * away).abs());
         let unit = unit_of(side);
-        // `away` is no larger than `halved`, so that nothing passes the range here.
+        // `away` is at most `halved`, so nothing overflows here.
         let far = unit_of(way.iter().fold(side * (away / halved), |m, x| m.max(*x)));
         Self {
             origin,
@@ -66,12 +67,12 @@ impl Excess {
         }
     }
 
-    /// What a coordinate has beyond that of the nearest point of the box.
+    /// The difference of a coordinate from that of the nearest point of the box.
     fn beyond(&self, k: usize, x: f64) -> f64 {
         (x * self.halved - self.origin[k] * self.halved) * self.unit
     }
 
-    /// What nothing in a box falls short of.
+    /// A lower bound of the excess in a box.
     pub fn least(&self, extent: &Extent<3>) -> f64 {
         let sum: f64 = (0..3)
             .map(|k| {
@@ -85,7 +86,7 @@ impl Excess {
         sum * (1.0 - SUM) - NOTHING
     }
 
-    /// Two numbers between which that of the point is in which corners have shares.
+    /// Lower and upper bounds of the excess of the point with given corner weights.
     fn bounds(&self, corners: &[Point3; 3], shares: [f64; 3]) -> [f64; 2] {
         let (mut sum, mut lost) = (0.0, 0.0);
         for k in 0..3 {
@@ -106,7 +107,7 @@ impl Excess {
     }
 }
 
-/// A power of two that brings a number near to 1; less so where it is at the ends of the range.
+/// A power of two that scales a number to near 1; less so at the ends of the range.
 fn unit_of(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52 & 0x7ff) as i64 - 1023;
     f64::from_bits(((1023 - exponent.clamp(-1000, 1000)) as u64) << 52)
@@ -115,16 +116,16 @@ fn unit_of(x: f64) -> f64 {
 /// A triangle that may be the nearest one.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    /// The vertices of what has the nearest point, ascending: of two that have the same, distances are
-    /// equal.
+    /// The vertices of the face, edge or corner with the nearest point, ascending: if two triangles
+    /// share it, their distances are equal.
     feature: [i32; 3],
     item: usize,
     foot: Foot,
     least: f64,
 }
 
-/// The triangle with the nearest point to `q`, of several the first, and how its corners share in that;
-/// on the way from `hint`. All lie in `extent`, their vertices are told by `face`.
+/// The triangle nearest to `q`, the first of several, and the weights of its corners in the nearest
+/// point; the search starts at `hint`. All triangles lie in `extent`; `face` gives their vertices.
 pub fn nearest(
     boxes: &Boxes<3>,
     extent: &Extent<3>,
@@ -135,6 +136,7 @@ pub fn nearest(
     let excess = Excess::over(extent, q);
     let mut found: Vec<Candidate> = Vec::new();
     let mut within = f64::INFINITY;
+    // Collect the triangles whose excess may be the least, by rounded bounds.
     boxes.search(
         hint,
         |extent| excess.least(extent),
@@ -159,6 +161,7 @@ pub fn nearest(
             within
         },
     );
+    // One candidate for each face, edge or corner; integers decide between the rest.
     found.retain(|candidate| candidate.least <= within);
     found.sort_unstable_by_key(|candidate| (candidate.feature, candidate.item));
     found.dedup_by_key(|candidate| candidate.feature);
@@ -171,7 +174,7 @@ pub fn nearest(
     Some((best.item, triangle(&best).shares(best.foot)))
 }
 
-/// The vertices of what has the nearest point, ascending.
+/// The vertices of the face, edge or corner with the nearest point, ascending.
 fn feature([a, b, c]: [i32; 3], foot: Foot) -> [i32; 3] {
     let mut found = match foot {
         Foot::Face => [a, b, c],
@@ -182,7 +185,7 @@ fn feature([a, b, c]: [i32; 3], foot: Foot) -> [i32; 3] {
     found
 }
 
-/// The nearest of some, of several the first.
+/// The nearest of the candidates, the first of several, by exact comparison.
 #[cold]
 #[inline(never)]
 fn exactly(
@@ -216,7 +219,7 @@ mod tests {
     use super::*;
     use crate::watch::Watch;
 
-    /// Unit steps of a grid on both sides of a slab, two triangles to a square.
+    /// A unit grid on both sides of a slab, two triangles per square.
     fn walls() -> Vec<[Point3; 3]> {
         let mut found = Vec::new();
         for x in [0.0, 1.0] {
@@ -238,7 +241,7 @@ mod tests {
             .collect();
         let extent = Extent::of(walls.iter().flatten().copied());
         let boxes = Boxes::over(walls.len(), |i| Extent::of(walls[i]), &Watch::idle()).unwrap();
-        // No vertex is known to be that of two triangles: all ties are left to integers.
+        // No two triangles share vertex numbers, so all ties are left to integers.
         let face = |i: usize| ([0, 1, 2].map(|k| (3 * i + k) as i32), walls[i]);
         nearest(&boxes, &extent, q, None, face).unwrap()
     }
@@ -255,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn of_several_the_first() {
+    fn the_first_of_several_is_returned() {
         // In the middle of the slab, below a vertex of six triangles of each wall.
         assert_eq!(found(1.0, [0.5, 1.0, 1.0]).0, 0);
         assert!(found(1.0, [0.5 + f64::EPSILON, 1.0, 1.0]).0 >= 72);

@@ -1,4 +1,4 @@
-//! The nearest point of a triangle in space, rounded.
+//! The nearest point of a triangle in 3-D, rounded.
 
 use delone_predicates::Point3;
 
@@ -8,25 +8,26 @@ fn dot(p: Point3, q: Point3) -> f64 {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
-/// The distance of `q` from a triangle, of coordinates times `unit`, and the shares of its corners in
-/// the nearest point.
+/// The distance of `q` from a triangle, of coordinates times `unit`, and the weights of its corners
+/// in the nearest point.
 pub fn on_face(corners: [Point3; 3], q: Point3, unit: f64) -> (f64, [f64; 3]) {
-    let seen = corners.map(|p| [0, 1, 2].map(|k| p[k] * unit - q[k] * unit));
-    let most = seen
+    let relative = corners.map(|p| [0, 1, 2].map(|k| p[k] * unit - q[k] * unit));
+    let most = relative
         .as_flattened()
         .iter()
         .fold(0.0_f64, |m, x| m.max(x.abs()));
     if most == 0.0 {
         return (0.0, [1.0, 0.0, 0.0]);
     }
-    // In a unit of its own, so that nothing over- or underflows.
-    let seen = seen.map(|p| p.map(|x| x / most));
-    let distance =
-        |shares: [f64; 3]| length([0, 1, 2].map(|k| (0..3).map(|i| shares[i] * seen[i][k]).sum()));
-    let mut best = inside(seen).map(|shares| (distance(shares), shares));
+    // In a unit of its own, so that nothing overflows or underflows.
+    let relative = relative.map(|p| p.map(|x| x / most));
+    let distance = |shares: [f64; 3]| {
+        length([0, 1, 2].map(|k| (0..3).map(|i| shares[i] * relative[i][k]).sum()))
+    };
+    let mut best = inside(relative).map(|shares| (distance(shares), shares));
     if best.is_none() {
         for i in 0..3 {
-            let shares = on_edge(seen, i, (i + 1) % 3);
+            let shares = on_edge(relative, i, (i + 1) % 3);
             let found = (distance(shares), shares);
             if best.is_none_or(|b| found.0 < b.0) {
                 best = Some(found);
@@ -36,8 +37,8 @@ pub fn on_face(corners: [Point3; 3], q: Point3, unit: f64) -> (f64, [f64; 3]) {
     best.map_or((f64::INFINITY, [f64::NAN; 3]), |(d, s)| (d * most, s))
 }
 
-/// The shares of the corners in the point of their plane nearest to the origin; nothing where it is
-/// not inside.
+/// The weights of the corners in the point of their plane nearest to the origin; `None` if it is
+/// not inside the triangle.
 fn inside([a, b, c]: [Point3; 3]) -> Option<[f64; 3]> {
     let minus = |p: Point3, q: Point3| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let cross = |p: Point3, q: Point3| {
@@ -54,13 +55,13 @@ fn inside([a, b, c]: [Point3; 3]) -> Option<[f64; 3]> {
         dot(cross(a, b), n),
     ];
     let sum: f64 = parts.iter().sum();
-    // Written so that NaN is no inside.
+    // Written so that NaN is not inside.
     (sum > 0.0 && parts.iter().all(|&x| x >= 0.0)).then(|| parts.map(|x| x / sum))
 }
 
-/// The shares of two corners in the point between them nearest to the origin.
-fn on_edge(seen: [Point3; 3], i: usize, j: usize) -> [f64; 3] {
-    let (a, b) = (seen[i], seen[j]);
+/// The weights of two corners in the point between them nearest to the origin.
+fn on_edge(relative: [Point3; 3], i: usize, j: usize) -> [f64; 3] {
+    let (a, b) = (relative[i], relative[j]);
     let way = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
     let square = dot(way, way);
     let share = if square > 0.0 {

@@ -1,8 +1,9 @@
-//! Where the nearest point of a triangle in space lies: inside, on an edge or at a corner, exactly; and
-//! how the corners share in it.
+//! The foot of a query on a triangle in 3-D, exactly: interior, edge or corner, and its corner
+//! weights.
 //!
-//! Signs of polynomials decide, in three stages: plainly, in pairs of doubles, in integers. The shares are
-//! quotients of the same polynomials, so they keep their digits however far away the query is.
+//! Signs of polynomials decide, in three stages: plain doubles, double-double arithmetic, integers.
+//! The weights are quotients of the same polynomials, so they keep their digits however far away
+//! the query is.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
@@ -13,17 +14,17 @@ use num_bigint::BigInt;
 
 use crate::wide::{lowest, ratio, scaled, sign};
 
-/// Bounds of what polynomials of degree 4 in differences lose, as shares of the sum of all terms'
-/// magnitudes: no more than 16 roundings follow each other, of 2^-53 and at most 2^-101.
+/// Error bounds of polynomials of degree 4 in differences, relative to the sum of the magnitudes of
+/// all terms: at most 16 consecutive roundings, of 2^-53 and at most 2^-101.
 const PLAIN: f64 = 1.0 / (1_u64 << 48) as f64;
 const PAIRED: f64 = 1.0 / (1_u128 << 95) as f64;
-/// Bound of what shares in pairs may lose.
+/// Error bound of weights in double-double arithmetic.
 const FINE: f64 = 1.0 / (1_u64 << 54) as f64;
 
-/// What of a triangle holds its nearest point, by its corners.
+/// Where on a triangle the nearest point is, by its corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Foot {
-    /// The inside, edges not included.
+    /// The interior.
     Face,
     /// The open edge from a corner to the next.
     Edge(usize),
@@ -31,12 +32,12 @@ pub enum Foot {
     Corner(usize),
 }
 
-/// A triangle, counter-clockwise seen from one side, and a query.
+/// A triangle, counterclockwise seen from one side, and a query.
 #[derive(Debug)]
 pub struct Triangle {
     corners: [Point3; 3],
     q: Point3,
-    /// Whether pairs of doubles neither over- nor underflow.
+    /// Whether double-double arithmetic neither overflows nor underflows.
     safe: bool,
 }
 
@@ -47,7 +48,7 @@ impl Triangle {
         Self { corners, q, safe }
     }
 
-    /// What holds the nearest point.
+    /// Finds where the nearest point is.
     pub fn foot(&self) -> Foot {
         let sides: [Sign; 3] = from_fn(|k| self.side(k));
         if sides == [Sign::Positive; 3] {
@@ -62,14 +63,14 @@ impl Triangle {
         if let Some(k) = (0..3).find(|&k| on_edge(k)) {
             return Foot::Edge(k);
         }
-        // What is nearest to none of these is nearest to a corner: beyond both of its edges' ends.
+        // Otherwise the foot is a corner: the query is beyond the ends of both its edges.
         let ahead = |k: usize, to: usize| self.along(k, (k + to) % 3) == Sign::Positive;
         let corner = (0..2).find(|&k| !ahead(k, 1) && !ahead(k, 2));
         Foot::Corner(corner.unwrap_or(2))
     }
 
-    /// On which side of the edge from corner `k` to the next the query is, as seen along the normal:
-    /// positive is that of the triangle.
+    /// On which side of the edge from corner `k` to the next the query is, as seen along the
+    /// normal: positive is the side of the triangle.
     pub fn side(&self, k: usize) -> Sign {
         self.decide(&Side, [k, (k + 1) % 3, (k + 2) % 3])
     }
@@ -79,12 +80,12 @@ impl Triangle {
         self.decide(&Along, [from, to, to])
     }
 
-    /// How the corners share in the nearest point, rounded.
+    /// The weights of the corners in the nearest point, rounded.
     pub fn shares(&self, foot: Foot) -> [f64; 3] {
         let mut shares = [0.0; 3];
         match foot {
             Foot::Face => {
-                // The side of an edge is that share of the corner opposite.
+                // The value of an edge's side is the weight of the opposite corner.
                 let edges = [0, 1, 2].map(|k| [k, (k + 1) % 3, (k + 2) % 3]);
                 let found = self.quotients(&Side, edges);
                 (0..3).for_each(|k| shares[(k + 2) % 3] = found[k]);
@@ -99,11 +100,11 @@ impl Triangle {
         shares
     }
 
-    /// The square of the distance of the nearest point, as a quotient, in the unit 2^(2 `low`), of whose
-    /// root all coordinates are multiples.
+    /// The squared distance of the nearest point, as a quotient, in the unit 2^(2 `low`); all
+    /// coordinates are multiples of 2^`low`.
     pub fn square(&self, foot: Foot, low: i64) -> (BigInt, BigInt) {
         let of = |roles: [usize; 3]| {
-            let [e, f, q] = self.seen(roles, |a, b| scaled(a, low) - scaled(b, low));
+            let [e, f, q] = self.relative(roles, |a, b| scaled(a, low) - scaled(b, low));
             (dot(&e, &e), dot(&f, &f), dot(&e, &f), e, f, q)
         };
         match foot {
@@ -132,12 +133,14 @@ impl Triangle {
 
     fn decide<F: Formula>(&self, formula: &F, roles: [usize; 3]) -> Sign {
         if self.safe {
-            let size = formula.of(self.seen(roles, |a, b| Size((a - b).abs()))).0;
-            let plain = formula.of(self.seen(roles, |a, b| a - b));
+            let size = formula
+                .of(self.relative(roles, |a, b| Size((a - b).abs())))
+                .0;
+            let plain = formula.of(self.relative(roles, |a, b| a - b));
             if plain.abs() > PLAIN * size {
                 return Sign::of(plain);
             }
-            let paired = formula.of(self.seen(roles, Pair::difference)).hi;
+            let paired = formula.of(self.relative(roles, Pair::difference)).hi;
             if paired.abs() > PAIRED * size {
                 return Sign::of(paired);
             }
@@ -145,16 +148,20 @@ impl Triangle {
         sign(&self.wide(formula, roles))
     }
 
-    /// Values, none below zero, over the sum of all.
+    /// Nonnegative values over their sum.
     fn quotients<F: Formula, const N: usize>(
         &self,
         formula: &F,
         roles: [[usize; 3]; N],
     ) -> [f64; N] {
         if self.safe {
-            let size = |roles| formula.of(self.seen(roles, |a, b| Size((a - b).abs()))).0;
+            let size = |roles| {
+                formula
+                    .of(self.relative(roles, |a, b| Size((a - b).abs())))
+                    .0
+            };
             let lost = PAIRED * roles.map(size).iter().sum::<f64>();
-            let paired = |roles| formula.of(self.seen(roles, Pair::difference)).hi;
+            let paired = |roles| formula.of(self.relative(roles, Pair::difference)).hi;
             let values = roles.map(|roles| paired(roles).max(0.0));
             let sum: f64 = values.iter().sum();
             if lost <= FINE * sum {
@@ -172,17 +179,17 @@ impl Triangle {
     fn wide<F: Formula>(&self, formula: &F, roles: [usize; 3]) -> BigInt {
         let [a, b, c] = self.corners;
         let low = lowest(&[a, b, c, self.q], &[]);
-        formula.of(self.seen(roles, |a, b| scaled(a, low) - scaled(b, low)))
+        formula.of(self.relative(roles, |a, b| scaled(a, low) - scaled(b, low)))
     }
 
-    /// Two corners and the query as seen from the first.
-    fn seen<T>(&self, roles: [usize; 3], minus: impl Fn(f64, f64) -> T) -> [[T; 3]; 3] {
+    /// Two corners and the query relative to the first.
+    fn relative<T>(&self, roles: [usize; 3], minus: impl Fn(f64, f64) -> T) -> [[T; 3]; 3] {
         let [from, to, other] = roles.map(|i| self.corners[i]);
         [to, other, self.q].map(|p| from_fn(|k| minus(p[k], from[k])))
     }
 }
 
-/// What formulas compute with.
+/// The arithmetic that formulas need.
 trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
@@ -216,9 +223,9 @@ impl Mul for Size {
     }
 }
 
-/// A polynomial in two corners and the query as seen from a third corner.
+/// A polynomial in two corners and the query relative to a third corner.
 trait Formula {
-    fn of<T: Number>(&self, seen: [[T; 3]; 3]) -> T;
+    fn of<T: Number>(&self, relative: [[T; 3]; 3]) -> T;
 }
 
 fn dot<T: Number>(p: &[T; 3], q: &[T; 3]) -> T {
@@ -226,7 +233,7 @@ fn dot<T: Number>(p: &[T; 3], q: &[T; 3]) -> T {
     product(0) + product(1) + product(2)
 }
 
-/// The way to the query times the way to a corner.
+/// The vector to the query times the vector to a corner.
 struct Along;
 
 impl Formula for Along {
@@ -235,7 +242,7 @@ impl Formula for Along {
     }
 }
 
-/// (e x q) . (e x f), with e the edge and f the way to the third corner.
+/// (e x q) . (e x f), with e the edge and f the vector to the third corner.
 struct Side;
 
 impl Formula for Side {
@@ -269,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn far_above_nothing_is_lost() {
+    fn no_digits_are_lost_far_above() {
         for far in [1e18, 1e300] {
             let triangle = Triangle::new(CORNERS, [1.0, 1.0, far]);
             assert_eq!(triangle.foot(), Foot::Face);

@@ -1,8 +1,8 @@
 //! 3-D point location: exact, boundary included, for any tiling in exported arrays.
 //!
-//! The rooms are those of `locate`, whose `batch` takes queries in order here as well: `Kept` has a tree
-//! of starts, `walker` goes from query to query, `star` finds the first of several that hold a point,
-//! `boundary` what is nearest outside.
+//! The parts are those of `locate`, whose `batch` sorts queries here as well: `Kept` has a tree of
+//! starting tetrahedra, `walker` goes from query to query, `star` finds the first of several
+//! tetrahedra that contain a point, `boundary` the nearest face outside.
 
 mod barycentric;
 mod boundary;
@@ -34,10 +34,10 @@ use crate::watch::Watch;
 use boundary::Boundary;
 use walk::{Found, walk};
 
-/// What is kept between calls for one triangulation.
+/// What is cached between calls for one triangulation.
 #[derive(Debug)]
 pub struct Kept {
-    /// All points: beyond it there is no tetrahedron.
+    /// The bounding box of all points: there is no tetrahedron outside.
     extent: Extent<3>,
     start: Start<3>,
     boundary: OnceLock<Boundary>,
@@ -46,7 +46,7 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// A tree of starts for many calls; the rest is found out when it is needed.
+    /// A tree of starting tetrahedra for many calls; the rest is built when needed.
     pub fn of(given: &Tetrahedra, watch: &Watch) -> Result<Self> {
         let first = |t: usize| given.point(given.simplices[t][0]);
         Ok(Self {
@@ -59,17 +59,18 @@ impl Kept {
     }
 }
 
-/// A triangulation of space and what is kept for it.
+/// A 3-D triangulation and its cache.
 pub type Locator<'a> = locate::Locator<'a, Kept, 3, 4>;
-/// Queries in space of one call.
+/// The 3-D queries of one call.
 pub type Batch<'a> = locate::Batch<'a, Kept, 3, 4>;
 
-/// Where a point is.
+/// The location of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Located {
     /// In a tetrahedron.
     Inside(Place),
-    /// Outside of all; where a walk has met a boundary face with the point strictly beyond, by this one.
+    /// Outside of all tetrahedra; with a boundary face if a walk found one that has the point
+    /// strictly outside.
     Outside(Option<Side>),
 }
 
@@ -80,21 +81,21 @@ impl<'a> Locator<'a> {
         self.kept.start.near(q)
     }
 
-    /// Whether one comparison tells that `q` is outside of all.
+    /// Whether one comparison proves that `q` is outside of all.
     #[inline]
     pub fn is_far(&self, q: Point3) -> bool {
         let Extent { min, max } = self.kept.extent;
         (0..3).any(|k| q[k] < min[k] || q[k] > max[k])
     }
 
-    /// Whether `q` is strictly beyond a boundary face, and thereby outside of all.
+    /// Whether `q` is strictly beyond a boundary face of a convex body, and so outside of all.
     #[inline]
     pub fn is_beyond(&self, side: Side, q: Point3) -> Result<bool> {
         let [a, b, c] = self.given.face(side).map(|v| self.given.point(v));
         Ok(self.boundary()?.convex && orient3d(a, b, c, q) == Sign::Positive)
     }
 
-    /// Where `q` is, on the way from tetrahedron `from`.
+    /// Locates `q` by a walk from tetrahedron `from`.
     #[inline]
     pub fn locate_from(&self, from: usize, q: Point3, star: &mut Star) -> Result<Located> {
         match walk(&self.given, from, q) {
@@ -120,7 +121,7 @@ impl<'a> Locator<'a> {
         }
     }
 
-    /// Where `q` is; nothing for what is not finite, or where there is no tetrahedron.
+    /// Locates `q`; `None` if it is not finite or there is no tetrahedron.
     pub fn locate(&self, q: Point3) -> Result<Option<Located>> {
         if !is_finite(&q) || self.given.simplices.is_empty() {
             return Ok(None);
@@ -139,7 +140,7 @@ impl<'a> Locator<'a> {
         })
     }
 
-    /// The boundary face with the nearest point to `q`, and how its corners share in that.
+    /// The boundary face nearest to `q`, and the weights of its corners in the nearest point.
     fn nearest_beside(
         &self,
         q: Point3,
@@ -148,12 +149,12 @@ impl<'a> Locator<'a> {
         self.boundary()?.nearest(&self.given, q, last, self.watch)
     }
 
-    /// The vertices, for the nearest of them.
+    /// The vertices, for nearest-vertex queries.
     fn sites(&self) -> Result<&'a Sites<3>> {
         kept(&self.kept.sites, || Sites::of(&self.given, self.watch))
     }
 
-    /// The first tetrahedron that holds `q`, of all.
+    /// The first of all tetrahedra that contain `q`.
     #[cold]
     #[inline(never)]
     fn first_of_all(&self, q: Point3) -> Result<Option<Place>> {

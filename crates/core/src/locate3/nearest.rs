@@ -1,4 +1,4 @@
-//! The nearest vertex for each query of a batch.
+//! The nearest vertex for each 3-D query of a batch.
 
 use delone_predicates::nearer3;
 
@@ -6,7 +6,7 @@ use super::Batch;
 use crate::error::Result;
 use crate::locate::Output;
 
-/// For each query the nearest vertex, of several the first row; -1 for what is not finite.
+/// For each query the nearest vertex, the first row of several; -1 if the query is not finite.
 pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
     let sites = batch.locator.sites()?;
     let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;

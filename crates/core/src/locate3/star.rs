@@ -1,7 +1,7 @@
-//! The first of the tetrahedra that hold a point.
+//! The first of the tetrahedra that contain a point.
 //!
-//! A query on a face, an edge or a vertex is in several tetrahedra. The one with the smallest number
-//! is the answer, so that it depends neither on where a walk came from nor, thereby, on the other
+//! A query on a face, an edge or a vertex is in several tetrahedra. The one with the smallest
+//! number is the answer, so it is independent of where a walk came from, and thus of the other
 //! queries and the threads.
 
 use std::collections::HashSet;
@@ -13,14 +13,14 @@ use super::tiling::{Side, Tetrahedra};
 /// A point in a closed tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// The tetrahedron, the first one that has the point.
+    /// The tetrahedron, the first one that contains the point.
     pub simplex: usize,
     /// Whether the point is on the face opposite each corner.
     pub on: [bool; 4],
 }
 
 impl Place {
-    /// The place that signs tell, none of which is negative.
+    /// The place given by signs, none of which is negative.
     pub fn of(simplex: usize, signs: [Sign; 4]) -> Self {
         Self {
             simplex,
@@ -28,14 +28,14 @@ impl Place {
         }
     }
 
-    /// The corner that the point is at.
+    /// The corner at which the point is.
     #[inline]
     pub fn site(&self) -> Option<usize> {
         let off = self.on.iter().filter(|&&on| !on).count();
         (off == 1).then(|| self.on.iter().position(|&on| !on))?
     }
 
-    /// The same point in the tetrahedron across a face that it is on.
+    /// The same point in the tetrahedron across a face on which it is.
     fn across(&self, given: &Tetrahedra, corner: usize) -> Option<Self> {
         let here = Side {
             simplex: self.simplex,
@@ -46,7 +46,7 @@ impl Place {
             &given.simplices[here.simplex],
             &given.simplices[there.simplex],
         );
-        // On the face opposite a common corner it is where it was; on that opposite the new one, too.
+        // Common faces keep their signs; the point is also on the face opposite the new corner.
         let on = |k: usize| {
             let same = old.iter().position(|&v| v == new[k]);
             same.is_none_or(|j| self.on[j])
@@ -59,8 +59,8 @@ impl Place {
     }
 }
 
-/// The answer for the vertex that was asked for last: equal queries follow each other along the
-/// curve, and a vertex may have very many tetrahedra.
+/// The answer for the last vertex: equal queries are consecutive along the curve, and a vertex may
+/// have very many tetrahedra.
 #[derive(Debug, Default)]
 pub struct Star {
     last: Option<First>,
@@ -69,15 +69,15 @@ pub struct Star {
 /// The first of the tetrahedra that can be reached around a vertex, an edge or a face.
 #[derive(Debug, Clone, Copy)]
 pub struct First {
-    /// The place there.
+    /// The place in that tetrahedron.
     pub place: Place,
-    /// Whether the point is on the boundary: where that is not convex, there may be tetrahedra
-    /// that only touch it.
+    /// Whether the point is on the boundary: if the boundary is not convex, there may be tetrahedra
+    /// that touch it without being reached.
     pub open: bool,
 }
 
 impl Star {
-    /// The first of the tetrahedra that hold the point at `place`.
+    /// The first of the tetrahedra that contain the point at `place`.
     #[inline]
     pub fn first(&mut self, given: &Tetrahedra, place: Place) -> First {
         if place.on == [false; 4] {
@@ -112,8 +112,8 @@ fn first_around(given: &Tetrahedra, place: Place) -> First {
     First { place: first, open }
 }
 
-/// Calls `visit` on each tetrahedron that holds the point at `place`, and with nothing at each face
-/// of the boundary that does, until it answers `false`. Each is met once, so it ends.
+/// Calls `visit` on each tetrahedron that contains the point at `place`, and with `None` for each
+/// boundary face that does, until it answers `false`. Terminates because each is visited once.
 pub fn around(given: &Tetrahedra, place: Place, mut visit: impl FnMut(Option<Place>) -> bool) {
     let mut met = Met::default();
     met.is_new(place.simplex);
@@ -139,7 +139,7 @@ pub fn around(given: &Tetrahedra, place: Place, mut visit: impl FnMut(Option<Pla
     }
 }
 
-/// Numbers that have been met: a list while there are few.
+/// A set of visited numbers: a list while there are few.
 #[derive(Default)]
 struct Met {
     few: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Exported arrays as a tiling of space: from tetrahedron to tetrahedron across faces.
+//! Exported arrays as a 3-D tiling: steps from tetrahedron to tetrahedron across faces.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use delone_predicates::{Point3, Sign, orient3d};
 
 pub use crate::arrays::Tetrahedra;
 
-/// A corner of a tetrahedron, and the face opposite.
+/// A corner of a tetrahedron, and the opposite face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
     /// The tetrahedron.
@@ -15,7 +15,7 @@ pub struct Side {
     pub corner: usize,
 }
 
-/// The corners of the face opposite each corner, counter-clockwise seen from outside.
+/// The corners of the face opposite each corner, counterclockwise seen from outside.
 pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 impl Tetrahedra<'_> {
@@ -25,7 +25,7 @@ impl Tetrahedra<'_> {
         self.simplices[side.simplex][side.corner]
     }
 
-    /// The same face seen from the tetrahedron beyond; nothing at the boundary.
+    /// The same face seen from the tetrahedron beyond; `None` at the boundary.
     #[inline]
     pub fn beyond(&self, side: Side) -> Option<Side> {
         let t = self.neighbors[side.simplex][side.corner];
@@ -34,7 +34,7 @@ impl Tetrahedra<'_> {
         }
         let back = &self.neighbors[t as usize];
         let here = side.simplex as i32;
-        // Two tetrahedra share one face; arrays that say otherwise must not lead out of range.
+        // Invalid arrays, in which no face is shared, must not lead out of range.
         let corner = back.iter().position(|&s| s == here).unwrap_or(3);
         Some(Side {
             simplex: t as usize,
@@ -42,7 +42,7 @@ impl Tetrahedra<'_> {
         })
     }
 
-    /// On which side of the face opposite each corner `q` lies: positive is inside.
+    /// On which side of the face opposite each corner `q` is: positive is inside.
     #[inline]
     pub fn sides(&self, t: usize, q: Point3) -> [Sign; 4] {
         let [a, b, c, d] = self.corners(t);
@@ -54,13 +54,13 @@ impl Tetrahedra<'_> {
         ]
     }
 
-    /// The vertices of the face opposite a corner, counter-clockwise seen from outside.
+    /// The vertices of the face opposite a corner, counterclockwise seen from outside.
     #[inline]
     pub fn face(&self, side: Side) -> [i32; 3] {
         FACES[side.corner].map(|corner| self.vertex(Side { corner, ..side }))
     }
 
-    /// The faces of some tetrahedra with nothing beyond.
+    /// The boundary faces of some tetrahedra.
     pub fn boundary(&self, simplices: Range<usize>) -> impl Iterator<Item = Side> {
         simplices.flat_map(move |simplex| {
             let outer = (0..4).filter(move |&corner| self.neighbors[simplex][corner] < 0);

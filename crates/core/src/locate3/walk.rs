@@ -1,31 +1,31 @@
-//! The walk through exported arrays to the tetrahedron that holds a point.
+//! The walk through exported arrays to the tetrahedron that contains a point.
 //!
 //! The remembering visibility walk (O. Devillers, S. Pion and M. Teillaud, "Walking in a
-//! triangulation", 2002) goes across a face that has the point on its other side. On Delaunay
-//! triangulations the power of the point to the spheres falls at each step, so it ends; on others it
-//! may turn in circles, so it has a budget, and then a tree of boxes is asked.
+//! triangulation", 2002) crosses a face that has the point on its other side. On Delaunay
+//! triangulations the power of the point with respect to the circumspheres decreases at each step,
+//! so it terminates; on others it may cycle, so it has a budget, and then a tree of boxes is used.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
 use super::star::Place;
 use super::tiling::{Side, Tetrahedra};
 
-/// Where a walk ends.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
     /// In a tetrahedron, boundary included.
     Inside(Place),
-    /// At a boundary face that has the point strictly beyond.
+    /// At a boundary face that has the point strictly outside.
     Beyond(Side),
 }
 
-/// Steps before the walk gives up: several times what a walk across a whole mesh of
-/// uniform points takes, which is a multiple of the third root.
+/// Steps before the walk gives up: several times what a walk across a whole mesh of uniform points
+/// needs, which is a multiple of the cube root.
 fn budget(simplices: usize) -> usize {
     256 + 16 * (simplices as f64).cbrt() as usize
 }
 
-/// Walks from tetrahedron `from` to `q`; nothing where the budget is spent.
+/// Walks from tetrahedron `from` to `q`; `None` if the budget is exhausted.
 #[inline]
 pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
     let signs = given.sides(from, q);
@@ -41,7 +41,7 @@ pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
             return Some(Found::Beyond(at));
         };
         let corners = given.corners(side.simplex);
-        // The point is inside the face through which the walk has come.
+        // The point is on the inner side of the face through which the walk came.
         let mut signs = [Sign::Positive; 4];
         for k in 1..4 {
             let corner = (side.corner + k) % 4;

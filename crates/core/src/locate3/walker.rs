@@ -1,4 +1,4 @@
-//! Walks from query to query of a batch.
+//! Walks from query to query of a 3-D batch.
 
 use delone_predicates::Point3;
 
@@ -7,8 +7,8 @@ use super::{Kept, Located, Locator, Star};
 use crate::error::Result;
 use crate::locate::{Walks, squared};
 
-/// How far, in lengths of an edge of the last tetrahedron, a walk goes; from further on the tree of
-/// starts is cheaper. Squared; each step costs more than in the plane.
+/// How far a walk goes, in lengths of an edge of the last tetrahedron, squared; beyond that the
+/// tree of starting tetrahedra is cheaper. Each step costs more than in 2-D.
 const REACH: f64 = 16.0;
 
 impl Walks<3, 4> for Kept {
@@ -35,9 +35,10 @@ impl Walks<3, 4> for Kept {
     }
 }
 
-/// Walks from query to query; where the next one is far, from the tree of starts. What is outside is mostly
-/// told without a walk: beyond the box of all points, or beyond the boundary face where the last walk
-/// has left a convex body, which is as good a proof for each point on that side of its plane.
+/// Walks from query to query, or from the tree of starting tetrahedra if the next one is far. Most
+/// queries outside are recognized without a walk: they are outside the box of all points, or beyond
+/// the boundary face through which the last walk left a convex body, which proves it for each point
+/// on that side of its plane.
 struct Walker<'a> {
     locator: &'a Locator<'a>,
     star: Star,
@@ -57,7 +58,7 @@ impl Walker<'_> {
         if self.locator.is_far(q) || beyond {
             return Ok(Located::Outside(self.beyond));
         }
-        // False for NaN, at first and where squares overflow: then the tree knows the start.
+        // False for NaN, initially and if squares overflow: then the tree gives the start.
         let close = squared(q, self.last) <= self.reach;
         if !close {
             self.near = self.locator.near(q);

@@ -1,7 +1,7 @@
 //! The affine maps to barycentric coordinates.
 //!
-//! The rows of the inverse of the matrix whose columns lead from the last corner to the others, and
-//! below them the last corner.
+//! Each is the inverse of the matrix whose columns are the vectors from the last corner to the
+//! others, followed by the last corner.
 
 use num_bigint::{BigInt, Sign};
 
@@ -13,8 +13,8 @@ use crate::error::Result;
 use crate::watch::Watch;
 use crate::wide::{across, determinant, ratio};
 
-/// The maps of triangles. Entries have a relative error below 1e-13; those beyond the range of
-/// doubles are infinite.
+/// The maps of triangles. Entries have a relative error below 1e-13; those out of range are
+/// infinite.
 pub fn transforms2(
     points: &[[f64; 2]],
     simplices: &[[i32; 3]],
@@ -92,7 +92,7 @@ impl Measure<3> for Rows3 {
     }
 }
 
-/// A quotient of one dimension less than none. Adding 0 makes -0 the 0 that it is.
+/// A quotient whose dimension is that of an inverse length. Adding 0 turns -0 into 0.
 #[inline]
 fn quotient(x: f64, size: f64, exponent: i32) -> f64 {
     in_units(x / size, -exponent) + 0.0

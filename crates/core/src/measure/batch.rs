@@ -1,17 +1,17 @@
-//! One result for each simplex, by all workers.
+//! Computes one result for each simplex, on all workers.
 
 use crate::error::Result;
 use crate::memory::{Zero, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Simplices that one task does.
+/// Simplices per task.
 const SHARE: usize = 1 << 14;
-/// Simplices whose corners are fetched before the first of them is measured: loads that do not wait
-/// for each other.
+/// Simplices whose corners are gathered before the first of them is measured: the loads are
+/// independent.
 const BATCH: usize = 64;
 
-/// What `measure` makes of the corners of each simplex, whose vertices are rows of `points`.
+/// The results of `measure` for the corners of each simplex, whose vertices are rows of `points`.
 pub fn each<R: Zero + Send, const D: usize, const N: usize>(
     points: &[[f64; D]],
     simplices: &[[i32; N]],

@@ -1,12 +1,12 @@
-//! What the centers of triangles and of tetrahedra have in common.
+//! The common interface of the centers of triangles and tetrahedra.
 
-/// A center as far as doubles reach.
+/// A center, within or beyond the range of doubles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Center<const D: usize> {
     /// Its rounded coordinates.
     At([f64; D]),
-    /// A coordinate is beyond the range of doubles. In 2-D it is infinite here, and the other is
-    /// rounded; in 3-D this is the direction of the center, of length 1.
+    /// A coordinate is beyond the range of doubles. In 2-D it is infinite here, and the other one
+    /// is rounded; in 3-D this is the direction of the center, of length 1.
     Beyond([f64; D]),
 }
 

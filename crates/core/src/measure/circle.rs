@@ -1,30 +1,30 @@
-//! Where the bisectors of three sites meet, rounded.
+//! Circumcenters and power centers of three sites, correctly rounded or within 4 ulp.
 //!
-//! With the first corner a as the origin, d = b - a and e = c - a, the point u at equal power from
+//! With the first corner a as the origin, d = b - a and e = c - a, the point u with equal power to
 //! all three solves 2 u.d = |d|^2 + w(a) - w(b) = L and 2 u.e = |e|^2 + w(a) - w(c) = M, so that
 //!
 //! ```text
 //! u = (e_y L - d_y M, d_x M - e_x L) / (2 d x e),    center = a + u
 //! ```
 //!
-//! and without weights it is the centre of the circle. Three stages, each sure of what it returns:
+//! and without weights it is the circumcenter. Three stages, each certain of what it returns:
 //!
 //! 1. *Plain*: in doubles, with a bound on the error, accepted up to 4 units in the last place.
-//! 2. *Pairs*: the same with numbers of two doubles, accepted where the whole interval of the error
+//! 2. *Pairs*: the same in double-double arithmetic, accepted if the whole interval of the error
 //!    rounds to one double: correctly rounded.
-//! 3. *Exact*: integers of any width, correctly rounded, whatever the range.
+//! 3. *Exact*: arbitrary-precision integers, correctly rounded, in any range.
 //!
-//! The corner that serves as the origin is the lexicographically smallest one, so that the result
-//! is independent of the order in which a triangle names its corners.
+//! The corner that serves as the origin is the lexicographically smallest one, so the result is
+//! independent of the order of the corners.
 //!
 //! # The bound of the plain stage
 //!
-//! Let u = 2^-53, N the numerator of a component, D = 2 d x e, and P, Q the sums of the magnitudes of
-//! their monomials. A monomial of N passes 3 differences, 2 products and 3 sums, one of D 2
-//! differences, a product and a sum: N errs by 10 u P, D by 5 u Q at most, with room for terms of
-//! second order. Where D > 10 u Q, the quotient q = N / D errs by
-//! 2 u (10 P + 5 |q| Q) / |D| + u |q|, and x = a + q by u |x| more. Nothing underflows to any effect
-//! while P, Q > 2^-700 and all differences and weights lie below 2^300.
+//! Let u = 2^-53, N the numerator of a component, D = 2 d x e, and P, Q the sums of the magnitudes
+//! of their monomials. A monomial of N goes through 3 differences, 2 products and 3 sums, one of D
+//! through 2 differences, a product and a sum: N errs by at most 10 u P, D by 5 u Q, with room for
+//! terms of second order. If D > 10 u Q, the quotient q = N / D errs by 2 u (10 P + 5 |q| Q) /
+//! |D| + u |q|, and x = a + q by u |x| more. Underflow is negligible while P, Q > 2^-700 and all
+//! differences and weights are below 2^300.
 
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point2, lexicographic};
@@ -36,12 +36,12 @@ use crate::wide::{lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
-/// Below this a sum of magnitudes may have suffered from underflow, see the head of the file.
+/// Below this a sum of magnitudes may be inaccurate because of underflow, see the head of the file.
 const SMALL: f64 = f64::from_bits((1023 - 700) << 52);
 /// Differences and weights up to here cannot overflow in degree 3.
 const LARGE: f64 = f64::from_bits((1023 + 300) << 52);
 
-/// Three sites, counter-clockwise, and their weights.
+/// Three sites, counterclockwise, and their weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners {
     points: [Point2; 3],
@@ -78,7 +78,7 @@ impl Centered<2, 3> for Corners {
 }
 
 impl Corners {
-    /// Turned so that the lexicographically smallest corner comes first.
+    /// Rotated so that the lexicographically smallest corner is first.
     #[inline]
     fn turned(&self) -> Self {
         let ([a, b, c], [u, v, w]) = (self.points, self.weights);
@@ -112,7 +112,7 @@ impl Corners {
         let certain = |q: f64, p: f64, x: f64| {
             20.0 * p + 10.0 * q.abs() * size <= (3.0 * x.abs() - q.abs()) * den
         };
-        // One comparison after the other, so that NaN fails each.
+        // Separate comparisons, so that NaN fails each.
         let sure = den > 10.0 * U * size
             && size > SMALL
             && px > SMALL
@@ -142,7 +142,7 @@ impl Corners {
         let (left, right) = (dx * ey, dy * ex);
         let half = left - right;
         let size = left.hi.abs() + right.hi.abs();
-        // Thirteen u^2 is what a product and a sum may err by, see `Pair`.
+        // A product and a sum may err by 13 u^2, see `Pair`.
         if half.hi <= 64.0 * U * U * size {
             return None;
         }
@@ -163,7 +163,7 @@ impl Corners {
     }
 }
 
-/// The centre of three sites whose coordinates are integers in units of 2^low, and whose weights
+/// The center of three sites whose coordinates are integers in units of 2^low, and whose weights
 /// are in units of its square.
 pub(crate) fn meeting(
     [a, b, c]: &[[BigInt; 2]; 3],
@@ -198,7 +198,7 @@ mod tests {
     const NONE: [f64; 3] = [0.0; 3];
 
     #[test]
-    fn a_right_triangle_has_the_middle_of_its_longest_side() {
+    fn the_center_of_a_right_triangle_halves_its_longest_side() {
         let corners = Corners::new([[4.0, 0.0], [4.0, 3.0], [0.0, 0.0]], NONE);
         assert_eq!(corners.center(), Center::At([2.0, 1.5]));
         assert_eq!(corners.exact(), Center::At([2.0, 1.5]));

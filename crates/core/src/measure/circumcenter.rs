@@ -1,4 +1,4 @@
-//! The centers of the circles and spheres through the corners of simplices.
+//! The circumcenters of triangles and tetrahedra.
 
 use super::batch::each;
 use super::center::{Center, Centered};
@@ -6,8 +6,8 @@ use super::{circle, sphere};
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// The centers of the circles through the corners of triangles, each coordinate within 4 units in
-/// the last place; infinite beyond the range of doubles.
+/// The circumcenters of triangles, each coordinate within 4 units in the last place; infinite if
+/// out of range.
 pub fn circumcenters2(
     points: &[[f64; 2]],
     simplices: &[[i32; 3]],
@@ -23,7 +23,7 @@ pub fn circumcenters2(
     )
 }
 
-/// The same of the spheres through the corners of tetrahedra.
+/// The circumcenters of tetrahedra.
 pub fn circumcenters3(
     points: &[[f64; 3]],
     simplices: &[[i32; 4]],

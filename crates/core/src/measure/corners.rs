@@ -1,18 +1,18 @@
-//! The vectors of a simplex from its last corner, in a unit of the simplex's own, and the stages in
-//! which they are measured.
+//! The vectors of a simplex from its last corner, in its own unit, and the stages of its
+//! measurement.
 //!
-//! Coordinates enter only as differences to the last corner, so that nothing is lost far from the
-//! origin, and in a unit in which the largest is about 1, so that nothing over- or underflows. What is
-//! computed of a thin simplex cancels: its determinant D is a small share of the product P of the
-//! lengths of its vectors. So there are three stages:
+//! Coordinates enter only as differences to the last corner, so that no digits are lost far from
+//! the origin, and in a unit in which the largest is about 1, so that nothing overflows or
+//! underflows. For a thin simplex cancellation occurs: its determinant D is a small share of the
+//! product P of the lengths of its vectors. So there are three stages:
 //!
-//! 1. *Plain*, in doubles, where D > 2^-5 P: at most five or six bits are lost.
-//! 2. *Pairs* of doubles, where D > 2^-48 P. The vectors are exact then, and what is of degree 3 errs
-//!    by 40 u^2 P or so (see `Pair`), a share of 2^-52 of D.
-//! 3. *Exact*, integers of any width, for what is left.
+//! 1. *Plain*, in doubles, if D > 2^-5 P: at most five or six bits are lost.
+//! 2. *Pairs* of doubles, if D > 2^-48 P. The vectors are exact then, and values of degree 3 err
+//!    by about 40 u^2 P (see `Pair`), a share of 2^-52 of D.
+//! 3. *Exact*, arbitrary-precision integers, for the rest.
 //!
-//! Not only D is known where its share is large. So are the vectors of the faces, each at least D over
-//! the length of the edge that it lacks, and the lengths of the edges.
+//! If the share of D is large, D is not the only accurate value. So are the vectors of the faces,
+//! each at least D over the length of the edge that it omits, and the lengths of the edges.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -21,22 +21,22 @@ use num_bigint::BigInt;
 
 use crate::wide::{lowest, scaled};
 
-/// Above this share of the product of the lengths, a determinant in doubles is good enough.
+/// Above this share of the product of the lengths, a determinant in doubles is accurate enough.
 const PLAIN: f64 = 1.0 / 32.0;
-/// Above this share, one in pairs of doubles is: 2^-48.
+/// Above this share, one in double-double arithmetic is: 2^-48.
 const PAIRED: f64 = f64::from_bits((1023 - 48) << 52);
-/// Differences between these, 2^-40 and 2^60, need no other unit.
+/// Differences between these, 2^-40 and 2^60, need no unit of their own.
 const SMALL: f64 = f64::from_bits((1023 - 40) << 52);
 const LARGE: f64 = f64::from_bits((1023 + 60) << 52);
-/// Coordinates above this, 2^-200, have differences whose products of four do not underflow, parts of
-/// pairs included: they are multiples of 2^-252.
+/// Coordinates above this, 2^-200, have differences whose products of four do not underflow,
+/// including their low parts: they are multiples of 2^-252.
 const TINY: f64 = f64::from_bits((1023 - 200) << 52);
 
-/// Numbers in which a simplex is measured.
+/// The kinds of numbers in which a simplex is measured.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The number, rounded.
     fn value(self) -> f64;
-    /// The number with the other sign.
+    /// The negated number.
     fn negated(self) -> Self;
 }
 
@@ -67,22 +67,22 @@ impl Number for Pair {
     }
 }
 
-/// What is measured on a simplex of D dimensions.
+/// A measure of a simplex of D dimensions.
 pub trait Measure<const D: usize> {
     /// The result, in the units of the coordinates.
     type Out;
-    /// D! times the size of the simplex, of its vectors.
+    /// D! times the size of the simplex, from its vectors.
     fn determinant<T: Number>(vectors: &[[T; D]; D]) -> T;
-    /// The result of vectors that determine it well.
+    /// The result from vectors that determine it accurately.
     fn of<T: Number>(&self, vectors: &Vectors<T, D>) -> Self::Out;
-    /// The result of vectors without rounding.
+    /// The result from exact vectors.
     fn exact(&self, vectors: &Integers<D>) -> Self::Out;
 }
 
 /// Vectors from the last corner to the others, in units of 2^exponent.
 #[derive(Clone, Copy)]
 pub struct Vectors<T, const D: usize> {
-    /// One vector for each corner but the last.
+    /// One vector for each corner except the last.
     pub to: [[T; D]; D],
     /// The exponent of the unit.
     pub exponent: i32,
@@ -96,7 +96,7 @@ pub struct Corners<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Corners<D, N> {
-    /// Corners, finite.
+    /// From finite corners.
     #[inline]
     pub fn new(points: [[f64; D]; N]) -> Self {
         let last = points[N - 1];
@@ -115,7 +115,7 @@ impl<const D: usize, const N: usize> Corners<D, N> {
 
     #[cold]
     fn in_own_unit(points: [[f64; D]; N], mut rounded: Vectors<f64, D>, largest: f64) -> Self {
-        // Where a difference overflows, or there is none, only integers tell.
+        // If a difference overflows, or all are zero, only integers can decide.
         if largest.is_finite() && largest > 0.0 {
             let (magnitude, odd) = decode_odd(largest);
             let exponent = odd + 64 - magnitude.leading_zeros() as i32;
@@ -125,7 +125,7 @@ impl<const D: usize, const N: usize> Corners<D, N> {
         Self { points, rounded }
     }
 
-    /// What is measured, by the first stage that is accurate.
+    /// The measure, by the first stage that is accurate.
     #[inline]
     pub fn measure<M: Measure<D>>(&self, measure: &M) -> M::Out {
         let product = product_of_lengths(&self.rounded.to);
@@ -148,7 +148,7 @@ impl<const D: usize, const N: usize> Corners<D, N> {
         }
     }
 
-    /// The vectors without rounding; none where parts of products may underflow.
+    /// The exact vectors; `None` if parts of products may underflow.
     pub(super) fn pairs(&self) -> Option<Vectors<Pair, D>> {
         let (last, e) = (self.points[N - 1], self.rounded.exponent);
         let unit = |x: f64| times_power(x, -e);
@@ -157,7 +157,7 @@ impl<const D: usize, const N: usize> Corners<D, N> {
         if !points.as_flattened().iter().all(safe) {
             return None;
         }
-        // Scaling may round what is far below the largest difference.
+        // Scaling may round values far below the largest difference.
         let kept = |(x, y): (&f64, &f64)| times_power(*y, e) == *x;
         let pairs = self.points.as_flattened().iter().zip(points.as_flattened());
         if e != 0 && !pairs.into_iter().all(kept) {
@@ -184,7 +184,7 @@ impl<const D: usize, const N: usize> Corners<D, N> {
 
 /// Vectors as integers, in units of 2^low.
 pub struct Integers<const D: usize> {
-    /// One vector for each corner but the last.
+    /// One vector for each corner except the last.
     pub to: [[BigInt; D]; D],
     /// The exponent of the unit.
     pub low: i64,
@@ -200,7 +200,7 @@ fn product_of_lengths<const D: usize>(vectors: &[[f64; D]; D]) -> f64 {
 pub fn times_power(x: f64, exponent: i32) -> f64 {
     const STEP: i32 = 1000;
     let power = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
-    // Only the last step may come to subnormal numbers, or the result is zero anyway.
+    // Only the last step may reach subnormal numbers; otherwise the result is zero anyway.
     let mut x = x * power(exponent % STEP);
     for _ in 0..(exponent / STEP).abs() {
         x *= power(STEP * exponent.signum());
@@ -208,7 +208,7 @@ pub fn times_power(x: f64, exponent: i32) -> f64 {
     x
 }
 
-/// `x * 2^exponent`; mostly the exponent is 0.
+/// `x * 2^exponent`; the exponent is usually 0.
 #[inline]
 pub fn in_units(x: f64, exponent: i32) -> f64 {
     if exponent == 0 {
@@ -234,14 +234,14 @@ pub fn cross<T: Number>(p: [T; 3], q: [T; 3]) -> [T; 3] {
     ]
 }
 
-/// Twice the area of a triangle of its vectors from the last corner.
+/// Twice the area of a triangle, from its vectors from the last corner.
 #[inline]
 pub fn determinant2<T: Number>([a, b]: &[[T; 2]; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Six times the volume of a tetrahedron of its vectors from the last corner. Seen from there, the
-/// others go round clockwise.
+/// Six times the volume of a tetrahedron, from its vectors from the last corner. Seen from there,
+/// the others are clockwise.
 #[inline]
 pub fn determinant3<T: Number>([a, b, c]: &[[T; 3]; 3]) -> T {
     dot(*a, cross(*c, *b))

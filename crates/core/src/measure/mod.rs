@@ -1,10 +1,10 @@
 //! Measures of triangles and tetrahedra: edges and faces, centers, sizes, shapes.
 //!
-//! `skeleton` lists edges and faces, without coordinates. The others read coordinates and round only
-//! their results: what cancels in a thin simplex is computed again with more digits. `circle` and
-//! `sphere` have the centers (with weights, too), `corners` the vectors of a simplex in a unit of its
-//! own, `size` areas and volumes, `affine` the maps to barycentric coordinates, `triangle` and
-//! `tetrahedron` the measures of quality. Simplices are positively oriented, exactly.
+//! `skeleton` lists edges and faces, without coordinates. The others read coordinates and round
+//! only their results: what cancels in a thin simplex is recomputed with more digits. `circle` and
+//! `sphere` compute the centers (with weights, too), `corners` the vectors of a simplex in a unit
+//! of its own, `size` areas and volumes, `affine` the maps to barycentric coordinates, `triangle`
+//! and `tetrahedron` the quality measures. Simplices must be positively oriented, exactly.
 
 mod affine;
 mod batch;

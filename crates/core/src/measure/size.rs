@@ -12,8 +12,8 @@ use crate::error::Result;
 use crate::watch::Watch;
 use crate::wide::{across, determinant, lowest, ratio, root, scaled};
 
-/// The areas of triangles, with a relative error below 1e-14; infinite, or rounded among the
-/// subnormal numbers, where they are beyond the range of doubles.
+/// The areas of triangles, with a relative error below 1e-14; infinite, or subnormal and rounded,
+/// if out of range.
 pub fn areas(
     points: &[[f64; 2]],
     simplices: &[[i32; 3]],
@@ -24,7 +24,7 @@ pub fn areas(
     each(points, simplices, workers, watch, area)
 }
 
-/// The volumes of tetrahedra, as accurate as areas.
+/// The volumes of tetrahedra, with the same accuracy.
 pub fn volumes(
     points: &[[f64; 3]],
     simplices: &[[i32; 4]],
@@ -35,7 +35,7 @@ pub fn volumes(
     each(points, simplices, workers, watch, volume)
 }
 
-/// The areas of triangles in 3-D, none of which is flat, as accurate as those in 2-D.
+/// The areas of triangles in 3-D, none of which is degenerate, with the same accuracy.
 pub fn face_areas(
     points: &[[f64; 3]],
     faces: &[[i32; 3]],
@@ -45,8 +45,8 @@ pub fn face_areas(
     each(points, faces, workers, watch, face_area)
 }
 
-/// The unit normals of triangles in 3-D, none of which is flat, toward where they are
-/// counter-clockwise: within a few units in the last place.
+/// The unit normals of triangles in 3-D, none of which is degenerate, toward the side from which
+/// they are counterclockwise: within a few units in the last place.
 pub fn face_normals(
     points: &[[f64; 3]],
     faces: &[[i32; 3]],
@@ -112,7 +112,8 @@ fn face_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     let (p, q) = (minus(b), minus(c));
     let normal = cross(p, q);
     let (square, size) = (dot(normal, normal), dot(p, p) * dot(q, q));
-    // 2^-10: at most five bits are lost. Between 2^-500 and 2^500 nothing over- or underflows.
+    // 2^-10: at most five bits are lost. Between 2^-500 and 2^500 there is no overflow or
+    // underflow.
     let (small, large) = (times_power(1.0, -500), times_power(1.0, 500));
     if square > size / 1024.0 && square > small && size < large {
         return square.sqrt() / 2.0;
@@ -122,7 +123,7 @@ fn face_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     let minus = |i: usize| [0, 1, 2].map(|k| &at[i][k] - &at[0][k]);
     let (p, q): ([BigInt; 3], [BigInt; 3]) = (minus(1), minus(2));
     let square: BigInt = across(&p, &q).iter().map(|x| x * x).sum();
-    // The root is times 2^64.
+    // The root is scaled by 2^64.
     let twice = BigInt::from(2) << 64_u32;
     ratio(&root(&square), &twice, 2 * low).unwrap_or(f64::INFINITY)
 }

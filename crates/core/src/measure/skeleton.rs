@@ -1,10 +1,12 @@
-//! The edges of triangles and of tetrahedra, and the faces of these, each once, in lexicographic order; the
-//! neighbors of vertices along edges. Topology alone: no coordinate.
+//! Lists the edges and faces of simplices, each once, in lexicographic order, and the neighbors of
+//! vertices.
 //!
-//! Vertices are divided in ranges small enough for a cache. A first pass over the simplices puts what
-//! is to be listed in the bucket of the range of its smallest vertex; then each bucket goes to its
-//! vertices by a counting sort, and what comes to a vertex, a few rows, is sorted. In all O(m), in
-//! tasks that share nothing.
+//! Topology only: no coordinates.
+//!
+//! Vertices are divided into ranges that fit the cache. A first pass over the simplices puts each
+//! row in the bucket of the range of its smallest vertex; then each bucket is distributed to its
+//! vertices by a counting sort, and the few rows of each vertex are sorted. In total O(m), in tasks
+//! that share nothing.
 
 use crate::error::{Error, Result};
 use crate::memory::{Zero, copied, filled, push, with_room, zeroed};
@@ -13,17 +15,17 @@ use crate::watch::{Pace, Watch};
 
 /// The pairs of corners of a tetrahedron.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-/// Edges between two looks at the watch.
+/// Edges between two checks for interruption.
 const LOT: usize = 1 << 16;
-/// Simplices whose rows one task puts in buckets.
+/// Simplices per task in the first pass.
 const SHARE: usize = 1 << 16;
-/// Vertices in a bucket, at least.
+/// The fewest vertices per bucket.
 const RANGE: usize = 1 << 12;
-/// Buckets at most, so that each gets many rows of a share.
+/// The most buckets, so that each gets many rows of a task.
 const BUCKETS: usize = 256;
 
-/// Every edge of triangles on `n` points once: the smaller vertex first, rows ascending. Of an edge
-/// between two triangles the later one counts.
+/// Every edge of triangles on `n` points once: the smaller vertex first, rows ascending. An edge
+/// between two triangles is listed for the later one.
 pub fn edges2(
     simplices: &[[i32; 3]],
     neighbors: &[[i32; 3]],
@@ -66,8 +68,8 @@ pub fn edges3(
     distinct(simplices.len(), n, workers, watch, rows_of, row)
 }
 
-/// Every face of tetrahedra once: vertices and rows ascending. Of a face between two tetrahedra the
-/// later one counts.
+/// Every face of tetrahedra once: vertices and rows ascending. A face between two tetrahedra is
+/// listed for the later one.
 pub fn faces3(
     simplices: &[[i32; 4]],
     neighbors: &[[i32; 4]],
@@ -89,10 +91,10 @@ pub fn faces3(
     distinct(simplices.len(), n, workers, watch, rows_of, row)
 }
 
-/// The neighbors of each of `n` vertices along `edges`, ascending: where they begin in the second result, and
-/// the end. Each edge comes once, the smaller vertex first; rows ascend.
+/// The neighbors of each of `n` vertices along `edges`, ascending: where they begin in the second
+/// result, plus the end. Each edge must occur once, the smaller vertex first, rows ascending.
 pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, Vec<i32>)> {
-    let wrong = || Error::Shape("edges are not in order, each once".into());
+    let wrong = || Error::Shape("edges must be sorted and unique".into());
     let mut pace = Pace::new(watch, LOT);
     let mut starts = zeroed::<i32>(n + 1)?;
     if edges.len() > i32::MAX as usize / 2 {
@@ -113,7 +115,7 @@ pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, 
     }
     let mut next = copied(&starts)?;
     let mut found = zeroed(2 * edges.len())?;
-    // First the smaller neighbors, which come in order, and then the larger ones.
+    // First the smaller neighbors, which are already sorted, then the larger ones.
     for k in [0, 1] {
         for edge in edges {
             pace.spend(1)?;
@@ -125,7 +127,7 @@ pub fn around(edges: &[[i32; 2]], n: usize, watch: &Watch) -> Result<(Vec<i32>, 
     Ok((starts, found))
 }
 
-/// The rows of some simplices, by the range of their first vertex.
+/// The rows of some simplices, bucketed by the range of their first vertex.
 struct Buckets<T> {
     /// A range has 2^bits vertices.
     bits: u32,
@@ -145,8 +147,8 @@ impl<T> Buckets<T> {
     }
 }
 
-/// The different ones of the rows of `count` simplices, in order. A row is its first vertex, below
-/// `n`, and the rest.
+/// The distinct rows of `count` simplices, sorted. A row is its first vertex, below `n`, and the
+/// rest.
 fn distinct<T, R>(
     count: usize,
     n: usize,
@@ -160,6 +162,7 @@ where
     R: Zero + Send + Sync,
 {
     let bits = n.div_ceil(BUCKETS).max(RANGE).next_power_of_two().ilog2();
+    // Distribute the rows of each share of simplices to buckets.
     let shares = (0..count).step_by(SHARE).collect();
     let dealt = parallel::map(workers, shares, |start| {
         watch.check()?;
@@ -170,14 +173,16 @@ where
         Ok(buckets.rows)
     });
     let dealt = dealt.into_iter().collect::<Result<Vec<_>>>()?;
+    // Sort each bucket and remove duplicates.
     let buckets = (0..(n >> bits) + 1).collect();
     let sorted = parallel::map(workers, buckets, |b| {
         watch.check()?;
         let parts = dealt.iter().map(|rows| rows[b].as_slice());
-        in_order(parts, (b << bits) as i32, 1 << bits, &row)
+        sorted(parts, (b << bits) as i32, 1 << bits, &row)
     });
     drop(dealt);
     let sorted = sorted.into_iter().collect::<Result<Vec<_>>>()?;
+    // Copy the buckets to one array, in order.
     let mut found = zeroed(sorted.iter().map(Vec::len).sum())?;
     let mut tasks = with_room(sorted.len())?;
     let mut left = found.as_mut_slice();
@@ -193,8 +198,8 @@ where
     Ok(found)
 }
 
-/// The different ones of rows whose first vertices are the `range` ones from `first` on, in order.
-fn in_order<'a, T: Copy + Ord + Default + 'a, R>(
+/// The distinct rows whose first vertices are the `range` ones from `first` on, sorted.
+fn sorted<'a, T: Copy + Ord + Default + 'a, R>(
     parts: impl Iterator<Item = &'a [(i32, T)]> + Clone,
     first: i32,
     range: usize,
@@ -208,7 +213,7 @@ fn in_order<'a, T: Copy + Ord + Default + 'a, R>(
         ends[v + 1] += ends[v];
     }
     let mut rest = filled(ends[range] as usize, T::default())?;
-    // Afterwards each entry has moved from the start of its vertex to its end.
+    // This moves each entry from the start of its vertex to its end.
     for &(u, with) in parts.flatten() {
         let slot = &mut ends[(u - first) as usize];
         rest[*slot as usize] = with;

@@ -1,30 +1,31 @@
-//! Where the bisectors of four sites meet, rounded.
+//! Circumcenters and power centers of four sites, correctly rounded or within 4 ulp.
 //!
-//! With the first corner a as the origin, d = b - a, e = c - a and f = the last one - a, the point u at
-//! equal power from all four solves 2 u.d = |d|^2 + w(a) - w(b) = L, and likewise M for e and N for
-//! f, so that
+//! With the first corner a as the origin, d = b - a, e = c - a and f = the last one - a, the point
+//! u with equal power to all four solves 2 u.d = |d|^2 + w(a) - w(b) = L, and likewise M for e and
+//! N for f, so that
 //!
 //! ```text
 //! u = (L e x f + M f x d + N d x e) / (2 d . (e x f)),    center = a + u
 //! ```
 //!
-//! and without weights it is the centre of the sphere. The stages are those of the plane (see
-//! `circle`): doubles with a bound on the error, accepted up to 4 units in the last place;
-//! numbers of two doubles, accepted where the interval of the error rounds to one double; integers
-//! of any width. The last two are correctly rounded.
+//! and without weights it is the circumcenter. The stages are those of 2-D (see `circle`): doubles
+//! with a bound on the error, accepted up to 4 units in the last place; double-double arithmetic,
+//! accepted if the interval of the error rounds to one double; arbitrary-precision integers. The
+//! last two are correctly rounded.
 //!
-//! Corners are taken in lexicographic order, so that the result is independent of the order in which a
-//! tetrahedron names them.
+//! Corners are taken in lexicographic order, so the result is independent of the order of the
+//! corners.
 //!
 //! # The bound of the plain stage
 //!
-//! Let u = 2^-53, P and Q the sums of the magnitudes of the monomials of a component of the numerator
-//! and of d . (e x f). A monomial of the numerator passes 2 differences, a product, 2 sums and the
-//! one with the weights in L; 2 differences, a product and a sum in the minor; their product; 2 sums:
-//! 13 roundings; one of the determinant 3 differences, 2 products and 3 sums. With room for terms of
-//! second order they err by 15 u P and 9 u Q. Where |D| > 36 u Q for D = 2 d . (e x f), the quotient
-//! q errs by 2 u (15 P + 18 |q| Q) / |D| + u |q|, and x = a + q by u |x| more. Nothing underflows to
-//! any effect while P, Q > 2^-700 and all differences and weights lie below 2^200.
+//! Let u = 2^-53, P and Q the sums of the magnitudes of the monomials of a component of the
+//! numerator and of d . (e x f). A monomial of the numerator goes through 13 roundings: 2
+//! differences, a product, 2 sums and the one with the weights in L; 2 differences, a product and a
+//! sum in the minor; their product; 2 sums. One of the determinant goes through 3 differences, 2
+//! products and 3 sums. With room for terms of second order they err by 15 u P and 9 u Q. If |D| >
+//! 36 u Q for D = 2 d . (e x f), the quotient q errs by 2 u (15 P + 18 |q| Q) / |D| + u |q|, and
+//! x = a + q by u |x| more. Underflow is negligible while P, Q > 2^-700 and all differences and
+//! weights are below 2^200.
 
 use delone_predicates::arithmetic::{Pair, is_safe};
 use delone_predicates::{Point3, lexicographic};
@@ -36,12 +37,12 @@ use crate::wide::{determinant, lowest, ratio, scaled};
 
 /// Half the distance from 1.0 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
-/// Below this a sum of magnitudes may have suffered from underflow, see the head of the file.
+/// Below this a sum of magnitudes may be inaccurate because of underflow, see the head of the file.
 const SMALL: f64 = f64::from_bits((1023 - 700) << 52);
 /// Squared differences and weights up to here cannot overflow in degree 4.
 const LARGE: f64 = f64::from_bits((1023 + 400) << 52);
 
-/// Four sites that span space, and their weights, in lexicographic order.
+/// Four affinely independent sites and their weights, in lexicographic order.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners {
     points: [Point3; 4],
@@ -51,7 +52,7 @@ pub struct Corners {
 impl Centered<3, 4> for Corners {
     #[inline]
     fn new(mut points: [Point3; 4], mut weights: [f64; 4]) -> Self {
-        // A network that sorts four.
+        // A sorting network for four.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             if lexicographic(points[j], points[i]).is_lt() {
                 points.swap(i, j);
@@ -203,9 +204,9 @@ impl Corners {
     }
 }
 
-/// The direction of a vector that is not zero, of length 1.
+/// The direction, of length 1, of a nonzero vector.
 pub(crate) fn direction(vector: &[BigInt; 3]) -> Point3 {
-    // Sixty bits of the longest one are more than a double holds.
+    // Sixty bits of the largest component are more than a double holds.
     let bits = vector.iter().map(BigInt::bits).max().unwrap_or(0);
     let shift = bits.saturating_sub(60);
     let v = [0, 1, 2].map(|k| i64::try_from(&vector[k] >> shift).unwrap_or(0) as f64);
@@ -213,8 +214,8 @@ pub(crate) fn direction(vector: &[BigInt; 3]) -> Point3 {
     v.map(|x| x / length + 0.0)
 }
 
-/// The direction of (b - a) x (c - a), of length 1, within a few units in the last place; a, b and c
-/// are not in line.
+/// The direction of (b - a) x (c - a), of length 1, within a few units in the last place; a, b and
+/// c are not collinear.
 pub(crate) fn normal(a: Point3, b: Point3, c: Point3) -> Point3 {
     let minus = |p: Point3| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
     let (p, q) = (minus(b), minus(c));
@@ -226,8 +227,8 @@ pub(crate) fn normal(a: Point3, b: Point3, c: Point3) -> Point3 {
         size = size.max(left.abs() + right.abs());
     }
     let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    // Each component errs by 5 u of its products at most: where these are not far larger than the
-    // vector, and nothing under- or overflows, its direction is right.
+    // Each component errs by at most 5 u of its products: if these are not far larger than the
+    // vector, and nothing overflows or underflows, its direction is accurate.
     if square > SMALL && square < 1.0 / SMALL && square * 16.0 > size * size {
         let length = square.sqrt();
         return v.map(|x| x / length + 0.0);
@@ -250,7 +251,7 @@ mod tests {
     const NONE: [f64; 4] = [0.0; 4];
 
     #[test]
-    fn the_corner_of_a_box_has_its_middle() {
+    fn the_center_of_a_box_corner_is_its_middle() {
         let corners = [
             [4.0, 0.0, 0.0],
             [0.0, 0.0, 0.0],

@@ -1,10 +1,9 @@
-//! How good tetrahedra are: dihedral angles, volume, ratios of radii and of edges.
+//! Quality of tetrahedra: dihedral angles, volume, radius and edge ratios.
 //!
-//! Let N be the vectors of the faces (twice their areas, inward) and D six times the volume. The
-//! dihedral angle at an edge of length l, between the faces k and m, has the cotangent
-//! -N_k . N_m / (D l), so that angles near 0 and 180 degrees are as accurate as others. The inradius is
-//! D / sum |N|, the circumradius |S| / (2 D) with S = sum |v_i|^2 N_i over the vectors v_i from the
-//! last corner.
+//! Let N be the face vectors (twice their areas, inward) and D six times the volume. The dihedral
+//! angle at an edge of length l, between the faces k and m, has the cotangent -N_k . N_m / (D l),
+//! so angles near 0 and 180 degrees are as accurate as others. The inradius is D / sum |N|, the
+//! circumradius |S| / (2 D) with S = sum |v_i|^2 N_i over the vectors v_i from the last corner.
 
 use num_bigint::BigInt;
 
@@ -16,12 +15,12 @@ use crate::error::Result;
 use crate::watch::Watch;
 use crate::wide::{across, angle, ratio, root};
 
-/// The faces at each edge, which are those opposite the two other corners; the edges are 01, 02, 03,
-/// 12, 13 and 23.
+/// The two faces at each edge, by their opposite corners, which are not on the edge; the edges are
+/// 01, 02, 03, 12, 13 and 23.
 const BESIDE: [[usize; 2]; 6] = [[2, 3], [1, 3], [1, 2], [0, 3], [0, 2], [0, 1]];
 
 /// For each tetrahedron the smallest and the largest dihedral angle in degrees, the volume, three
-/// times the inradius as a share of the circumradius, and the longest edge in lengths of the shortest.
+/// times the inradius over the circumradius, and the longest over the shortest edge.
 pub fn qualities3(
     points: &[[f64; 3]],
     simplices: &[[i32; 4]],
@@ -43,7 +42,7 @@ pub fn dihedral_angles(
     each(points, simplices, workers, watch, angles)
 }
 
-/// The vectors of faces inward, of edges, the sum S, and D.
+/// The inward face vectors, the edge vectors, the sum S, and D.
 struct Parts {
     faces: [[f64; 3]; 4],
     lengths: [f64; 6],
@@ -70,7 +69,7 @@ impl Parts {
         }
     }
 
-    /// The cosines of dihedral angles times the lengths of both faces' vectors.
+    /// The cosines of dihedral angles times the lengths of both face vectors.
     #[inline]
     fn cosines(&self) -> [f64; 6] {
         BESIDE.map(|[k, m]| -dot(self.faces[k], self.faces[m]))
@@ -95,7 +94,7 @@ impl Measure<3> for Quality {
     #[inline]
     fn of<T: Number>(&self, vectors: &Vectors<T, 3>) -> [f64; 5] {
         let parts = Parts::of(vectors);
-        // The larger the cotangent, the smaller the angle: two arc tangents are enough.
+        // The larger the cotangent, the smaller the angle: two arc tangents suffice.
         let cosines = parts.cosines();
         let cotangent = |i: usize| cosines[i] / parts.lengths[i];
         let (mut low, mut high) = (0, 0);
@@ -135,7 +134,7 @@ impl Measure<3> for Quality {
             .fold((f64::INFINITY, 0.0_f64), |(s, l), &x| (s.min(x), l.max(x)));
         let surface: BigInt = of.faces.iter().map(|face| root(&square(face))).sum();
         let around = surface * root(&square(&of.center));
-        // Two roots, each times 2^64.
+        // Two roots, each scaled by 2^64.
         let squares = (&of.size * &of.size * 6) << 128_u32;
         let mut lengths = of.lengths;
         lengths.sort();
@@ -175,7 +174,7 @@ impl Measure<3> for Angles {
     }
 }
 
-/// The same as `Parts`, in integers; lengths are times 2^64 and rounded down.
+/// The same as `Parts`, in integers; lengths are scaled by 2^64 and rounded down.
 struct Exact {
     faces: [[BigInt; 3]; 4],
     lengths: [BigInt; 6],

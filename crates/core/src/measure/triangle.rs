@@ -1,4 +1,4 @@
-//! How good triangles are: angles, area, ratios of radii and of edges.
+//! Quality of triangles: angles, area, radius and edge ratios.
 
 use num_bigint::{BigInt, Sign};
 
@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::watch::Watch;
 use crate::wide::{angle, lowest, ratio, root, scaled};
 
-/// Squares that differ by a smaller share are compared exactly: some eight roundings each.
+/// Squares whose relative difference is smaller are compared exactly: about eight roundings each.
 const UNSURE: f64 = 1e-13;
 
-/// For each triangle the smallest and the largest angle in degrees, the area, twice the inradius as a
-/// share of the circumradius, and the longest edge in lengths of the shortest.
+/// For each triangle the smallest and the largest angle in degrees, the area, twice the inradius
+/// over the circumradius, and the longest over the shortest edge.
 pub fn qualities2(
     points: &[[f64; 2]],
     simplices: &[[i32; 3]],
@@ -39,7 +39,7 @@ impl Measure<2> for Quality {
         let c = [b[0] - a[0], b[1] - a[1]];
         let dot = |p: [T; 2], q: [T; 2]| (p[0] * q[0] + p[1] * q[1]).value();
         let twice = determinant2(&vectors.to).value();
-        // At each corner the cotangent of the angle is the inner product over twice the area.
+        // The cotangent of the angle at a corner is the inner product over twice the area.
         let dots = [dot(a, b), -dot(a, c), dot(b, c)];
         let lengths = [a, b, c].map(|v| dot(v, v).sqrt());
         let (least, most) = ends(dots);
@@ -49,7 +49,7 @@ impl Measure<2> for Quality {
             twice.atan2(most).to_degrees(),
             twice.atan2(least).to_degrees(),
             in_units(twice / 2.0, 2 * vectors.exponent),
-            // Rounding must not make an equilateral triangle better than best.
+            // Rounding must not give an equilateral triangle more than 1.
             (4.0 * twice * (twice / around)).min(1.0),
             long / short,
         ]
@@ -65,7 +65,7 @@ impl Measure<2> for Quality {
         let mut lengths = [a, b, &c].map(|v| root(&dot(v, v)));
         lengths.sort();
         let around = lengths.iter().sum::<BigInt>() * lengths.iter().product::<BigInt>();
-        // Four lengths, each times 2^64.
+        // Four lengths, each scaled by 2^64.
         let squares = (&twice * &twice) << (2 + 4 * 64_u32);
         let infinite = f64::INFINITY;
         [
@@ -78,8 +78,8 @@ impl Measure<2> for Quality {
     }
 }
 
-/// Which triangles have an angle below a bound, given by the square of its cosine. Exact for that
-/// double: an angle is smaller where the square of its cosine is larger.
+/// Which triangles have an angle below a bound, given by its squared cosine. Exact for that double:
+/// an angle is smaller if its squared cosine is larger.
 pub fn below(
     points: &[[f64; 2]],
     simplices: &[[i32; 3]],
@@ -95,7 +95,7 @@ pub fn below(
     })
 }
 
-/// Whether the smallest angle is below a bound; none where that is not certain.
+/// Whether the smallest angle is below a bound; `None` if that is uncertain.
 struct Below {
     squared_cosine: f64,
 }
@@ -114,7 +114,7 @@ impl Measure<2> for Below {
         let c = [b[0] - a[0], b[1] - a[1]];
         let dot = |p: [T; 2], q: [T; 2]| (p[0] * q[0] + p[1] * q[1]).value();
         let [aa, bb, cc] = [dot(a, a), dot(b, b), dot(c, c)];
-        // The smallest angle is opposite the shortest edge; where two are as short, either will do.
+        // The smallest angle is opposite the shortest edge; on a tie either is right.
         let (inner, beside) = if cc <= aa && cc <= bb {
             (dot(a, b), aa * bb)
         } else if aa <= bb {
@@ -147,7 +147,7 @@ impl Below {
     }
 }
 
-/// The least and the greatest of three numbers.
+/// The smallest and the largest of three numbers.
 #[inline]
 fn ends([a, b, c]: [f64; 3]) -> (f64, f64) {
     (a.min(b).min(c), a.max(b).max(c))

@@ -1,5 +1,6 @@
-//! The mesh as arrays. Ghosts go, triangles from the end take their records, and what is left is
-//! written in the order of the records, by all workers.
+//! Exports the mesh as arrays: ghosts are dropped, and triangles from the end take their records.
+//!
+//! The remaining records are then written in order, by all workers.
 
 use super::storage::{OPPOSITE, RECORD};
 use super::{Code, Mesh2, triangle};
@@ -9,16 +10,16 @@ use crate::memory::{with_room, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Stands for the other side of a hull edge once the ghosts are gone; shifted like a code it
+/// Stands for the other side of a hull edge after the ghosts are dropped; shifted like a code it
 /// gives -1.
 pub(super) const OUTSIDE: Code = Code::MAX;
 
-/// Triangles that one task writes.
+/// Triangles per task.
 const SHARE: usize = 1 << 14;
-/// Triangles whose marks are read between two looks at the watch.
+/// Triangles whose marks are read between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// As [`arrays`], and for each triangle and corner whether the edge opposite is marked.
+/// Like [`arrays`], and for each triangle and corner whether the opposite edge is marked.
 pub fn marked_arrays(
     mesh: Mesh2,
     ghost: Code,
@@ -91,7 +92,7 @@ fn write(
     Ok((mesh, out))
 }
 
-/// Makes the finite triangles of `mesh` its first records and returns their count.
+/// Moves the finite triangles of `mesh` to its first records and returns their count.
 fn drop_ghosts(mesh: &mut Mesh2, ghost: Code) -> Result<usize> {
     let all = 2 * mesh.vertices() - 2;
     let mut patch = mesh.patch();
@@ -109,7 +110,7 @@ fn drop_ghosts(mesh: &mut Mesh2, ghost: Code) -> Result<usize> {
     }
     let count = all - ghosts.len();
     if count == 0 {
-        return Ok(0); // A chain: ghosts on both sides of each edge, and no triangle.
+        return Ok(0); // A chain: ghosts on both sides of each edge, and no triangles.
     }
     for &g in &ghosts {
         patch.set_opposite(patch.opposite(g), OUTSIDE);
@@ -123,7 +124,7 @@ fn drop_ghosts(mesh: &mut Mesh2, ghost: Code) -> Result<usize> {
     for &hole in holes {
         let from = moving
             .next()
-            .ok_or_else(|| Error::Internal("the hull is no ring".into()))?;
+            .ok_or_else(|| Error::Internal("the hull is not a ring".into()))?;
         patch.relocate(from, hole);
     }
     Ok(count)

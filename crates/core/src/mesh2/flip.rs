@@ -1,14 +1,16 @@
-//! The three edits of textbook flip algorithms. Each keeps every half-edge mutual; whether the
-//! triangles are turned left afterwards is for the caller, who knows coordinates.
+//! The three edits of flip algorithms: edge flip, triangle split, edge split.
 //!
-//! Ghosts are triangles like others here. No two triangles may share two edges, which holds in
-//! every mesh but that of a chain.
+//! Each keeps all half-edges mutual; the caller, which knows coordinates, must ensure that the new
+//! triangles are counterclockwise.
+//!
+//! Ghosts are ordinary triangles here. No two triangles may share two edges, which holds in every
+//! mesh except a chain.
 
 use super::{Code, Patch, next, prev};
 
 impl Patch<'_> {
-    /// Turns the edge `e` in the quadrilateral of its two triangles. `e` keeps its apex p and is an
-    /// edge opposite it; returned is the other half-edge opposite p, in the other triangle.
+    /// Flips the edge `e` in the quadrilateral of its two triangles. `e` keeps its apex p and
+    /// becomes an edge opposite it; returns the other half-edge opposite p, in the other triangle.
     pub fn flip(&mut self, e: Code) -> Code {
         //        p                 p
         //      / t \             / | \         e was u v in t and is u q; o was v u in s and
@@ -26,7 +28,7 @@ impl Patch<'_> {
         prev(o)
     }
 
-    /// Puts the new vertex `p` in triangle `t`. Returns the three half-edges opposite p.
+    /// Inserts the new vertex `p` in triangle `t`. Returns the three half-edges opposite p.
     pub fn split_triangle(&mut self, t: u32, p: u32) -> [Code; 3] {
         //        c                 c
         //       / \               /|\          t keeps b and c; r has c and a, s has a and b.
@@ -48,7 +50,7 @@ impl Patch<'_> {
         [t, r, s]
     }
 
-    /// Puts the new vertex `p` on the edge `e`. Returns the four half-edges opposite p.
+    /// Inserts the new vertex `p` on the edge `e`. Returns the four half-edges opposite p.
     pub fn split_edge(&mut self, e: Code, p: u32) -> [Code; 4] {
         //        x                 x
         //      / t \             /t|r\         e is u p afterwards, its opposite o is p u.
@@ -114,7 +116,7 @@ mod tests {
         let mut expected = [finite, ghosts].concat();
         expected.sort_unstable();
         assert_eq!(all(&patch, 6), expected);
-        // A ghost becomes a triangle outside the hull and two ghosts.
+        // A split ghost becomes a triangle outside the hull and two ghosts.
         let outer = triangle(patch.opposite(edge(&patch, 6, [1, 2])));
         let star = patch.split_triangle(outer, 4);
         assert!(star.iter().all(|&e| patch.vertex(e) == 4));
@@ -146,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn two_flips_of_an_edge_turn_it_by_half() {
+    fn two_flips_reverse_an_edge() {
         let mut mesh = Mesh2::with_vertices(4).unwrap();
         let mut patch = mesh.patch();
         patch.triangle([0, 1, 2]);

@@ -1,5 +1,7 @@
-//! The ring of ghosts round a mesh. A ghost is held by the code of its infinite corner; its finite
-//! edge runs clockwise on the hull, from `head` to `tail`: the hull edge runs `tail` to `head`.
+//! The ring of ghosts around a mesh.
+//!
+//! A ghost is represented by the code of its infinite corner; its finite edge runs clockwise on the
+//! hull, from `head` to `tail`: the hull edge runs from `tail` to `head`.
 
 use super::storage::OPPOSITE;
 use super::{Code, Patch, next, prev, triangle};
@@ -29,7 +31,7 @@ impl Patch<'_> {
         next(self.opposite(next(g)))
     }
 
-    /// Turns the record of ghost `g` so that its infinite corner is the first.
+    /// Rotates the record of ghost `g` so that its infinite corner is first.
     pub fn turn(&mut self, g: Code) -> Code {
         let turned = [g, next(g), prev(g)];
         let corners = turned.map(|e| self.vertex(e));
@@ -42,13 +44,13 @@ impl Patch<'_> {
         8 * t
     }
 
-    /// Takes the triangle behind the hull edge of ghost `g` out of the mesh: two ghosts take the
-    /// place of it and `g`. Ghost `g` keeps its head; the other, returned, has its tail, and what is
-    /// before it is for the caller to link. The infinite corner of both is the first.
+    /// Removes the triangle behind the hull edge of ghost `g` from the mesh: two ghosts replace it
+    /// and `g`. Ghost `g` keeps its head; the other one, which is returned, gets its tail, and the
+    /// caller must link the ghost before it. The infinite corner of both is first.
     #[inline]
     pub fn peel(&mut self, g: u32) -> u32 {
         //        inf                  inf
-        //      /  g  \              / | \           The edge tail head goes, the edges
+        //      /  g  \              / | \           The edge tail head is removed; the edges
         //   tail --- head   ->  tail  |  head       tail x and x head are hull edges now.
         //      \     /              \ | /
         //         x                   x

@@ -1,4 +1,4 @@
-//! Arrays of triangles as a mesh: the neighbours found and the ghosts put round them.
+//! Builds a mesh from arrays of triangles: finds the neighbors and adds the ghosts.
 
 use super::export::OUTSIDE;
 use super::{Code, Mesh2, next, prev};
@@ -6,14 +6,14 @@ use crate::error::{Error, Result};
 use crate::memory::{filled, with_room, zeroed};
 use crate::watch::{Pace, Watch};
 
-/// Most triangles: their codes must fit in 32 bits and leave [`OUTSIDE`] free.
+/// The most triangles: their codes must fit in 32 bits and leave [`OUTSIDE`] free.
 const LIMIT: usize = 1 << 29;
 
-/// Triangles, or vertices, between two looks at the watch.
+/// Triangles, or vertices, between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// The triangle across the edge opposite each corner, -1 outside, by a sort of the edges: O(m log m),
-/// less where no vertex has many. Corners must lie below `vertices`.
+/// The triangle across the edge opposite each corner, -1 outside, by a sort of the edges: O(m log
+/// m), less if no vertex has a high degree. Corners must be below `vertices`.
 pub fn adjacency(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<Vec<[i32; 3]>> {
     let opposites = opposites(simplices, vertices, watch)?;
     let mut neighbors = with_room(simplices.len())?;
@@ -24,8 +24,8 @@ pub fn adjacency(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Resu
     Ok(neighbors)
 }
 
-/// The mesh of triangles that tile the hull of `vertices` vertices, all of which they use, with
-/// one of its ghosts. Triangle t becomes record t.
+/// The mesh of triangles that tile the hull of `vertices` vertices, all of which they use, and one
+/// of its ghosts. Triangle t becomes record t.
 pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(Mesh2, Code)> {
     let mut pace = Pace::new(watch, LOT);
     let broken = || Error::Internal("the triangles do not tile a hull".into());
@@ -41,7 +41,7 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(M
         let t = patch.fresh();
         patch.set(t, s.map(|v| v as u32));
     }
-    // The ghost whose hull edge begins at a vertex.
+    // For each vertex, the ghost whose hull edge begins there.
     let mut begins = filled(vertices, OUTSIDE)?;
     let mut hull: Vec<Code> = Vec::new();
     for (t, codes) in (0u32..).zip(&opposites) {
@@ -55,7 +55,7 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(M
             let g = patch.fresh();
             patch.set(g, [patch.infinite(), head, tail]);
             patch.link(8 * g, e);
-            // The boundary of a hull leaves each of its vertices once.
+            // On a hull, one boundary edge leaves each vertex.
             if std::mem::replace(&mut begins[tail as usize], 8 * g) != OUTSIDE {
                 return Err(broken());
             }
@@ -73,14 +73,14 @@ pub fn mesh(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<(M
     Ok((mesh, ghost))
 }
 
-/// The code on the other side of each edge: edges go by a counting sort to their smaller end, and
-/// there the two sides meet in a sort by the larger.
+/// The code on the other side of each edge: a counting sort puts edges at their smaller end, and a
+/// sort by the larger end brings the two sides together.
 fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<Vec<[Code; 3]>> {
     let mut pace = Pace::new(watch, LOT);
     if simplices.len() > LIMIT {
         let found = simplices.len();
         return Err(Error::Shape(format!(
-            "{found} simplices are more than {LIMIT}"
+            "{found} simplices exceed the limit of {LIMIT}"
         )));
     }
     let mut start = zeroed::<u32>(vertices + 1)?;
@@ -104,7 +104,7 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<V
         for k in 0..3 {
             let [u, v] = edge(*s, k);
             let at = &mut start[u.min(v) as usize];
-            // By the larger end, then by direction.
+            // Sorted by the larger end, then by direction.
             let key = 2 * u.max(v) as u64 + u64::from(u > v);
             sides[*at as usize] = key << 32 | (8 * t + k as u64);
             *at += 1;
@@ -122,12 +122,12 @@ fn opposites(simplices: &[[i32; 3]], vertices: usize, watch: &Watch) -> Result<V
     Ok(opposites)
 }
 
-/// The ends of edge k, counter-clockwise.
+/// The ends of edge k, counterclockwise.
 fn edge(s: [i32; 3], k: usize) -> [i32; 2] {
     [s[(k + 1) % 3], s[(k + 2) % 3]]
 }
 
-/// Joins the two sides of each edge in the sorted `list` of one smaller end.
+/// Links the two sides of each edge in the sorted `list` of one smaller end.
 fn pair(list: &[u64], simplices: &[[i32; 3]], opposites: &mut [[Code; 3]]) -> Result<()> {
     for w in list.windows(2) {
         let [e, f] = [w[0] as Code, w[1] as Code];
@@ -153,11 +153,11 @@ mod tests {
     const SQUARE: [[i32; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
 
     #[test]
-    fn neighbours_share_their_edge() {
+    fn neighbors_share_their_edge() {
         let neighbors = adjacency(&SQUARE, 4, &Watch::idle()).unwrap();
         assert_eq!(neighbors, [[1, -1, -1], [-1, 0, -1]]);
         assert!(adjacency(&[], 0, &Watch::idle()).unwrap().is_empty());
-        // Triangles that touch in a vertex alone are no neighbours.
+        // Triangles that share only a vertex are not neighbors.
         let neighbors = adjacency(&[[0, 1, 2], [2, 3, 4]], 5, &Watch::idle()).unwrap();
         assert_eq!(neighbors, [[-1; 3]; 2]);
     }
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_has_ghosts_all_round() {
+    fn a_mesh_has_ghosts_all_around() {
         let (mut mesh, ghost) = mesh(&SQUARE, 4, &Watch::idle()).unwrap();
         let patch = mesh.patch();
         patch.check(6).unwrap();
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tiles_no_hull_is_no_mesh() {
+    fn triangles_that_do_not_tile_a_hull_are_rejected() {
         assert!(mesh(&[[0, 1, 2], [2, 3, 4]], 5, &Watch::idle()).is_err());
     }
 }

@@ -1,10 +1,11 @@
-//! Marks on edges, and the edits of `flip` that carry them along. A mark is a bit in the fourth word
-//! of each of the two records at its edge; meshes come from their builders with none.
+//! Marks on edges, and edits like those of `flip` that preserve them.
 //!
-//! Triangles may have a label, which the parts of a split triangle inherit; a flip joins triangles of
-//! one label.
+//! A mark is a bit in the fourth word of each of the two records at its edge; builders set none.
 //!
-//! Beside it, each side of an edge can be *fixed*, which the other side does not see.
+//! Triangles may have a label, which the parts of a split triangle inherit; a flip must join
+//! triangles with the same label.
+//!
+//! In addition, each side of an edge can be *fixed*, which the other side does not see.
 
 use super::{Code, Patch, next, prev, triangle};
 
@@ -26,7 +27,7 @@ impl Patch<'_> {
         self.set_vertex(8 * t + WORD, bits);
     }
 
-    /// What is set on this side of `e`, as for the first corner.
+    /// The bits of this side of `e`, as for the first corner.
     #[inline]
     fn side(&self, e: Code) -> u32 {
         self.bits(triangle(e)) >> (e & 3) & BOTH
@@ -56,7 +57,7 @@ impl Patch<'_> {
         self.side(e) & 1 != 0
     }
 
-    /// Marks the edge `e`, or takes its mark away.
+    /// Marks or unmarks the edge `e`.
     #[inline]
     pub fn mark(&mut self, e: Code, marked: bool) {
         for side in [e, self.opposite(e)] {
@@ -75,7 +76,7 @@ impl Patch<'_> {
         self.set_side(e, self.side(e) | FIXED);
     }
 
-    /// Frees the sides of triangle `t` that were fixed.
+    /// Releases the sides of triangle `t` that were fixed.
     pub fn release(&mut self, t: u32) {
         self.set_bits(t, self.bits(t) & 0b111);
     }
@@ -92,12 +93,12 @@ impl Patch<'_> {
         self.set_bits(t, marks);
     }
 
-    /// Takes all marks from this side of the edges of triangle `t`.
+    /// Clears all marks on this side of the edges of triangle `t`.
     pub fn clear(&mut self, t: u32) {
         self.set_bits(t, 0);
     }
 
-    /// [`Patch::flip`] of an edge that is not marked.
+    /// [`Patch::flip`] of an edge that is not marked; the other edges keep their marks.
     pub fn flip_marked(&mut self, e: Code) -> Code {
         let o = self.opposite(e);
         let (uq, vp) = (self.side(next(o)), self.side(next(e)));

@@ -1,14 +1,14 @@
 //! A triangle mesh with ghosts: topology only, no coordinates and no predicates.
 //!
-//! Every edge of the hull carries a *ghost* triangle to one infinite vertex, so each triangle has
-//! three neighbours and a mesh of n vertices has 2 n - 2 triangles. A triangle is a record of eight
-//! `u32`: three vertices counter-clockwise, its marks, three opposite codes, a pad. The *code* of a
+//! Every hull edge has a *ghost* triangle to one infinite vertex, so each triangle has three
+//! neighbors and a mesh of n vertices has 2 n - 2 triangles. A triangle is a record of eight `u32`:
+//! three vertices counterclockwise, its marks, three opposite codes, padding. The *code* of a
 //! half-edge is `8 t + k`: triangle t, the edge opposite its corner k, which runs from corner k + 1
 //! to corner k + 2. So `vertex(code)` is the apex, `opposite(code)` the same edge seen from the
 //! other side, and the apex across an edge is one load away.
 //!
-//! The records of a contiguous block of vertices are a *patch*. Patches are disjoint, so that
-//! threads fill them side by side; two adjacent ones join to one.
+//! The records of a contiguous block of vertices are a *patch*. Patches are disjoint, so threads
+//! can fill them in parallel; two adjacent ones can be joined.
 
 pub mod export;
 mod flip;

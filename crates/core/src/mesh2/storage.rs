@@ -9,21 +9,21 @@ pub type Code = u32;
 
 /// Words of a record.
 pub const RECORD: usize = 8;
-/// Numbers that are moved between two looks at the watch.
+/// Numbers moved between two checks for interruption.
 const LOT: usize = RECORD << 16;
 /// Where the codes across begin in a record.
 pub const OPPOSITE: usize = 4;
 
-/// Records that a vertex brings: as many as a mesh has a vertex, but for two of the mesh.
+/// Records per vertex: a mesh of n vertices has 2 n - 2.
 const PER_VERTEX: usize = 2;
 
-/// The half-edge that follows in its triangle, counter-clockwise.
+/// The half-edge that follows in its triangle, counterclockwise.
 #[inline]
 pub fn next(e: Code) -> Code {
     e + 1 - 3 * (e >> 1 & 1)
 }
 
-/// The half-edge before, counter-clockwise.
+/// The previous half-edge of its triangle.
 #[inline]
 pub fn prev(e: Code) -> Code {
     e + 2 - 3 * u32::from(e & 3 != 0)
@@ -43,7 +43,7 @@ pub struct Mesh2 {
 }
 
 impl Mesh2 {
-    /// Room for the triangles of `vertices` vertices.
+    /// Capacity for the triangles of `vertices` vertices.
     pub fn with_vertices(vertices: usize) -> Result<Self> {
         let records = zeroed(RECORD * PER_VERTEX * vertices)?;
         Ok(Self {
@@ -62,7 +62,7 @@ impl Mesh2 {
         }
     }
 
-    /// All records as one patch, the first `used` of which are triangles already.
+    /// All records as one patch, the first `used` of which are already triangles.
     #[inline]
     pub fn resume(&mut self, used: u32) -> Patch<'_> {
         Patch {
@@ -76,8 +76,8 @@ impl Mesh2 {
         self.infinite as usize
     }
 
-    /// Changes the room to that of `vertices` vertices, where the first `used` records are
-    /// triangles: what they call the infinite vertex changes with it.
+    /// Changes the capacity to `vertices` vertices, where the first `used` records are triangles:
+    /// the number of the infinite vertex changes with it.
     pub fn resize(&mut self, vertices: usize, used: u32, watch: &Watch) -> Result<()> {
         let (before, after) = (self.infinite, vertices as u32);
         let mut records = zeroed(RECORD * PER_VERTEX * vertices)?;
@@ -121,7 +121,7 @@ impl<'a> Patch<'a> {
         triangle(self.base)
     }
 
-    /// Cuts the patch behind its first `vertices` vertices.
+    /// Splits the patch after its first `vertices` vertices.
     pub fn split_at(self, vertices: usize) -> (Patch<'a>, Patch<'a>) {
         let cut = RECORD * PER_VERTEX * vertices;
         let (left, right) = self.records.split_at_mut(cut);
@@ -144,7 +144,7 @@ impl<'a> Patch<'a> {
         )
     }
 
-    /// The same records for a shorter time.
+    /// The same records for a shorter lifetime.
     pub fn reborrow(&mut self) -> Patch<'_> {
         Patch {
             records: self.records,
@@ -154,7 +154,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// The two records that the mesh of the first `vertices` vertices leaves free.
+    /// The two records that a mesh of the first `vertices` vertices does not use.
     pub fn spare(&self, vertices: usize) -> [u32; 2] {
         let end = triangle(self.base) + (PER_VERTEX * vertices) as u32;
         [end - 2, end - 1]
@@ -191,25 +191,25 @@ impl<'a> Patch<'a> {
         self.records[self.index(e) + OPPOSITE]
     }
 
-    /// Triangle `t` as it lies in memory: corners in words 0 to 2, the codes across in 4 to 6.
+    /// Triangle `t` as stored in memory: corners in words 0 to 2, the codes across in 4 to 6.
     #[inline]
     pub fn record(&self, t: u32) -> &[u32; RECORD] {
         &self.records.as_chunks().0[(t - triangle(self.base)) as usize]
     }
 
-    /// The same to write.
+    /// The same, mutable.
     #[inline]
     pub fn record_mut(&mut self, t: u32) -> &mut [u32; RECORD] {
         &mut self.records.as_chunks_mut().0[(t - triangle(self.base)) as usize]
     }
 
-    /// The same of `count` triangles from `t` on.
+    /// The same for `count` triangles from `t` on.
     #[inline]
     pub fn records_mut(&mut self, t: u32, count: usize) -> &mut [[u32; RECORD]] {
         &mut self.records.as_chunks_mut().0[(t - triangle(self.base)) as usize..][..count]
     }
 
-    /// Takes the next record that was never used.
+    /// Takes the next unused record.
     #[inline]
     pub fn fresh(&mut self) -> u32 {
         let t = triangle(self.base) + self.used;
@@ -230,7 +230,7 @@ impl<'a> Patch<'a> {
         self.records[i..i + 3].copy_from_slice(&corners);
     }
 
-    /// Makes `vertex` the corner opposite `e`.
+    /// Sets the corner opposite `e` to `vertex`.
     #[inline]
     pub fn set_vertex(&mut self, e: Code, vertex: u32) {
         let i = self.index(e);
@@ -245,14 +245,14 @@ impl<'a> Patch<'a> {
         self.records[j + OPPOSITE] = e;
     }
 
-    /// Says what lies across `e`, from this side alone.
+    /// Sets the code across `e`, on this side only.
     #[inline]
     pub fn set_opposite(&mut self, e: Code, across: Code) {
         let i = self.index(e);
         self.records[i + OPPOSITE] = across;
     }
 
-    /// Moves triangle `from` to record `to`; its neighbours follow, but for those outside.
+    /// Moves triangle `from` to record `to` and updates its neighbors, except those outside.
     pub(super) fn relocate(&mut self, from: u32, to: u32) {
         self.set(to, self.corners(from));
         self.set_vertex(8 * to + 3, self.vertex(8 * from + 3));
@@ -271,8 +271,7 @@ impl<'a> Patch<'a> {
         8 * t
     }
 
-    /// The mesh of the triangle `a b c`, counter-clockwise, and its three ghosts.
-    /// Returns a ghost.
+    /// The mesh of the counterclockwise triangle `a b c` and its three ghosts. Returns a ghost.
     pub fn triangle(&mut self, [a, b, c]: [u32; 3]) -> Code {
         //        inf              Ghost k lies across edge k; seen from outside, its
         //     c ----- b           finite edge runs the other way.
@@ -293,7 +292,7 @@ impl<'a> Patch<'a> {
         ghosts[0]
     }
 
-    /// The mesh of collinear vertices in order, two at least: ghosts on both sides of each edge.
+    /// The mesh of at least two collinear vertices, in order: ghosts on both sides of each edge.
     /// Returns a ghost.
     pub fn chain(&mut self, vertices: &[u32]) -> Code {
         //      upper 0   upper 1
@@ -320,7 +319,7 @@ impl<'a> Patch<'a> {
         lower0
     }
 
-    /// Checks of the first `triangles` records that opposite codes are mutual and that both sides
+    /// Checks for the first `triangles` records that opposite codes are mutual and that both sides
     /// name the same two vertices.
     pub fn check(&self, triangles: usize) -> std::result::Result<(), String> {
         let start = triangle(self.base);
@@ -342,7 +341,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_turn_round_their_triangle() {
+    fn codes_turn_around_their_triangle() {
         for t in [0, 5] {
             assert_eq!(
                 [0, 1, 2].map(|k| next(8 * t + k)),

@@ -1,4 +1,4 @@
-//! Records of tetrahedra, in two arrays that the export hands out as they are.
+//! Records of tetrahedra, in two arrays that are exported as they are.
 
 use crate::error::{Error, Result};
 use crate::memory::zeroed;
@@ -9,8 +9,8 @@ pub type Code = u32;
 /// Records that codes of 32 bits can address.
 pub const LIMIT: usize = 1 << 30;
 
-/// The corners of the facet opposite each corner, from the side of that corner: a facet and its
-/// corner, in this order, are positively oriented when the tetrahedron is.
+/// The corners of the facet opposite each corner, from the side of that corner: a facet followed by
+/// its opposite corner is positively oriented if the tetrahedron is.
 pub const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// The tetrahedron of a code.
@@ -19,18 +19,19 @@ pub fn tetrahedron(e: Code) -> u32 {
     e >> 2
 }
 
-/// The corner that a facet is opposite to.
+/// The corner opposite a facet.
 #[inline(always)]
 pub fn corner(e: Code) -> usize {
     (e & 3) as usize
 }
 
-/// Room for records, of one mesh or of several side by side.
+/// Storage for the records of one mesh or of several side by side.
 ///
-/// The arrays are of `i32`, bit by bit the `u32` that they hold, since that is what leaves the core.
+/// The arrays are of type `i32`, with the same bits as the `u32` they hold, since that is the type
+/// of the export.
 #[derive(Debug, Default)]
 pub struct Records {
-    /// Four vertices a tetrahedron.
+    /// Four vertices per tetrahedron.
     pub corners: Vec<[i32; 4]>,
     /// The codes of its facets as seen from the other sides.
     pub opposite: Vec<[i32; 4]>,
@@ -45,12 +46,12 @@ impl Records {
         })
     }
 
-    /// The room for records that the points of a mesh want: a uniform point has 6.77 tetrahedra.
+    /// The number of records that a mesh needs: a uniform point has 6.77 tetrahedra.
     pub fn room(vertices: usize) -> usize {
         7 * vertices + 64
     }
 
-    /// Empty meshes side by side, each with its room and its number of vertices.
+    /// Empty meshes side by side, each with its capacity and its number of vertices.
     pub fn meshes(&mut self, rooms: &[(usize, usize)]) -> Vec<Mesh3<'_>> {
         let (mut corners, mut opposite) = (&mut self.corners[..], &mut self.opposite[..]);
         let mut meshes = Vec::with_capacity(rooms.len());
@@ -76,19 +77,19 @@ pub struct Mesh3<'a> {
     corners: &'a mut [[i32; 4]],
     opposite: &'a mut [[i32; 4]],
     used: usize,
-    /// Records that hold nothing.
+    /// Unused records.
     free: Vec<u32>,
     infinite: u32,
 }
 
 impl Mesh3<'_> {
-    /// The number of records, of which some may be free.
+    /// The number of records, some of which may be free.
     #[inline]
     pub fn records(&self) -> usize {
         self.used
     }
 
-    /// Records that there is room for.
+    /// The capacity in records.
     pub fn room(&self) -> usize {
         self.corners.len()
     }
@@ -110,7 +111,7 @@ impl Mesh3<'_> {
     #[inline(always)]
     pub fn facet(&self, e: Code) -> [u32; 3] {
         let corners = &self.corners[tetrahedron(e) as usize];
-        // The mask spares a question about the range; `map` of an array may be a call.
+        // The mask avoids a bounds check; `map` of an array may be a call.
         let [a, b, c] = FACETS[corner(e)];
         [
             corners[a & 3] as u32,
@@ -119,18 +120,18 @@ impl Mesh3<'_> {
         ]
     }
 
-    /// The corner that facet e is opposite to.
+    /// The corner opposite facet e.
     #[inline(always)]
     pub fn apex(&self, e: Code) -> u32 {
         self.corners[tetrahedron(e) as usize][corner(e)] as u32
     }
 
-    /// The records that hold nothing.
+    /// The unused records.
     pub fn free(&self) -> &[u32] {
         &self.free
     }
 
-    /// The codes of its facets as seen from the other sides.
+    /// The codes of the facets of t as seen from the other sides.
     #[inline(always)]
     pub fn opposites(&self, t: u32) -> [Code; 4] {
         let [a, b, c, d] = self.opposite[t as usize];
@@ -143,19 +144,19 @@ impl Mesh3<'_> {
         self.opposite[tetrahedron(e) as usize][corner(e)] as Code
     }
 
-    /// All corners and all codes, to be written.
+    /// All corners and all codes, mutable.
     #[inline(always)]
     pub fn all_mut(&mut self) -> (&mut [[i32; 4]], &mut [[i32; 4]]) {
         (self.corners, self.opposite)
     }
 
-    /// The corner of t that is infinite, for ghosts.
+    /// The corner of t that is infinite, if t is a ghost.
     #[inline]
     pub fn infinite_corner(&self, t: u32) -> Option<usize> {
         self.corners(t).iter().position(|&v| v == self.infinite)
     }
 
-    /// Puts the corners of t in place.
+    /// Sets the corners of t.
     #[inline]
     pub fn set(&mut self, t: u32, corners: [u32; 4]) {
         self.corners[t as usize] = corners.map(|v| v as i32);
@@ -168,20 +169,20 @@ impl Mesh3<'_> {
         self.opposite[t as usize] = [e as i32, f as i32, g as i32, h as i32];
     }
 
-    /// Tells facet `e` that `f` is its other side.
+    /// Sets the other side of facet `e` to `f`.
     #[inline(always)]
     pub fn point(&mut self, e: Code, f: Code) {
         self.opposite[tetrahedron(e) as usize][corner(e)] = f as i32;
     }
 
-    /// Makes facets `e` and `f` two sides of one.
+    /// Links facets `e` and `f` as the two sides of one.
     #[inline]
     pub fn link(&mut self, e: Code, f: Code) {
         self.opposite[tetrahedron(e) as usize][corner(e)] = f as i32;
         self.opposite[tetrahedron(f) as usize][corner(f)] = e as i32;
     }
 
-    /// A record to be filled; `TooManyTetrahedra` where the room is used up.
+    /// A record to be filled; `TooManyTetrahedra` if there is no room.
     #[inline(always)]
     pub fn fresh(&mut self) -> Result<u32> {
         if let Some(t) = self.free.pop() {
@@ -195,7 +196,7 @@ impl Mesh3<'_> {
         Ok(t as u32)
     }
 
-    /// Gives a record back.
+    /// Frees record t.
     #[inline(always)]
     pub fn release(&mut self, t: u32) {
         self.free.push(t);
@@ -209,14 +210,14 @@ impl Mesh3<'_> {
         }
         self.set(all[0], corners);
         for k in 0..4 {
-            // Seen from outside, the facet turns the other way.
+            // Seen from outside, the facet has the opposite orientation.
             let [a, b, c] = FACETS[k].map(|i| corners[i]);
             self.set(all[k + 1], [b, a, c, self.infinite]);
             self.link(4 * all[0] + k as u32, 4 * all[k + 1] + 3);
         }
         for &s in &all[1..] {
             for k in 0..3 {
-                // The other ghost of the two finite corners beside corner k.
+                // The other ghost at the two finite corners beside corner k.
                 let ends = [(k + 1) % 3, (k + 2) % 3].map(|i| self.corners(s)[i]);
                 for &t in &all[1..] {
                     let third = self.corners(t)[..3].iter().position(|v| !ends.contains(v));

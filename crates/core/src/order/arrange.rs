@@ -1,4 +1,4 @@
-//! The distinct points of an input as the methods want them: in blocks, each along the curve.
+//! The distinct points of an input in insertion order: in blocks, each sorted along the curve.
 
 use std::sync::Mutex;
 
@@ -14,13 +14,13 @@ use crate::watch::Watch;
 /// Distinct points, numbered as vertices.
 #[derive(Debug)]
 pub struct Arranged {
-    /// The points, `-0.0` made `0.0`, with room for one more.
+    /// The points, with `-0.0` replaced by `0.0`, and capacity for one more.
     pub points: Vec<Point2>,
     /// For each, its first row in the input.
     pub rows: Vec<u32>,
     /// `[row, first row of the same point]` for each further row, ascending.
     pub duplicates: Vec<[u32; 2]>,
-    /// Where each block begins, and the end.
+    /// Where each block begins, plus the end.
     pub starts: Vec<usize>,
     /// The cuts between the blocks.
     pub cuts: Cuts,
@@ -42,7 +42,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
         tasks.push((p, r));
         (rest_points, rest_rows) = (q, s);
     }
-    // As many blocks are in work as there are workers, and each needs room for its time only.
+    // At most one block per worker is in progress, and its buffer is reused.
     let rooms = Mutex::new(Vec::new());
     let ordered = parallel::map_watched(workers, tasks, watch, |(points, rows)| {
         let room = rooms.lock().ok().and_then(|mut rooms| rooms.pop());
@@ -70,7 +70,7 @@ pub fn arrange(points: &[Point2], workers: usize, watch: &Watch) -> Result<Arran
     Ok(out)
 }
 
-/// Moves the blocks together over the gaps that duplicates have left.
+/// Moves the blocks together over the gaps left by duplicates.
 fn close_up(out: &mut Arranged, starts: &[usize], distinct: &[usize]) {
     let mut end = 0;
     for (&start, &count) in starts.iter().zip(distinct) {

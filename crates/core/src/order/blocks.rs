@@ -1,6 +1,7 @@
-//! Cuts a large point set into blocks, by a k-d tree over a sample, so that threads can work on
-//! blocks and each block fits the cache. The cuts hang on the points alone, never on the number of
-//! threads, and equal points fall in one block.
+//! Splits a large point set into blocks by a k-d tree over a sample.
+//!
+//! Threads can work on separate blocks, and each block fits the cache. The splits depend on the
+//! points only, never on the number of threads, and equal points are in the same block.
 
 use delone_predicates::{Point2, lexicographic};
 
@@ -10,23 +11,23 @@ use crate::memory::with_room;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Most points that a block should hold: its mesh of 80 bytes a point fits a shared cache.
+/// The most points that a block should hold: its mesh, 80 bytes per point, fits a shared cache.
 const BLOCK: usize = 1 << 17;
 
-/// Sampled points a block: cuts are off the median by some per cent.
+/// Sampled points per block: splits are off the median by a few percent.
 const SAMPLE: usize = 256;
 
-/// Which coordinate leads where points are compared across a cut.
+/// Which coordinate is compared first across a split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// By x, then y: left before right.
     X,
-    /// By y, then from large x to small: below before above, turned a right angle.
+    /// By y, then by descending x: below before above, as if rotated by a right angle.
     Y,
 }
 
 impl Axis {
-    /// The point in the frame in which the axis leads: for Y the plane turned clockwise.
+    /// The point in the frame in which the axis is first: for Y the plane is rotated clockwise.
     #[inline]
     pub fn turned(self, p: Point2) -> Point2 {
         match self {
@@ -43,22 +44,22 @@ impl Axis {
     }
 }
 
-/// A cut of the plane: what comes before `at` along `axis` goes left.
+/// A split of the plane: points before `at` along `axis` go left.
 #[derive(Debug, Clone, Copy)]
 pub struct Cut {
-    /// The axis that leads.
+    /// The axis that is compared first.
     pub axis: Axis,
     at: Point2,
 }
 
-/// A complete binary tree of cuts, root first; the blocks are its leaves from left to right.
+/// A complete binary tree of splits, root first; the blocks are its leaves from left to right.
 #[derive(Debug)]
 pub struct Cuts {
     cuts: Vec<Cut>,
 }
 
 impl Cuts {
-    /// Cuts for `points`: enough for blocks of at most about [`BLOCK`].
+    /// Splits for `points`: enough for blocks of at most about [`BLOCK`].
     pub fn of(points: &[Point2]) -> Self {
         let blocks = points.len().div_ceil(BLOCK).next_power_of_two();
         let step = (points.len() / (SAMPLE * blocks)).max(1);
@@ -79,7 +80,8 @@ impl Cuts {
         self.cuts.len() + 1
     }
 
-    /// The axis of the cut between blocks `[i w, i w + w/2)` and the `w/2` that follow, w = `width`.
+    /// The axis of the split between blocks `[i w, i w + w/2)` and the `w/2` that follow, w =
+    /// `width`.
     pub fn axis(&self, i: usize, width: usize) -> Axis {
         self.cuts[self.blocks() / width - 1 + i].axis
     }
@@ -89,7 +91,7 @@ impl Cuts {
     fn block(&self, p: Point2) -> usize {
         let mut node = 0;
         while let Some(cut) = self.cuts.get(node) {
-            // The leading coordinates decide without a branch; ties are rare.
+            // The first coordinates decide without a branch; ties are rare.
             let k = usize::from(cut.axis == Axis::Y);
             let mut left = p[k] < cut.at[k];
             if p[k] == cut.at[k] {
@@ -106,7 +108,7 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
         return;
     }
     let extent = Extent::of(sample.iter().copied());
-    // Halves, since the sides themselves may overflow.
+    // Halved, since the sides themselves may overflow.
     let half = |k: usize| extent.max[k] / 2.0 - extent.min[k] / 2.0;
     let axis = if half(0) >= half(1) { Axis::X } else { Axis::Y };
     let order = |p: &Point2, q: &Point2| lexicographic(axis.turned(*p), axis.turned(*q));
@@ -117,7 +119,7 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point2]) {
     cut(cuts, 2 * node + 2, right);
 }
 
-/// Sorts `points` into the blocks of `cuts`.
+/// Distributes `points` to the blocks of `cuts`.
 pub fn split(points: &[Point2], cuts: &Cuts, workers: usize, watch: &Watch) -> Result<Blocks<2>> {
     let blocks = cuts.blocks();
     if blocks == 1 {

@@ -1,8 +1,8 @@
-//! Cells along the Hilbert curve: the key of a point, and the order of all that fall into one.
+//! Hilbert keys of points by cells of a box, and the order of points that share a cell.
 //!
-//! Cells come from the box of the points. Cells that hold many points are keyed again in the box of
-//! their own points, so that clusters of any depth are in curve order, too; few points in one cell
-//! go lexicographically.
+//! Cells are those of the bounding box of the points. Cells that hold many points get keys again,
+//! in the box of their own points, so that clusters of any depth are in curve order, too; a few
+//! points in one cell are sorted lexicographically.
 
 use delone_predicates::lexicographic;
 
@@ -11,13 +11,13 @@ use crate::error::Result;
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
 
-/// Longest run of equal keys that is sorted lexicographically and not keyed again.
+/// The longest run of equal keys that is sorted lexicographically instead of keyed again.
 pub const CROWD: usize = 16;
 
-/// Items of runs between two looks at the watch.
+/// Items of runs between two checks for interruption.
 const LOT: usize = 1 << 16;
 
-/// Cells of a box: in the plane 65536 to the longer side, in space 1024 to the longest.
+/// Cells of a box: in 2-D 65536 along the longer side, in 3-D 1024 along the longest.
 pub struct Cells<const D: usize> {
     min: [f64; D],
     before: f64,
@@ -31,11 +31,11 @@ impl<const D: usize> Cells<D> {
         hilbert3::BITS
     };
 
-    /// The cells of a box.
+    /// The cells of a bounding box.
     pub fn of(extent: &Extent<D>) -> Self {
         let side = extent.side();
-        // A power of two keeps the differences and the scale inside the range of doubles. Only
-        // the order of the points hangs on the rounding here, never a simplex.
+        // A power of two keeps the differences and the scale in the range of doubles. Only the
+        // order of the points depends on the rounding here, never a simplex.
         let before = if side > 1e300 {
             2f64.powi(-30)
         } else if side < 1e-280 {
@@ -55,7 +55,7 @@ impl<const D: usize> Cells<D> {
     /// The key of the cell of `p`, in the upper half.
     #[inline]
     pub fn key(&self, p: [f64; D]) -> u64 {
-        // Conversions saturate and make NaN zero: the far corner is in the last cell.
+        // Conversions saturate and turn NaN into zero: the far corner is in the last cell.
         let cell = |k: usize| {
             (((p[k] * self.before - self.min[k]) * self.scale) as u32).min((1 << Self::BITS) - 1)
         };
@@ -68,8 +68,8 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// Bits of a key that are worth sorting by: keys finer than about 16 cells a point cost passes and
-/// gain nothing, as runs are few.
+/// Bits of a key that are worth sorting by: keys finer than about 16 cells per point cost passes
+/// and gain nothing, as runs are few.
 pub fn fine_bits(points: usize) -> u32 {
     (usize::BITS - points.leading_zeros() + 4)
         .next_multiple_of(8)
@@ -81,8 +81,8 @@ pub fn row(item: u64) -> usize {
     (item & u64::from(u32::MAX)) as usize
 }
 
-/// Puts the items of each run of equal keys in order. A run that is keyed again splits, since the
-/// two ends of its box get different keys; so the stack of runs empties.
+/// Sorts the items of each run of equal keys. A run that is keyed again splits, since the two ends
+/// of its box get different keys; so the stack of runs becomes empty.
 pub fn order_runs<const D: usize>(
     points: &[[f64; D]],
     items: &mut [u64],
@@ -102,7 +102,7 @@ pub fn order_runs<const D: usize>(
         }
         let extent = Extent::of(run.iter().map(|&i| points[row(i)]));
         if extent.min == extent.max {
-            continue; // One point many times; the stable sort has left its rows ascending.
+            continue; // All points are equal; the stable sort left their rows ascending.
         }
         let cells = Cells::of(&extent);
         for item in run.iter_mut() {
@@ -114,7 +114,7 @@ pub fn order_runs<const D: usize>(
     Ok(())
 }
 
-/// Lists the runs of two and more equal keys of `items`, whose first is item `offset` of all.
+/// Lists the runs of at least two equal keys in `items`, whose first is item `offset` overall.
 fn push_runs(items: &[u64], offset: usize, runs: &mut Vec<(usize, usize)>) {
     let mut start = 0;
     for i in 1..=items.len() {

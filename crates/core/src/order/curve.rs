@@ -1,7 +1,7 @@
-//! The distinct points of a block in one canonical order along the Hilbert curve.
+//! The distinct points of a block in a canonical order along the Hilbert curve.
 //!
-//! Equal points meet in one cell, and all but the first row drop out as duplicates. The order depends
-//! on the coordinates alone, not on the order of the rows.
+//! Equal points are in the same cell, and all but the first row are removed as duplicates. The
+//! order depends on the coordinates only, not on the order of the rows.
 
 use delone_predicates::Point2;
 
@@ -12,7 +12,7 @@ use crate::memory::clear_with_room;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Room that one block after the other uses.
+/// Buffers reused from block to block.
 #[derive(Default)]
 pub struct Scratch {
     items: Vec<u64>,
@@ -21,8 +21,8 @@ pub struct Scratch {
     rows: Vec<u32>,
 }
 
-/// Orders the `points` of a block and their `rows`, which ascend: distinct points first, whose
-/// number is returned with `[row, first row of the same point]` for each further row.
+/// Sorts the `points` of a block and their `rows`, which are ascending: the distinct points come
+/// first. Returns their number and `[row, first row of the same point]` for each further row.
 pub fn along_curve(
     points: &mut [Point2],
     rows: &mut [u32],
@@ -56,8 +56,8 @@ pub fn along_curve(
     Ok((to.len(), duplicates))
 }
 
-/// The keys of points that `along_curve` has put in order, as a whole block, or as a crowded cell
-/// of one: they do not fall.
+/// The keys of points sorted by `along_curve`, as a whole block or as a crowded cell of one: they
+/// are ascending.
 pub fn keys(points: &[Point2], block: bool) -> impl Iterator<Item = u32> {
     let cells = Cells::of(&Extent::of(points.iter().copied()));
     let low_bit = if block {
@@ -80,7 +80,7 @@ fn collect(
     let mut duplicates = Vec::new();
     let (mut last, mut first) = ([f64::NAN; 2], 0);
     for &item in items {
-        // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
+        // Adding zero turns -0.0 into 0.0, so that later comparisons of bits agree.
         let p = points[row(item)].map(|x| x + 0.0);
         if p == last {
             duplicates.push([rows[row(item)], first]);
@@ -126,7 +126,7 @@ mod tests {
                 .wrapping_add(1442695040888963407);
             (x >> 11) as f64 / (1u64 << 53) as f64
         };
-        // Clusters of ten scales: deep cells are keyed again.
+        // Clusters at ten scales: deep cells are keyed again.
         let points: Vec<Point2> = (0..3000)
             .map(|i| {
                 let s = 1e-3f64.powi(i % 10);

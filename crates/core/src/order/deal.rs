@@ -1,38 +1,39 @@
-//! Deals points to the blocks that cuts make of them, shares of the points at a time.
+//! Distributes points to blocks in parallel: a counting sort by block, one share of the points per
+//! task.
 
 use crate::error::Result;
 use crate::memory::{Zero, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Points that one task deals.
+/// Points per task.
 const SHARE: usize = 1 << 16;
 
-/// Points between two looks at the watch: each may be the first to touch a huge page, which takes a
-/// millisecond.
+/// Points between two checks for interruption: each may be the first to touch a huge page, which
+/// takes a millisecond.
 const LOT: usize = 1 << 6;
 
-/// Points sorted by block, in the order of their rows within each.
+/// Points sorted by block, and by row within each block.
 #[derive(Debug)]
 pub struct Blocks<const D: usize> {
-    /// The points, block after block.
+    /// The points, block by block.
     pub points: Vec<[f64; D]>,
     /// Their rows.
     pub rows: Vec<u32>,
-    /// Where each block begins, and the end.
+    /// Where each block begins, plus the end.
     pub starts: Vec<usize>,
 }
 
 impl<const D: usize> Blocks<D> {
-    /// The points of each block with their rows, which ascend.
+    /// The points of each block with their rows, which are ascending.
     pub fn each(&self) -> impl Iterator<Item = (&[[f64; D]], &[u32])> {
         let range = |w: &[usize]| (&self.points[w[0]..w[1]], &self.rows[w[0]..w[1]]);
         self.starts.windows(2).map(range)
     }
 }
 
-/// Sorts `points` into `blocks` blocks, of which `block` knows the one of a point; there is room for one
-/// more.
+/// Distributes `points` to `blocks` blocks, where `block` returns the block of a point; leaves
+/// capacity for one more.
 pub fn deal<const D: usize>(
     points: &[[f64; D]],
     blocks: usize,
@@ -59,8 +60,8 @@ where
         rows: zeroed(points.len())?,
         starts: vec![0],
     };
-    out.points.pop(); // Room for one more.
-    // Each share writes its part of each block: cut the outputs into those parts, block by block.
+    out.points.pop(); // Capacity for one more.
+    // Each task writes its part of each block: split the outputs into these, block by block.
     let mut parts: Vec<Vec<_>> = classified
         .iter()
         .map(|_| Vec::with_capacity(blocks))

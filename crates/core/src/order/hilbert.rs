@@ -1,8 +1,8 @@
-//! The key of a cell along the Hilbert curve (D. Hilbert, 1891), four levels a table look-up.
+//! Hilbert curve keys of 2-D cells (D. Hilbert, 1891), four levels per table lookup.
 //!
-//! A level turns the frame of the square: its state is whether the axes are swapped and whether
-//! both are reversed. The two commute, so four states suffice, and a table over state, four bits
-//! of x and four of y gives eight bits of key and the next state.
+//! A level transforms the frame of the square: the state is whether the axes are swapped and
+//! whether both are reversed. The two commute, so four states suffice, and a table indexed by
+//! state, four bits of x and four of y gives eight bits of the key and the next state.
 
 /// Bits of x, and of y, in a key.
 pub const BITS: u32 = 16;
@@ -36,7 +36,7 @@ const fn table() -> [u16; 1024] {
     table
 }
 
-/// The place of cell `(x, y)`, of 65536 by 65536, along the curve.
+/// The position of cell `(x, y)`, of 65536 by 65536, along the curve.
 #[inline]
 pub fn key(x: u16, y: u16) -> u32 {
     let (x, y) = (usize::from(x), usize::from(y));

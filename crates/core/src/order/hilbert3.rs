@@ -1,20 +1,21 @@
-//! The key of a cell along a Hilbert curve in space, two levels a table look-up.
+//! Hilbert curve keys of 3-D cells, two levels per table lookup.
 //!
-//! A level of the curve walks through the eight octants by a Gray code, from an entry corner along a
-//! direction; each octant holds the curve of the next level, mirrored and turned. The state is the
-//! entry and the direction, 24 in all. The formulas are those of C. Hamilton, "Compact Hilbert
-//! indices" (2006), section 2.
+//! A level of the curve visits the eight octants in Gray code order, from an entry corner along a
+//! direction; each octant contains the curve of the next level, mirrored and rotated. The state is
+//! the entry and the direction, 24 states in total. The formulas are those of C. Hamilton, "Compact
+//! Hilbert indices" (2006), section 2.
 
 /// Bits of each coordinate in a key.
 pub const BITS: u32 = 10;
 
-/// By state and two bits of each coordinate: six bits of key, and the next state above them.
+/// Indexed by state and two bits of each coordinate: six bits of the key, and the next state above
+/// them.
 const TABLE: [u16; STATES * 64] = table();
 
 const STATES: usize = 24;
 
-/// Three bits turned to the left by `by`.
-const fn turned(bits: usize, by: usize) -> usize {
+/// Three bits rotated to the left by `by`.
+const fn rotated(bits: usize, by: usize) -> usize {
     let by = by % 3;
     (bits << by | bits >> (3 - by)) & 7
 }
@@ -26,7 +27,7 @@ const fn gray(i: usize) -> usize {
 /// One level: the digit of an octant in a state (entry + 8 direction), and the next state.
 const fn level(state: usize, octant: usize) -> (usize, usize) {
     let (entry, direction) = (state & 7, state >> 3);
-    let inner = turned(octant ^ entry, 3 - (direction + 1) % 3);
+    let inner = rotated(octant ^ entry, 3 - (direction + 1) % 3);
     let mut digit = 0;
     while gray(digit) != inner {
         digit += 1;
@@ -43,7 +44,7 @@ const fn level(state: usize, octant: usize) -> (usize, usize) {
     } else {
         digit.trailing_ones() as usize % 3
     };
-    let next = (entry ^ turned(corner, direction + 1)) | ((direction + along + 1) % 3) << 3;
+    let next = (entry ^ rotated(corner, direction + 1)) | ((direction + along + 1) % 3) << 3;
     (digit, next)
 }
 
@@ -60,7 +61,7 @@ const fn table() -> [u16; STATES * 64] {
     table
 }
 
-/// The place of cell `(x, y, z)`, of 1024 each, along the curve: 30 bits.
+/// The position of cell `(x, y, z)`, of 1024 each, along the curve: 30 bits.
 #[inline]
 pub fn key([x, y, z]: [u32; 3]) -> u32 {
     let (mut key, mut state) = (0, 0);

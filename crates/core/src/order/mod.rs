@@ -1,5 +1,6 @@
-//! Insertion orders that keep neighbors close and the cache warm: blocks of a k-d tree, and the Hilbert
-//! curve in each. Knows no mesh.
+//! Insertion orders with spatial locality: blocks of a k-d tree, and the Hilbert curve in each.
+//!
+//! Independent of meshes.
 
 mod arrange;
 pub mod blocks;

@@ -1,5 +1,6 @@
-//! Least-significant-digit radix sort of `key << 32 | payload` by the key. Stable, so payloads that
-//! come in ascending stay ascending within a key.
+//! Least-significant-digit radix sort of `key << 32 | payload` by the key.
+//!
+//! It is stable, so payloads in ascending order stay so within a key.
 
 use crate::error::Result;
 use crate::memory::clear_with_room;
@@ -9,11 +10,11 @@ const DIGIT: u32 = 8;
 const BUCKETS: usize = 1 << DIGIT;
 /// Below this length a comparison sort is faster than four histograms of 256.
 const SHORT: usize = 256;
-/// Items between two looks at the watch.
+/// Items between two checks for interruption.
 const LOT: usize = 1 << 18;
 
-/// Sorts `items` by their upper 32 bits, of which those below `low_bit` are known to be zero.
-/// `other` is room for as many.
+/// Sorts `items` by their upper 32 bits, of which those below `low_bit` must be zero. `other` is a
+/// buffer of the same size.
 pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32, watch: &Watch) -> Result<()> {
     if items.len() <= SHORT {
         items.sort_unstable();
@@ -29,7 +30,7 @@ pub fn sort(items: &mut Vec<u64>, other: &mut Vec<u64>, low_bit: u32, watch: &Wa
     Ok(())
 }
 
-/// One pass; `false` where all items share the digit and nothing was moved.
+/// One pass; `false` if all items share the digit and nothing was moved.
 fn scatter(from: &[u64], to: &mut [u64], shift: u32, watch: &Watch) -> Result<bool> {
     let digit = |item: u64| (item >> shift) as usize & (BUCKETS - 1);
     let mut start = [0usize; BUCKETS];

@@ -1,4 +1,4 @@
-//! Rows along the Hilbert curve, for points of which nothing is built.
+//! Sorts the rows of points along the Hilbert curve, without building anything else.
 
 use super::cells::{CROWD, Cells, fine_bits, order_runs, row};
 use super::radix;
@@ -8,14 +8,14 @@ use crate::parallel;
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
 
-/// Fewest points that a thread is worth.
+/// The fewest points that are worth a thread.
 const SHARE: usize = 1 << 14;
 
-/// Points between two looks at the watch.
+/// Points between two checks for interruption.
 const LOT: usize = 1 << 18;
 
-/// The rows of the finite points along the curve, in parts of which each follows the one before.
-/// Whoever comes first among points of one cell is open.
+/// The rows of the finite points along the curve, in consecutive parts. The order of points in the
+/// same cell is unspecified.
 pub fn order_of<const D: usize>(
     points: &[[f64; D]],
     workers: usize,
@@ -68,7 +68,7 @@ pub fn order_of<const D: usize>(
             items.extend_from_slice(&share[within(share)]);
         }
         if sorted.len() > 1 {
-            // Its few runs ascend, and it merges them.
+            // The sort merges the few ascending runs.
             items.sort();
         }
         order_crowds(points, &mut items, watch)?;
@@ -85,7 +85,7 @@ fn is_finite<const D: usize>(p: &[f64; D]) -> bool {
     p.iter().all(|x| x.is_finite())
 }
 
-/// Orders the items of each cell that holds many points.
+/// Sorts the items of each cell that holds many points.
 fn order_crowds<const D: usize>(
     points: &[[f64; D]],
     items: &mut [u64],
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_finite_row_comes_once() {
+    fn every_finite_row_occurs_once() {
         let points: Vec<[f64; 3]> = (0..40_000)
             .map(|i| {
                 [
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_in_the_order_are_near() {
+    fn neighbors_in_the_order_are_near() {
         // A grid of 32 by 32 by 32 cells: the curve goes from cell to cell.
         let points: Vec<[f64; 3]> = (0..1 << 15)
             .map(|i| [i >> 10, i >> 5 & 31, i & 31].map(f64::from))

@@ -1,15 +1,15 @@
-//! Sorts that can be stopped.
+//! Sorts that can be interrupted.
 
 use std::cmp::Ordering;
 
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// Items that are sorted without a look at the watch.
+/// Items sorted without a check for interruption.
 const LOT: usize = 1 << 18;
 
-/// Sorts items by a total order; those that are equal come in any order. Larger sets are cut at their medians,
-/// which takes linear time a cut.
+/// Sorts items by a total order, unstably. Larger sets are split at their medians, which takes
+/// linear time per split.
 pub fn sort_by<T>(
     items: &mut [T],
     watch: &Watch,
@@ -26,7 +26,7 @@ pub fn sort_by<T>(
     sort_by(after, watch, compare)
 }
 
-/// The same by the order of the items.
+/// The same by the natural order of the items.
 pub fn sort<T: Ord>(items: &mut [T], watch: &Watch) -> Result<()> {
     sort_by(items, watch, T::cmp)
 }
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn large_sets_are_sorted_and_can_be_stopped() {
+    fn large_sets_are_sorted_and_can_be_interrupted() {
         let items: Vec<u64> = (0..4 * LOT as u64 + 7)
             .map(|i| i * 0x9e37_79b9 % 1_000_003)
             .collect();

@@ -1,5 +1,6 @@
-//! The distinct points of space in Hilbert order, as in the plane (see `curve`): a key a point, a
-//! radix sort, equal points found where they meet.
+//! The distinct 3-D points in Hilbert order, as in 2-D (see `curve`).
+//!
+//! One key per point, a radix sort; equal points end up in the same cell.
 
 use delone_predicates::Point3;
 
@@ -10,13 +11,13 @@ use crate::memory::{push, with_room};
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// The box of a finite point set in space.
+/// The bounding box of a finite 3-D point set.
 pub type Extent3 = Extent<3>;
 
-/// Distinct points of space, numbered as vertices along the curve.
+/// Distinct 3-D points, numbered as vertices along the curve.
 #[derive(Debug)]
 pub struct Arranged3 {
-    /// The points, `-0.0` made `0.0`, with room for one more.
+    /// The points, with `-0.0` replaced by `0.0`, and capacity for one more.
     pub points: Vec<Point3>,
     /// For each, its first row in the input.
     pub rows: Vec<u32>,
@@ -24,8 +25,9 @@ pub struct Arranged3 {
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// Room for the arrangement of some points. To be made by the thread that starts others: what they ask for
-/// themselves the allocator may give back to the system each time, and fresh pages cost more than the sort.
+/// Buffers for arranging points. To be allocated by the thread that starts the others: the
+/// allocator may return what they allocate themselves to the system each time, and new pages cost
+/// more than the sort.
 #[derive(Debug)]
 pub struct Room3 {
     items: Vec<u64>,
@@ -34,7 +36,7 @@ pub struct Room3 {
 }
 
 impl Room3 {
-    /// Room for `n` points.
+    /// Buffers for `n` points.
     pub fn of(n: usize) -> Result<Self> {
         let out = Arranged3 {
             points: with_room(n + 1)?,
@@ -49,12 +51,12 @@ impl Room3 {
     }
 }
 
-/// Arranges finite `points`; the order hangs on the coordinates alone.
+/// Arranges finite `points`; the order depends on the coordinates only.
 pub fn arrange(points: &[Point3], watch: &Watch) -> Result<Arranged3> {
     arrange_rows(points, None, Room3::of(points.len())?, watch)
 }
 
-/// The same in `room` where `points` are but some of the rows, which are given and ascend.
+/// The same in `room`, where `points` are only some of the rows; these are given and ascending.
 pub fn arrange_rows(
     points: &[Point3],
     rows: Option<&[u32]>,
@@ -85,7 +87,7 @@ fn collect(
 ) -> Result<Arranged3> {
     let (mut last, mut first) = ([f64::NAN; 3], 0);
     for &item in items {
-        // Adding zero makes -0.0 the same number as 0.0 in every later comparison of bits.
+        // Adding zero turns -0.0 into 0.0, so that later comparisons of bits agree.
         let [x, y, z] = points[row(item)];
         let p = [x + 0.0, y + 0.0, z + 0.0];
         let own = rows.map_or(row(item) as u32, |rows| rows[row(item)]);
@@ -134,7 +136,7 @@ mod tests {
                 .wrapping_add(1442695040888963407);
             (x >> 11) as f64 / (1u64 << 53) as f64
         };
-        // Clusters of ten scales: deep cells are keyed again.
+        // Clusters at ten scales: deep cells are keyed again.
         let points: Vec<Point3> = (0..3000)
             .map(|i| [0; 3].map(|_| 1e-3f64.powi(i % 10) * next()))
             .collect();

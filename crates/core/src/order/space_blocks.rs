@@ -1,6 +1,7 @@
-//! Cuts a large point set of space into blocks, by a k-d tree over a sample, so that threads can work on
-//! them. As in the plane (see `blocks`) the cuts hang on the points alone, never on the number of threads,
-//! and equal points fall in one block.
+//! Splits a large 3-D point set into blocks by a k-d tree over a sample.
+//!
+//! As in 2-D (see `blocks`), the splits depend on the points only, never on the number of threads,
+//! and equal points are in the same block.
 
 use delone_predicates::{Point3, lexicographic};
 
@@ -10,12 +11,12 @@ use crate::error::Result;
 use crate::memory::with_room;
 use crate::watch::Watch;
 
-/// Sampled points a block. A median of so many is off by 0.3 % of the points, and by so much two threads with
-/// a block each differ; to find it costs 2 ns a point of a million.
+/// Sampled points per block. A median of this many is off by 0.3 % of the points, and so is the
+/// work of two threads with a block each; finding it costs 2 ns per point for a million points.
 const SAMPLE: usize = 1 << 14;
 
-/// A cut of space: what comes before `at`, by the coordinate `axis` and then the next ones, goes left.
-/// That is a half-space with a part of its border, so the hulls of the two sides do not meet.
+/// A split of space: points before `at`, by the coordinate `axis` and then the next ones, go left.
+/// That is a half-space with part of its boundary, so the hulls of the two sides do not meet.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
     axis: usize,
@@ -35,16 +36,16 @@ impl Cut {
     }
 }
 
-/// A complete binary tree of cuts, root first; the blocks are its leaves from left to right.
+/// A complete binary tree of splits, root first; the blocks are its leaves from left to right.
 #[derive(Debug)]
 pub struct Cuts3 {
     cuts: Vec<Cut>,
 }
 
 impl Cuts3 {
-    /// Cuts of `points` into so many blocks, a power of two.
+    /// Splits of `points` into this many blocks, a power of two.
     pub fn of(points: &[Point3], blocks: usize) -> Result<Self> {
-        // Odd, as rows of a grid come in periods.
+        // Odd, since rows of a grid are periodic.
         let step = (points.len() / (SAMPLE * blocks)) | 1;
         let mut sample: Vec<Point3> = with_room(points.len() / step + 1)?;
         sample.extend(points.iter().step_by(step));
@@ -71,7 +72,7 @@ impl Cuts3 {
         node - self.cuts.len()
     }
 
-    /// The closed box around the cell of a block, infinite where no cut bounds it.
+    /// The closed box around the cell of a block, infinite where no split bounds it.
     pub fn cell(&self, block: usize) -> Extent3 {
         let mut cell = Extent3 {
             min: [f64::NEG_INFINITY; 3],
@@ -80,7 +81,7 @@ impl Cuts3 {
         let mut node = block + self.cuts.len();
         while node > 0 {
             let Cut { axis, at } = self.cuts[(node - 1) / 2];
-            // A cut further up is further out.
+            // A split further up in the tree is further out.
             if node % 2 == 1 {
                 cell.max[axis] = cell.max[axis].min(at[axis]);
             } else {
@@ -92,7 +93,7 @@ impl Cuts3 {
     }
 }
 
-/// Sorts `points` into the blocks of `cuts`.
+/// Distributes `points` to the blocks of `cuts`.
 pub fn split(points: &[Point3], cuts: &Cuts3, workers: usize, watch: &Watch) -> Result<Blocks<3>> {
     deal(points, cuts.blocks(), |p| cuts.block(p), workers, watch)
 }
@@ -102,7 +103,7 @@ fn cut(cuts: &mut [Cut], node: usize, sample: &mut [Point3]) {
         return;
     }
     let extent = Extent3::of(sample.iter().copied());
-    // Halves, since the sides themselves may overflow.
+    // Halved, since the sides themselves may overflow.
     let half = |k: usize| extent.max[k] / 2.0 - extent.min[k] / 2.0;
     let axis = (1..3).fold(0, |axis, k| if half(k) > half(axis) { k } else { axis });
     let mut here = Cut { axis, at: [0.0; 3] };

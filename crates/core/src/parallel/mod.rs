@@ -1,4 +1,4 @@
-//! Threads for one call: started for it and gone with it, so that a fork finds none.
+//! Threads for one call: started for it and joined at its end, so that a fork never sees any.
 
 use std::sync::Mutex;
 use std::thread::Builder;
@@ -6,8 +6,8 @@ use std::thread::Builder;
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// Does `work` on each task with up to `workers` threads; the results come in the tasks' order.
-/// A panic in a task is a panic here.
+/// Runs `work` on each task with up to `workers` threads; returns the results in the order of the
+/// tasks. A panic in a task is a panic here.
 pub fn map<T: Send, R: Send>(
     workers: usize,
     tasks: Vec<T>,
@@ -21,7 +21,7 @@ pub fn map<T: Send, R: Send>(
     let queue = Mutex::new(tasks.into_iter().zip(&mut results));
     let run = || {
         loop {
-            // The lock guards only the taking, so that no panic of a task poisons it.
+            // The lock guards only taking a task, so a panic in a task does not poison it.
             let next = queue.lock().ok().and_then(|mut queue| queue.next());
             let Some((task, result)) = next else { break };
             *result = Some(work(task));
@@ -29,7 +29,7 @@ pub fn map<T: Send, R: Send>(
     };
     std::thread::scope(|scope| {
         for _ in 1..threads {
-            // Where the system gives no more threads, those that there are do it all.
+            // If the system refuses another thread, the existing ones do all the work.
             if Builder::new().spawn_scoped(scope, run).is_err() {
                 break;
             }
@@ -40,7 +40,7 @@ pub fn map<T: Send, R: Send>(
     results.into_iter().flatten().collect()
 }
 
-/// The same with a look at the watch before each task.
+/// The same with a check for interruption before each task.
 pub fn map_watched<T: Send, R: Send>(
     workers: usize,
     tasks: Vec<T>,
@@ -62,7 +62,7 @@ mod tests {
     use crate::error::Error;
 
     #[test]
-    fn a_watch_ends_it_between_two_tasks() {
+    fn an_interruption_ends_it_between_two_tasks() {
         for workers in [1, 3] {
             let (asked, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
             let stop = || asked.fetch_add(1, Ordering::Relaxed) >= 5;

@@ -1,16 +1,17 @@
-//! The corners of the input where segments meet at a small angle, which no refinement can mend: they
-//! are told apart so that it does not try for ever.
+//! Corners of the input where segments meet at a small angle, which no refinement can improve.
+//!
+//! They are marked so that refinement does not try to.
 
 use delone_predicates::Point2;
 
 use crate::error::Result;
 use crate::memory::filled;
 
-/// Angles below this between two segments make a sharp corner: there, cuts of the one may encroach
-/// upon the other.
+/// Angles below this between two segments make a sharp corner: there, splits of one segment may
+/// encroach upon the other.
 pub const SHARP: f64 = std::f64::consts::FRAC_PI_2;
 
-/// For each vertex, whether two of its segments meet at an angle below `bound`.
+/// Whether two segments at each vertex meet at an angle below `bound`.
 pub fn sharp(
     points: &[Point2],
     segments: &[[u32; 2]],
@@ -50,7 +51,7 @@ mod tests {
         ];
         let found = sharp(&points, &[[0, 1], [1, 2], [2, 0], [0, 3]], 5, SHARP).unwrap();
         assert_eq!(found, [true, false, true, false, false]);
-        // Across the branch of the arc tangent.
+        // Across the branch cut of the arc tangent.
         let found = sharp(&points, &[[0, 3], [0, 4]], 5, SHARP).unwrap();
         assert_eq!(found, [true, false, false, false, false]);
     }

@@ -1,4 +1,4 @@
-//! Needles are found, fenced off, and opened again, as the head of `needles` has it.
+//! Finds needles, fences them off, and opens them again; see the head of `needles`.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,33 +14,33 @@ use crate::error::Result;
 use crate::memory::{filled, push};
 use crate::mesh2::{Code, next, prev, triangle};
 
-/// The price from which a needle is put off: less is a matter of a moment.
-const DEAR: f64 = 1000.0;
+/// The price from which a needle is postponed: less is done quickly.
+const EXPENSIVE: f64 = 1000.0;
 
-/// The share of the budget that all needles together may take is one in this number.
+/// All needles together may use one part in this many of the budget.
 const SHARE: f64 = 64.0;
 
-/// Vertices that a gap takes for each degree of the bound, over a length equal to its width: at 25
-/// degrees measured as 0.5.
+/// Vertices that a gap needs per degree of the bound, over a length equal to its width: measured as
+/// 0.5 at 25 degrees.
 const RATE: f64 = 0.02;
 
-/// Steps of work in a needle whose sides were cut alike at first, and may be again: so many, and more
-/// for each of its triangles.
+/// Steps of work in a needle whose sides were split alike at first, and may be again: this many,
+/// plus more for each of its triangles.
 const STEPS: u32 = 64;
 const MORE_STEPS: u32 = 4;
 
-/// Angles below this between fences or lines are corners, at which circles are cut: from 60 degrees
-/// on it comes to an end without.
+/// Angles below this between fences or lines are corners, which are split on circles: from 60
+/// degrees on, refinement terminates without that.
 const SHARP: f64 = std::f64::consts::FRAC_PI_3;
 
-/// The line under a fence that is looked at before it has a number.
+/// The line number of a fence that is examined before it has a number.
 const FENCE: i32 = -1;
 
-/// What is found of needles.
+/// The result of the search for needles.
 #[derive(Debug, Default)]
 struct Found {
     triangles: BTreeSet<u32>,
-    /// Triangle, the two lines that it lies between, and their price.
+    /// A triangle, the two lines between which it lies, and their price.
     pairs: Vec<(u32, [i32; 2], f64)>,
 }
 
@@ -69,7 +69,7 @@ impl Work<'_> {
                 push(&mut pieces, ends)?;
             }
         }
-        // Most fences end at about a right angle, which is to be no corner.
+        // Most fences end at about a right angle, which must not count as a corner.
         let more = corners::sharp(&self.marked.points, &pieces, self.own, SHARP)?;
         for (sharp, more) in self.sharp.iter_mut().zip(more) {
             *sharp |= more;
@@ -83,7 +83,7 @@ impl Work<'_> {
         (0..triangles).map(move |t| mesh.label(t))
     }
 
-    /// Takes what hangs together with triangle `t` as a needle.
+    /// Marks the triangles connected to triangle `t` as a needle.
     fn enclose(
         &mut self,
         t: u32,
@@ -120,7 +120,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Says which needles the budget allows to open: the cheapest, all of one price or none.
+    /// Decides which needles the budget allows to open: the cheapest ones, all of one price or
+    /// none.
     fn choose(&mut self, mut pairs: Vec<(u32, [i32; 2], f64)>, needle_of: &HashMap<u32, u32>) {
         for pair in &mut pairs {
             pair.0 = needle_of.get(&pair.0).copied().unwrap_or(u32::MAX);
@@ -147,10 +148,11 @@ impl Work<'_> {
         }
     }
 
-    /// Finds the triangles that are dear.
+    /// Finds the triangles that are too expensive.
     fn find(&mut self) -> Result<Found> {
         let mut found = Found::default();
         let mut stack = Vec::new();
+        // Start from the flat triangles at the lines of the domain.
         for e in (0..self.marked.triangles()).flat_map(|t| 8 * t..8 * t + 3) {
             let mesh = self.marked.patch();
             if mesh.label(triangle(e)) == 0 || !mesh.is_marked(e) {
@@ -158,7 +160,7 @@ impl Work<'_> {
             }
             let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
             let line = self.segment_of(ends);
-            if self.may_be_dear(e, line) {
+            if self.may_be_expensive(e, line) {
                 push(&mut stack, (e, line))?;
             }
         }
@@ -166,13 +168,14 @@ impl Work<'_> {
             return Ok(found);
         }
         let at = self.lines_at()?;
+        // Check each candidate's price; an expensive one makes its neighbors candidates.
         while let Some((e, line)) = stack.pop() {
             let points = self.points_of(triangle(e));
-            if !self.may_be_dear(e, line) || !self.shape.see(points).skinny {
+            if !self.may_be_expensive(e, line) || !self.shape.see(points).skinny {
                 continue;
             }
             let pairs = self.prices(e, line, &at);
-            if pairs.iter().map(|p| p.1).sum::<f64>() < DEAR {
+            if pairs.iter().map(|p| p.1).sum::<f64>() < EXPENSIVE {
                 continue;
             }
             let t = triangle(e);
@@ -194,7 +197,7 @@ impl Work<'_> {
         Ok(found)
     }
 
-    /// The ends of a line, or of the edge `e` where that is a fence.
+    /// The ends of a line, or of the edge `e` if that is a fence.
     fn base(&mut self, e: Code, line: i32) -> [Point2; 2] {
         let mesh = self.marked.patch();
         let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
@@ -202,22 +205,22 @@ impl Work<'_> {
         ends.map(|v| self.at(v))
     }
 
-    /// Whether the triangle of the edge `e` is so flat beside its line that it may be dear. Most
-    /// are not.
-    fn may_be_dear(&mut self, e: Code, line: i32) -> bool {
+    /// Whether the triangle of the edge `e` is so flat compared with its line that it may be
+    /// expensive. Most are not.
+    fn may_be_expensive(&mut self, e: Code, line: i32) -> bool {
         let [p, q, r] = self.points_of(triangle(e));
         let area2 = cross(minus(q, p), minus(r, p));
         let [a, b] = self.base(e, line);
         let (step, edge) = (minus(b, a), self.base(e, FENCE));
         let edge = minus(edge[1], edge[0]);
-        // Lines on both sides of a corner face the base, and a few more may.
-        let least = DEAR / (RATE * self.task.min_angle) / 8.0;
+        // Lines on both sides of a corner face the base, and so may a few more.
+        let least = EXPENSIVE / (RATE * self.task.min_angle) / 8.0;
         let (length, height) = (dot(step, step).sqrt(), area2 / dot(edge, edge).sqrt());
         height * least < length
     }
 
-    /// Whether triangle `t` would be worked upon, were it in no needle.
-    fn is_unsettled(&mut self, t: u32) -> bool {
+    /// Whether triangle `t` would be refined if it were in no needle.
+    fn needs_work(&mut self, t: u32) -> bool {
         let points = self.points_of(t);
         let seen = self.shape.see(points);
         if !seen.skinny {
@@ -234,7 +237,7 @@ impl Work<'_> {
         !self.is_forced(t, &seen)
     }
 
-    /// Lines by the vertices that they end in.
+    /// The lines at each vertex that is an end of one.
     fn lines_at(&self) -> Result<Vec<(u32, i32)>> {
         let mut at = Vec::new();
         for (i, ends) in (0..).zip(&self.ends[..self.needles.lines]) {
@@ -246,7 +249,7 @@ impl Work<'_> {
         Ok(at)
     }
 
-    /// The lines that face the line under `e` near its apex, and what that costs.
+    /// The lines that face the line under `e` near its apex, with their prices.
     fn prices(&mut self, e: Code, line: i32, at: &[(u32, i32)]) -> Vec<(i32, f64)> {
         let apex = self.marked.patch().vertex(e);
         let base = Base::of(self.base(e, line), self.at(apex));
@@ -281,8 +284,8 @@ impl Work<'_> {
         pairs
     }
 
-    /// Opens the needles that the budget allows, and lets those that were settled at first be settled
-    /// again; whether there are any.
+    /// Opens the needles that the budget allows, and lets those that needed no work at first be
+    /// refined again; returns whether there are any.
     pub fn open_allowed(&mut self) -> Result<bool> {
         let allowed = self.needles.allowed.clone();
         let mut steps = filled(allowed.len(), STEPS)?;
@@ -300,7 +303,7 @@ impl Work<'_> {
         Ok(!allowed.is_empty())
     }
 
-    /// Counts a step of the work in the needle of triangle `t`, if it is in one.
+    /// Counts a step of work in the needle of triangle `t`, if it is in one.
     pub fn count(&mut self, t: u32) {
         let label = self.marked.patch().label(t);
         if label >= self.needles.first {
@@ -311,19 +314,19 @@ impl Work<'_> {
         }
     }
 
-    /// For each needle, whether nothing is to be done in it.
+    /// For each needle, whether no work is left in it.
     fn settled(&mut self) -> Result<Vec<bool>> {
         let mut settled = filled(self.needles.labels.len(), true)?;
         for t in 0..self.marked.triangles() {
             let label = self.marked.patch().label(t);
             if label >= self.needles.first {
-                settled[(label - self.needles.first) as usize] &= !self.is_unsettled(t);
+                settled[(label - self.needles.first) as usize] &= !self.needs_work(t);
             }
         }
         Ok(settled)
     }
 
-    /// Takes all fences away, and keeps in mind which triangles are left in a needle.
+    /// Removes all fences, and records which triangles are left in a needle.
     pub fn open_all(&mut self) -> Result<()> {
         if self.needles.first == u32::MAX {
             return Ok(());
@@ -369,6 +372,6 @@ impl Work<'_> {
                 *on = -1;
             }
         }
-        self.marked.legalise()
+        self.marked.legalize()
     }
 }

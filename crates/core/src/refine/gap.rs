@@ -1,31 +1,32 @@
-//! Gaps between a line and an apex beside it, and how long another line faces it there.
+//! Gaps between a line and an apex beside it, and the length over which another line faces it
+//! there.
 
 use delone_predicates::{Point2, lexicographic};
 
 use super::shape::{cross, dot, minus};
 
-/// Lines face each other as long as they are no farther apart than this times the gap.
+/// Lines face each other if they are no farther apart than this times the gap.
 const FACING: f64 = 2.0;
 
-/// Heights below this part of the coordinates are rounding.
+/// Heights below this share of the coordinates are rounding errors.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// A line with an apex beside it.
 pub struct Base {
     from: Point2,
-    /// Its direction, of length 1.
+    /// The unit direction.
     along: Point2,
     length: f64,
     /// The height of the apex.
     pub gap: f64,
-    /// 1 where the apex is on the left.
+    /// 1 if the apex is on the left.
     side: f64,
 }
 
 impl Base {
-    /// The line between two points, whichever comes first, and its apex.
+    /// The line between two points, in either order, and its apex.
     pub fn of([a, b]: [Point2; 2], apex: Point2) -> Self {
-        // The same whichever way the line was given.
+        // The same for both directions of the line.
         let [a, b] = if lexicographic(a, b).is_gt() {
             [b, a]
         } else {

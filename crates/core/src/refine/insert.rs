@@ -1,37 +1,39 @@
-//! The insertion of a vertex in the domain: the triangles whose circles hold it, on its side of the
-//! marked edges, make way for a star, as in `delaunay2::cavity`. Labels and caps of area pass on.
+//! Inserts a vertex in the domain: empties its cavity, bounded by marked edges, and fills it with a
+//! star.
+//!
+//! As in `delaunay2::cavity`; labels and limits on areas are inherited.
 
 use delone_predicates::{Point2, Sign, incircle_canonical, orient2d};
 
 use crate::constrained::marked::Marked;
 use crate::mesh2::{Code, next, prev, triangle};
 
-/// Triangles that a walk may meet: what is inserted is near.
+/// Triangles that a walk may visit: new vertices are near.
 const WALK: usize = 4096;
 
-/// Where a walk ends.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walk {
-    /// In the triangle that holds the point.
+    /// In the triangle that contains the point.
     Home(u32),
-    /// At a marked edge that hides the point, seen from the side of the walk.
+    /// At a marked edge that hides the point, as a code on the side of the walk.
     Blocked(Code),
-    /// Nowhere: it was too long, or the point is a vertex.
+    /// Undecided: the walk was too long, or the point is a vertex.
     Lost,
 }
 
-/// A cavity, kept from one insertion to the next.
+/// A cavity, reused from insertion to insertion.
 #[derive(Debug, Default)]
 pub struct Cavity {
     /// Its triangles.
     pub triangles: Vec<u32>,
-    /// Its edges, counter-clockwise, as codes of its own triangles.
+    /// Its boundary edges, counterclockwise, as codes of its own triangles.
     pub rim: Vec<Code>,
     stack: Vec<Code>,
     sides: Vec<Side>,
 }
 
-/// An edge of the hole.
+/// An edge of the cavity's boundary.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     ends: [u32; 2],
@@ -66,9 +68,9 @@ pub fn walk(marked: &mut Marked, from: u32, p: Point2) -> Walk {
 }
 
 impl Cavity {
-    /// Finds the cavity of `p`, which triangle `home` holds. It may be no star: then p lies on a marked
-    /// edge, or one hides a part from it; that edge is returned.
-    pub fn dig(&mut self, marked: &mut Marked, home: u32, p: Point2) -> Option<Code> {
+    /// Finds the cavity of `p`, which triangle `home` contains. If it is not star-shaped, p lies on
+    /// a marked edge, or one hides a part of the cavity from it; that edge is returned.
+    pub fn find(&mut self, marked: &mut Marked, home: u32, p: Point2) -> Option<Code> {
         let triangles = marked.triangles();
         let mesh = marked.mesh.resume(triangles);
         let at = |v: u32| marked.points[v as usize];
@@ -77,8 +79,8 @@ impl Cavity {
         self.triangles.push(home);
         self.stack.clear();
         self.stack.extend([8 * home + 2, 8 * home + 1, 8 * home]);
-        // Depth first and always to the right first, the edges come counter-clockwise. A triangle
-        // is met once: the cavity has no vertex inside, so its triangles form a tree.
+        // Depth-first, right child first, the edges are found counterclockwise. A triangle is
+        // visited once: no vertex is inside the cavity, so its triangles form a tree.
         while let Some(e) = self.stack.pop() {
             let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
             let o = mesh.opposite(e);
@@ -96,9 +98,9 @@ impl Cavity {
         None
     }
 
-    /// Fills the cavity with the star of a new vertex at `p`; there is room for it. `caps` has the
-    /// largest double area of each triangle; a new one takes that of the old one at its edge of the
-    /// rim: the least of all would spread from cavity to cavity.
+    /// Fills the cavity with the star of a new vertex at `p`; there must be room for it. `caps` has
+    /// the limit on twice the area of each triangle; a new triangle inherits that of the old one at
+    /// its boundary edge. The smallest of all would spread from cavity to cavity.
     pub fn fill(&mut self, marked: &mut Marked, p: Point2, caps: &mut Vec<f64>) -> u32 {
         let v = marked.count as u32;
         marked.points[v as usize] = p;

@@ -1,5 +1,5 @@
-//! What a report asks of all triangles of a mesh: which have an angle below a bound, decided exactly,
-//! and where the smallest and the largest angles are.
+//! Judges all triangles for a report: those with an angle below a bound, exactly, and the extreme
+//! angles.
 
 use delone_predicates::Point2;
 
@@ -8,38 +8,38 @@ use crate::error::Result;
 use crate::memory::push;
 use crate::watch::Watch;
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 16;
 
-/// Where twice the area is a smaller part of the product of the two shorter edges, it has lost too
+/// If twice the area is a smaller share of the product of the two shorter edges, it has lost too
 /// many bits to rounding: an angle below 1.8 degrees, or above 178.2.
 const THIN: f64 = 1.0 / 32.0;
 
-/// What was found.
+/// The result of judging.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Judged {
     /// Triangles with an angle below the bound, ascending.
     pub below: Vec<u32>,
-    /// Triangles among which are those with the smallest and the largest angle: all thin ones, and
-    /// the two extremes of the others.
+    /// Triangles that include those with the smallest and the largest angle: all thin ones, and the
+    /// two extremes of the others.
     pub extremes: Vec<u32>,
-    /// Triangles that are not judged, as their squares leave the range of doubles.
+    /// Triangles that are not judged because their squares leave the range of doubles.
     pub beyond: Vec<u32>,
 }
 
-/// How a triangle looks in plain floating point.
+/// A triangle in plain floating point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Extent {
     /// The squared sine of the smallest angle, and the squared cosine of the largest one with the
     /// sign of the cosine.
     Plain([f64; 2]),
-    /// So thin that rounding has spoiled them.
+    /// So thin that rounding makes these useless.
     Thin,
     /// Products of squares of its edges leave the range of doubles.
     Beyond,
 }
 
-/// The extreme triangle of those seen so far.
+/// The most extreme triangle so far.
 #[derive(Debug, Clone, Copy)]
 struct Least {
     triangle: Option<u32>,
@@ -62,8 +62,8 @@ impl Least {
     }
 }
 
-/// Judges triangles, corners in rows of `points`, by the squared cosine of the smallest angle that is
-/// allowed.
+/// Judges triangles, given as rows of `points`, by the squared cosine of the smallest allowed
+/// angle.
 pub fn judge(
     points: &[Point2],
     simplices: &[[i32; 3]],
@@ -112,7 +112,7 @@ fn extent([a, b, c]: [Point2; 3]) -> Extent {
     if square <= THIN * THIN * around {
         return Extent::Thin;
     }
-    // By the law of cosines, with the largest angle between the two shorter edges.
+    // By the law of cosines; the largest angle is between the two shorter edges.
     let cosine = 0.5 * (x + y - z);
     Extent::Plain([square / across, cosine * cosine.abs() / around])
 }
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_spoils_is_left_to_the_caller() {
+    fn inaccurate_triangles_are_left_to_the_caller() {
         let thin = [[0.0, 0.0], [1.0, 0.0], [0.5, 1e-9]];
         let tiny = [[0.0, 0.0], [1e-200, 0.0], [0.0, 1e-200]];
         let right = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];

@@ -1,15 +1,15 @@
-//! Delaunay refinement: vertices are added to a constrained triangulation until no angle is small and
-//! no triangle is large, as far as the angles of the input allow.
+//! Delaunay refinement: adds vertices until no angle is small and no triangle large, as far as the
+//! input allows.
 //!
 //! J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", Journal
 //! of Algorithms 18 (1995), with the diametral lenses of L. P. Chew, "Guaranteed-quality mesh
-//! generation for curved surfaces" (1993), the off-centres of A. Üngör (2004), and for small angles
+//! generation for curved surfaces" (1993), the off-centers of A. Üngör (2004), and for small angles
 //! of the input the rule of G. L. Miller, S. E. Pav and N. J. Walkington, "When and why Delaunay
 //! refinement algorithms work", International Journal of Computational Geometry & Applications 15
-//! (2005): a thin triangle whose shortest edge spans two subsegments that meet in a corner, on one
-//! circle about it, stays. That is done where the corner has less than 60 degrees.
+//! (2005): a skinny triangle is accepted if its shortest edge joins two subsegments that meet in a
+//! corner, at points on one circle around it. This is done at corners of less than 60 degrees.
 //!
-//! The order of work hangs on the mesh alone, so the result is the same every time.
+//! The order of work depends on the mesh only, so the result is the same every time.
 
 mod corners;
 mod fence;
@@ -36,7 +36,7 @@ use crate::memory::{copied, filled, with_room};
 use crate::mesh2::{import, next, prev, triangle};
 use crate::watch::{Pace, Watch};
 
-/// Triangles, or segments, between two looks at the watch.
+/// Triangles, or segments, between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// Refines a triangulation.
@@ -44,7 +44,7 @@ pub fn refine(task: Task, watch: &Watch) -> Result<Refined> {
     refine_telling(task, watch, &mut |_, _| Ok(()))
 }
 
-/// Refines a triangulation, and tells how far it is.
+/// Refines a triangulation and reports progress.
 pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     let scale = scale(task.points);
     if scale == 1.0 {
@@ -53,7 +53,7 @@ pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> 
     let mut made = refine_scaled(task, scale, watch, tell)?;
     let added = made.added.as_flattened_mut();
     if added.iter().any(|x| x / scale * scale != *x) {
-        // Rounding among the subnormal doubles could turn triangles over.
+        // Rounding among subnormal doubles could invert triangles.
         return refine_as_is(task, watch, tell);
     }
     for x in added {
@@ -62,12 +62,12 @@ pub fn refine_telling(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> 
     Ok(made)
 }
 
-/// Refines a triangulation with all coordinates times a power of two.
+/// Refines a triangulation with all coordinates multiplied by a power of two.
 fn refine_scaled(task: Task, scale: f64, watch: &Watch, tell: Tell) -> Result<Refined> {
     let scaled = |p: &Point2| p.map(|x| x * scale);
     let mut points = with_room(task.points.len())?;
     points.extend(task.points.iter().map(scaled));
-    // Twice, as the square of the scale may be beyond the range.
+    // Multiplied twice, as the square of the scale may be out of range.
     let mut areas = with_room(task.areas.len())?;
     areas.extend(task.areas.iter().map(|a| a * scale * scale));
     let task = Task {
@@ -78,8 +78,8 @@ fn refine_scaled(task: Task, scale: f64, watch: &Watch, tell: Tell) -> Result<Re
     refine_as_is(task, watch, tell)
 }
 
-/// The power of two that brings coordinates to where products of four of their differences neither
-/// over- nor underflow; 1 where they are there, or where it would round some of them.
+/// The power of two that scales coordinates so that products of four of their differences neither
+/// overflow nor underflow; 1 if they already do not, or if it would round some of them.
 fn scale(points: &[Point2]) -> f64 {
     let largest = points
         .as_flattened()
@@ -88,7 +88,7 @@ fn scale(points: &[Point2]) -> f64 {
     if (1e-60..1e60).contains(&largest) || largest == 0.0 {
         return 1.0;
     }
-    // Both it and its inverse are doubles.
+    // Both the scale and its inverse are doubles.
     let scale = 2_f64.powi(-(largest.log2() as i32).clamp(-1022, 1022));
     let exact = |x: &f64| x * scale / scale == *x;
     let all = points.as_flattened().iter().all(exact);
@@ -124,14 +124,14 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     let mut pace = Pace::new(watch, LOT);
     for (t, (&label, &area)) in (0..).zip(task.labels.iter().zip(task.areas)) {
         pace.spend(1)?;
-        // 0 is for ghosts and what lies outside.
+        // 0 is for ghosts and triangles outside the domain.
         marked.patch().set_label(t, (label + 1).max(0) as u32);
         caps[t as usize] = 2.0 * area;
     }
     for &[u, v] in &pieces {
         pace.spend(1)?;
         if u.max(v) as usize >= rows.len() {
-            return Err(Error::Shape("a segment ends in no vertex".into()));
+            return Err(Error::Shape("an end of a segment is not a vertex".into()));
         }
         let e = marked.edge(u, v)?;
         marked.patch().mark(e, true);
@@ -141,7 +141,7 @@ fn refine_as_is(task: Task, watch: &Watch, tell: Tell) -> Result<Refined> {
     export(work, &rows, task.points.len(), exhausted, watch)
 }
 
-/// Everything in rows.
+/// Converts everything to rows.
 fn export(
     mut work: Work,
     rows: &[u32],
@@ -158,6 +158,7 @@ fn export(
     let on = copied(&work.on[rows.len()..count])?;
     let triangles = work.marked.triangles();
     let mesh = work.marked.patch();
+    // Number the finite triangles.
     let mut number = filled(triangles as usize, -1)?;
     let infinite = mesh.infinite();
     let finite = |t: &u32| !mesh.corners(*t).contains(&infinite);
@@ -187,6 +188,7 @@ fn export(
         out.labels.push(mesh.label(t) as i32 - 1);
         out.needles.push(work.needles.left(t));
     }
+    // The line of each side; this needs `work` mutably, hence the second loop.
     for &t in &all {
         pace.spend(1)?;
         let codes = [8 * t, 8 * t + 1, 8 * t + 2];

@@ -1,53 +1,55 @@
-//! Needles: parts of the domain between two lines that come so near to each other, over so long a
-//! way, that good angles there take more vertices than the budget allows. They are found before the
-//! first vertex is inserted, fenced off, and opened again at the end where the budget allows it.
+//! Needles: narrow parts of the domain where good angles need more vertices than the budget allows.
+//!
+//! They lie between two lines that are very close over a long distance. They are found before the
+//! first vertex is inserted, fenced off, and opened again at the end if the budget allows it.
 //!
 //! # The price
 //!
-//! Between two lines at distance `g` edges are about as long as `g`: that takes a number of vertices
-//! in proportion to the length over which the lines face each other, divided by `g`, and to the
-//! angle. A single vertex near a line is cheap, as edges grow again with the distance from it; and so
-//! is a corner whose sides are cut at equal distances. Therefore a triangle is looked at if it is bad,
-//! and would be worked upon: its small angle does not lie between two sides of a corner, or its apex
-//! is in the lens of one of its subsegments. The lines at its apex, and those opposite the apex in
-//! the triangles around it, are clipped to where they face the line under the subsegment at no more
-//! than twice the gap of the apex. Whole lines are measured, not their pieces, so that a mesh that
-//! has been refined already, around a needle, has the same needles.
+//! Between two lines at distance `g`, edges are about as long as `g`: the number of vertices is
+//! proportional to the angle, and to the length over which the lines face each other, divided by
+//! `g`. A single vertex near a line is cheap, as edges grow with the distance from it; so is a
+//! corner whose sides are split at equal distances. Therefore a triangle is examined only if it is
+//! bad and would be refined: its small angle does not lie between two sides of a corner, or its
+//! apex is in the lens of one of its subsegments. The lines at its apex, and those opposite the
+//! apex in the triangles around it, are clipped to the part that faces the line under the
+//! subsegment at a distance of at most twice the gap of the apex. Whole lines are measured, not
+//! their pieces, so that a mesh that has already been refined around a needle has the same needles.
 //!
 //! # The fence
 //!
-//! Triangles that are dear by this measure join across edges without a segment to a needle. Its
-//! price is the sum over its pairs of lines. Its edges without a segment become lines for a while:
-//! they may be split from outside as those of the input, with circles about their ends where they are
-//! sharp corners. A fence can itself be one side of a gap, so the triangle beyond is looked at in the
-//! same way. A triangle once in a needle stays in it, whatever the order, so the outcome is one, and
-//! for any order of the input.
+//! Triangles that are expensive by this measure and are connected across edges that are not on a
+//! segment form a needle. Its price is the sum over its pairs of lines. Its edges that are not on a
+//! segment become temporary lines: they may be split from outside like those of the input, on
+//! circles around their ends if these are sharp corners. A fence can itself be one side of a gap,
+//! so the triangle beyond it is examined in the same way. A triangle, once in a needle, stays in it
+//! whatever the order, so the result is unique and independent of the order of the input.
 //!
-//! Inside of a needle no angle and no encroachment counts, only sizes. A line at its side may be cut
-//! from the other side; the vertices on it are then joined across the needle.
+//! Inside a needle angles and encroachment do not count, only sizes. A line at its side may be
+//! split from the other side; the vertices on it are then joined across the needle.
 //!
 //! # Termination and budget
 //!
-//! With the fences up, the domain without the needles has no two lines that are as near to each other
-//! in comparison to the length over which they face each other. It is refined first, by the usual
-//! rules, for which fences are lines of the input; so it ends where those end.
+//! With the fences, the domain without the needles has no two lines that are as close to each other
+//! compared with the length over which they face each other. It is refined first, by the usual
+//! rules, which treat fences as lines of the input; so it terminates when those do.
 //!
-//! Then the needles are opened whose prices, summed from the least on, stay within a share of the
-//! budget, and the work goes on in them. Most corners of nearly no angle cost nothing, since their
-//! sides are cut alike; but one cut at another place, because of something outside, may cost the full
-//! price. Thus a needle that was in order at first, and is not allowed for its price, gets some steps
-//! of work in proportion to the triangles that it has by then. If they suffice it counts as a corner.
+//! Then needles are opened in ascending order of price, as long as the sum stays within a share of
+//! the budget, and work continues in them. Most corners with a very small angle cost nothing, since
+//! their sides are split alike; but one whose sides are split at different distances, because of
+//! something outside, may cost the full price. Therefore a needle that needed no work at first, and
+//! whose price is not allowed, gets a number of steps of work in proportion to the triangles that
+//! it has by then. If they suffice it counts as a corner.
 //!
-//! All others stay as they are, which is no more than a finite triangulation of what the outside put on
-//! their sides. So all needles together take about that share, as far as prices are right, and where
-//! they are too low the limit on vertices ends the work after the rest is done.
+//! All others stay as they are: a finite triangulation of the vertices that were placed on their
+//! sides from outside. So all needles together use about that share, as far as the prices are
+//! right; if they are too low, the limit on vertices ends the work after everything else is done.
 
 use std::collections::HashMap;
 
-/// An edge of a needle without a segment.
+/// An edge of a needle that is not on a segment.
 #[derive(Debug, Clone, Copy)]
 pub struct Fence {
-    /// Its line, behind those of the input.
+    /// Its line, numbered after those of the input.
     pub line: i32,
     /// The needle that it encloses.
     pub needle: u32,
@@ -58,29 +60,29 @@ pub struct Fence {
 pub struct Needles {
     /// The number of lines of the input; fences come after them.
     pub lines: usize,
-    /// The label of the first one.
+    /// The label of the first needle.
     pub first: u32,
-    /// The label of the triangles before.
+    /// The original label of the triangles in each needle.
     pub labels: Vec<u32>,
     /// Whether the budget allows to open it.
     pub allowed: Vec<bool>,
-    /// Whether nothing was to be done in it at first.
+    /// Whether it needed no work at first.
     pub settled: Vec<bool>,
-    /// The steps of work that are left for each, without being opened.
+    /// The steps of work left for each needle without opening it.
     pub steps: Vec<u32>,
-    /// Its fences and those of the others, by their ends.
+    /// The fences of all needles, by their ends.
     pub fences: HashMap<[u32; 2], Fence>,
-    /// For each triangle the needle that it is left in, or -1; empty where there is none.
+    /// For each triangle the needle in which it was left, or -1; empty if there are no needles.
     pub left: Vec<i32>,
 }
 
-/// An edge whichever way it runs.
+/// The key of an edge, regardless of its direction.
 pub fn key([u, v]: [u32; 2]) -> [u32; 2] {
     [u.min(v), u.max(v)]
 }
 
 impl Needles {
-    /// None yet, in a triangulation with so many lines.
+    /// No needles yet, in a triangulation with this many lines.
     pub fn of(lines: usize) -> Self {
         Self {
             lines,
@@ -114,15 +116,15 @@ impl Needles {
         self.fences.get(&key(ends)).map(|fence| fence.line)
     }
 
-    /// The edge `u v` has been parted in `w`.
-    pub fn part(&mut self, [u, v]: [u32; 2], w: u32) {
+    /// Records that the edge `u v` was split at `w`.
+    pub fn split_at(&mut self, [u, v]: [u32; 2], w: u32) {
         if let Some(fence) = self.fences.remove(&key([u, v])) {
             self.fences.insert(key([u, w]), fence);
             self.fences.insert(key([w, v]), fence);
         }
     }
 
-    /// The needle that triangle `t` is left in, or -1.
+    /// The needle in which triangle `t` was left, or -1.
     pub fn left(&self, t: u32) -> i32 {
         self.left.get(t as usize).copied().unwrap_or(-1)
     }

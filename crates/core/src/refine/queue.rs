@@ -1,24 +1,26 @@
-//! The triangles to be improved, those with the shortest edges first: what is inserted for them is
-//! near, and spares larger ones (A. Üngör, "Off-centers: a new type of Steiner points for computing
-//! size-optimal quality-guaranteed Delaunay triangulations", LATIN 2004).
+//! The queue of bad triangles, those with the shortest edges first.
 //!
-//! Lengths fall in buckets that grow by a factor of 2^(1/4); within a bucket the last one in is the
-//! first one out, so that work stays where it is.
+//! A vertex inserted for them is near and saves larger ones (A. Üngör, "Off-centers: a new type of
+//! Steiner points for computing size-optimal quality-guaranteed Delaunay triangulations", LATIN
+//! 2004).
+//!
+//! Lengths go to buckets that grow by a factor of 2^(1/4); within a bucket the queue is last in,
+//! first out, so that work stays local.
 
 use crate::error::Result;
 use crate::memory::push;
 
-/// Buckets a factor of two of the squared length: the top bits of its fraction.
+/// log2 of the buckets per factor of two of the squared length: the top bits of its fraction.
 const FINE: u32 = 1;
 const BUCKETS: usize = 2048 << FINE;
 const WORDS: usize = BUCKETS / 64;
 
-/// A triangle as it was when it was judged.
+/// A triangle at the time when it was judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bad {
     /// Its record.
     pub triangle: u32,
-    /// Its corners; where they differ now, the triangle is gone.
+    /// Its corners; if they have changed, the triangle no longer exists.
     pub corners: [u32; 3],
 }
 
@@ -47,7 +49,7 @@ impl Queue {
         Ok(())
     }
 
-    /// Takes the next one.
+    /// Removes the next triangle.
     pub fn pop(&mut self) -> Option<Bad> {
         let word = self.filled.iter().position(|w| *w != 0)?;
         let bucket = 64 * word + self.filled[word].trailing_zeros() as usize;

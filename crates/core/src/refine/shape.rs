@@ -1,5 +1,5 @@
-//! The shape of triangles in plain floating point: which are bad, and which subsegments a vertex
-//! encroaches upon.
+//! Triangle quality in plain floating point: which triangles are bad, and which subsegments are
+//! encroached.
 
 use delone_predicates::Point2;
 use num_bigint::BigInt;
@@ -7,18 +7,18 @@ use num_bigint::BigInt;
 use super::twofold::{ERROR, Twofold};
 use crate::wide::{lowest, scaled};
 
-/// Squares of cosines that differ by a smaller part are compared exactly: four roundings each.
+/// Squared cosines with a smaller relative difference are compared exactly: four roundings each.
 const UNSURE: f64 = 1e-14;
 
-/// And again by twofold numbers: a dozen of their roundings, each a hundredth of this.
+/// And again in double-double arithmetic: a dozen roundings, each a hundredth of this.
 const SURE: f64 = 100.0 * ERROR;
 
 /// The bounds.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// The squared cosine of the smallest angle that is allowed.
+    /// The squared cosine of the smallest allowed angle.
     cos2: f64,
-    /// The squared cosine of the angle at which a lens is seen from its rim.
+    /// The squared cosine of the angle at which a lens is seen from its boundary.
     lens: f64,
 }
 
@@ -31,7 +31,7 @@ pub enum Reason {
     Size,
 }
 
-/// A triangle as seen from its shortest edge.
+/// A triangle, relative to its shortest edge.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen {
     /// The corner opposite the shortest edge, where the smallest angle is.
@@ -65,11 +65,11 @@ pub fn angle([a, b, c]: [Point2; 3]) -> f64 {
 }
 
 impl Shape {
-    /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are circles. Where no
-    /// angle is too small, lenses are empty: rounding must not find a vertex in one.
+    /// Bounds for the smallest angle `degrees`, below 60; with `circles` lenses are diametral
+    /// circles. If no angle is too small, lenses are empty: rounding must not find a vertex in one.
     pub fn new(degrees: f64, circles: bool) -> Self {
         let angle = degrees.to_radians();
-        // Where the squared cosine is a simple fraction, it is that one and not its neighbour.
+        // If the squared cosine is a simple fraction, use it exactly, not a neighboring double.
         let cos2 = match degrees {
             30.0 => 0.75,
             45.0 => 0.5,
@@ -87,7 +87,7 @@ impl Shape {
         }
     }
 
-    /// A bound for the smallest angle by its squared cosine; no lens holds anything.
+    /// A bound on the smallest angle, by its squared cosine; lenses are empty.
     pub fn of_square(cos2: f64) -> Self {
         Self {
             cos2,
@@ -95,7 +95,7 @@ impl Shape {
         }
     }
 
-    /// Looks at a triangle.
+    /// Measures a triangle.
     pub fn see(&self, corners: [Point2; 3]) -> Seen {
         let [a, b, c] = corners;
         let edges = [minus(c, b), minus(a, c), minus(b, a)];
@@ -106,7 +106,7 @@ impl Shape {
             _ => 2,
         };
         let [l, m] = [(apex + 1) % 3, (apex + 2) % 3];
-        // The two edges at the apex run away from it and back to it.
+        // The two edges at the apex are directed away from it and back to it.
         let cosine = -dot(edges[l], edges[m]);
         let (square, bound) = (cosine * cosine, self.cos2 * lengths[l] * lengths[m]);
         let skinny = if (square - bound).abs() > UNSURE * bound {
@@ -122,17 +122,17 @@ impl Shape {
         }
     }
 
-    /// Whether the angle at `a` is too small, which is less than a right one.
+    /// Whether the angle at `a`, which is less than a right angle, is too small.
     fn is_skinny(&self, [a, b, c]: [Point2; 3]) -> bool {
         let between = |p: Point2| [0, 1].map(|k| Twofold::difference(p[k], a[k]));
         let (u, v) = (between(b), between(c));
         let dot = |u: [Twofold; 2], v: [Twofold; 2]| u[0].times(v[0]).plus(u[1].times(v[1]));
-        // Terms of opposite signs cancel in the dot product, but not below a twentieth of them: then
-        // the angle is near to a right one, and nobody asks.
+        // Terms of opposite signs cancel in the dot product, but not below a twentieth of them:
+        // then the angle is near a right angle and not tested.
         let cosine = dot(u, v);
         let bound = dot(u, u).times(dot(v, v)).times(Twofold::of(self.cos2));
         let over = cosine.times(cosine).minus(bound);
-        // Elsewhere lower parts may have left the range.
+        // Outside this range the low parts may have underflowed.
         let within = (1e-200..1e200).contains(&bound.rounded());
         if within && over.abs() > SURE * bound.rounded() {
             over > 0.0
@@ -153,7 +153,7 @@ impl Shape {
         &cosine * &cosine * one > dot(&u, &u) * dot(&v, &v) * bound
     }
 
-    /// Why a triangle of at most twice the area `cap2` is bad, if it is.
+    /// Why a triangle with at most twice the area `cap2` allowed is bad, if it is.
     pub fn fault(&self, seen: &Seen, cap2: f64) -> Option<Reason> {
         if seen.skinny {
             Some(Reason::Angle)
@@ -164,16 +164,16 @@ impl Shape {
         }
     }
 
-    /// Whether `r` lies in the diametral lens of the subsegment `p q` (L. P. Chew, "Guaranteed-quality
-    /// mesh generation for curved surfaces", 1993): it sees it at an angle of 180 degrees less twice
-    /// the bound or more.
+    /// Whether `r` is in the diametral lens of the subsegment `p q` (L. P. Chew,
+    /// "Guaranteed-quality mesh generation for curved surfaces", 1993): r sees it at an angle of at
+    /// least 180 degrees minus twice the bound.
     pub fn in_lens(&self, p: Point2, q: Point2, r: Point2) -> bool {
         let (u, v) = (minus(p, r), minus(q, r));
         let cosine = dot(u, v);
         cosine < 0.0 && cosine * cosine >= self.lens * dot(u, u) * dot(v, v)
     }
 
-    /// The same, also where lenses are circles.
+    /// The same, even if lenses are circles.
     pub fn is_flat(&self, p: Point2, q: Point2, r: Point2) -> bool {
         let lens = (2.0 * self.cos2 - 1.0).powi(2);
         Self { lens, ..*self }.in_lens(p, q, r)
@@ -190,7 +190,7 @@ mod tests {
         let lens = |y| shape.in_lens([-1.0, 0.0], [1.0, 0.0], [0.0, y]);
         assert!(lens(0.57) && !lens(0.58));
         assert!(!shape.in_lens([-1.0, 0.0], [1.0, 0.0], [3.0, 0.0]));
-        // A vertex beside the subsegment that rounding takes for one on it.
+        // A vertex so near the subsegment that rounding puts it on it.
         let flat = Shape::new(0.0, false);
         assert!(!flat.in_lens([0.0, 0.0], [2.0, 0.0], [1.0, -1e-9]));
         let shape = Shape::new(30.0, true);

@@ -1,18 +1,19 @@
-//! Sums of two doubles, as numbers of about 104 bits: what one double cannot decide is decided here
-//! before integers have to do it. Fronts of equilateral triangles meet at 30 degrees up to the last
-//! bit, so that at this bound such doubt is common.
+//! Double-double arithmetic, about 104 bits, for what one double cannot decide.
+//!
+//! It decides before integers are needed. Fronts of equilateral triangles meet at 30 degrees up to
+//! the last bit, so at this bound uncertainty is common.
 //!
 //! T. J. Dekker, "A floating-point technique for extending the available precision", Numerische
-//! Mathematik 18 (1971). Over- and underflow end in NaN or in a comparison that is unsure.
+//! Mathematik 18 (1971). Overflow and underflow lead to NaN or to an uncertain comparison.
 
-/// A number as a double and what it lacks.
+/// A number as a double and its remainder.
 #[derive(Debug, Clone, Copy)]
 pub struct Twofold(f64, f64);
 
-/// The part by which a result may be wrong: 2^-100, with some bits to spare.
+/// The relative error bound of a result: 2^-100, with some bits to spare.
 pub const ERROR: f64 = 1e-29;
 
-/// 2^27 + 1 cuts a double in two halves.
+/// 2^27 + 1 splits a double into two halves.
 const CUT: f64 = 134_217_729.0;
 
 fn sum(a: f64, b: f64) -> Twofold {
@@ -44,7 +45,7 @@ impl Twofold {
         sum(a, -b)
     }
 
-    /// A sum of two numbers that are not nearly opposite.
+    /// The sum of two numbers that are not nearly opposite.
     pub fn plus(self, other: Self) -> Self {
         let Self(s, e) = sum(self.0, other.0);
         let low = e + (self.1 + other.1);
@@ -57,7 +58,7 @@ impl Twofold {
         sum(p, e + (self.0 * other.1 + self.1 * other.0))
     }
 
-    /// The first double less that of another number, and what both lack.
+    /// The difference of the leading doubles, plus the difference of the remainders.
     pub fn minus(self, other: Self) -> f64 {
         (self.0 - other.0) + (self.1 - other.1)
     }
@@ -77,7 +78,7 @@ mod tests {
         let a = Twofold::difference(1.0, -f64::EPSILON / 4.0);
         assert_eq!((a.0, a.1), (1.0, f64::EPSILON / 4.0));
         let square = a.times(a);
-        // 1 + e / 2, and e^2 / 16 below that.
+        // 1 + e / 2, and a remainder of e^2 / 16.
         assert_eq!(square.0, 1.0 + 0.0);
         assert_eq!(square.1, f64::EPSILON / 2.0);
         let third = Twofold::of(1.0 / 3.0);

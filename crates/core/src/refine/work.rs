@@ -1,11 +1,13 @@
-//! The loop of the refinement: encroached subsegments first, then the bad triangle with the shortest
-//! edge. A vertex that is to mend a triangle but lies beyond a subsegment or in the lens of one is
-//! not inserted; the subsegment is split instead.
+//! The refinement loop: splits encroached subsegments first, then improves the bad triangle with
+//! the shortest edge.
 //!
-//! With angles up to about 26 degrees, and no sharp corner, each new edge is as long as a fixed part
-//! of what is there already, so it ends; with sharp corners the circles about them and the rule for
-//! triangles that span them do the same. Beyond that, up to some 34 degrees, it ends in practice, and
-//! a limit on vertices ends it in any case.
+//! A vertex for a bad triangle is not inserted if it lies beyond a subsegment or in the lens of
+//! one; the subsegment is split instead.
+//!
+//! With angles up to about 26 degrees, and no sharp corner, each new edge is at least as long as a
+//! fixed share of existing lengths, so refinement terminates; with sharp corners the circles around
+//! them and the rule for triangles that span them do the same. Beyond that, up to about 34 degrees,
+//! it terminates in practice, and a limit on vertices ends it in any case.
 
 use std::collections::HashMap;
 use std::iter::once;
@@ -26,64 +28,65 @@ use crate::memory::{copied, make_room, push, with_room};
 use crate::mesh2::{Code, next, prev, triangle};
 use crate::watch::Watch;
 
-/// Vertices between two looks at the watch.
+/// Vertices between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 12;
 
-/// Radii about a corner are one if they differ by less.
+/// Radii around a corner are equal if they differ by less than this share.
 const SAME_SHELL: f64 = 1e-3;
 
-/// A vertex that mends two triangles is farther from all others than the root of this times the
-/// shortest edge of the first: above 1, so that edges do not become shorter and shorter.
+/// A vertex that improves two triangles must be farther from all others than the square root of
+/// this times the shortest edge of the first: above 1, so that edges do not keep getting shorter.
 const APART: f64 = 1.3;
 
 fn distance(a: Point2, b: Point2) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// A subsegment as it was when it was put aside.
+/// A subsegment at the time when it was queued.
 #[derive(Debug, Clone, Copy)]
-struct Waiting {
+struct Queued {
     edge: Code,
     ends: [u32; 2],
 }
 
-/// What stands where a vertex is to go.
+/// The result of looking for a cavity.
 #[derive(Debug)]
-enum Dug {
-    /// Nothing: the cavity is ready.
+enum Site {
+    /// Nothing is in the way: the cavity is ready.
     Free,
-    /// Subsegments that hide it, or upon which it encroaches.
-    Walled(Vec<Code>),
-    /// A vertex; or there is no such place.
+    /// Subsegments that hide the vertex, or upon which it encroaches.
+    Blocked(Vec<Code>),
+    /// A vertex is there, or the position is not in the domain.
     Lost,
 }
 
-/// How a vertex splits a subsegment.
+/// Where a vertex lies that splits a subsegment.
 #[derive(Debug, Clone, Copy)]
 enum Place {
-    /// On the edge, as far as its two triangles can tell.
+    /// On the edge, as far as its two triangles can distinguish.
     On,
-    /// In the triangle of this side: it is rounded, and the one beyond is too thin to reach it.
+    /// In the triangle on this side: it is rounded, and the one on the other side is too thin to
+    /// contain it.
     Beside(Code),
 }
 
 /// The points next to `x` in the grid of doubles.
-fn neighbours(x: Point2) -> impl Iterator<Item = Point2> {
+fn neighbors(x: Point2) -> impl Iterator<Item = Point2> {
     let [xs, ys] = x.map(|c| [c, c.next_down(), c.next_up()]);
     let all = xs.into_iter().flat_map(move |x| ys.map(|y| [x, y]));
     all.skip(1)
 }
 
-/// The state.
+/// The state of a refinement.
 pub struct Work<'a> {
     pub marked: Marked,
-    /// Twice the largest area of each triangle.
+    /// The limit on twice the area of each triangle.
     caps: Vec<f64>,
-    /// For each vertex the line that it was put on, or -1.
+    /// For each vertex the line on which it was placed, or -1.
     pub on: Vec<i32>,
     pub counts: Counts,
     pub(super) task: Task<'a>,
-    /// The lines as vertices, and behind them the fences.
+    /// The lines as pairs of vertices, followed by the fences.
     pub(super) ends: Vec<[u32; 2]>,
     /// The line between two vertices of the input.
     between: HashMap<[u32; 2], i32>,
@@ -92,9 +95,9 @@ pub struct Work<'a> {
     pub needles: Needles,
     places: Places,
     queue: Queue,
-    encroached: Vec<Waiting>,
+    encroached: Vec<Queued>,
     cavity: Cavity,
-    /// Vertices of the input.
+    /// The number of vertices of the input.
     pub(super) own: usize,
 }
 
@@ -130,8 +133,8 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Works until nothing is bad, first outside of needles, then in those that the budget allows;
-    /// false where the limit on vertices came first.
+    /// Refines until nothing is bad, first outside of needles, then in those that the budget
+    /// allows; returns false if the limit on vertices was reached.
     pub fn run(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         self.fence()?;
         let mut done = self.refine(watch, tell)?;
@@ -142,12 +145,12 @@ impl<'a> Work<'a> {
         Ok(done)
     }
 
-    /// Works until nothing is bad outside of needles.
+    /// Refines until nothing is bad outside of needles.
     fn refine(&mut self, watch: &Watch, tell: Tell) -> Result<bool> {
         for t in 0..self.marked.triangles() {
             self.judge(t)?;
             for e in 8 * t..8 * t + 3 {
-                self.look(e)?;
+                self.enqueue_if_encroached(e)?;
             }
         }
         let mut until_watch = 1;
@@ -162,12 +165,12 @@ impl<'a> Work<'a> {
             if self.marked.count - self.own >= self.task.max_vertices {
                 return Ok(false);
             }
-            if let Some(waiting) = self.encroached.pop() {
-                if self.stands(&waiting) && self.is_encroached(waiting.edge) {
-                    self.count(triangle(waiting.edge));
-                    let o = self.marked.patch().opposite(waiting.edge);
+            if let Some(queued) = self.encroached.pop() {
+                if self.still_exists(&queued) && self.is_encroached(queued.edge) {
+                    self.count(triangle(queued.edge));
+                    let o = self.marked.patch().opposite(queued.edge);
                     self.count(triangle(o));
-                    self.split(waiting.edge)?;
+                    self.split(queued.edge)?;
                 }
             } else if let Some(bad) = self.queue.pop() {
                 if self.marked.patch().corners(bad.triangle) == bad.corners {
@@ -200,12 +203,12 @@ impl<'a> Work<'a> {
         corners.map(|v| self.marked.points[v as usize])
     }
 
-    /// The line that an edge between two vertices is a part of, or -1.
+    /// The line of which an edge between two vertices is a part, or -1.
     pub fn segment_of(&self, [u, v]: [u32; 2]) -> i32 {
         if let Some(fence) = self.needles.fence([u, v]) {
             return fence;
         }
-        // One that was put on a segment is on no other.
+        // A vertex that was placed on a segment is on no other.
         let on = self.on[u as usize].max(self.on[v as usize]);
         if on >= 0 {
             return on;
@@ -214,7 +217,7 @@ impl<'a> Work<'a> {
         self.between.get(&key).copied().unwrap_or(-1)
     }
 
-    /// Puts a triangle in the queue if it is bad.
+    /// Queues a triangle if it is bad.
     fn judge(&mut self, t: u32) -> Result<()> {
         let mesh = self.marked.patch();
         let label = mesh.label(t);
@@ -237,18 +240,18 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Puts the edge `e` aside if it is a subsegment upon which its apex encroaches.
-    fn look(&mut self, e: Code) -> Result<()> {
+    /// Queues the edge `e` if it is a subsegment encroached by its apex.
+    fn enqueue_if_encroached(&mut self, e: Code) -> Result<()> {
         let mesh = self.marked.patch();
         if mesh.is_marked(e) && self.encroaches(e) {
             let mesh = self.marked.patch();
             let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
-            push(&mut self.encroached, Waiting { edge: e, ends })?;
+            push(&mut self.encroached, Queued { edge: e, ends })?;
         }
         Ok(())
     }
 
-    /// Room for a vertex more.
+    /// Makes room for one more vertex.
     fn grow(&mut self) -> Result<()> {
         self.marked.grow()?;
         make_room(&mut self.marked.near, 1)?;
@@ -256,7 +259,7 @@ impl<'a> Work<'a> {
         make_room(&mut self.caps, 2)
     }
 
-    /// Whether the apex of `e`, in a triangle inside, lies in the lens of e.
+    /// Whether the apex of `e`, in a triangle of the domain, lies in the lens of e.
     fn encroaches(&mut self, e: Code) -> bool {
         let mesh = self.marked.patch();
         let label = mesh.label(triangle(e));
@@ -272,13 +275,13 @@ impl<'a> Work<'a> {
         self.encroaches(e) || self.encroaches(o)
     }
 
-    /// Whether an edge is still what it was.
-    fn stands(&mut self, waiting: &Waiting) -> bool {
-        let (mesh, e) = (self.marked.patch(), waiting.edge);
-        mesh.is_marked(e) && [next(e), prev(e)].map(|c| mesh.vertex(c)) == waiting.ends
+    /// Whether a queued subsegment still exists.
+    fn still_exists(&mut self, queued: &Queued) -> bool {
+        let (mesh, e) = (self.marked.patch(), queued.edge);
+        mesh.is_marked(e) && [next(e), prev(e)].map(|c| mesh.vertex(c)) == queued.ends
     }
 
-    /// Splits the subsegment `e`; false where it may not or cannot be.
+    /// Splits the subsegment `e`; false if that is forbidden or impossible.
     fn split(&mut self, e: Code) -> Result<bool> {
         let mesh = self.marked.patch();
         let [u, v] = [next(e), prev(e)].map(|c| mesh.vertex(c));
@@ -287,8 +290,8 @@ impl<'a> Work<'a> {
         if segment >= 0 && !fence && self.task.frozen[segment as usize] {
             return Ok(false);
         }
-        let x = self.cut_of(u, v);
-        let around = once(x).chain(neighbours(x));
+        let x = self.split_point(u, v);
+        let around = once(x).chain(neighbors(x));
         let Some((x, place)) = around
             .into_iter()
             .find_map(|x| Some((x, self.place(e, x)?)))
@@ -299,23 +302,23 @@ impl<'a> Work<'a> {
         let w = self.marked.count as u32;
         self.marked.points[w as usize] = x;
         match place {
-            Place::On => self.part(e, w),
-            Place::Beside(e) => self.part_beside(e, w),
+            Place::On => self.split_at(e, w),
+            Place::Beside(e) => self.split_beside(e, w),
         }
         self.marked.near[w as usize] = self.marked.stack[0];
         self.on.push(segment);
-        self.settle()?;
+        self.legalize()?;
         if fence {
-            self.needles.part([u, v], w);
+            self.needles.split_at([u, v], w);
             self.counts.angle += 1;
         } else {
             self.counts.segment += 1;
         }
-        self.greet(w)?;
+        self.enqueue_around(w)?;
         Ok(true)
     }
 
-    /// Where `x`, which may be rounded, can split the subsegment `e`.
+    /// Where `x`, which may be rounded, splits the subsegment `e`.
     fn place(&mut self, e: Code, x: Point2) -> Option<Place> {
         let mesh = self.marked.patch();
         let o = mesh.opposite(e);
@@ -343,9 +346,10 @@ impl<'a> Work<'a> {
         found.map(|(e, ..)| Place::Beside(e))
     }
 
-    /// Puts the vertex `w` on the subsegment `e`. What to flip is on the stack: also the edges of
-    /// `w` itself, since a place that is rounded may lie outside of the circle of a needle.
-    fn part(&mut self, e: Code, w: u32) {
+    /// Inserts the vertex `w` on the subsegment `e`. Edges to flip are on the stack, including
+    /// those of `w` itself, since a rounded point may be outside of the circumcircle of a thin
+    /// triangle.
+    fn split_at(&mut self, e: Code, w: u32) {
         let mut mesh = self.marked.patch();
         let o = mesh.opposite(e);
         let star = mesh.split_marked_edge(e, w);
@@ -361,9 +365,9 @@ impl<'a> Work<'a> {
         self.marked.stack.extend(spokes);
     }
 
-    /// Leads the subsegment `e` over the vertex `w` in its triangle. The thin triangle that is cut
-    /// off belongs to the other side.
-    fn part_beside(&mut self, e: Code, w: u32) {
+    /// Reroutes the subsegment `e` through the vertex `w` in its triangle. The thin triangle that
+    /// is separated belongs to the other side.
+    fn split_beside(&mut self, e: Code, w: u32) {
         let mut mesh = self.marked.patch();
         let beyond = triangle(mesh.opposite(e));
         let label = mesh.label(beyond);
@@ -385,27 +389,28 @@ impl<'a> Work<'a> {
         self.marked.stack.extend(star);
     }
 
-    fn cut_of(&self, u: u32, v: u32) -> Point2 {
+    fn split_point(&self, u: u32, v: u32) -> Point2 {
         let corner = |v: u32| (v as usize) < self.own && self.sharp[v as usize];
         let [u, v] = if corner(u) { [u, v] } else { [v, u] };
         cut(self.at(u), self.at(v), corner(u) && !corner(v))
     }
 
-    /// Flips edges until all are Delaunay again, from those on the stack on.
-    fn settle(&mut self) -> Result<()> {
-        self.marked.legalise()
+    /// Legalizes the edges on the stack, until all are Delaunay again.
+    fn legalize(&mut self) -> Result<()> {
+        self.marked.legalize()
     }
 
-    /// Looks at all triangles of a new vertex.
-    fn greet(&mut self, w: u32) -> Result<()> {
+    /// Enqueues the triangles around the new vertex `w` that are bad, and the subsegments it
+    /// encroaches upon.
+    fn enqueue_around(&mut self, w: u32) -> Result<()> {
         let start = self.marked.near[w as usize];
         let mut corner = start;
         loop {
             self.judge(triangle(corner))?;
             for e in [corner, next(corner)] {
-                self.look(e)?;
+                self.enqueue_if_encroached(e)?;
                 let o = self.marked.patch().opposite(e);
-                self.look(o)?;
+                self.enqueue_if_encroached(o)?;
             }
             corner = turn(&self.marked.patch(), corner);
             if corner == start {
@@ -414,7 +419,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Mends a bad triangle, or splits what keeps it from being mended.
+    /// Improves a bad triangle, or splits the subsegments that block that.
     fn improve(&mut self, t: u32) -> Result<()> {
         let points = self.points_of(t);
         let cap = self.caps[t as usize];
@@ -423,15 +428,15 @@ impl<'a> Work<'a> {
             return Ok(());
         };
         let p = if reason == Reason::Size {
-            self.places.cure(points, &seen, cap)
-        } else if self.is_at_rest(t) || self.is_forced(t, &seen) {
-            // One whose angle cannot be mended may still be too large.
+            self.places.improve(points, &seen, cap)
+        } else if self.is_final(t) || self.is_forced(t, &seen) {
+            // A triangle whose angle cannot be improved may still be too large.
             if seen.area2 <= cap {
                 return Ok(());
             }
-            Places::centre(points, &seen)
+            Places::center(points, &seen)
         } else {
-            // Where edges have their size already, what is apart would be too far.
+            // If edges already have the wanted size, such a vertex would be too far away.
             let short = APART * seen.shortest < Places::longest2(cap);
             if short
                 && let Some(p) = self.above(t, points, &seen)
@@ -439,34 +444,35 @@ impl<'a> Work<'a> {
             {
                 return self.insert(p, reason);
             }
-            self.places.cure(points, &seen, cap)
+            self.places.improve(points, &seen, cap)
         };
-        match self.dig(t, p) {
-            Dug::Free => self.insert(p, reason),
-            Dug::Walled(walls) => {
-                if self.yield_to(t, &walls)? || seen.area2 <= cap || self.task.sizes_yield {
+        match self.find_cavity(t, p) {
+            Site::Free => self.insert(p, reason),
+            Site::Blocked(blockers) => {
+                if self.split_blockers(t, &blockers)? || seen.area2 <= cap || self.task.sizes_yield
+                {
                     return Ok(());
                 }
-                // No wall gives way: a size is kept all the same.
+                // No blocker can be split, but the size must be met all the same.
                 let third = |k: usize| points.iter().map(|p| p[k] / 3.0).sum();
-                self.insert_beside_walls(t, [third(0), third(1)])
+                self.insert_in_spite_of_blockers(t, [third(0), third(1)])
             }
-            Dug::Lost => Ok(()),
+            Site::Lost => Ok(()),
         }
     }
 
-    /// Inserts a vertex in triangle `t` whether or not it encroaches.
-    fn insert_beside_walls(&mut self, t: u32, p: Point2) -> Result<()> {
+    /// Inserts a vertex in triangle `t` even if it encroaches.
+    fn insert_in_spite_of_blockers(&mut self, t: u32, p: Point2) -> Result<()> {
         match walk(&mut self.marked, t, p) {
-            Walk::Home(home) if self.cavity.dig(&mut self.marked, home, p).is_none() => {
+            Walk::Home(home) if self.cavity.find(&mut self.marked, home, p).is_none() => {
                 self.insert(p, Reason::Size)
             }
             _ => Ok(()),
         }
     }
 
-    /// A place that mends thin triangle `t` and a thin neighbour with the same apex, whose shortest
-    /// edges follow each other, at once; of two the one farther away.
+    /// A position that improves both skinny triangle `t` and a skinny neighbor with the same apex
+    /// whose shortest edge follows its own; of two positions the one farther away.
     fn above(&mut self, t: u32, points: [Point2; 3], seen: &Seen) -> Option<Point2> {
         let apex = seen.apex;
         let mut best: Option<(Point2, f64)> = None;
@@ -499,9 +505,10 @@ impl<'a> Work<'a> {
         best.map(|(p, _)| p)
     }
 
-    /// Whether a vertex at `p` is free of walls and not near to any other; its cavity is dug.
+    /// Whether a vertex at `p` is blocked by nothing and not near any other; if so, its cavity is
+    /// ready.
     fn fits(&mut self, t: u32, p: Point2, shortest: f64) -> bool {
-        if !matches!(self.dig(t, p), Dug::Free) {
+        if !matches!(self.find_cavity(t, p), Site::Free) {
             return false;
         }
         let triangles = self.marked.triangles();
@@ -512,18 +519,18 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Digs the cavity of a vertex at `p`, which triangle `t` is near.
-    fn dig(&mut self, t: u32, p: Point2) -> Dug {
+    /// Finds the cavity of a vertex at `p`, which is near triangle `t`.
+    fn find_cavity(&mut self, t: u32, p: Point2) -> Site {
         if !(p[0].is_finite() && p[1].is_finite()) {
-            return Dug::Lost;
+            return Site::Lost;
         }
         let home = match walk(&mut self.marked, t, p) {
             Walk::Home(home) => home,
-            Walk::Blocked(e) => return Dug::Walled(vec![e]),
-            Walk::Lost => return Dug::Lost,
+            Walk::Blocked(e) => return Site::Blocked(vec![e]),
+            Walk::Lost => return Site::Lost,
         };
-        if let Some(e) = self.cavity.dig(&mut self.marked, home, p) {
-            return Dug::Walled(vec![e]);
+        if let Some(e) = self.cavity.find(&mut self.marked, home, p) {
+            return Site::Blocked(vec![e]);
         }
         let triangles = self.marked.triangles();
         let (mesh, points) = (self.marked.mesh.resume(triangles), &self.marked.points);
@@ -534,15 +541,15 @@ impl<'a> Work<'a> {
             }
         };
         let rim = self.cavity.rim.iter().copied();
-        let walls: Vec<Code> = rim.filter(encroached).collect();
-        if walls.is_empty() {
-            Dug::Free
+        let blockers: Vec<Code> = rim.filter(encroached).collect();
+        if blockers.is_empty() {
+            Site::Free
         } else {
-            Dug::Walled(walls)
+            Site::Blocked(blockers)
         }
     }
 
-    /// Fills the cavity that was dug.
+    /// Fills the cavity that was found.
     fn insert(&mut self, p: Point2, reason: Reason) -> Result<()> {
         self.grow()?;
         self.cavity.fill(&mut self.marked, p, &mut self.caps);
@@ -558,41 +565,41 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Splits subsegments that keep a vertex from mending triangle `t`, which is judged again; false
-    /// where none of them can be split.
-    fn yield_to(&mut self, t: u32, walls: &[Code]) -> Result<bool> {
+    /// Splits subsegments that block a vertex for triangle `t`, which is then judged again; false
+    /// if none of them can be split.
+    fn split_blockers(&mut self, t: u32, blockers: &[Code]) -> Result<bool> {
         let corners = self.marked.patch().corners(t);
         let mesh = self.marked.patch();
-        let waiting: Vec<Waiting> = walls
+        let queued: Vec<Queued> = blockers
             .iter()
             .filter(|&&edge| mesh.is_marked(edge))
-            .map(|&edge| Waiting {
+            .map(|&edge| Queued {
                 edge,
                 ends: [next(edge), prev(edge)].map(|c| mesh.vertex(c)),
             })
             .collect();
-        let mut parted = false;
-        for w in waiting {
-            // A split before may have flipped triangles round, but it moves no other subsegment
-            // unless it encroaches upon it.
-            if self.stands(&w) {
-                parted |= self.split(w.edge)?;
+        let mut any_split = false;
+        for w in queued {
+            // An earlier split may have flipped triangles here, but another subsegment changes only
+            // if the split encroaches upon it.
+            if self.still_exists(&w) {
+                any_split |= self.split(w.edge)?;
             }
         }
-        if parted && self.marked.patch().corners(t) == corners {
+        if any_split && self.marked.patch().corners(t) == corners {
             self.judge(t)?;
         }
-        Ok(parted)
+        Ok(any_split)
     }
 
-    fn is_at_rest(&mut self, t: u32) -> bool {
+    fn is_final(&mut self, t: u32) -> bool {
         let label = self.marked.patch().label(t);
         self.needles.rest(label)
     }
 
     /// Whether the smallest angle of a triangle is forced by the input: it lies between two
-    /// subsegments, or its shortest edge joins two that meet in a corner of less than 60 degrees, on
-    /// one circle about it.
+    /// subsegments, or its shortest edge joins two that meet in a corner of less than 60 degrees,
+    /// at points on one circle around it.
     pub(super) fn is_forced(&mut self, t: u32, seen: &Seen) -> bool {
         let mesh = self.marked.patch();
         let apex = 8 * t + seen.apex as u32;
@@ -610,8 +617,8 @@ impl<'a> Work<'a> {
         };
         let c = self.at(corner);
         let [d, e] = [u, v].map(|v| distance(self.at(v), c));
-        // From 60 degrees on, the edge between the two is as long as their pieces, and cutting these
-        // for its sake comes to an end.
+        // From 60 degrees on, the edge between the two is as long as their pieces, and splitting
+        // these because of it terminates.
         let sharp = distance(self.at(u), self.at(v)) < d.min(e);
         sharp && (d - e).abs() <= SAME_SHELL * d.max(e)
     }

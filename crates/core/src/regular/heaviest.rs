@@ -1,19 +1,19 @@
-//! Which row stands for each place, where points coincide: in the plane and in space.
+//! The row that represents each distinct point: the heaviest of coincident ones, in 2-D and 3-D.
 
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 
-/// Distinct points, each with the heaviest of its rows, the first of these.
+/// Distinct points, each with the first of its heaviest rows.
 pub struct Heaviest {
     /// That row for each distinct point.
     pub rows: Vec<u32>,
     /// Its weight.
     pub weights: Vec<f64>,
-    /// For each row of the input that row.
+    /// For each row of the input, the row that represents it.
     pub stands_for: Vec<i32>,
 }
 
-/// Of distinct points, given by their first rows, and of `[row, first row of the same point]`.
+/// For distinct points, given by their first rows, and `[row, first row of the same point]`.
 pub fn heaviest(weights: &[f64], firsts: &[u32], duplicates: &[[u32; 2]]) -> Result<Heaviest> {
     let mut rows = firsts.to_vec();
     let mut place = filled(weights.len(), 0_u32)?;

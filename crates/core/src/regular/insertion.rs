@@ -1,13 +1,15 @@
-//! Regular triangulations by insertion: cavities, in which sites may disappear.
+//! Regular triangulations by incremental insertion of cavities; sites may become hidden.
 //!
-//! A new site takes away all triangles whose planes it lies below, and is joined to the edges of
-//! the hole; a site inside the hole is hidden from then on. A site above the plane of the triangle
-//! that holds it is hidden at once (A. Bowyer; D. F. Watson, both 1981; H. Edelsbrunner and N. R.
-//! Shah, "Incremental topological flipping works for regular triangulations", 1996). Predicates are
-//! exact and ties broken, as if no four lifted sites lay on one plane: the triangles to go are
-//! connected, their hole is star-shaped, and the result hangs on no order.
+//! A new site removes all triangles whose lifted planes it lies below, and is joined to the edges
+//! of the cavity; a site inside the cavity is hidden from then on. A site above the plane of the
+//! triangle that contains it is hidden at once (A. Bowyer; D. F. Watson, both 1981; H. Edelsbrunner
+//! and N. R. Shah, "Incremental topological flipping works for regular triangulations", 1996).
+//! Predicates are exact and ties broken as if no four lifted sites were coplanar: the triangles to
+//! be removed are connected, their cavity is star-shaped, and the result is independent of the
+//! order of insertion.
 //!
-//! Outside the hull ghosts take the part of triangles: (b, a, GHOST) for each hull edge from a to b.
+//! Outside the hull ghosts take the place of triangles: (b, a, GHOST) for each hull edge from a to
+//! b.
 
 use delone_predicates::Sign;
 
@@ -17,18 +19,20 @@ use crate::error::{Error, Result};
 use crate::memory::filled;
 use crate::watch::Watch;
 
-/// Sites between two looks at the watch.
+/// Sites inserted between two checks for interruption.
 const WATCH_EVERY: u32 = 1 << 10;
 
-/// Distinct sites, known by numbers, and what an insertion asks of them.
+/// Distinct sites, by number, and the predicates that an insertion needs.
 pub trait Sites {
-    /// The turn from a by b to c.
+    /// The orientation of three sites.
     fn turn(&self, sites: [u32; 3]) -> Sign;
-    /// Whether the fourth site lies below the plane of the other three, for counter-clockwise ones.
+    /// Whether the fourth site lies below the lifted plane of the other three, which are
+    /// counterclockwise.
     fn height(&self, sites: [u32; 4]) -> Sign;
-    /// Whether the third of three sites in line lies below the line through the lifted other two.
+    /// For three collinear sites, whether the third lies below the line through the lifted other
+    /// two.
     fn height_in_line(&self, sites: [u32; 3]) -> Sign;
-    /// Whether a comes before b in lexicographic order.
+    /// Whether a precedes b in lexicographic order.
     fn smaller(&self, a: u32, b: u32) -> bool;
 
     /// [`Sites::height`] with ties broken, see `power`.
@@ -47,7 +51,7 @@ pub trait Sites {
         }
     }
 
-    /// The sign that infinitesimals give to four sites on one plane.
+    /// The sign of a tie of four sites whose lifts are coplanar.
     fn tie(&self, mut sites: [u32; 4]) -> Sign {
         let mut odd = false;
         for i in 1..4 {
@@ -68,7 +72,7 @@ pub trait Sites {
                 return turn.flip_if((k % 2 == 0) != odd);
             }
         }
-        Sign::Zero // All four are in line: no triangle is among them.
+        Sign::Zero // All four are collinear: there is no triangle among them.
     }
 }
 
@@ -76,12 +80,12 @@ pub trait Sites {
 struct Insertion<'a, S> {
     sites: &'a S,
     mesh: Records<3>,
-    /// For each vertex the new triangle whose outer edge begins there.
+    /// For each vertex, the new triangle whose outer edge begins there.
     begins: Vec<u32>,
 }
 
-/// Triangulates sites 0 to n - 1, inserted in this order; `Err` holds those of sites all in line that
-/// are not hidden, in their order.
+/// Triangulates sites 0 to n - 1, inserted in this order. If all are collinear, `Err` has the sites
+/// that are not hidden, in order.
 pub fn insert_all<S: Sites>(
     sites: &S,
     n: usize,
@@ -101,7 +105,7 @@ pub fn insert_all<S: Sites>(
     insertion.mesh.export().map(Ok)
 }
 
-/// The lower side of lifted sites in one vertical plane (A. M. Andrew's monotone chain, 1979).
+/// The lower hull of lifted sites in one vertical plane (A. M. Andrew's monotone chain, 1979).
 fn chain<S: Sites>(sites: &S, n: usize) -> Vec<u32> {
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_unstable_by(|&a, &b| {
@@ -142,26 +146,26 @@ impl<'a, S: Sites> Insertion<'a, S> {
         })
     }
 
-    /// Inserts a site; nothing changes where it is hidden.
+    /// Inserts a site; nothing changes if it is hidden.
     fn insert(&mut self, p: u32) -> Result<()> {
         let sites = self.sites;
         let start = self.mesh.locate(p, |corners, k| {
             let (u, v) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
             sites.turn([u, v, p]) == Sign::Negative
         })?;
-        let must_go = |mesh: &Records<3>, t: u32| must_go(sites, mesh.vertices[t as usize], p);
-        match self.mesh.hole(start, must_go) {
+        let conflicts = |mesh: &Records<3>, t: u32| conflicts(sites, mesh.vertices[t as usize], p);
+        match self.mesh.hole(start, conflicts) {
             Some((hole, rim)) => self.fill(p, &rim, &hole),
             None => Ok(()),
         }
     }
 
-    /// Joins a site to the rim of the hole; ASCII: each edge u -> v of the rim, seen from inside,
+    /// Joins a site to the boundary of the cavity; each boundary edge u -> v, seen from inside:
     ///
     /// ```text
     ///      u <--- v                 u <--- v
     ///    (outside above)    =>       \    /
-    ///     the hole below              \  /
+    ///     the cavity below            \  /
     ///                                  p
     /// ```
     fn fill(&mut self, p: u32, rim: &[(u32, usize)], hole: &[u32]) -> Result<()> {
@@ -179,17 +183,19 @@ impl<'a, S: Sites> Insertion<'a, S> {
             let number = self.mesh.take();
             numbers.push(number);
             self.begins[slot(corners[1], n)] = number;
-            // The neighbour still names the triangle that went; others of the rim may have taken its
-            // number already, so each link is found by its corners.
+            // The neighbor still links to the removed triangle, and other triangles of the boundary
+            // may have reused its number, so each link is found by its corners.
             let back = (0..3).find(|&j| {
                 let o = self.mesh.vertices[outside as usize];
                 (o[(j + 1) % 3], o[(j + 2) % 3]) == (corners[2], corners[1])
             });
-            let back = back.ok_or_else(|| Error::Internal("a rim does not fit".into()))?;
+            let back = back.ok_or_else(|| {
+                Error::Internal("the boundary of a cavity does not match its neighbors".into())
+            })?;
             self.mesh.neighbors[outside as usize][back] = number;
         }
         for (&(corners, outside), &number) in made.iter().zip(&numbers) {
-            // Across the edge from v to p lies the triangle whose outer edge begins at v.
+            // Across the edge from v to p is the triangle whose outer edge begins at v.
             let next = self.begins[slot(corners[2], n)];
             self.mesh.vertices[number as usize] = corners;
             self.mesh.neighbors[number as usize][0] = outside;
@@ -204,8 +210,8 @@ impl<'a, S: Sites> Insertion<'a, S> {
     }
 }
 
-/// Whether a triangle has to go for a site.
-fn must_go<S: Sites>(sites: &S, [a, b, c]: [u32; 3], p: u32) -> bool {
+/// Whether a triangle is in conflict with a site.
+fn conflicts<S: Sites>(sites: &S, [a, b, c]: [u32; 3], p: u32) -> bool {
     let ghost = |u: u32, v: u32| match sites.turn([u, v, p]) {
         Sign::Zero => sites.is_below_in_line([u, v, p]),
         turn => turn == Sign::Positive,

@@ -1,5 +1,7 @@
-//! 2-D regular triangulations, the lower hull of sites lifted to |p|^2 - w, exact and canonical;
-//! periodic triangulations, built by the same insertion. `records` and `heaviest` serve space as well.
+//! 2-D regular triangulations of weighted points, exact and canonical, and periodic triangulations.
+//!
+//! A regular triangulation is the lower hull of sites lifted to |p|^2 - w; periodic triangulations
+//! are built by the same insertion. `records` and `heaviest` also serve 3-D.
 
 mod heaviest;
 mod insertion;
@@ -24,15 +26,16 @@ pub use records::{GHOST, NONE, Records};
 /// The regular triangulation of weighted points.
 #[derive(Debug)]
 pub struct Regular {
-    /// Triangles of rows; none where all points are in line.
+    /// Triangles of rows; none if all points are collinear.
     pub triangles: Arrays<3>,
-    /// Where all points are in line, the rows that are not hidden, in their order.
+    /// If all points are collinear, the rows that are not hidden, in order along the line.
     pub chain: Vec<u32>,
-    /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
+    /// For each row the row that represents it: the first of the heaviest rows with the same
+    /// coordinates.
     pub stands_for: Vec<i32>,
 }
 
-/// Triangulates finite points with finite weights, as many.
+/// Triangulates finite points with finite weights, one for each.
 pub fn regular(points: &[Point2], weights: &[f64], watch: &Watch) -> Result<Regular> {
     points::scan(points)?;
     let arranged = arrange(points, 1, watch)?;

@@ -1,29 +1,30 @@
-//! Delaunay triangulations of points repeated at a period in x, in y, or both.
+//! Delaunay and regular triangulations of points that are periodic in x, in y, or both.
 //!
-//! The copies of the points one period away on all sides are triangulated with them; triangles with a
-//! corner among the points themselves are those of the whole periodic set. For let p be a point, z a
-//! place of its cell and q a copy two periods away in x: z is at most half a period from p in x, since
-//! the copies of p cut the cell there, and so the copy of q one period nearer is strictly nearer to z.
-//! (N. P. Dolbilin and D. H. Huson, "Periodic Delone tilings", 1997.) This holds while all points lie
-//! within one period, its end left out.
+//! The copies of the points one period away on all sides are triangulated with them; triangles with
+//! a corner among the points themselves are those of the whole periodic set. Proof: let p be a
+//! point, z a location in its cell and q a copy two periods away in x. Then z is at most half a
+//! period from p in x, since the copies of p bound the cell there, and so the copy of q one period
+//! nearer is strictly nearer to z. (N. P. Dolbilin and D. H. Huson, "Periodic Delone tilings",
+//! 1997.) This holds if all points lie within one period, excluding its end.
 //!
-//! The coordinate of a copy, x + k L, is in general no double. Predicates therefore work on the pair of
-//! point and copy: the filter on x - x' + (k - k') L with a bound that counts the rounding of both, and
-//! integers on the exact sum. Nothing is rounded to a double before a sign is known. Ties go by the
-//! lexicographic order of the copies, which no translation changes, so that all periods are cut alike.
+//! The coordinate of a copy, x + k L, is in general not a double. Predicates therefore use the pair
+//! of point and copy: a filter on x - x' + (k - k') L with a bound that includes the rounding of
+//! both, and integers on the exact sum. Nothing is rounded to a double before a sign is known. Ties
+//! are broken by the lexicographic order of the copies, which no translation changes, so all
+//! periods are triangulated alike.
 //!
 //! # The bounds of the filters
 //!
 //! Let u = 2^-53, m the largest of |x - x'| + |k - k'| L over the differences of a predicate, D the
-//! largest rounded difference. A difference errs by 4 u m at most (three roundings). A turn has 2
-//! monomials of degree 2, each off by 2 D 4 u m, and roundings of 4 u D^2: together less than
+//! largest rounded difference. A difference errs by at most 4 u m (three roundings). An orientation
+//! has 2 monomials of degree 2, each off by 2 D 4 u m, and roundings of 4 u D^2: together less than
 //! 32 u D (m + D). An in-circle test has 12 of degree 4, each off by 4 D^3 4 u m and roundings of
-//! 16 u D^4: less than 256 u D^3 (m + D). With weights, W the largest difference of two, a square of up
-//! to 2 D^2 becomes one of up to 2 D^2 + W, and all of the above stays below
-//! 256 u D (m + D) (D^2 + W). Magnitudes are kept between 2^-200 and 2^200.
+//! 16 u D^4: less than 256 u D^3 (m + D). With weights, and W the largest difference of two, a
+//! square of up to 2 D^2 becomes one of up to 2 D^2 + W, and all of the above stays below 256 u D
+//! (m + D) (D^2 + W). Magnitudes are kept between 2^-200 and 2^200.
 //!
-//! All copies of a site have its weight. A copy of q one period nearer to z than another is nearer, and
-//! therefore of less power, so that copies one period away are enough with weights, too.
+//! All copies of a site have the same weight. A copy of q one period nearer to z than another is
+//! nearer, and therefore has less power, so copies one period away suffice with weights, too.
 
 use delone_predicates::{Point2, Sign};
 use num_bigint::BigInt;
@@ -48,11 +49,11 @@ const RANGE: (f64, f64) = (
 pub struct Images<'a> {
     /// Coordinates.
     pub points: &'a [Point2],
-    /// Lengths of the periods, 0 for none.
+    /// The lengths of the periods, 0 if not periodic.
     pub periods: Point2,
     /// Weights of the points; empty for none.
     pub weights: &'a [f64],
-    /// The point, and by how many periods it is moved.
+    /// The point of each copy, and the number of periods by which it is translated.
     pub of: Vec<(u32, [i8; 2])>,
 }
 
@@ -61,16 +62,16 @@ pub struct Images<'a> {
 pub struct Copies {
     /// Triangles of copies.
     pub triangles: Arrays<3>,
-    /// Copies in line, where there is no triangle.
+    /// Copies in order along a line, if there is no triangle.
     pub chain: Vec<u32>,
     /// The row of each copy.
     pub rows: Vec<i32>,
-    /// By how many periods each copy is moved.
+    /// The number of periods by which each copy is translated.
     pub moved: Vec<[i32; 2]>,
 }
 
-/// Triangulates distinct points and those copies of them that `taken` names: row, and periods in x
-/// and y of -1, 0 or 1. A period of 0 stands for none. With weights, as many as points, the
+/// Triangulates distinct points and the copies of them listed in `taken`: row, and periods in x and
+/// y of -1, 0 or 1. A period of 0 means not periodic. With weights, one for each point, the
 /// triangulation is the regular one.
 pub fn periodic(
     points: &[Point2],
@@ -83,7 +84,7 @@ pub fn periodic(
         .iter()
         .map(|&[row, x, y]| (row as u32, [x as i8, y as i8]))
         .collect();
-    // Rounded copies serve for the order of insertion alone; two may round to one.
+    // Rounded copies are only used for the insertion order; two may round to the same point.
     let mut near = with_room(images.len())?;
     let at = |&(row, moved): &(u32, [i8; 2]), share: f64| {
         let p = points[row as usize];
@@ -91,7 +92,7 @@ pub fn periodic(
     };
     near.extend(images.iter().map(|image| at(image, 1.0)));
     if !near.as_flattened().iter().all(|x| x.is_finite()) {
-        // A copy may lie beyond the range of doubles, but not four times as far.
+        // A copy may exceed the range of doubles, but by less than a factor of four.
         near.clear();
         near.extend(images.iter().map(|image| at(image, 0.25)));
     }
@@ -121,7 +122,7 @@ pub fn periodic(
 }
 
 impl Images<'_> {
-    /// Rounded differences to the last site, and the largest magnitude that went into one.
+    /// Rounded differences to the last site, and the largest magnitude in any of them.
     fn differences<const N: usize>(&self, sites: [u32; N], last: u32) -> ([Point2; N], f64) {
         let (origin, zero) = self.of[last as usize];
         let origin = self.points[origin as usize];
@@ -139,7 +140,7 @@ impl Images<'_> {
         (found, most)
     }
 
-    /// Exact coordinates, in units of a power of two, and its exponent.
+    /// Exact coordinates in units of a power of two, and its exponent.
     pub fn coordinates<const N: usize>(&self, sites: [u32; N]) -> ([[BigInt; 2]; N], i64) {
         let mut corners = vec![self.periods];
         corners.extend(sites.map(|v| self.points[self.of[v as usize].0 as usize]));
@@ -180,7 +181,7 @@ impl Images<'_> {
     }
 }
 
-/// The largest of some coordinates, where all magnitudes are within the range of the filters.
+/// The largest of some coordinates, if all magnitudes are in the range of the filters.
 fn largest(points: &[Point2], most: f64) -> Option<f64> {
     let largest = points
         .as_flattened()

@@ -1,25 +1,26 @@
-//! The predicates of weighted sites: turns, and whether a lifted site lies below a plane of three.
+//! Predicates of weighted sites in 2-D: orientation, and whether a lifted site is below the plane
+//! of three.
 //!
-//! A site p of weight w is lifted to the height |p|^2 - w; the regular triangulation is the lower side
-//! of the hull of the lifted sites. With A = a - d and alpha = |A|^2 - w(a) + w(d), and likewise for b
-//! and c, d lies below the plane of a, b and c (counter-clockwise) where
-//! alpha (B x C) + beta (C x A) + gamma (A x B) is positive.
+//! A site p of weight w is lifted to the height |p|^2 - w; the regular triangulation is the lower
+//! hull of the lifted sites. With A = a - d and alpha = |A|^2 - w(a) + w(d), and likewise for b and
+//! c, d lies below the plane of a, b and c (counterclockwise) if alpha (B x C) + beta (C x A) +
+//! gamma (A x B) is positive.
 //!
 //! # The bound of the filter
 //!
-//! Let u = 2^-53 and P the sum of the magnitudes of the monomials. A monomial passes 4 differences, 2
-//! products, 3 sums (the third with the difference of weights), the product, and one of the last
-//! two sums: 11 roundings; 14 u P leaves room, as in the in-circle test without weights. The filter is
-//! asked only where all magnitudes lie between 2^-200 and 2^200 or are zero, so that nothing over- or
-//! underflows. What it cannot tell, integers of any width do.
+//! Let u = 2^-53 and P the sum of the magnitudes of the monomials. A monomial goes through 4
+//! differences, 2 products, 3 sums (the third with the difference of weights), the product, and one
+//! of the last two sums: 11 roundings; 14 u P leaves room, as in the in-circle test without
+//! weights. The filter is used only if all magnitudes are between 2^-200 and 2^200 or zero, so that
+//! nothing overflows or underflows. What it cannot decide, arbitrary-precision integers do.
 //!
 //! # Ties
 //!
-//! As without weights, the height of each site is lowered by an infinitesimal, infinitely larger for
-//! a lexicographically smaller site. Weights let three of four sites on one plane lie in line, so
-//! the smallest site need not decide: it is the first one whose cofactor, a turn of the other three,
-//! is not zero. In a vertical plane over a line, of three sites in line the middle one rises above the
-//! two others on a tie.
+//! As without weights, the height of each site is lowered by an infinitesimal, infinitely larger
+//! for a lexicographically smaller site. With weights, three of four coplanar lifted sites may be
+//! collinear, so the smallest site need not decide: the first site decides whose cofactor, the
+//! orientation of the other three, is not zero. In a vertical plane over a line, the middle one of
+//! three sites is above the other two on a tie.
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 use num_bigint::BigInt;
@@ -70,15 +71,15 @@ impl Sites for Weighted<'_> {
     }
 }
 
-/// Whether p lies below (positive) the line through the lifted origin and b, for b and p in line
-/// with the origin and heights relative to it.
+/// Whether p is below (positive) the line through the lifted origin and b, where b and p are
+/// collinear with the origin and heights are relative to it.
 pub(super) fn in_line([b, p]: [&[BigInt; 2]; 2], [hb, hp]: [BigInt; 2]) -> Sign {
     let k = usize::from(b[0] == BigInt::ZERO);
     sign(&(&p[k] * &hb - &b[k] * &hp)) * sign(&b[k])
 }
 
-/// Whether the fourth site lies below the plane of the other three, lifted to |p|^2 - w: positive where
-/// it does, for counter-clockwise corners.
+/// Whether the fourth site is below the plane of the other three, lifted to |p|^2 - w: positive if
+/// it is, for counterclockwise corners.
 pub fn power_sign(points: [Point2; 4], weights: [f64; 4]) -> Sign {
     filter(points, weights).unwrap_or_else(|| exact(points, weights))
 }
@@ -113,8 +114,8 @@ fn exact(points: [Point2; 4], weights: [f64; 4]) -> Sign {
     determinant(&corners, [wd.clone() - wa, wd.clone() - wb, wd - wc])
 }
 
-/// The sign of the determinant of three sites as seen from the fourth, `extra` added to the squares
-/// of their distances.
+/// The sign of the determinant of three sites relative to the fourth, with `extra` added to the
+/// squares of their distances.
 pub(super) fn determinant([a, b, c]: &[[BigInt; 2]; 3], extra: [BigInt; 3]) -> Sign {
     let [ea, eb, ec] = extra;
     let height = |p: &[BigInt; 2], w| &p[0] * &p[0] + &p[1] * &p[1] + w;

@@ -1,4 +1,4 @@
-//! Simplices with ghosts while sites are inserted: what is the same in the plane and in space.
+//! Records of simplices with ghosts during insertion, common to 2-D and 3-D.
 
 use crate::arrays::Arrays;
 use crate::error::{Error, Result};
@@ -9,11 +9,11 @@ pub const GHOST: u32 = u32::MAX;
 /// No simplex.
 pub const NONE: u32 = u32::MAX;
 
-/// The simplices that go for a site, and the sides that they leave: a simplex that goes and the corner
-/// opposite its side.
+/// The simplices that a site removes, and the sides of their cavity: a removed simplex and the
+/// corner opposite the side.
 pub type Hole = (Vec<u32>, Vec<(u32, usize)>);
 
-/// Simplices with `N` corners. Those that are free have nothing but ghosts.
+/// Simplices with `N` corners. All corners of free records are ghosts.
 pub struct Records<const N: usize> {
     /// The vertices of each.
     pub vertices: Vec<[u32; N]>,
@@ -22,13 +22,13 @@ pub struct Records<const N: usize> {
     /// Where the next walk starts.
     pub last: u32,
     free: Vec<u32>,
-    /// The insertion in which a simplex was last looked at, and whether it has to go.
+    /// The insertion in which a simplex was last tested, and whether it is in conflict.
     seen: Vec<(u32, bool)>,
     stamp: u32,
 }
 
 impl<const N: usize> Records<N> {
-    /// None yet, with room for some.
+    /// No simplices yet, with capacity for some.
     pub fn with_room(n: usize) -> Result<Self> {
         Ok(Self {
             vertices: with_room(n)?,
@@ -40,7 +40,7 @@ impl<const N: usize> Records<N> {
         })
     }
 
-    /// One more.
+    /// Adds a record.
     pub fn push(&mut self, vertices: [u32; N], neighbors: [u32; N]) -> u32 {
         self.vertices.push(vertices);
         self.neighbors.push(neighbors);
@@ -48,7 +48,7 @@ impl<const N: usize> Records<N> {
         self.vertices.len() as u32 - 1
     }
 
-    /// One that is free, or one more.
+    /// A free record, or a new one.
     pub fn take(&mut self) -> u32 {
         match self.free.pop() {
             Some(t) => {
@@ -59,12 +59,13 @@ impl<const N: usize> Records<N> {
         }
     }
 
-    /// Makes simplices free, to be taken for others.
+    /// Frees the records of simplices.
     pub fn release(&mut self, hole: &[u32]) {
         self.free.extend_from_slice(hole);
     }
 
-    /// Empties those of a hole that nothing has taken: they could be taken for simplices.
+    /// Clears the records of a cavity that were not reused, so that they do not look like
+    /// simplices.
     pub fn empty(&mut self, hole: &[u32]) {
         let from = self.free.len().saturating_sub(hole.len());
         for &t in &self.free[from..] {
@@ -72,12 +73,12 @@ impl<const N: usize> Records<N> {
         }
     }
 
-    /// The simplex that holds site `p`, boundary included, or a ghost outside the hull; `is_beyond`
-    /// tells whether `p` is strictly beyond the side opposite a corner.
+    /// The simplex that contains site `p`, boundary included, or a ghost outside the hull;
+    /// `is_beyond` tells whether `p` is strictly beyond the side opposite a corner.
     #[inline]
     pub fn locate(&self, p: u32, is_beyond: impl Fn([u32; N], usize) -> bool) -> Result<u32> {
         let (mut t, mut from) = (self.last, NONE);
-        // No walk in a regular triangulation comes back to a simplex, so it has no more steps.
+        // A walk in a regular triangulation visits no simplex twice, which limits its steps.
         for _ in 0..=self.vertices.len() {
             let (corners, around) = (self.vertices[t as usize], self.neighbors[t as usize]);
             let step = (0..N).find(|&k| around[k] != from && is_beyond(corners, k));
@@ -88,28 +89,29 @@ impl<const N: usize> Records<N> {
             }
         }
         Err(Error::Internal(format!(
-            "the walk to site {p} does not end"
+            "the walk to site {p} does not terminate"
         )))
     }
 
-    /// The simplices that have to go, connected with `start`; nothing where that stays.
+    /// The simplices in conflict that are connected with `start`; `None` if `start` is not in
+    /// conflict.
     #[inline]
-    pub fn hole(&mut self, start: u32, must_go: impl Fn(&Self, u32) -> bool) -> Option<Hole> {
+    pub fn hole(&mut self, start: u32, conflicts: impl Fn(&Self, u32) -> bool) -> Option<Hole> {
         self.stamp += 1;
-        if !must_go(self, start) {
+        if !conflicts(self, start) {
             return None;
         }
         self.seen[start as usize] = (self.stamp, true);
         let mut stack = vec![start];
         let (mut hole, mut rim) = (Vec::new(), Vec::new());
-        // Each simplex is seen once in an insertion, and pushed then at most.
+        // Each simplex is tested once per insertion, and pushed at most then.
         while let Some(t) = stack.pop() {
             hole.push(t);
             for k in 0..N {
                 let other = self.neighbors[t as usize][k];
                 let (stamp, mut goes) = self.seen[other as usize];
                 if stamp != self.stamp {
-                    goes = must_go(self, other);
+                    goes = conflicts(self, other);
                     self.seen[other as usize] = (self.stamp, goes);
                     if goes {
                         stack.push(other);
@@ -123,7 +125,7 @@ impl<const N: usize> Records<N> {
         Some((hole, rim))
     }
 
-    /// The simplices that are no ghosts, in their order.
+    /// The simplices that are not ghosts, in order.
     pub fn export(self) -> Result<Arrays<N>> {
         let mut number = filled(self.vertices.len(), -1)?;
         let mut count = 0;

@@ -1,15 +1,16 @@
-//! Regular triangulations of space by insertion: cavities, in which sites may disappear.
+//! 3-D regular triangulations by incremental insertion of cavities; sites may become hidden.
 //!
-//! A new site takes away all tetrahedra whose lifted planes it lies below, and is joined to the faces of
-//! the hole; a site inside the hole is hidden from then on. A site above the plane of the tetrahedron
-//! that holds it is hidden at once (A. Bowyer; D. F. Watson, both 1981; H. Edelsbrunner and N. R.
-//! Shah, "Incremental topological flipping works for regular triangulations", 1996). Predicates are
-//! exact and ties broken, as if no five lifted sites lay on one plane: the tetrahedra to go are
-//! connected, their hole is star-shaped, and the result hangs on no order.
+//! A new site removes all tetrahedra whose lifted planes it lies below, and is joined to the faces
+//! of the cavity; a site inside the cavity is hidden from then on. A site above the plane of the
+//! tetrahedron that contains it is hidden at once (A. Bowyer; D. F. Watson, both 1981; H.
+//! Edelsbrunner and N. R. Shah, "Incremental topological flipping works for regular
+//! triangulations", 1996). Predicates are exact and ties broken as if no five lifted sites were on
+//! one hyperplane: the tetrahedra to be removed are connected, their cavity is star-shaped, and the
+//! result is independent of the order of insertion.
 //!
-//! Outside the hull ghosts take the part of tetrahedra: one for each face of the hull, with GHOST for
-//! its fourth corner. A site in the plane of such a face is below the lifted plane of the three exactly
-//! where it is below that of the tetrahedron behind them, ties included.
+//! Outside the hull ghosts take the place of tetrahedra: one for each face of the hull, with GHOST
+//! as its fourth corner. A site in the plane of such a face is below the lifted plane of the three
+//! exactly if it is below that of the tetrahedron behind them, ties included.
 
 use std::collections::HashMap;
 
@@ -22,19 +23,20 @@ use crate::locate3::FACES;
 use crate::regular::{GHOST, NONE, Records, Weighted};
 use crate::watch::Watch;
 
-/// Sites between two looks at the watch.
+/// Sites inserted between two checks for interruption.
 const WATCH_EVERY: u32 = 1 << 10;
 
 /// Tetrahedra with ghosts.
 struct Insertion<'a> {
     sites: Weighted<'a, 3>,
     mesh: Records<4>,
-    /// For each edge of the hole the new tetrahedron that waits there for its neighbour, and the
+    /// For each edge of the cavity, the new tetrahedron that waits for its neighbor there, and the
     /// corner opposite their face.
     open: HashMap<(u32, u32), (u32, usize)>,
 }
 
-/// Triangulates sites, inserted in their order after the first four given, which span space.
+/// Triangulates sites, inserted in order after the first four given, which are affinely
+/// independent.
 pub fn insert_all(sites: Weighted<3>, first: [u32; 4], watch: &Watch) -> Result<Arrays<4>> {
     let mut insertion = Insertion::of(sites, first)?;
     for p in (0..sites.points.len() as u32).filter(|p| !first.contains(p)) {
@@ -55,7 +57,7 @@ impl<'a> Insertion<'a> {
         };
         let mut mesh = Records::with_room(8 * sites.points.len())?;
         mesh.push(s, [1, 2, 3, 4]);
-        // The ghost at face k has corner k for the ghost and two others exchanged: slots i and j.
+        // The ghost at face k has GHOST as corner k and two others swapped: slots i and j.
         for k in 0..4 {
             let (i, j) = ((k + 1) % 4, (k + 2) % 4);
             let (mut corners, mut around) = (s, [1, 2, 3, 4]);
@@ -72,23 +74,27 @@ impl<'a> Insertion<'a> {
         })
     }
 
-    /// Inserts a site; nothing changes where it is hidden.
+    /// Inserts a site; nothing changes if it is hidden.
     fn insert(&mut self, p: u32) -> Result<()> {
         let sites = self.sites;
         let start = self.mesh.locate(p, |corners, k| {
             let [a, b, c] = FACES[k].map(|i| corners[i]);
-            // Strictly beyond the face, which is counter-clockwise from there.
+            // Strictly beyond the face, which is counterclockwise from there.
             turn(sites, [a, b, c, p]) == Sign::Positive
         })?;
-        match self.mesh.hole(start, |mesh, t| must_go(sites, mesh, t, p)) {
+        match self
+            .mesh
+            .hole(start, |mesh, t| conflicts(sites, mesh, t, p))
+        {
             Some((hole, rim)) => self.fill(p, &rim, &hole),
             None => Ok(()),
         }
     }
 
-    /// Joins a site to the faces of the rim, which are counter-clockwise as seen from outside of the hole:
-    /// each makes a tetrahedron with it, which is joined to the others at its edges.
+    /// Joins a site to the boundary faces, which are counterclockwise as seen from outside the
+    /// cavity: each forms a tetrahedron with it, which is linked to the others at its edges.
     fn fill(&mut self, p: u32, rim: &[(u32, usize)], hole: &[u32]) -> Result<()> {
+        // The new tetrahedra, with what lies across their boundary faces.
         let made: Vec<([u32; 4], u32, u32)> = rim
             .iter()
             .map(|&(t, k)| {
@@ -96,7 +102,7 @@ impl<'a> Insertion<'a> {
                 ([p, a, b, c], self.mesh.neighbors[t as usize][k], t)
             })
             .collect();
-        // All links to what stays are changed before any number is used again.
+        // Update all links to remaining tetrahedra before any number is reused.
         let mut numbers = Vec::with_capacity(made.len());
         self.mesh.release(hole);
         let mut back = Vec::with_capacity(made.len());
@@ -104,7 +110,9 @@ impl<'a> Insertion<'a> {
             let place = self.mesh.neighbors[outside as usize]
                 .iter()
                 .position(|&x| x == t);
-            back.push(place.ok_or_else(|| Error::Internal("a rim does not fit".into()))?);
+            back.push(place.ok_or_else(|| {
+                Error::Internal("the boundary of a cavity does not match its neighbors".into())
+            })?);
         }
         for (&(corners, outside, _), &back) in made.iter().zip(&back) {
             let number = self.mesh.take();
@@ -113,6 +121,7 @@ impl<'a> Insertion<'a> {
             self.mesh.neighbors[number as usize] = [outside, NONE, NONE, NONE];
             self.mesh.neighbors[outside as usize][back] = number;
         }
+        // Link the new tetrahedra: each edge of the boundary belongs to two of its faces.
         self.open.clear();
         for &number in &numbers {
             let [_, a, b, c] = self.mesh.vertices[number as usize];
@@ -135,7 +144,9 @@ impl<'a> Insertion<'a> {
         if self.open.is_empty() {
             return Ok(());
         }
-        Err(Error::Internal("a rim is not closed".into()))
+        Err(Error::Internal(
+            "the boundary of a cavity is not closed".into(),
+        ))
     }
 }
 
@@ -144,14 +155,14 @@ fn turn(of: Weighted<3>, sites: [u32; 4]) -> Sign {
     orient3d(a, b, c, d)
 }
 
-/// Whether a tetrahedron has to go for a site.
-fn must_go(sites: Weighted<3>, mesh: &Records<4>, t: u32, p: u32) -> bool {
+/// Whether a tetrahedron is in conflict with a site.
+fn conflicts(sites: Weighted<3>, mesh: &Records<4>, t: u32, p: u32) -> bool {
     let corners = mesh.vertices[t as usize];
     let Some(k) = corners.iter().position(|&v| v == GHOST) else {
         return is_below(sites, corners, p);
     };
     let [a, b, c] = FACES[k].map(|i| corners[i]);
-    // From the ghost the face is counter-clockwise as seen from within the hull.
+    // From the ghost the face is counterclockwise as seen from inside the hull.
     match turn(sites, [a, b, c, p]) {
         Sign::Zero => {
             let behind = mesh.neighbors[t as usize][k];

@@ -14,16 +14,17 @@ use crate::watch::Watch;
 
 pub use power::{power_canonical, power_sign};
 
-/// The regular triangulation of weighted points of space.
+/// The regular triangulation of weighted points in 3-D.
 #[derive(Debug)]
 pub struct Regular {
     /// Tetrahedra of rows.
     pub tetrahedra: Arrays<4>,
-    /// For each row the row that stands for it: the heaviest with its coordinates, the first of these.
+    /// For each row the row that represents it: the first of the heaviest rows with the same
+    /// coordinates.
     pub stands_for: Vec<i32>,
 }
 
-/// Triangulates finite points with finite weights, as many, that do not all lie in one plane.
+/// Triangulates finite points with finite weights, one for each, that are not all coplanar.
 pub fn regular(points: &[Point3], weights: &[f64], watch: &Watch) -> Result<Regular> {
     points::scan(points)?;
     let arranged = arrange(points, watch)?;
@@ -52,7 +53,7 @@ pub fn regular(points: &[Point3], weights: &[f64], watch: &Watch) -> Result<Regu
     })
 }
 
-/// The first four of distinct points that span space.
+/// The first four affinely independent points of distinct ones.
 fn spanning(points: &[Point3]) -> Option<[u32; 4]> {
     let (&a, &b) = (points.first()?, points.get(1)?);
     let i = (2..points.len()).find(|&i| !points::collinear(a, b, points[i]))?;

@@ -1,16 +1,16 @@
-//! The predicate of weighted sites in space: whether a lifted site lies below the plane of four.
+//! The predicate of weighted sites in 3-D: whether a lifted site is below the hyperplane of four.
 //!
-//! A site p of weight w is lifted to the height |p|^2 - w; the regular triangulation is the lower side
-//! of the hull of the lifted sites. With A = a - e and alpha = |A|^2 - w(a) + w(e), and likewise for
-//! b, c and d, e lies below the plane of a, b, c and d (positively oriented) where
-//! alpha [B, C, D] - beta [A, C, D] + gamma [A, B, D] - delta [A, B, C] is positive.
+//! A site p of weight w is lifted to the height |p|^2 - w; the regular triangulation is the lower
+//! hull of the lifted sites. With A = a - e and alpha = |A|^2 - w(a) + w(e), and likewise for b, c
+//! and d, e lies below the hyperplane of a, b, c and d (positively oriented) if alpha [B, C, D] -
+//! beta [A, C, D] + gamma [A, B, D] - delta [A, B, C] is positive.
 //!
 //! # The bound of the filter
 //!
 //! Let u = 2^-53 and P the sum of the magnitudes of the monomials. As in the in-sphere test each
-//! passes 15 roundings, and through the sum with the difference of weights one more: 18 u P leaves
-//! room. The filter is asked only where all magnitudes lie between 2^-200 and 2^200 or are zero, so
-//! that nothing over- or underflows. What it cannot tell, integers of any width do.
+//! goes through 15 roundings, and because of the sum with the difference of weights one more: 18 u
+//! P leaves room. The filter is used only if all magnitudes are between 2^-200 and 2^200 or zero,
+//! so that nothing overflows or underflows. What it cannot decide, arbitrary-precision integers do.
 //!
 //! # Ties
 //!
@@ -30,13 +30,13 @@ const RANGE: (f64, f64) = (
     f64::from_bits((1023 + 200) << 52),
 );
 
-/// Whether the fifth site lies below the plane of the other four, lifted to |p|^2 - w: positive where
-/// it does, for positively oriented corners.
+/// Whether the fifth site is below the hyperplane of the other four, lifted to |p|^2 - w: positive
+/// if it is, for positively oriented corners.
 pub fn power_sign(points: [Point3; 5], weights: [f64; 5]) -> Sign {
     filter(points, weights).unwrap_or_else(|| exact(points, weights))
 }
 
-/// As [`power_sign`], ties broken by coordinates; zero only where all five sites lie in one plane.
+/// Like [`power_sign`], with ties broken by coordinates; zero only if all five sites are coplanar.
 pub fn power_canonical(points: [Point3; 5], weights: [f64; 5]) -> Sign {
     match power_sign(points, weights) {
         Sign::Zero => tie(points),
@@ -91,7 +91,7 @@ fn exact(points: [Point3; 5], weights: [f64; 5]) -> Sign {
     sign(&(positive - height(1) * det(0, 2, 3) - height(3) * det(0, 1, 2)))
 }
 
-/// The sign that infinitesimals give to five sites on one lifted plane.
+/// The sign of a tie of five sites whose lifts are on one hyperplane.
 #[cold]
 fn tie(mut points: [Point3; 5]) -> Sign {
     let mut odd = false;
@@ -111,7 +111,7 @@ fn tie(mut points: [Point3; 5]) -> Sign {
         let [a, b, c, d] = others;
         let turn = orient3d(a, b, c, d);
         if turn != Sign::Zero {
-            // The last site is lowered into the sphere; each exchange of rows flips the sign.
+            // The last site is lowered into the sphere; each swap of rows flips the sign.
             return turn.flip_if((k % 2 == 1) != odd);
         }
     }
@@ -134,10 +134,10 @@ mod tests {
     }
 
     #[test]
-    fn equal_weights_are_none() {
+    fn equal_weights_change_nothing() {
         let mut next = numbers();
         for i in 0..4000 {
-            // Few values of coordinates, so that there are many ties.
+            // Few distinct coordinates, so that there are many ties.
             let steps = if i % 2 == 0 { 3.0 } else { 1e6 };
             let p = [(); 5].map(|()| [(); 3].map(|()| (next() * steps).floor()));
             let [a, b, c, d, e] = p;

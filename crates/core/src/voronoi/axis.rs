@@ -1,16 +1,17 @@
-//! Points of the radical axis of two weighted sites (of their bisector, where weights are equal), rounded.
+//! Points on the radical axis of two weighted sites (the bisector, if weights are equal), rounded.
 //!
 //! All z with equal power from a and b satisfy 2 d.z = |b|^2 - |a|^2 + w(a) - w(b), d = b - a. In doubles,
 //! with m = (a + b) / 2, this is d.(z - m) = (w(a) - w(b)) / 2.
 //!
 //! # The bound of the plain stage
 //!
-//! Let u = 2^-53. For z[k] = v, z[l] = m[l] + s / d[l], where s = d[k] t + w, t = m[k] - v and w is half
-//! the difference of the weights. m errs by u of itself, t by u |m[k]| + u |t|, the product by
-//! |d[k]| (3 u |t| + u |m[k]|), w by u |w|, s by u |s| more, and the quotient by 3 u of itself. Hence z[l]
-//! errs by 5 u (|d[k]| (|t| + |m[k]|) + |w|) / |d[l]| + u |m[l]| and the last rounding, with room for terms of
-//! second order. Nothing underflows to any effect while what is not zero is larger than 2^-400. What
-//! is not within 4 units in the last place comes from integers of any width, correctly rounded.
+//! Let u = 2^-53. For z[k] = v, z[l] = m[l] + s / d[l], where s = d[k] t + w, t = m[k] - v and w is
+//! half the difference of the weights. m errs by u of itself, t by u |m[k]| + u |t|, the product by
+//! |d[k]| (3 u |t| + u |m[k]|), w by u |w|, s by u |s| more, and the quotient by 3 u of itself.
+//! Hence z[l] errs by 5 u (|d[k]| (|t| + |m[k]|) + |w|) / |d[l]| + u |m[l]| and the last rounding,
+//! with room for terms of second order. Underflow is negligible while all nonzero values are larger
+//! than 2^-400. What is not within 4 units in the last place is computed in arbitrary-precision
+//! integers, correctly rounded.
 
 use delone_predicates::Point2;
 use num_bigint::BigInt;
@@ -28,7 +29,7 @@ const RANGE: (f64, f64) = (
 /// A site and its weight.
 pub(super) type Weighted = (Point2, f64);
 
-/// Whether a magnitude is zero or far from both ends of the range.
+/// Whether a magnitude is zero, or far from both ends of the range.
 fn safe(x: f64) -> bool {
     x == 0.0 || (x.abs() > RANGE.0 && x.abs() < RANGE.1)
 }
@@ -42,8 +43,8 @@ fn middle(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The other coordinate where the axis meets the line on which coordinate `k` is `value`, within 4
-/// units in the last place: infinite beyond the range, NaN where they are parallel.
+/// The other coordinate of the point where the axis meets the line on which coordinate `k` is
+/// `value`, within 4 units in the last place: infinite if out of range, NaN if they are parallel.
 pub(super) fn crossing(sites: [Weighted; 2], k: usize, value: f64) -> f64 {
     let [(a, wa), (b, wb)] = sites;
     let l = 1 - k;
@@ -76,7 +77,7 @@ fn right_side(a: &[BigInt; 2], b: &[BigInt; 2], wa: f64, wb: f64, low: i64) -> B
     square(b) - square(a) + scaled(wa, 2 * low) - scaled(wb, 2 * low)
 }
 
-/// n / d in units of 2^low, correctly rounded: infinite beyond the range, NaN where d is zero.
+/// n / d in units of 2^low, correctly rounded: infinite if out of range, NaN if d is zero.
 fn quotient(n: BigInt, d: BigInt, low: i64) -> f64 {
     let zero = BigInt::ZERO;
     if d == zero {
@@ -91,7 +92,7 @@ fn quotient(n: BigInt, d: BigInt, low: i64) -> f64 {
     ratio(&n, &d, low).unwrap_or(far)
 }
 
-/// The point where the axis meets the line through the sites; a coordinate is infinite beyond the
+/// The point where the axis meets the line through the sites; a coordinate is infinite if out of
 /// range.
 pub(super) fn foot([(a, wa), (b, wb)]: [Weighted; 2]) -> Point2 {
     if wa == wb {

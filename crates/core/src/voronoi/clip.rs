@@ -1,17 +1,17 @@
-//! Cells cut to a box, unbounded ones included.
+//! Clips cells to a box, unbounded cells included.
 //!
-//! Each cell is convex and is cut by the four half-planes of the box one after the other (I. E.
-//! Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974). A cell that goes on for ever
-//! has corners at infinity, each given by its direction, and edges at infinity, which turn by less
-//! than a quadrant; so no far corner is invented, and half-planes, strips and the whole plane are
-//! cut like any other cell. A vertex beyond the range of doubles has infinite coordinates, which
-//! compare as they should, and no side of the box is there.
+//! Each cell is convex and is clipped by the four half-planes of the box one after the other (I. E.
+//! Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974). An unbounded cell has corners
+//! at infinity, each given by its direction, and edges at infinity, which turn by less than a
+//! quadrant; so no artificial far corner is needed, and half-planes, strips and the whole plane are
+//! clipped like any other cell. A vertex out of range has infinite coordinates, which compare as
+//! they should, and is on no side of the box.
 //!
-//! Where a ridge crosses a side of the box follows from the bisector of its two sites, not from its
-//! ends, which may be far away; the result is held between the ends. It hangs on the ridge and the
-//! ends alone, so both cells of the ridge get the same doubles. Corners on a side have its
-//! coordinate exactly. Hence the signed areas of all cells, exactly evaluated, sum to that of the box:
-//! common edges cancel, and what is left runs round the box once.
+//! Where a ridge crosses a side of the box is computed from the bisector of its two sites, not from
+//! its ends, which may be far away; the result is clamped to the interval between the ends. It
+//! depends on the ridge and its ends only, so both cells of the ridge get the same doubles. Corners
+//! on a side have its coordinate exactly. Hence the signed areas of all cells, evaluated exactly,
+//! sum to that of the box: common edges cancel, and the rest is the boundary of the box, once.
 
 use delone_predicates::Point2;
 
@@ -21,9 +21,9 @@ use crate::memory::{push, with_room};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Cells that one task does.
+/// Cells per task.
 const SHARE: usize = 1 << 12;
-/// Directions of the axes, counter-clockwise.
+/// Directions of the axes, counterclockwise.
 const AXES: [Point2; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// A diagram as arrays.
@@ -41,19 +41,19 @@ pub struct Cells<'a> {
     pub ends: &'a [[i32; 2]],
     /// Directions of rays.
     pub rays: &'a [Point2],
-    /// The vertices beyond the range of doubles to which they lead, NaN for none.
+    /// The out-of-range vertices to which they lead, NaN for none.
     pub beyond: &'a [Point2],
     /// The site of each cell.
     pub site: &'a [i32],
-    /// Where the entries of each cell begin, and the end.
+    /// Where the entries of each cell begin, plus the end.
     pub starts: &'a [i32],
     /// Entry: a vertex, or -1 for an end that is a ray.
     pub entry_vertices: &'a [i32],
-    /// Entry: the ridge that leads on from there.
+    /// Entry: the ridge that follows the vertex.
     pub entry_ridges: &'a [i32],
 }
 
-/// Convex polygons, counter-clockwise.
+/// Convex polygons, counterclockwise.
 #[derive(Debug, Default)]
 pub struct Polygons {
     /// The corners of polygon i are `starts[i]..starts[i + 1]`.
@@ -82,14 +82,15 @@ enum End {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Edge {
     Ridge(i32),
-    /// On the line where this axis has this value.
+    /// On the line where the coordinate on this axis has this value.
     Side(usize, f64),
     Infinity,
 }
 
 type Corner = (End, Edge);
 
-/// The half-plane in which `axis` is at least `value`, or at most, where `most` holds.
+/// The half-plane in which the coordinate on `axis` is at least `value`, or at most if `most` is
+/// set.
 #[derive(Clone, Copy)]
 struct Half {
     axis: usize,
@@ -97,7 +98,8 @@ struct Half {
     most: bool,
 }
 
-/// Cuts all cells to the box from `min` to `max`, which has an area. Empty cells have no corners.
+/// Clips all cells to the box from `min` to `max`, which has a positive area. Empty cells have no
+/// corners.
 pub fn clip(
     cells: Cells,
     min: Point2,
@@ -145,16 +147,16 @@ fn part(cells: Cells, min: Point2, max: Point2, rows: &[usize]) -> Result<Polygo
                 cells.cut(&corners, half, &mut cut);
                 std::mem::swap(&mut corners, &mut cut);
             }
-            keep(&mut corners, &mut out)?;
+            add_clipped(&mut corners, &mut out)?;
         }
         push(&mut out.starts, out.points.len() as i32)?;
     }
     Ok(out)
 }
 
-/// Adds what is left of a cell, without repeated corners; nothing where it has no area.
-fn keep(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
-    // The point that stood for a whole line has served.
+/// Adds the clipped cell, without repeated corners; nothing if it has no area.
+fn add_clipped(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
+    // The point that represented a whole line is not a corner.
     let mut before = corners.last().map(|c| c.1);
     corners.retain(|&(_, edge)| {
         let along = matches!(edge, Edge::Ridge(_)) && before == Some(edge);
@@ -163,7 +165,7 @@ fn keep(corners: &mut Vec<Corner>, out: &mut Polygons) -> Result<()> {
     });
     let at = |(end, _): &Corner| match end {
         End::At(p) => *p,
-        End::Towards(d) => *d, // The box is bounded: none is left.
+        End::Towards(d) => *d, // The box is bounded, so none is left.
     };
     let Some(first) = corners.first().map(at) else {
         return Ok(());
@@ -191,10 +193,10 @@ impl Cells<'_> {
         let found = self.entry_vertices.get(range.clone());
         found
             .zip(self.entry_ridges.get(range))
-            .ok_or_else(|| Error::Shape(format!("cell {row} has entries that are not there")))
+            .ok_or_else(|| Error::Shape(format!("the entries of cell {row} are out of range")))
     }
 
-    /// Adds the cell as it is where it lies in the box.
+    /// Adds the cell unchanged if it lies in the box.
     fn inside(&self, row: usize, min: Point2, max: Point2, out: &mut Polygons) -> Result<bool> {
         let (vertices, ridges) = self.entries(row)?;
         let within = |p: Point2| (0..2).all(|k| min[k] <= p[k] && p[k] <= max[k]);
@@ -215,7 +217,7 @@ impl Cells<'_> {
         Ok(true)
     }
 
-    /// The corners of a cell, counter-clockwise, those at infinity included.
+    /// The corners of a cell, counterclockwise, those at infinity included.
     fn corners(&self, row: usize, corners: &mut Vec<Corner>) -> Result<()> {
         corners.clear();
         let (vertices, ridges) = self.entries(row)?;
@@ -238,9 +240,9 @@ impl Cells<'_> {
             let between = axes_between(out, back);
             corners.extend(between.map(|axis| (End::Towards(axis), Edge::Infinity)));
             corners.push((End::Towards(back), Edge::Ridge(ridge)));
-            if self.endless(ridge) {
-                // A whole line. A point of it tells on which side of a parallel it runs; one beyond
-                // the range does so only for lines along an axis.
+            if self.is_line(ridge) {
+                // A whole line. One of its points tells on which side of a parallel it runs; if
+                // that is out of range, it does so only for lines along an axis.
                 let (at, along) = (self.foot(ridge), back.contains(&0.0));
                 if along || at.iter().all(|x| x.is_finite()) {
                     corners.push((End::At(at), Edge::Ridge(ridge)));
@@ -250,8 +252,8 @@ impl Cells<'_> {
         Ok(())
     }
 
-    /// The point where the bisector of a ridge meets the line through its sites; infinite beyond the
-    /// range of doubles.
+    /// The point where the bisector of a ridge meets the line through its sites; infinite if out of
+    /// range.
     fn foot(&self, ridge: i32) -> Point2 {
         foot(self.sites[ridge as usize].map(|v| self.weighted(v)))
     }
@@ -266,14 +268,14 @@ impl Cells<'_> {
         self.ends[ridge as usize][which ^ turned]
     }
 
-    /// The direction of the ray with which a ridge begins (0) or ends (1), seen from a cell.
+    /// The direction of the ray with which a ridge begins (0) or ends (1), as seen from a cell.
     fn ray(&self, row: usize, ridge: i32, which: usize) -> Result<Point2> {
         let ray = self.rays.get(!self.end(row, ridge, which) as usize);
         ray.copied()
             .ok_or_else(|| Error::Shape(format!("ridge {ridge} has no ray at its end")))
     }
 
-    /// The vertex beyond the range with which a ridge begins, seen from a cell.
+    /// The out-of-range vertex with which a ridge begins, as seen from a cell.
     fn beyond(&self, row: usize, ridge: i32) -> Result<Option<Point2>> {
         let ray = self.end(row, ridge, 0);
         let place = self.beyond.get(!ray as usize);
@@ -284,14 +286,14 @@ impl Cells<'_> {
     }
 
     /// Whether a ridge is a whole line.
-    fn endless(&self, ridge: i32) -> bool {
+    fn is_line(&self, ridge: i32) -> bool {
         let far = |end: i32| self.beyond.get(!end as usize);
         let ends = self.ends[ridge as usize];
         ends.iter()
             .all(|&end| end < 0 && far(end).is_some_and(|place| place[0].is_nan()))
     }
 
-    /// Cuts a convex polygon by a half-plane.
+    /// Clips a convex polygon by a half-plane.
     fn cut(&self, corners: &[Corner], half: Half, out: &mut Vec<Corner>) {
         out.clear();
         for (i, &(end, edge)) in corners.iter().enumerate() {
@@ -309,7 +311,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Where an edge from one side of a line to the other crosses it.
+    /// The point where an edge crosses the line of a half-plane.
     fn crossing(&self, from: End, to: End, edge: Edge, half: Half, leaves: bool) -> End {
         let other = 1 - half.axis;
         match edge {
@@ -351,17 +353,17 @@ impl Half {
         if self.most { -above } else { above }
     }
 
-    /// The point of the line with this other coordinate.
+    /// The point on the line with this other coordinate.
     fn at(&self, other: f64) -> End {
         let mut p = [other; 2];
         p[self.axis] = self.value;
         End::At(p)
     }
 
-    /// The direction of the line that a turn counter-clockwise passes when it leaves the half-plane, or
-    /// when it comes back.
+    /// The direction of the line that a counterclockwise turn passes when it leaves the half-plane,
+    /// or when it enters it again.
     fn along(&self, leaves: bool) -> Point2 {
-        // A quarter turn from the inner normal, one way or the other.
+        // A quarter turn from the inner normal, in either direction.
         let inward = if self.most { -1.0 } else { 1.0 };
         let turn = if leaves { inward } else { -inward };
         if self.axis == 0 {
@@ -376,21 +378,21 @@ fn dot(a: Point2, b: Point2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// How far an edge reaches at its end `end` in a coordinate.
+/// The bound on a coordinate of an edge at its end `end`.
 fn bound(end: End, beyond: End, k: usize) -> f64 {
     match (end, beyond) {
         (End::At(p), _) => p[k],
         (End::Towards(d), _) if d[k] > 0.0 => f64::INFINITY,
         (End::Towards(d), _) if d[k] < 0.0 => f64::NEG_INFINITY,
         (_, End::At(p)) => p[k],
-        // Both ends lie along the other axis: nothing bounds this one.
+        // Both ends are along the other axis: this one has no bound.
         (_, End::Towards(_)) => f64::NAN,
     }
 }
 
-/// The axes strictly between two directions, counter-clockwise, which are half a turn apart at most.
+/// The axes strictly between two directions, counterclockwise; these are at most half a turn apart.
 fn axes_between(from: Point2, to: Point2) -> impl Iterator<Item = Point2> {
-    // Sector i reaches from axis i, included, to the next.
+    // Sector i is from axis i, included, to the next.
     let sector = |d: Point2| match d {
         [x, y] if x > 0.0 && y >= 0.0 => 0,
         [x, y] if x <= 0.0 && y > 0.0 => 1,
@@ -401,7 +403,7 @@ fn axes_between(from: Point2, to: Point2) -> impl Iterator<Item = Point2> {
     let cross = from[0] * to[1] - from[1] * to[0];
     let mut steps = (last + 4 - first) % 4;
     if dot(from, to) > 0.0 && cross <= 0.0 {
-        steps = 0; // Parallel, but for rounding.
+        steps = 0; // Parallel, up to rounding.
     } else if steps > 0 && (to[0] == 0.0 || to[1] == 0.0) {
         steps -= 1;
     }
@@ -469,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_are_counted_counter_clockwise() {
+    fn axes_are_counted_counterclockwise() {
         let count = |from, to| axes_between(from, to).count();
         assert_eq!(count([1.0, 0.0], [0.0, 1.0]), 0);
         assert_eq!(count([1.0, 0.0], [-1.0, 0.0]), 1);

@@ -1,4 +1,4 @@
-//! The dual of a triangulation in the plane: vertices, then ridges, then regions.
+//! The dual of a 2-D triangulation: vertices, then ridges, then regions.
 
 use delone_predicates::{Point2, incircle};
 
@@ -11,10 +11,10 @@ use crate::measure::circle::Corners;
 use crate::regular::power_sign;
 use crate::watch::Watch;
 
-/// What is the dual of the triangles, edges and points of a triangulation.
+/// The dual of the triangles, edges and points of a triangulation.
 #[derive(Debug)]
 pub struct Diagram {
-    /// The vertices within the range of doubles, in the order of their first triangles.
+    /// The vertices in range, in the order of their first triangles.
     pub vertices: Vec<Point2>,
     /// The vertex of each triangle, or -1.
     pub triangle_vertex: Vec<i32>,
@@ -62,14 +62,14 @@ pub fn diagram(given: Given<2, 3>, workers: usize, watch: &Watch) -> Result<Diag
     })
 }
 
-/// The edges of a triangle whose ridges are numbered with it: those that have one, on the side that
-/// comes last.
+/// The edges of a triangle whose ridges are numbered with it: those that have one, on the later
+/// side.
 fn owned(given: Given<2, 3>, t: usize, shared: u8) -> u8 {
     let mine = |k: usize| shared >> k & 1 == 0 && given.neighbors[t][k] < t as i32;
     (0..3).map(|k| u8::from(mine(k)) << k).sum()
 }
 
-/// Whether triangle `t` and its neighbour `other` have one centre, exactly.
+/// Whether triangle `t` and its neighbor `other` have the same center, exactly.
 #[cold]
 #[inline(never)]
 fn tied(given: Given<2, 3>, t: usize, other: usize) -> Result<bool> {

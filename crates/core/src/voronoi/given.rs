@@ -1,8 +1,8 @@
-//! A triangulation whose dual is wanted, of the plane or of space.
+//! The triangulation whose dual is computed, in 2-D or 3-D.
 
 use crate::error::{Error, Result};
 
-/// A triangulation as arrays: vertices are rows of points, neighbours simplices or -1. With weights,
+/// A triangulation as arrays: vertices are rows of points, neighbors simplices or -1. With weights,
 /// one for each point, it is the regular triangulation.
 #[derive(Clone, Copy)]
 pub struct Given<'a, const D: usize, const N: usize> {
@@ -25,15 +25,15 @@ impl<const D: usize, const N: usize> Given<'_, D, N> {
         self.points[v as usize]
     }
 
-    /// The corner of `other` across which `t` lies.
+    /// The corner of `other` opposite the side that it shares with `t`.
     #[inline]
     pub(crate) fn back(&self, t: usize, other: usize) -> Result<usize> {
         let row = self.neighbors[other];
-        // Arithmetic in place of a search, whose branches nothing could predict.
+        // Arithmetic instead of a search, whose branches would be unpredictable.
         let back = (1..N).map(|k| k * usize::from(row[k] == t as i32)).sum();
         if back < N && row[back] == t as i32 {
             return Ok(back);
         }
-        Err(Error::Shape(format!("{other} is no neighbour of {t}")))
+        Err(Error::Shape(format!("{other} is not a neighbor of {t}")))
     }
 }

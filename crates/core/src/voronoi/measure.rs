@@ -1,7 +1,7 @@
 //! Areas, centroids and perimeters of polygons, and the lengths of their edges.
 //!
-//! Coordinates enter as differences to the first corner of a polygon, so that nothing is lost far
-//! from the origin.
+//! Coordinates enter as differences to the first corner of a polygon, so that no digits are lost
+//! far from the origin.
 
 use delone_predicates::Point2;
 
@@ -10,24 +10,24 @@ use crate::memory::{filled, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Polygons that one task does.
+/// Polygons per task.
 const SHARE: usize = 1 << 13;
-/// Areas beyond these, 2^-600 and 2^600, are measured in other units.
+/// Areas out of this range, 2^-600 to 2^600, are measured in other units.
 const TINY: f64 = f64::from_bits((1023 - 600) << 52);
 const HUGE: f64 = f64::from_bits((1023 + 600) << 52);
 
-/// What is measured on polygons; zero, and NaN for centroids, where a polygon has no corners.
+/// The measures of polygons; for a polygon without corners zero, and NaN for the centroid.
 #[derive(Debug, Default)]
 pub struct Measures {
     /// Areas.
     pub areas: Vec<f64>,
-    /// Centres of gravity.
+    /// Centroids.
     pub centroids: Vec<Point2>,
-    /// Lengths of boundaries.
+    /// Perimeters.
     pub perimeters: Vec<f64>,
 }
 
-/// Measures polygons whose corners are `points[starts[i]..starts[i + 1]]`, counter-clockwise.
+/// Measures polygons whose corners are `points[starts[i]..starts[i + 1]]`, counterclockwise.
 pub fn measures(
     starts: &[i32],
     points: &[Point2],
@@ -65,12 +65,12 @@ pub fn measures(
 
 fn measure(corners: &[Point2]) -> (f64, Point2, f64) {
     let (area, centroid, around) = measure_in_units(corners, [1.0; 2]);
-    // Between these nothing over- or underflows to any effect, which NaN is not, but for moments.
+    // Within these bounds, which NaN fails, only moments may overflow or underflow noticeably.
     let usual = area > TINY && area < HUGE && centroid.iter().all(|x| x.is_finite());
     if corners.is_empty() || usual || (area == 0.0 && around == 0.0) {
         return (area, centroid, around);
     }
-    // Powers of two by which the largest coordinates come near 1, by axis: a cell may be as long as
+    // Powers of two that scale the largest coordinates to near 1, by axis: a cell may be as long as
     // the range and as thin as its smallest double.
     let [wide, high] = [0, 1].map(|k| exponent(corners, k));
     let (area, [x, y], _) = measure_in_units(corners, [power_of_two(-wide), power_of_two(-high)]);
@@ -84,8 +84,8 @@ fn measure(corners: &[Point2]) -> (f64, Point2, f64) {
     )
 }
 
-/// Two more than the exponent of the largest coordinate of an axis, so far as that and its negative
-/// are exponents of doubles.
+/// Two more than the exponent of the largest coordinate on an axis, clamped so that it and its
+/// negative are exponents of doubles.
 fn exponent(corners: &[Point2], axis: usize) -> i32 {
     let largest = corners.iter().fold(0.0_f64, |m, p| m.max(p[axis].abs()));
     ((largest.to_bits() >> 52) as i32 - 1021).clamp(-1022, 1022)
@@ -96,7 +96,7 @@ fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
-/// Twice the signed area of a ring, six times its moment seen from `origin`, and its length.
+/// Twice the signed area of a ring, six times its moment relative to `origin`, and its length.
 pub(super) fn ring(
     corners: impl Iterator<Item = Point2> + Clone,
     origin: Point2,
@@ -134,7 +134,7 @@ fn measure_in_units(corners: &[Point2], scale: [f64; 2]) -> (f64, Point2, f64) {
             around,
         );
     }
-    // As thin as rounding allows, or too large: the middle of the corners stands for the centre.
+    // As thin as rounding allows, or too large: use the mean of the corners.
     let n = corners.len() as f64;
     let part = |p: &Point2, k: usize, o: f64| (p[k] * scale[k] - o) / n;
     let mean = |k: usize, o: f64| o + corners.iter().map(|p| part(p, k, o)).sum::<f64>();
@@ -175,7 +175,7 @@ mod tests {
             (0.0, [5e-201, 5e-201])
         );
         assert_eq!(found.perimeters, [4e-200]);
-        // As long as the range, and as thin: areas, places and ways round are doubles all the same.
+        // As long as the range, and as thin: areas, centroids and perimeters are still doubles.
         for (w, h) in [
             (1.0, huge),
             (1.0, huge / 2.0),

@@ -1,11 +1,11 @@
 //! 2-D Voronoi and power diagrams: the dual of a triangulation, its cells clipped, their measures.
 //!
-//! A triangulation is given as arrays; with weights it must be the regular one. Triangles of one
-//! circle share one vertex, which an exact test decides. Only the coordinates of vertices are
-//! rounded (see `center`), and nothing in the combinatorics hangs on them.
+//! A triangulation is given as arrays; with weights it must be the regular one. Cocircular
+//! triangles share one vertex, which an exact test decides. Only the coordinates of vertices are
+//! rounded (see `center`), and the combinatorics is independent of them.
 //!
-//! Where an edge of a cell does not end within the range of doubles, its end is a *ray*: a direction,
-//! in which it goes on for ever, or to a vertex beyond the range.
+//! If an edge of a cell does not end within the range of doubles, its end is a *ray*: a direction
+//! in which it is unbounded, or leads to a vertex out of range.
 
 mod axis;
 mod clip;

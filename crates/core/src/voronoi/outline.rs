@@ -1,8 +1,8 @@
-//! Which cells an outline comes near, and which of the others are sure to lie on one side of it.
+//! Classifies cells against an outline: touched by it, or in groups certainly on one side.
 //!
-//! Segments of the outline go into a grid; a cell is *touched* where the line of a segment passes its
+//! Segments of the outline go into a grid; a cell is *touched* if the line of a segment crosses its
 //! box, or is too close to tell. Cells that are not touched and share an edge lie on the same side,
-//! so that it takes one question for each group of them to know on which.
+//! so one test for each group of them suffices.
 
 use delone_predicates::Point2;
 
@@ -10,9 +10,9 @@ use crate::error::Result;
 use crate::memory::{copied, filled, with_room};
 use crate::points::Extent;
 
-/// Most columns and rows of the grid.
+/// The most columns and rows of the grid.
 const MOST: f64 = 1024.0;
-/// Cells are taken for touched within this share of the extent; it stands for all rounding here.
+/// Cells count as touched within this share of the extent; it covers all rounding here.
 const CLOSE: f64 = 1e-9;
 
 pub(super) struct Grid {
@@ -31,7 +31,7 @@ impl Grid {
         }
     }
 
-    /// The columns (or rows) from `low` to `high`, and one more on either side.
+    /// The columns (or rows) from `low` to `high`, plus one on either side.
     pub fn range(&self, k: usize, low: f64, high: f64) -> std::ops::RangeInclusive<usize> {
         let place = |x: f64| (x - self.origin[k]) / self.step[k];
         let last = self.size - 1;
@@ -40,7 +40,7 @@ impl Grid {
         from.min(last)..=to.min(last)
     }
 
-    /// The number of a field.
+    /// The index of a field.
     pub fn field(&self, row: usize, column: usize) -> usize {
         row * self.size + column
     }
@@ -48,7 +48,7 @@ impl Grid {
     /// Calls `mark` with each field that a segment may meet.
     fn along(&self, [a, b]: [Point2; 2], mut mark: impl FnMut(usize)) {
         for row in self.range(1, a[1].min(b[1]), a[1].max(b[1])) {
-            // The part of the segment that lies in this row and its neighbours.
+            // The part of the segment that lies in this row and its neighbors.
             let low = self.origin[1] + (row as f64 - 1.0) * self.step[1];
             let high = low + 3.0 * self.step[1];
             let at = |y: f64| ((y - a[1]) / (b[1] - a[1])).clamp(0.0, 1.0);
@@ -65,9 +65,9 @@ impl Grid {
     }
 }
 
-/// For each convex polygon the number of its group of untouched ones, or -1 where it is touched or
-/// has no corners; and how many groups there are. `ridges` names the edges of polygons, each of which
-/// two of them have; -1 for other edges.
+/// For each convex polygon the number of its group of untouched ones, or -1 if it is touched or has
+/// no corners; and how many groups there are. `ridges` names the edges that two polygons share; -1
+/// for other edges.
 pub fn touched(
     starts: &[i32],
     points: &[Point2],
@@ -99,7 +99,7 @@ pub fn touched(
     groups(starts, ridges, &free)
 }
 
-/// Segments by field of the grid: where those of each begin, and their numbers.
+/// Segments by field of the grid: where those of each field begin, and their numbers.
 pub(super) fn sorted(grid: &Grid, segments: &[[f64; 4]]) -> Result<(Vec<u32>, Vec<u32>)> {
     let ends = |s: &[f64; 4]| [[s[0], s[1]], [s[2], s[3]]];
     let mut first = filled(grid.size * grid.size + 1, 0_u32)?;
@@ -128,7 +128,7 @@ fn meets(cell: Extent, [ax, ay, bx, by]: [f64; 4], close: f64) -> bool {
             return false;
         }
     }
-    // All corners on one side of its line, by more than `close`.
+    // All corners are on one side of its line, by more than `close`.
     let (dx, dy) = (bx - ax, by - ay);
     let bound = close * (dx.abs() + dy.abs());
     let side = |x: f64, y: f64| dx * (y - ay) - dy * (x - ax);
@@ -141,11 +141,12 @@ fn meets(cell: Extent, [ax, ay, bx, by]: [f64; 4], close: f64) -> bool {
     !(sides.iter().all(|&s| s > bound) || sides.iter().all(|&s| s < -bound))
 }
 
-/// Groups of free polygons with common edges, numbered by their first members.
+/// Groups of untouched polygons that are connected by common edges, numbered by their first
+/// members.
 fn groups(starts: &[i32], ridges: &[i32], free: &[bool]) -> Result<(Vec<i32>, usize)> {
     let mut root = with_room(free.len())?;
     root.extend(0..free.len() as u32);
-    // Halves the path at each step; roots are the least members, so that paths descend.
+    // Path halving; roots are the least members, so paths descend.
     fn find(root: &mut [u32], mut i: u32) -> u32 {
         while root[i as usize] != i {
             root[i as usize] = root[root[i as usize] as usize];
@@ -187,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_line_between_two_squares_leaves_two_groups() {
-        // Four unit squares in a row; the segment stands in the second.
+        // Four unit squares in a row; the segment is in the second.
         let mut points = Vec::new();
         for i in 0..4 {
             let x = f64::from(i);
@@ -201,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_does_not_touch_what_its_box_holds() {
+    fn a_diagonal_does_not_touch_everything_in_its_box() {
         let cell = Extent {
             min: [3.0, 0.0],
             max: [4.0, 1.0],

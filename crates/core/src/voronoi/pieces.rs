@@ -1,15 +1,17 @@
-//! What an outline leaves of convex cells that it passes, where exact signs tell it without doubt.
+//! Clips convex cells by an outline, where exact predicates leave no doubt.
 //!
-//! The outline is a set of rings with the inside to the left of each. A segment of it crosses an edge
-//! of a cell where four orientations, exact, say so; the crossing is rounded once. From each crossing
-//! where the outline enters the cell, a piece follows the outline until it leaves, then the boundary of the
-//! cell counter-clockwise to the next crossing, and so on until it closes (K. Weiler and P. Atherton,
-//! "Hidden surface removal using polygon area sorting", SIGGRAPH 1977). Rounding to nearest is monotone, so
-//! rounded crossings that differ are in their true order along an edge.
+//! The outline is a set of rings with the inside to the left of each. A segment of it crosses an
+//! edge of a cell if four orientations, exact, say so; the crossing is rounded once. From each
+//! crossing where the outline enters the cell, a piece follows the outline until it leaves, then
+//! the boundary of the cell counterclockwise to the next crossing, and so on until it closes (K.
+//! Weiler and P. Atherton, "Hidden surface removal using polygon area sorting", SIGGRAPH 1977).
+//! Rounding to nearest is monotone, so rounded crossings that differ are in their true order along
+//! an edge.
 //!
-//! All that is degenerate is *doubtful* and left to the caller: a corner of one on an edge of the other, edges
-//! that overlap, crossings that are the same doubles, a cell that rounding has made concave. So is a cell
-//! that would cost too much, as this is quadratic in the corners near each other.
+//! All degenerate cases are *doubtful* and left to the caller: a corner of one on an edge of the
+//! other, edges that overlap, crossings that round to the same point, a cell that rounding has made
+//! concave. So is a cell that would take too long, as this is quadratic in the number of corners
+//! near each other.
 
 use std::cmp::Ordering;
 
@@ -24,11 +26,11 @@ use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-/// Cells that one task does.
+/// Cells per task.
 const SHARE: usize = 1 << 7;
-/// Most orientations for one cell: about 0.1 s.
+/// The most orientation tests for one cell: about 0.1 s.
 const MOST: usize = 1 << 22;
-/// Most rings of the outline within one cell.
+/// The most rings of the outline within one cell.
 const MOST_RINGS: usize = 1 << 9;
 
 /// Convex polygons: the cells.
@@ -36,7 +38,7 @@ const MOST_RINGS: usize = 1 << 9;
 pub struct Convex<'a> {
     /// The corners of cell i are `starts[i]..starts[i + 1]`.
     pub starts: &'a [i32],
-    /// Corners, counter-clockwise.
+    /// Corners, counterclockwise.
     pub corners: &'a [Point2],
     /// The ridge along which each edge lies, from its corner to the next.
     pub ridges: &'a [i32],
@@ -57,10 +59,10 @@ impl Outline<'_> {
     }
 }
 
-/// What is left of a cell.
+/// What is left of a cell after clipping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Left {
-    /// Exact signs do not tell.
+    /// Exact predicates do not decide.
     Doubtful = -1,
     /// No point of it.
     Nothing = 0,
@@ -85,13 +87,14 @@ pub struct Pieces {
     pub points: Vec<Point2>,
     /// The ridge along which each edge lies, from its corner to the next; -1 along the outline.
     pub ridges: Vec<i32>,
-    /// The measures of the parts of each cell together; those of no parts are 0, and NaN for a centroid.
+    /// The measures of the parts of each cell together; without parts 0, and NaN for the centroid.
     pub measures: Measures,
 }
 
 type Ring = Vec<(Point2, i32)>;
 
-/// Cuts the cells of `rows`; `inside` tells for each whether its first corner is inside the outline.
+/// Clips the cells of `rows`; `inside` tells for each whether its first corner is inside the
+/// outline.
 pub fn pieces(
     cells: Convex,
     rows: &[i32],
@@ -154,7 +157,7 @@ impl Pieces {
     }
 }
 
-/// Area, centroid and perimeter of all parts.
+/// Area, centroid and perimeter of all parts together.
 fn together(parts: &[Vec<Ring>]) -> (f64, Point2, f64) {
     let Some(&(origin, _)) = parts.iter().flatten().flatten().next() else {
         return (0.0, [f64::NAN; 2], 0.0);
@@ -177,7 +180,7 @@ fn together(parts: &[Vec<Ring>]) -> (f64, Point2, f64) {
 /// Where a segment of the outline crosses an edge of a cell.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
-    /// The segment: the number of the corner where it begins.
+    /// The segment: the index of the corner where it begins.
     segment: usize,
     ring: usize,
     /// Whether the segment enters the cell here.
@@ -186,11 +189,11 @@ struct Crossing {
     at: Point2,
 }
 
-/// Memory for one cell after the other.
+/// Buffers reused from cell to cell.
 #[derive(Default)]
 struct Work {
     near: Vec<u32>,
-    /// For each segment 1 more than the last cell for which it was looked at.
+    /// For each segment, one more than the last cell for which it was tested.
     met: Vec<u32>,
     begin: Vec<Sign>,
     end: Vec<Sign>,
@@ -201,7 +204,7 @@ struct Work {
 struct Cutter<'a> {
     cells: Convex<'a>,
     outline: Outline<'a>,
-    /// For each corner of the outline its ring, and the corner after it.
+    /// For each corner of the outline its ring, and the next corner.
     ring: Vec<u32>,
     next: Vec<u32>,
     grid: Grid,
@@ -253,7 +256,7 @@ impl<'a> Cutter<'a> {
         if !cell.is_convex() {
             return doubtful;
         }
-        self.gather(row, &cell, work);
+        self.candidates(row, &cell, work);
         let known = work.near.len() * cell.corners.len() <= MOST
             && self.crossings(&cell, work).is_some()
             && alternate(&work.crossings)
@@ -282,7 +285,7 @@ impl<'a> Cutter<'a> {
     }
 
     /// The segments whose boxes meet that of the cell, ascending.
-    fn gather(&self, row: usize, cell: &Cell, work: &mut Work) {
+    fn candidates(&self, row: usize, cell: &Cell, work: &mut Work) {
         let (near, met) = (&mut work.near, &mut work.met);
         near.clear();
         met.resize(self.ring.len(), 0);
@@ -312,7 +315,7 @@ impl<'a> Cutter<'a> {
         [points[segment], points[self.next[segment] as usize]]
     }
 
-    /// All crossings in the order of the outline; nothing where one is doubtful.
+    /// All crossings in the order of the outline; `None` if one is doubtful.
     fn crossings(&self, cell: &Cell, work: &mut Work) -> Option<()> {
         work.crossings.clear();
         let mut last = usize::MAX;
@@ -357,7 +360,7 @@ impl<'a> Cutter<'a> {
         Some(())
     }
 
-    /// The rings of the outline that lie in the cell as a whole; nothing where that is doubtful.
+    /// The rings of the outline that are entirely in the cell; `None` if that is doubtful.
     fn whole_rings(&self, cell: &Cell, work: &mut Work) -> Option<Vec<Ring>> {
         let mut found: Vec<Ring> = Vec::new();
         let mut last = usize::MAX;
@@ -381,7 +384,7 @@ impl<'a> Cutter<'a> {
         Some(found)
     }
 
-    /// Adds the pieces between crossings, counter-clockwise.
+    /// Adds the pieces between crossings, counterclockwise.
     fn trace(&self, cell: &Cell, work: &Work, rings: &mut Vec<Ring>) {
         let crossings = &work.crossings;
         let mut place = vec![0; crossings.len()];
@@ -395,7 +398,8 @@ impl<'a> Cutter<'a> {
             }
             let mut ring = Ring::new();
             let mut now = start;
-            // Each turn meets an entry that was not met; all kinds alternate, so it comes back to the first.
+            // Each step visits a new entry; entries and exits alternate, so it returns to the
+            // first.
             while !met[now] {
                 met[now] = true;
                 let leave = after(crossings, now);
@@ -407,7 +411,7 @@ impl<'a> Cutter<'a> {
             }
             ring.dedup_by(|b, a| {
                 let same = a.0 == b.0;
-                // Of an edge of no length only the next one is left.
+                // Of an edge of zero length only the next one is kept.
                 if same {
                     a.1 = b.1;
                 }
@@ -422,7 +426,8 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Adds the outline from where it enters to where it leaves, `ahead` of that in its ring.
+    /// Adds the outline from where it enters to where it leaves; `ahead` tells whether that is
+    /// later in its ring.
     fn follow(&self, enter: &Crossing, leave: &Crossing, ahead: bool, ring: &mut Ring) {
         ring.push((enter.at, -1));
         if enter.segment == leave.segment && ahead {
@@ -445,12 +450,13 @@ fn after(crossings: &[Crossing], i: usize) -> usize {
     }
 }
 
-/// Whether each ring enters and leaves by turns.
+/// Whether each ring alternately enters and leaves.
 fn alternate(crossings: &[Crossing]) -> bool {
     (0..crossings.len()).all(|i| crossings[i].enters != crossings[after(crossings, i)].enters)
 }
 
-/// Sorts crossings around the cell; whether their kinds alternate, as the first corner has it.
+/// Sorts crossings around the cell; returns whether their kinds alternate, consistently with the
+/// first corner.
 fn around(cell: &Cell, inside: bool, work: &mut Work) -> bool {
     let crossings = &work.crossings;
     work.around.clear();
@@ -463,9 +469,9 @@ fn around(cell: &Cell, inside: bool, work: &mut Work) -> bool {
     };
     work.around.sort_by(order);
     let apart = work.around.windows(2).all(|w| order(&w[0], &w[1]).is_lt());
-    // The inside of the outline is to its left: between where it leaves the cell and enters it again.
-    let by_turns = |(k, &i): (usize, &usize)| crossings[i].enters == (inside ^ (k % 2 == 1));
-    apart && work.around.iter().enumerate().all(by_turns)
+    // The inside of the outline is on its left: between leaving the cell and entering it again.
+    let alternates = |(k, &i): (usize, &usize)| crossings[i].enters == (inside ^ (k % 2 == 1));
+    apart && work.around.iter().enumerate().all(alternates)
 }
 
 struct Cell<'a> {
@@ -487,7 +493,7 @@ impl Cell<'_> {
         turns().all(|s| s != Sign::Negative) && turns().any(|s| s == Sign::Positive)
     }
 
-    /// On which side of each edge a point is; positive inside.
+    /// On which side of each edge a point is; positive is inside.
     fn sides(&self, p: Point2, out: &mut Vec<Sign>) {
         out.clear();
         out.extend((0..self.corners.len()).map(|i| {
@@ -511,7 +517,8 @@ impl Cell<'_> {
         self.corners.iter().copied().zip(ridges).collect()
     }
 
-    /// Adds the boundary from where the outline leaves to where it enters, `ahead` of that or not.
+    /// Adds the boundary from where the outline leaves to where it enters; `ahead` tells whether
+    /// that is later.
     fn follow(&self, leave: &Crossing, enter: &Crossing, ahead: bool, ring: &mut Ring) {
         ring.push((leave.at, self.ridges[leave.edge]));
         if leave.edge == enter.edge && ahead {
@@ -528,7 +535,8 @@ impl Cell<'_> {
     }
 }
 
-/// Outer rings, each with the holes for which it is the innermost one; nothing where a hole has none.
+/// Outer rings, each with the holes for which it is the innermost one; `None` if a hole is in no
+/// ring.
 fn nested(rings: Vec<Ring>) -> Option<Vec<Vec<Ring>>> {
     let (outer, holes): (Vec<Ring>, Vec<Ring>) = rings.into_iter().partition(|r| area(r) > 0.0);
     let mut parts: Vec<Vec<Ring>> = outer.into_iter().map(|ring| vec![ring]).collect();
@@ -549,7 +557,7 @@ fn area(ring: &Ring) -> f64 {
     ring_measures(ring.iter().map(|p| p.0), ring[0].0).0
 }
 
-/// Whether a point is inside a ring; nothing on it.
+/// Whether a point is inside a ring; `None` if it is on the ring.
 fn holds(ring: &Ring, p: Point2) -> Option<bool> {
     let mut inside = false;
     for (i, &(b, _)) in ring.iter().enumerate() {

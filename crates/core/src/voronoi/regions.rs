@@ -1,4 +1,4 @@
-//! Cells: around each site the vertices and ridges of its cell, counter-clockwise.
+//! Voronoi cells: around each site the vertices and ridges of its cell, counterclockwise.
 
 use super::given::Given;
 use super::ridges::{OWNED, SHARED};
@@ -7,25 +7,25 @@ use crate::memory::{filled, with_room, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Cells that one task does.
+/// Cells per task.
 const SHARE: usize = 1 << 12;
 
-/// Cells, in the order in which triangles first have their sites.
+/// Cells, in the order in which their sites first occur in the triangles.
 #[derive(Debug, Default)]
 pub struct Regions {
-    /// The cell of each point, -1 where it has none.
+    /// The cell of each point, -1 if it has none.
     pub of_point: Vec<i32>,
     /// The point of each cell.
     pub site: Vec<i32>,
     /// The entries of cell r are `starts[r]..starts[r + 1]`.
     pub starts: Vec<i32>,
-    /// Entry: a vertex, counter-clockwise, -1 for an end that is a ray.
+    /// Entry: a vertex, counterclockwise, -1 for an end that is a ray.
     pub vertices: Vec<i32>,
-    /// Entry: the ridge that leads on from the vertex.
+    /// Entry: the ridge that follows the vertex.
     pub ridges: Vec<i32>,
 }
 
-/// What a walk around sites needs.
+/// The input of a walk around sites.
 pub(super) struct Walk<'a> {
     pub given: Given<'a, 2, 3>,
     pub masks: &'a [u8],
@@ -33,7 +33,7 @@ pub(super) struct Walk<'a> {
     pub first_ridge: &'a [u32],
 }
 
-/// The room of some cells.
+/// The output slots of some cells.
 struct Part<'a> {
     vertices: &'a mut [i32],
     ridges: &'a mut [i32],
@@ -47,14 +47,14 @@ impl Part<'_> {
             .get_mut(self.used)
             .zip(self.ridges.get_mut(self.used));
         let (v, r) =
-            slot.ok_or_else(|| Error::Shape("a site has two turns of triangles".into()))?;
+            slot.ok_or_else(|| Error::Shape("the triangles around a site form two fans".into()))?;
         (*v, *r) = (vertex, ridge);
         self.used += 1;
         Ok(())
     }
 }
 
-/// For each cell where its entries begin: as many as ridges have its site.
+/// For each cell where its entries begin: it has as many as ridges have its site.
 fn starts(sites: &[[i32; 2]], of_point: &[i32], cells: usize) -> Result<Vec<i32>> {
     let mut starts = filled(cells + 1, 0)?;
     for &v in sites.as_flattened() {
@@ -66,7 +66,7 @@ fn starts(sites: &[[i32; 2]], of_point: &[i32], cells: usize) -> Result<Vec<i32>
     Ok(starts)
 }
 
-/// For each point its cell, for each cell its point and the first corner there, as 4 t + k.
+/// The cell of each point; for each cell its point, and its first corner as 4 t + k.
 fn first_corners(given: Given<2, 3>) -> Result<(Vec<i32>, Vec<i32>, Vec<u32>)> {
     let mut of_point = filled(given.points.len(), -1)?;
     let mut site = with_room(given.points.len())?;
@@ -138,11 +138,11 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Goes counter-clockwise around corner k of triangle t; whether the turn was complete.
+    /// Walks counterclockwise around corner k of triangle t; returns whether the turn was complete.
     #[inline]
     fn around(&self, t: usize, k: usize, part: &mut Part) -> Result<bool> {
         let (mut now, mut corner) = (t, k);
-        // A turn meets each triangle once, so that there are no more steps than triangles.
+        // A turn visits each triangle once, so there are no more steps than triangles.
         for _ in 0..=self.masks.len() {
             let edge = (corner + 1) % 3;
             let next = self.given.neighbors[now][edge];
@@ -163,11 +163,11 @@ impl Walk<'_> {
             }
         }
         Err(Error::Shape(format!(
-            "the triangles around one corner of {t} do not end"
+            "the walk around one corner of triangle {t} does not terminate"
         )))
     }
 
-    /// The cell of a corner at the boundary: from the ray that comes in to the one that goes out.
+    /// Adds the cell of a corner at the boundary: from the incoming ray to the outgoing one.
     fn open(&self, t: usize, k: usize, part: &mut Part) -> Result<()> {
         let (mut now, mut corner) = (t, k);
         for _ in 0..=self.masks.len() {
@@ -182,15 +182,15 @@ impl Walk<'_> {
             (now, corner) = (before as usize, (back + 2) % 3);
         }
         Err(Error::Shape(format!(
-            "the triangles around one corner of {t} do not end"
+            "the walk around one corner of triangle {t} does not terminate"
         )))
     }
 
-    /// The number of the ridge of edge k of triangle t; `other` across it sees it as its edge `back`.
+    /// The number of the ridge of edge k of triangle t; for `other`, across it, it is edge `back`.
     #[inline]
     fn ridge(&self, t: usize, k: usize, other: i32, back: usize) -> i32 {
         let owned = self.masks[t] >> (OWNED + k as u32) & 1 == 1;
-        // Two selections, where a branch would be taken at random.
+        // Two selections, since a branch would be unpredictable.
         let (t, k) = (
             if owned { t } else { other as usize },
             if owned { k } else { back },

@@ -1,5 +1,6 @@
-//! Edges of cells: each is the dual of an edge of the triangulation, and lies on the bisector of the
-//! two sites that the edge joins (their radical axis, with weights).
+//! Edges of Voronoi cells: the duals of Delaunay edges, on the bisectors of their two sites.
+//!
+//! With weights, on the radical axis of the sites.
 
 use delone_predicates::Point2;
 
@@ -9,30 +10,30 @@ use crate::memory::{push, with_room, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// The mask of a triangle: bit k where it shares its centre across edge k, bit 3 + k where the ridge
-/// of edge k is numbered with it.
+/// The mask of a triangle: bit k if it shares its center across edge k, bit 3 + k if the ridge of
+/// edge k is numbered with it.
 pub(super) const SHARED: u8 = 0b111;
 pub(super) const OWNED: u32 = 3;
 
-/// Triangles that one task does.
+/// Triangles per task.
 const SHARE: usize = 1 << 14;
 
-/// Edges of cells. The first site lies to the left of the way from the first end to the second.
+/// Edges of cells. The first site is on the left when going from the first end to the second.
 #[derive(Debug, Default)]
 pub struct Ridges {
     /// The two sites of each ridge.
     pub sites: Vec<[i32; 2]>,
-    /// The two ends: a vertex, or !i where ray i is that end. A ray comes first.
+    /// The two ends: a vertex, or !i for ray i. A ray comes first.
     pub ends: Vec<[i32; 2]>,
-    /// Direction of each ray, away from the ridge's other end, of length 1.
+    /// The unit direction of each ray, away from the other end of the ridge.
     pub rays: Vec<Point2>,
-    /// Ray: the vertex beyond the range of doubles to which it leads, with one coordinate or both
-    /// infinite; NaN where it goes on for ever.
+    /// Ray: the out-of-range vertex to which it leads, with one coordinate or both infinite; NaN if
+    /// it is unbounded.
     pub beyond: Vec<Point2>,
 }
 
 /// Ridges in the order of the triangles with which they are numbered, and the number of the first
-/// ridge of each triangle. `far` are the vertices beyond the range.
+/// ridge of each triangle. `far` are the out-of-range vertices.
 pub(super) fn ridges(
     given: Given<2, 3>,
     masks: &[u8],
@@ -74,7 +75,7 @@ pub(super) fn ridges(
     Ok((ridges, first))
 }
 
-/// The first ridge of each triangle, the first one of each share, and how many there are.
+/// The first ridge of each triangle, the first one of each task, and how many there are.
 fn count(masks: &[u8]) -> Result<(Vec<u32>, Vec<usize>, usize)> {
     let mut first = with_room(masks.len())?;
     let mut starts = Vec::with_capacity(masks.len() / SHARE + 2);
@@ -90,10 +91,10 @@ fn count(masks: &[u8]) -> Result<(Vec<u32>, Vec<usize>, usize)> {
     Ok((first, starts, count as usize))
 }
 
-/// Fills a share of the ridges, and tells which have an end that is no vertex.
+/// Computes one task's share of the ridges, and returns which have an end that is not a vertex.
 ///
-/// The way from the triangle right of an edge (a, b) to the one left of it turns left from b - a,
-/// so that a lies on its left.
+/// The direction from the triangle right of an edge (a, b) to the one left of it is b - a turned
+/// left, so a lies on its left.
 fn fill(
     given: Given<2, 3>,
     masks: &[u8],
@@ -124,7 +125,7 @@ fn fill(
     Ok(open)
 }
 
-/// Gives a ridge rays for the ends that are no vertices.
+/// Adds rays to a ridge for the ends that are not vertices.
 fn close(
     given: Given<2, 3>,
     sites: &mut [i32; 2],
@@ -148,17 +149,17 @@ fn close(
     Ok(())
 }
 
-/// The vector from `b` to `a`, which differ, made of length 1.
+/// The unit vector from `b` to `a`, which differ.
 fn unit(a: Point2, b: Point2) -> Point2 {
     let mut v = [a[0] - b[0], a[1] - b[1]];
     if !v.iter().all(|x| x.is_finite()) {
         v = [a[0] / 2.0 - b[0] / 2.0, a[1] / 2.0 - b[1] / 2.0];
     }
-    // By its longer part first, so that no square over- or underflows.
+    // Scaled by its larger component first, so that no square overflows or underflows.
     let longest = v[0].abs().max(v[1].abs());
     let share = v.map(|x| x / longest);
     let length = share[0].hypot(share[1]);
-    // What is not along an axis must not seem to be, however little is missing.
+    // A direction that is not along an axis must not round to one.
     let least = f64::from_bits(1);
     let slanted = |x: f64, from: f64| {
         if x == 0.0 && from != 0.0 {

@@ -1,5 +1,6 @@
-//! Vertices of periodic diagrams: centres of triangles of copies, whose coordinates are no doubles in
-//! general. All is exact before the one rounding at the end.
+//! Vertices of periodic diagrams: exact centers of triangles of copies, rounded once at the end.
+//!
+//! The coordinates of copies are in general not doubles.
 
 use delone_predicates::{Point2, Sign};
 
@@ -11,11 +12,12 @@ use crate::parallel;
 use crate::regular::{Images, Sites};
 use crate::watch::Watch;
 
-/// Triangles that one task does.
+/// Triangles per task.
 const SHARE: usize = 1 << 10;
 
-/// For each three corners (row, and by how many periods it is moved in x and y) of a triangle the
-/// centre, correctly rounded, and for each edge whether the apex across it lies on the circle.
+/// For the three corners of each triangle (row, and the number of periods by which it is translated
+/// in x and y), the center, correctly rounded, and for each edge whether the apex across it is on
+/// the circumcircle.
 pub fn centers(
     points: &[Point2],
     weights: &[f64],
@@ -67,7 +69,7 @@ fn one(
     let weights = images.exact_weights([0, 1, 2], low);
     let Center::At(center) = meeting(&at, &weights, low) else {
         return Err(Error::Shape(
-            "a vertex lies beyond the range of doubles".into(),
+            "a vertex is beyond the range of doubles".into(),
         ));
     };
     let shared = [3, 4, 5].map(|apex| images.height([0, 1, 2, apex]) == Sign::Zero);

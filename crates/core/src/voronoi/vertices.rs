@@ -1,4 +1,4 @@
-//! From simplices to vertices: centres, and which neighbouring simplices share theirs.
+//! Voronoi vertices: the centers of simplices, and which neighboring simplices share theirs.
 
 use super::given::Given;
 use crate::error::Result;
@@ -7,18 +7,18 @@ use crate::memory::{filled, make_room, push, zeroed};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Simplices that one task does.
+/// Simplices per task.
 const SHARE: usize = 1 << 14;
-/// Simplices that are numbered between two looks at the watch.
+/// Simplices numbered between two checks for interruption.
 const LOT: usize = 1 << 16;
-/// Simplices whose corners are fetched before the first of their centres is computed: loads that do
-/// not wait for each other.
+/// Simplices whose corners are gathered before the first of their centers is computed: the loads
+/// are independent.
 const BATCH: usize = 64;
 /// Two roundings of one number, each within 4 units in the last place, differ by less than this
 /// share of it.
 const NEAR: f64 = 16.0 * f64::EPSILON;
 
-/// A simplex whose centre is beyond the range of doubles, and where that is, as in `Center::Beyond`.
+/// A simplex whose center is out of range, and its value as in `Center::Beyond`.
 pub(crate) type Far<const D: usize> = (usize, [f64; D]);
 
 /// The corners of simplex `t`, with their weights.
@@ -30,7 +30,7 @@ fn corners_of<C: Centered<D, N>, const D: usize, const N: usize>(
     C::new(s.map(|v| given.point(v)), s.map(|v| given.weight(v)))
 }
 
-/// The centre of each simplex, NaN for those beyond the range, which are listed.
+/// The center of each simplex, NaN for those out of range, which are listed.
 pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
     given: Given<D, N>,
     workers: usize,
@@ -71,8 +71,8 @@ pub(crate) fn centers<C: Centered<D, N>, const D: usize, const N: usize>(
     Ok((centers, beyond))
 }
 
-/// For each simplex a mask: bit k where it shares its centre across the side opposite corner k, which
-/// `tied` decides where the centres are near, and what `others` adds to that, told the simplex and
+/// For each simplex a mask: bit k if it shares its center across the side opposite corner k, which
+/// `tied` decides if the centers are near, and the bits that `others` adds, given the simplex and
 /// its bits.
 pub(crate) fn masks<const D: usize, const N: usize>(
     given: Given<D, N>,
@@ -100,7 +100,7 @@ pub(crate) fn masks<const D: usize, const N: usize>(
     Ok(masks)
 }
 
-/// Whether two centres may be one; NaN is near everything.
+/// Whether two centers may be equal; NaN is near everything.
 #[inline]
 fn are_near<const D: usize>(here: &[f64; D], there: &[f64; D]) -> bool {
     let apart = |i: usize| {
@@ -109,8 +109,8 @@ fn are_near<const D: usize>(here: &[f64; D], there: &[f64; D]) -> bool {
     !(0..D).any(apart)
 }
 
-/// The vertex of each simplex: its number, or !i for number i of the far ones, whose places are the
-/// second result. `centers` becomes the list of vertices.
+/// The vertex of each simplex: its number, or !i for number i of the out-of-range ones, whose
+/// values are the second result. `centers` becomes the list of vertices.
 pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
     given: Given<D, N>,
     masks: &[u8],
@@ -139,7 +139,7 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
         } else if shares(t) != 0
             && let Center::At(rounded) = corners_of::<C, D, N>(given, t).rounded()
         {
-            // Rounded correctly it is the same whichever of the simplices comes first.
+            // Correct rounding makes it independent of which simplex is first.
             at = rounded;
         }
         let number = if let Some(place) = place {
@@ -155,7 +155,7 @@ pub(crate) fn number<C: Centered<D, N>, const D: usize, const N: usize>(
             continue;
         }
         push(&mut stack, t)?;
-        // Each simplex is numbered once and pushed then.
+        // Each simplex is numbered once, and pushed when it is.
         while let Some(t) = stack.pop() {
             for k in (0..N).filter(|k| shares(t) >> k & 1 == 1) {
                 let other = given.neighbors[t][k] as usize;

@@ -1,14 +1,15 @@
-//! Cells cut to a convex polyhedron.
+//! Clips cells to a convex polyhedron.
 //!
-//! A bounded cell with all vertices inside stays as it is. Each of the others is the polyhedron, cut by
-//! the planes of the cell's ridges one after the other (C. H. Rycroft, "Voro++: a three-dimensional Voronoi
-//! cell library in C++", Chaos 19, 2009), so that no use is made of vertices that are far away or at infinity.
+//! A bounded cell with all vertices inside is unchanged. Each of the others is computed as the
+//! polyhedron, clipped by the planes of the cell's ridges one after the other (C. H. Rycroft,
+//! "Voro++: a three-dimensional Voronoi cell library in C++", Chaos 19, 2009), so vertices that are
+//! far away or at infinity are not used.
 //!
-//! Corners are found in floating point. Where three planes meet at a flat angle, as those towards two sites
-//! close together do with a third one, a corner is found in integers (`meeting`).
+//! Corners are computed in floating point. If three planes meet at a flat angle, as those towards
+//! two close sites do with a third one, the corner is computed in integers (`meeting`).
 //!
-//! A ridge is measured once: as a whole where one of its two cells is, otherwise in the cell of its
-//! first site. So both cells say the same.
+//! A ridge is measured once: as a whole if one of its two cells is whole, otherwise in the cell of
+//! its first site. So both cells have the same value.
 
 use delone_predicates::{Point3, Sign, orient3d};
 
@@ -20,14 +21,14 @@ use crate::memory::{filled, with_room};
 use crate::parallel;
 use crate::watch::Watch;
 
-/// Cells that one task does.
+/// Cells per task.
 const SHARE: usize = 1 << 10;
-/// Planes whose normals, at length 1, span less than this meet where rounding does not tell.
+/// Planes whose unit normals span less than this meet at a point that rounding makes uncertain.
 const FLAT: f64 = 1.0 / 32.0;
-/// More than the share of its terms by which a sum of six products of rounded numbers errs.
+/// More than the relative error of a sum of six products of rounded numbers.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A convex polyhedron: faces counter-clockwise from outside, and their planes n . x <= c.
+/// A convex polyhedron: faces counterclockwise from outside, and their planes n . x <= c.
 #[derive(Clone, Copy)]
 pub struct Clip<'a> {
     /// Corners.
@@ -36,16 +37,16 @@ pub struct Clip<'a> {
     pub starts: &'a [i32],
     /// Numbers of corners.
     pub corners: &'a [i32],
-    /// For each face n and c.
+    /// The vector n and the number c of each face.
     pub planes: &'a [[f64; 4]],
 }
 
-/// What is left of the cells. Those that are not cut are as in the diagram.
+/// The clipped cells. Those that are unchanged are as in the diagram.
 #[derive(Debug)]
 pub struct Clipped {
-    /// Measures of what is left.
+    /// Measures of the clipped cells.
     pub measures: Measures,
-    /// The cells that were cut, ascending; body b is what is left of `cut[b]`.
+    /// The cells that were clipped, ascending; body b is what is left of `cut[b]`.
     pub cut: Vec<i32>,
     /// The corners of body b are `points[point_starts[b]..point_starts[b + 1]]`.
     pub point_starts: Vec<i32>,
@@ -61,7 +62,7 @@ pub struct Clipped {
     pub labels: Vec<i32>,
 }
 
-/// What is left of one cell.
+/// What is left of one cell after clipping.
 struct Body {
     cell: i32,
     volume: f64,
@@ -70,7 +71,7 @@ struct Body {
     shape: Polyhedron,
 }
 
-/// Cuts the cells.
+/// Clips the cells.
 pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<Clipped> {
     let inside = inside(cells.vertices, clip, workers, watch)?;
     let is_whole = |cell: usize| {
@@ -98,7 +99,7 @@ pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<C
     let rest: Vec<usize> = (0..whole.len()).filter(|&c| !whole[c]).collect();
     let bodies = parallel::map(workers, rest.chunks(SHARE).collect(), |part| {
         let cut = |&c| {
-            // With a clip of many faces a cell takes long.
+            // A cell takes long if the clip has many faces.
             watch.check()?;
             Ok(body(cells, c, &start, &frame))
         };
@@ -108,7 +109,7 @@ pub fn clip(cells: Cells, clip: Clip, workers: usize, watch: &Watch) -> Result<C
     collected(cells, &whole, measures(cells, workers, watch)?, bodies)
 }
 
-/// Which vertices lie inside, the boundary included.
+/// Which vertices are inside, boundary included.
 fn inside(vertices: &[Point3], clip: Clip, workers: usize, watch: &Watch) -> Result<Vec<bool>> {
     let within = |v: &Point3| {
         let beyond = |p: &[f64; 4]| dot([p[0], p[1], p[2]], *v) > p[3];
@@ -163,15 +164,15 @@ fn body(cells: Cells, cell: usize, start: &Polyhedron, frame: &Frame) -> Body {
     }
 }
 
-/// The clip, with normals of length 1.
+/// The clip, with unit normals.
 struct Frame<'a> {
     clip: Clip<'a>,
     normals: Vec<Point3>,
 }
 
 impl Frame<'_> {
-    /// The plane of a face as exactly as it is known: where all corners lie in one, as those of facets do,
-    /// that one. Corners of half-spaces may have been rounded out of theirs.
+    /// The plane of a face, as exactly as it is known: if all corners are coplanar, as those of
+    /// facets are, their plane. Corners of half-spaces may have been rounded off theirs.
     fn plane(&self, face: usize) -> Plane {
         let bounds = self.clip.starts[face] as usize..self.clip.starts[face + 1] as usize;
         let corners = &self.clip.corners[bounds];
@@ -186,13 +187,13 @@ impl Frame<'_> {
     }
 }
 
-/// The planes of a cell; labels are numbers of its ridges, or !k for face k of the clip.
+/// The planes of a cell; labels are its ridges, or !k for face k of the clip.
 struct Planes<'a> {
     cells: Cells<'a>,
     frame: &'a Frame<'a>,
     site: i32,
     ridges: &'a [i32],
-    /// d and h of `Cells::plane`, and d at length 1, of the ridges so far.
+    /// For the ridges so far, d and h of `Cells::plane`, and d at length 1.
     known: Vec<(Point3, f64, Point3)>,
 }
 
@@ -218,15 +219,16 @@ impl Planes<'_> {
         }
     }
 
-    /// Where three planes meet, exactly rounded, if they do at so flat an angle that a point that lies on each but
-    /// for rounding may be far from there, and if that is on the inner side of all others.
+    /// The point where three planes meet, correctly rounded, if the angle is so flat that a point
+    /// on each plane up to rounding may be far from it, and if it is on the inner side of all
+    /// others.
     fn corner(&self, labels: [i32; 3]) -> Option<Point3> {
         let [p, q, r] = labels.map(|label| self.normal(label));
         let upright = [0, 1, 2].map(|k| {
             let (x, y) = ((k + 1) % 3, (k + 2) % 3);
             p[x] * q[y] - p[y] * q[x]
         });
-        // NaN, where a length is beyond the range, is as good as well apart.
+        // NaN, from a length out of range, counts as well separated.
         if dot(upright, r).abs() < FLAT {
             let at = meeting(labels.map(|label| self.plane(label)))?;
             return self.holds(at).then_some(at);
@@ -246,7 +248,7 @@ impl Planes<'_> {
         )
     }
 
-    /// Whether a point is, but for rounding, on the inner side of all planes.
+    /// Whether a point is, up to rounding, on the inner side of all planes.
     fn holds(&self, at: Point3) -> bool {
         let p = self.origin();
         let size = |n: Point3, far: Point3| (0..3).map(|k| n[k].abs() * far[k]).sum::<f64>();
@@ -267,7 +269,7 @@ fn unit(v: Point3) -> Point3 {
     v.map(|x| x / size)
 }
 
-/// Puts bodies into arrays, and their measures in the place of those of whole cells.
+/// Collects the bodies in arrays, and replaces the measures of whole cells by theirs.
 fn collected(
     cells: Cells,
     whole: &[bool],
@@ -275,7 +277,7 @@ fn collected(
     bodies: Vec<Vec<Body>>,
 ) -> Result<Clipped> {
     let bodies = || bodies.iter().flatten();
-    // Only ridges between two whole cells, or a whole and a cut one, keep their area.
+    // Only ridges with at least one whole cell keep their area.
     let mut cell_of = vec![usize::MAX; cells.points.len()];
     for (cell, &site) in cells.site.iter().enumerate() {
         cell_of[site as usize] = cell;
@@ -297,6 +299,7 @@ fn collected(
         corners: with_room(count(|b| b.shape.corners.len()))?,
         labels: with_room(count(|b| b.shape.labels.len()))?,
     };
+    // Append each body, and replace the measures of its cell.
     for body in bodies() {
         let cell = body.cell as usize;
         let base = out.points.len() as i32;

@@ -1,4 +1,4 @@
-//! The dual of a triangulation of space: vertices, then ridges, then regions.
+//! The dual of a 3-D triangulation: vertices, then ridges, then regions.
 
 use delone_predicates::{Point3, insphere};
 
@@ -11,10 +11,10 @@ use crate::voronoi::Given;
 use crate::voronoi::vertices::{centers, masks, number};
 use crate::watch::Watch;
 
-/// What is the dual of the tetrahedra, edges and points of a triangulation.
+/// The dual of the tetrahedra, edges and points of a triangulation.
 #[derive(Debug)]
 pub struct Diagram {
-    /// The vertices within the range of doubles, in the order of their first tetrahedra.
+    /// The vertices in range, in the order of their first tetrahedra.
     pub vertices: Vec<Point3>,
     /// The vertex of each tetrahedron, or -1.
     pub simplex_vertex: Vec<i32>,
@@ -52,7 +52,7 @@ pub fn diagram(given: Given<3, 4>, workers: usize, watch: &Watch) -> Result<Diag
     })
 }
 
-/// Whether tetrahedron `t` and its neighbour `other` have one centre, exactly.
+/// Whether tetrahedron `t` and its neighbor `other` have the same center, exactly.
 #[cold]
 #[inline(never)]
 fn tied(given: Given<3, 4>, t: usize, other: usize) -> Result<bool> {

@@ -1,7 +1,7 @@
-//! Volumes, centroids and surfaces of cells, areas of ridges.
+//! Volumes, centroids and surface areas of cells, and areas of ridges.
 //!
 //! A cell is the sum of the pyramids from its site to its faces, whose heights are known before any
-//! rounding of vertices: half the distance of the two sites (and a share that weights move).
+//! vertex is rounded: half the distance of the two sites (plus a share due to weights).
 
 use delone_predicates::Point3;
 
@@ -11,7 +11,7 @@ use crate::parallel;
 use crate::voronoi::Given;
 use crate::watch::Watch;
 
-/// Ridges or cells that one task does.
+/// Ridges or cells per task.
 const SHARE: usize = 1 << 12;
 
 /// The cells of a diagram as arrays, with the points and weights of its triangulation.
@@ -25,19 +25,19 @@ pub struct Cells<'a> {
     pub vertices: &'a [Point3],
     /// The two sites of each ridge.
     pub sites: &'a [[i32; 2]],
-    /// Where the entries of each ridge begin, and end.
+    /// Where the entries of each ridge begin, plus the end.
     pub starts: &'a [i32],
     /// Vertices of ridges, negative for rays.
     pub entries: &'a [i32],
     /// The point of each cell.
     pub site: &'a [i32],
-    /// Where the ridges of each cell begin, and end.
+    /// Where the ridges of each cell begin, plus the end.
     pub ridge_starts: &'a [i32],
     /// The ridges of cells.
     pub ridges: &'a [i32],
 }
 
-/// What is measured on cells and ridges: infinite where they are open, NaN for centroids there.
+/// The measures of cells and ridges: infinite if they are unbounded, with NaN for centroids.
 #[derive(Debug)]
 pub struct Measures {
     /// Area of each ridge.
@@ -46,7 +46,7 @@ pub struct Measures {
     pub volumes: Vec<f64>,
     /// Area of the surface of each cell.
     pub areas: Vec<f64>,
-    /// Centre of gravity of each cell.
+    /// The centroid of each cell.
     pub centroids: Vec<Point3>,
 }
 
@@ -70,9 +70,9 @@ impl<'a> Cells<'a> {
         &self.ridges[self.ridge_starts[cell] as usize..self.ridge_starts[cell + 1] as usize]
     }
 
-    /// The plane of a ridge as seen from one of its sites: a vector d towards the other site, and h, so
-    /// that the cell of the first has (x - p) . d <= h. The largest component of d is 1 to 2: no square of
-    /// it over- or underflows.
+    /// The plane of a ridge relative to one of its sites: a vector d towards the other site, and h,
+    /// so that the cell of the first has (x - p) . d <= h. The largest component of d is 1 to 2, so
+    /// its squares neither overflow nor underflow.
     pub(super) fn plane(&self, ridge: usize, site: i32) -> (Point3, f64) {
         let [a, b] = self.sites[ridge];
         let other = if a == site { b } else { a };
@@ -86,7 +86,7 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The largest power of two that is not above a number; 1 for zero and infinity.
+/// The largest power of two not above a number; 1 for zero and infinity.
 fn power_below(x: f64) -> f64 {
     let bits = x.to_bits();
     if x == 0.0 || !x.is_finite() {
@@ -104,7 +104,7 @@ pub(super) fn dot(p: Point3, q: Point3) -> f64 {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
-/// The length of a vector, whatever its exponents.
+/// The length of a vector with any exponents.
 pub(super) fn length(v: Point3) -> f64 {
     let most = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     if most == 0.0 || !most.is_finite() {
@@ -114,7 +114,7 @@ pub(super) fn length(v: Point3) -> f64 {
     most * dot(scaled, scaled).sqrt()
 }
 
-/// A point as seen from another.
+/// A point relative to another.
 #[inline]
 pub(super) fn seen(p: Point3, o: Point3) -> Point3 {
     [p[0] - o[0], p[1] - o[1], p[2] - o[2]]
@@ -132,13 +132,13 @@ pub(super) fn exponent(x: f64) -> i32 {
     }
 }
 
-/// A number times a power of two: infinite beyond the range of doubles, and below it not 0, unless
-/// the number is.
+/// A number times a power of two: infinite on overflow, and on underflow nonzero, unless the number
+/// is zero.
 #[inline]
 pub(super) fn by_power(x: f64, power: i32) -> f64 {
     let of = |e: i32| f64::from_bits(((1023 + e) as u64) << 52);
     let (mut y, mut rest) = (x, power);
-    // Powers are sums of a few exponents: this ends after some steps.
+    // Powers are sums of a few exponents: this ends after a few steps.
     while rest.abs() > 1000 {
         let step = rest.clamp(-1000, 1000);
         y *= of(step);
@@ -152,8 +152,8 @@ pub(super) fn by_power(x: f64, power: i32) -> f64 {
     }
 }
 
-/// A unit for each axis, by which the largest of some coordinates is 1 to 2, and its exponents. Boxes may be of
-/// any shape, so one unit for all would lose the short axis of some.
+/// A unit for each axis, in which the largest of some coordinates is 1 to 2, and its exponents.
+/// Boxes may have any shape, so a common unit would lose the short axis of some.
 #[derive(Clone, Copy)]
 pub(super) struct Units {
     of: Point3,
@@ -179,14 +179,14 @@ impl Units {
         [v[0] / self.of[0], v[1] / self.of[1], v[2] / self.of[2]]
     }
 
-    /// A coordinate out of them.
+    /// Converts a coordinate back from these units.
     #[inline]
     pub fn back(&self, k: usize, x: f64) -> f64 {
         x * self.of[k]
     }
 }
 
-/// A ridge as measured: its area times a power of two.
+/// The measures of a ridge: its area is multiplied by a power of two.
 #[derive(Clone, Copy)]
 struct Face {
     area: f64,
@@ -194,14 +194,14 @@ struct Face {
     center: Point3,
 }
 
-/// Measures a convex polygon, counter-clockwise about the unit vector `n`, by its shadow along the largest
-/// component of that.
+/// Measures a convex polygon, counterclockwise about the unit vector `n`, by its projection along
+/// the largest component of `n`.
 fn polygon(corners: &[Point3], n: Point3) -> Face {
     let o = corners[0];
     let units = Units::of(corners.iter().map(|&p| seen(p, o)));
     let k = (1..3).fold(0, |k, i| if n[i].abs() > n[k].abs() { i } else { k });
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    // Twice the shadow, and the sum of twice its triangles times their centroids, these times three.
+    // Twice the projected area, and the sum of its doubled triangles times three centroids.
     let (mut twice, mut moment) = (0.0, [0.0; 3]);
     let mut last = [0.0; 3];
     for &p in &corners[1..] {
@@ -220,7 +220,7 @@ fn polygon(corners: &[Point3], n: Point3) -> Face {
             center: [0, 1, 2].map(|k| o[k] + units.back(k, moment[k] / twice / 3.0)),
         };
     }
-    // As thin as rounding allows: the middle of the corners stands for the centre.
+    // As thin as rounding allows: use the mean of the corners.
     let share = 1.0 / corners.len() as f64;
     let mean = |k: usize| o[k] + corners.iter().map(|p| (p[k] - o[k]) * share).sum::<f64>();
     Face {
@@ -264,7 +264,7 @@ pub fn measures(cells: Cells, workers: usize, watch: &Watch) -> Result<Measures>
     Ok(out)
 }
 
-/// Measures a ridge; its area is infinite where it is open.
+/// Measures a ridge; its area is infinite if it is unbounded.
 fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> Face {
     let entries = cells.entries_of(ridge);
     if entries.iter().any(|&v| v < 0) {
@@ -281,8 +281,8 @@ fn face(cells: Cells, ridge: usize, corners: &mut Vec<Point3>) -> Face {
     polygon(corners, d.map(|x| x / size))
 }
 
-/// Volume, surface and centroid of a cell. Sums are of numbers with a common power of two beside them, so
-/// that a cell whose volume or surface is beyond the range of doubles has its centroid.
+/// Volume, surface area and centroid of a cell. Sums are kept with a common power of two, so that a
+/// cell whose volume or surface area is out of range still has its centroid.
 fn body(cells: Cells, cell: usize, faces: &[Face]) -> (f64, f64, Point3) {
     let site = cells.site[cell];
     let p = cells.points[site as usize];

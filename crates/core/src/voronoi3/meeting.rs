@@ -1,6 +1,6 @@
-//! Where three planes meet, correctly rounded, in integers of any width.
+//! The point where three planes meet, correctly rounded, in arbitrary-precision integers.
 //!
-//! Planes of Cramer's rule: with n_i . x = c_i, and D the determinant of the normals, the point is
+//! By Cramer's rule: with n_i . x = c_i, and D the determinant of the normals, the point is
 //!
 //! ```text
 //! x = (c_0 n_1 x n_2 + c_1 n_2 x n_0 + c_2 n_0 x n_1) / D
@@ -11,10 +11,10 @@ use num_bigint::{BigInt, Sign};
 
 use crate::wide::{determinant, lowest, ratio, scaled};
 
-/// A plane as it is given.
+/// A plane in one of its given forms.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Plane {
-    /// Where the powers from two sites, with their weights, are equal.
+    /// The points with equal power from two weighted sites.
     Between([Point3; 2], [f64; 2]),
     /// n . x = c.
     Equation([f64; 4]),
@@ -23,7 +23,7 @@ pub(super) enum Plane {
 }
 
 impl Plane {
-    /// An exponent of whose power of two all its lengths are multiples.
+    /// An exponent such that all lengths are multiples of its power of two.
     fn low(&self) -> i64 {
         match self {
             Self::Between(points, weights) => lowest(points, weights),
@@ -58,7 +58,7 @@ impl Plane {
     }
 }
 
-/// The point of three planes: none where they have no single one, or one beyond the range.
+/// The common point of three planes; `None` if it is not unique, or out of range.
 #[cold]
 #[inline(never)]
 pub(super) fn meeting(planes: [Plane; 3]) -> Option<Point3> {

@@ -1,17 +1,19 @@
-//! A convex polyhedron that is cut by planes, in floating point.
+//! A convex polyhedron that is clipped by planes, in floating point.
 //!
-//! A new corner is a share of its edge, unless the caller knows better: on an edge between nearly parallel
-//! planes, that share would be right for the planes only, not for the point.
+//! A new corner is interpolated on its edge, unless the caller provides it: on an edge between
+//! nearly parallel planes, the interpolated corner would satisfy the planes, but be far from the
+//! true point.
 //!
-//! Corners are kept or not by the sign of a rounded number, and all else follows from that: each edge with one
-//! end kept gets one new corner, which one of its two faces enters and the other one leaves. So the
-//! new edges make closed turns, and the surface stays closed, whatever the signs are.
+//! Corners are kept or removed by the sign of a rounded number, and everything else follows from
+//! that: each edge with one end kept gets one new corner, at which the new edge enters one of its
+//! two faces and leaves the other. So the new edges form closed cycles, and the surface stays
+//! closed, whatever the signs are.
 
 use delone_predicates::Point3;
 
 use super::measure::{Units, by_power, dot, exponent, length, seen};
 
-/// Corners, and faces counter-clockwise from outside.
+/// Corners, and faces counterclockwise from outside.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polyhedron {
     pub points: Vec<Point3>,
@@ -22,7 +24,7 @@ pub(super) struct Polyhedron {
     spare: Spare,
 }
 
-/// Memory that cuts use again and again.
+/// Buffers reused from clip to clip.
 #[derive(Clone, Debug, Default)]
 struct Spare {
     values: Vec<f64>,
@@ -32,7 +34,7 @@ struct Spare {
     corners: Vec<u32>,
     labels: Vec<i32>,
     cuts: Vec<Cut>,
-    /// For a new corner the one after it in the new face.
+    /// For each new corner, the next one in the new face.
     links: Vec<(u32, u32)>,
 }
 
@@ -43,7 +45,7 @@ struct Cut {
     other: u32,
     /// The new corner.
     new: u32,
-    /// The label of the face that came first.
+    /// The label of the face that was visited first.
     beside: i32,
 }
 
@@ -57,8 +59,8 @@ impl Polyhedron {
         &self.corners[self.starts[f] as usize..self.starts[f + 1] as usize]
     }
 
-    /// Removes what lies where `value`, linear, is positive. New faces get the label. Where faces of three labels
-    /// meet, `meet` may tell the corner.
+    /// Removes the part where `value`, a linear function, is positive. New faces get the label. If
+    /// faces of three labels meet in a new corner, `meet` may provide it.
     pub fn cut(
         &mut self,
         label: i32,
@@ -145,7 +147,7 @@ impl Polyhedron {
         }
     }
 
-    /// The new corner of an edge from a corner that is kept, in each of the two faces beside it.
+    /// The new corner on an edge, starting at a corner that is kept, for both faces beside it.
     fn on_edge(
         &self,
         (kept, other): (u32, u32),
@@ -178,8 +180,9 @@ impl Polyhedron {
         new
     }
 
-    /// Gives equal corners one number, and drops faces that have fewer than three. Where the surface would not be
-    /// closed then, as a face touched itself, all stays, with corners that are equal.
+    /// Gives equal corners one number, and drops faces with fewer than three corners. If the
+    /// surface would then not be closed, because a face touches itself, nothing changes, and equal
+    /// corners stay separate.
     pub fn weld(&mut self) {
         let mut first: Vec<u32> = Vec::with_capacity(self.points.len());
         for i in 0..self.points.len() {
@@ -217,7 +220,7 @@ impl Polyhedron {
         }
     }
 
-    /// The area of a face: infinite beyond the range of doubles, and not 0 below it.
+    /// The area of a face: infinite on overflow, nonzero on underflow.
     pub fn area(&self, f: usize) -> f64 {
         let face = self.face(f);
         let o = self.points[face[0] as usize];
@@ -231,7 +234,7 @@ impl Polyhedron {
             }
             last = here;
         }
-        // The components of the vector area each have a power of their own.
+        // Each component of the vector area has its own power of two.
         let [x, y, z] = units.powers;
         let powers = [y + z, z + x, x + y];
         let there = (0..3).filter(|&k| sum[k] != 0.0);
@@ -243,7 +246,7 @@ impl Polyhedron {
         )
     }
 
-    /// The volume, and the centre of gravity.
+    /// The volume and the centroid.
     pub fn body(&self) -> (f64, Point3) {
         let Some(&o) = self.points.first() else {
             return (0.0, [f64::NAN; 3]);
@@ -276,7 +279,8 @@ impl Polyhedron {
     }
 }
 
-/// Whether each edge is there once each way, and corners and faces are as many as on a ball.
+/// Whether each edge occurs once in each direction, and the Euler characteristic is that of a
+/// sphere.
 fn is_closed(points: usize, starts: &[u32], corners: &[u32]) -> bool {
     let mut edges = Vec::with_capacity(corners.len());
     for bounds in starts.windows(2) {
@@ -291,11 +295,11 @@ fn is_closed(points: usize, starts: &[u32], corners: &[u32]) -> bool {
     once && edges.iter().all(back) && points + faces == edges.len() / 2 + 2
 }
 
-/// Adds the new faces: the turns of the links.
+/// Adds the new faces: the cycles of the links.
 fn close(label: i32, spare: &mut Spare) {
     while let Some((start, mut now)) = spare.links.pop() {
         spare.corners.push(start);
-        // Each step takes a link away.
+        // Each step removes a link.
         while now != start {
             spare.corners.push(now);
             let Some(i) = spare.links.iter().position(|l| l.0 == now) else {
@@ -329,13 +333,13 @@ mod tests {
         }
     }
 
-    /// Corners as they come.
+    /// Provides no corners.
     fn none(_: [i32; 3]) -> Option<Point3> {
         None
     }
 
     #[test]
-    fn a_corner_goes() {
+    fn a_corner_is_removed() {
         let mut body = cube(0.5);
         let (volume, center) = body.body();
         assert!((volume - 1.0).abs() < 1e-15 && center.iter().all(|x| x.abs() < 1e-15));
@@ -363,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_may_be_told() {
+    fn corners_may_be_provided() {
         let mut body = cube(0.5);
         let told = |labels: [i32; 3]| {
             (labels.contains(&-1) && labels.contains(&-3)).then_some([-0.5, -0.5, 0.125])
@@ -375,8 +379,8 @@ mod tests {
     }
 
     #[test]
-    fn what_welding_would_pinch_stays_apart() {
-        // Two corners across the cube from each other.
+    fn corners_whose_welding_would_pinch_stay_separate() {
+        // Two opposite corners of the cube.
         let mut body = cube(0.5);
         body.points[1] = body.points[6];
         let corners = body.corners.clone();

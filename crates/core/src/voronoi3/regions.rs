@@ -1,4 +1,4 @@
-//! Cells: the vertices and faces around each site.
+//! 3-D Voronoi cells: the vertices and faces around each site.
 
 use super::ridges::Ridges;
 use crate::error::{Error, Result};
@@ -7,19 +7,19 @@ use crate::parallel;
 use crate::voronoi::Given;
 use crate::watch::Watch;
 
-/// Cells that one task does.
+/// Cells per task.
 const SHARE: usize = 1 << 12;
 
-/// Cells, in the order in which tetrahedra first have their sites.
+/// Cells, in the order in which their sites first occur in the tetrahedra.
 #[derive(Debug, Default)]
 pub struct Regions {
-    /// The cell of each point, -1 where it has none.
+    /// The cell of each point, -1 if it has none.
     pub of_point: Vec<i32>,
     /// The point of each cell.
     pub site: Vec<i32>,
     /// The vertices of cell r are `vertices[starts[r]..starts[r + 1]]`.
     pub starts: Vec<i32>,
-    /// Ascending; -1, which comes first, where the cell is open.
+    /// Ascending; preceded by -1 if the cell is unbounded.
     pub vertices: Vec<i32>,
     /// The ridges of cell r are `ridges[ridge_starts[r]..ridge_starts[r + 1]]`.
     pub ridge_starts: Vec<i32>,
@@ -67,7 +67,7 @@ pub(super) fn regions(
     })
 }
 
-/// Which cells go on for ever: those of the corners of faces on the boundary.
+/// Which cells are unbounded: those of the corners of boundary faces.
 fn open_cells(given: Given<3, 4>, cells: usize, cell_of: impl Fn(&i32) -> usize) -> Vec<bool> {
     let mut open = vec![false; cells];
     for (t, row) in given.neighbors.iter().enumerate() {
@@ -80,7 +80,7 @@ fn open_cells(given: Given<3, 4>, cells: usize, cell_of: impl Fn(&i32) -> usize)
     open
 }
 
-/// The first `kept` vertices of each cell, close together, and -1 before those of open ones.
+/// The first `kept` vertices of each cell, without gaps, preceded by -1 for unbounded cells.
 fn closed_up(
     starts: &mut [i32],
     around: &[i32],
@@ -102,7 +102,7 @@ fn closed_up(
     Ok(vertices)
 }
 
-/// Compressed rows of what belongs to each owner, in order.
+/// Compressed rows of the items of each owner, in order.
 fn gathered(
     count: usize,
     owners: impl Iterator<Item = usize> + Clone,
@@ -129,7 +129,7 @@ fn gathered(
     Ok((starts, rows))
 }
 
-/// Sorts each row and moves what comes again behind the rest; how many are left.
+/// Sorts each row and moves duplicates to its end; returns how many items are left.
 fn sorted(starts: &[i32], rows: &mut [i32], workers: usize, watch: &Watch) -> Result<Vec<usize>> {
     let cells = starts.len() - 1;
     let mut tasks = Vec::new();

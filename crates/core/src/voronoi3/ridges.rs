@@ -1,11 +1,14 @@
-//! Faces of cells: each is the dual of an edge of the triangulation, and lies in the plane that bisects
-//! the two sites which the edge joins (their radical plane, with weights).
+//! Faces of 3-D Voronoi cells: the duals of Delaunay edges, in the bisecting planes of their two
+//! sites.
 //!
-//! The tetrahedra around an edge, in their order, have the vertices of the face as centres.
-//! Where tetrahedra share one, it counts once. An edge that is a diagonal, of a polytope of sites on one sphere
-//! or of a face of such, has no face: around it there is one polytope or two, where an edge of
-//! polytopes, each with less than half of the turn, has three at least. On the hull one is enough, unless
-//! the edge is a diagonal of one of its facets: then the two triangles of the hull lie in one plane.
+//! With weights, in the radical plane of the sites.
+//!
+//! The tetrahedra around an edge, in order, have the vertices of the face as centers. A vertex
+//! shared by several tetrahedra counts once. An edge that is a diagonal of a polytope of
+//! cospherical sites, or of one of its faces, has no face: around it there are one or two
+//! polytopes, whereas around an edge of polytopes, each with less than half of the turn, there are
+//! at least three. On the hull one suffices, unless the edge is a diagonal of one of its facets:
+//! then the two triangles of the hull are coplanar.
 
 use std::collections::HashMap;
 
@@ -18,7 +21,7 @@ use crate::parallel;
 use crate::voronoi::Given;
 use crate::watch::Watch;
 
-/// Tetrahedra that one task does.
+/// Tetrahedra per task.
 const SHARE: usize = 1 << 14;
 
 /// The edges of a tetrahedron: two corners, and the other two so that all four are positively oriented.
@@ -33,20 +36,21 @@ const EDGES: [[usize; 4]; 6] = [
 /// The number of the edge between two corners.
 const NUMBER: [[u8; 4]; 4] = [[9, 0, 1, 2], [0, 9, 3, 4], [1, 3, 9, 5], [2, 4, 5, 9]];
 
-/// Faces of cells. Seen from the second site, with the first one behind, a face is counter-clockwise.
+/// Faces of cells. Seen from the second site, with the first one behind, a face is
+/// counterclockwise.
 #[derive(Debug, Default)]
 pub struct Ridges {
     /// The two sites of each ridge.
     pub sites: Vec<[i32; 2]>,
     /// The entries of ridge r are `starts[r]..starts[r + 1]`.
     pub starts: Vec<i32>,
-    /// Entry: a vertex, or !i for ray i. An open ridge begins with a ray and ends with one.
+    /// Entry: a vertex, or !i for ray i. An unbounded ridge begins and ends with a ray.
     pub entries: Vec<i32>,
-    /// Direction of each ray, of length 1.
+    /// The unit direction of each ray.
     pub rays: Vec<Point3>,
 }
 
-/// What one task has found.
+/// The output of one task.
 #[derive(Default)]
 struct Part {
     sites: Vec<[i32; 2]>,
@@ -54,7 +58,7 @@ struct Part {
     entries: Vec<i32>,
 }
 
-/// What a walk around edges needs.
+/// The input of a walk around edges.
 struct Walk<'a> {
     given: Given<'a, 3, 4>,
     vertex: &'a [i32],
@@ -66,16 +70,17 @@ struct Walk<'a> {
 #[derive(Default)]
 struct Turn {
     ring: Vec<u32>,
-    /// The corners, of the tetrahedra in `ring`, that the edge leads from and to.
+    /// For the tetrahedra in `ring`, the corners where the edge begins and ends.
     at: Vec<(u8, u8)>,
-    /// The corners opposite the last face and the first, where the turn is open: faces of the hull.
+    /// The corners opposite the last face and the first one, if the turn is open: faces of the
+    /// hull.
     last: usize,
     first: usize,
     open: bool,
 }
 
-/// Ridges in the order of the tetrahedra that come first around their edges. `far` are the directions of
-/// vertices beyond the range, and become the first rays.
+/// Ridges in the order of the first tetrahedra around their edges. `far` are the directions of
+/// out-of-range vertices, which become the first rays.
 pub(super) fn ridges(
     given: Given<3, 4>,
     vertex: &[i32],
@@ -120,10 +125,10 @@ pub(super) fn ridges(
     Ok(out)
 }
 
-/// The direction away from the face opposite corner k of tetrahedron t.
+/// The outward direction of the face opposite corner k of tetrahedron t.
 fn outward(given: Given<3, 4>, t: usize, k: usize) -> Point3 {
     let s = given.simplices[t];
-    // Counter-clockwise as seen from outside: for k = 3 that is (0, 2, 1), and so on by exchanges.
+    // Counterclockwise seen from outside: (0, 2, 1) for k = 3, and so on by swaps.
     let [a, b, c] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]][k].map(|i| given.point(s[i]));
     normal(a, b, c)
 }
@@ -146,14 +151,14 @@ impl Walk<'_> {
                 }
                 let [i, j, ..] = edge;
                 let s = self.given.simplices[t];
-                self.note([s[i], s[j]], &turn, &mut part);
+                self.add_ridge([s[i], s[j]], &turn, &mut part);
             }
         }
         Ok(part)
     }
 
-    /// Collects the tetrahedra around an edge of `t`, counter-clockwise about its direction; false where
-    /// one comes before `t`.
+    /// Collects the tetrahedra around an edge of `t`, counterclockwise about its direction; false
+    /// if one of them precedes `t`.
     fn around(&self, t: usize, [i, j, k, l]: [usize; 4], turn: &mut Turn) -> Result<bool> {
         (turn.open, turn.first, turn.last) = (false, l, k);
         turn.ring.clear();
@@ -166,7 +171,7 @@ impl Walk<'_> {
         if !turn.open {
             return Ok(true);
         }
-        // The hull was met: the other way round there is the rest.
+        // The hull was reached: the rest is in the other direction.
         let (last, forward) = (turn.last, turn.ring.len());
         if !self.go(t, [i, j, l, k], turn)? {
             return Ok(false);
@@ -179,12 +184,12 @@ impl Walk<'_> {
         Ok(true)
     }
 
-    /// Goes around an edge, out of each tetrahedron by the face opposite corner k.
+    /// Walks around an edge, leaving each tetrahedron through the face opposite corner k.
     fn go(&self, t: usize, [i, j, k, l]: [usize; 4], turn: &mut Turn) -> Result<bool> {
         let s = self.given.simplices[t];
         let (a, b) = (s[i], s[j]);
         let (mut now, mut out, mut kept) = (t, k, s[l]);
-        // A turn meets each tetrahedron once, so that there are no more steps than tetrahedra.
+        // A turn visits each tetrahedron once, so there are no more steps than tetrahedra.
         for _ in 0..=self.vertex.len() {
             let next = self.given.neighbors[now][out];
             if next < 0 {
@@ -203,7 +208,7 @@ impl Walk<'_> {
             let place = |v: i32| row.iter().position(|&x| x == v);
             let (Some(i), Some(j), Some(o)) = (place(a), place(b), place(kept)) else {
                 return Err(Error::Shape(format!(
-                    "tetrahedra {now} and {next} have no face in common"
+                    "tetrahedra {now} and {next} do not share a face"
                 )));
             };
             turn.ring.push(next as u32);
@@ -211,12 +216,12 @@ impl Walk<'_> {
             (now, out, kept) = (next, o, row[corner]);
         }
         Err(Error::Shape(format!(
-            "the tetrahedra around an edge of {t} do not end"
+            "the walk around an edge of tetrahedron {t} does not terminate"
         )))
     }
 
-    /// Adds the ridge of a turn, where there is one.
-    fn note(&self, sites: [i32; 2], turn: &Turn, part: &mut Part) {
+    /// Adds the ridge of a turn, if there is one.
+    fn add_ridge(&self, sites: [i32; 2], turn: &Turn, part: &mut Part) {
         let begin = part.entries.len();
         let ends = turn.open.then(|| {
             let code = |t: u32, k: usize| 4 * t + k as u32;
@@ -254,7 +259,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether the two faces of the hull at an edge lie in one plane.
+    /// Whether the two hull faces at an edge are coplanar.
     fn coplanar(&self, [a, b]: [i32; 2], first: u32, last: u32) -> bool {
         let apex = |code: u32| {
             let (t, k) = (code as usize / 4, code as usize % 4);

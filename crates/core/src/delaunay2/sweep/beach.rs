@@ -1,6 +1,8 @@
-//! The beach line: arcs from below to above in a linked list, and a splay tree over them to find
-//! the arc at a height. D. D. Sleator and R. E. Tarjan, "Self-adjusting binary search trees",
-//! Journal of the ACM 32 (1985): O(log n) a search, amortised, with no balance to keep.
+//! The beach line: arcs from bottom to top in a linked list, with a splay tree to find the arc at a
+//! height.
+//!
+//! D. D. Sleator and R. E. Tarjan, "Self-adjusting binary search trees", Journal of the ACM 32
+//! (1985): amortized O(log n) per search, with no balance to maintain.
 
 use delone_predicates::sweep::front;
 use delone_predicates::{Point2, Sign};
@@ -22,15 +24,15 @@ pub struct Arc {
     pub above: u32,
     parent: u32,
     child: [u32; 2],
-    /// The half-edge on the left of the edge, where there is a triangle.
+    /// The half-edge on the left of the edge, if there is a triangle.
     pub across: Code,
-    /// Where there is none, the arc whose edge is the same in the other direction.
+    /// If there is none, the arc whose edge is the same in the other direction.
     pub twin: u32,
-    /// The place of its circle in the heap.
+    /// The slot of its circle in the heap.
     pub slot: u32,
 }
 
-/// The arcs, in a tree whose order is that of the list.
+/// The arcs, in a tree whose in-order sequence is the list.
 #[derive(Debug)]
 pub struct Beach {
     pub arcs: Vec<Arc>,
@@ -48,20 +50,20 @@ impl Default for Beach {
     }
 }
 
-/// Whether `q`, which the line has just met, is at or above the end of a's arc and the beginning of
-/// b's, the next one above.
+/// Whether `q`, which the line has just met, is at or above the boundary between a's arc and b's,
+/// the next one above.
 ///
 /// Of two parabolas the one whose point is nearer to the line is narrower and in front between
-/// their two crossings, its own height among them. If that is b's, this is the lower crossing: q is
-/// above it if it is above b or if b is in front at its height. If it is a's, this is the upper
-/// crossing. If neither is nearer there is but one crossing.
+/// their two crossings, which enclose its own height. If that is b's, this is the lower crossing: q
+/// is above it if it is above b or if b is in front at its height. If it is a's, this is the upper
+/// crossing. If both points are equally near there is only one crossing.
 fn beyond(a: Point2, b: Point2, q: Point2) -> bool {
     if a[0] < b[0] {
         q[1] >= b[1] || front(a, b, q) != Sign::Negative
     } else if a[0] > b[0] {
         q[1] > a[1] && front(a, b, q) != Sign::Negative
     } else {
-        // On the line itself both are rays, below q.
+        // If both points are on the line, their arcs are rays, below q.
         front(a, b, q) != Sign::Negative
     }
 }
@@ -78,19 +80,19 @@ impl Beach {
         arc
     }
 
-    /// The points of an arc and those beside it, where it has both.
+    /// The points of an arc and of its two neighbors, if it has both.
     pub fn triple(&self, arc: u32) -> Option<[Point2; 3]> {
         let at = |i: u32| self.arcs.get(i as usize);
         let arc = at(arc)?;
         Some([at(arc.below)?.point, arc.point, at(arc.above)?.point])
     }
 
-    /// The arc at the height of `q`. Going down a tree, the search ends.
+    /// The arc at the height of `q`. Terminates because it descends a tree.
     pub fn find(&mut self, q: Point2) -> Option<u32> {
         let mut at = self.root;
         loop {
             let arc = self.arcs.get(at as usize)?;
-            // What lies below the lowest and above the highest arc is theirs.
+            // The lowest and the highest arc extend to infinity.
             if let Some(below) = self.arcs.get(arc.below as usize)
                 && !beyond(below.point, arc.point, q)
             {
@@ -106,7 +108,7 @@ impl Beach {
         }
     }
 
-    /// Puts the arc of `site` above `below`, or as the only one.
+    /// Inserts the arc of `site` above `below`, or as the only one.
     pub fn insert_after(&mut self, below: u32, site: Site) -> u32 {
         let mut arc = Arc {
             point: site.0,
@@ -151,12 +153,12 @@ impl Beach {
         new
     }
 
-    /// Splits `arc` by that of `site`. Returns the two parts beside it.
+    /// Splits `arc` by that of `site`. Returns the two pieces beside it.
     pub fn split(&mut self, arc: u32, site: Site) -> [u32; 2] {
         let old = self.arcs[arc as usize];
         let new = self.insert_after(arc, site);
         let upper = self.insert_after(new, (old.point, old.vertex));
-        // The edge above moves to the upper part; the edge to the new point is passed twice.
+        // The edge above moves to the upper piece; the edge to the new point is traversed twice.
         let part = &mut self.arcs[upper as usize];
         (part.across, part.twin) = (old.across, old.twin);
         if old.twin != NONE {
@@ -167,12 +169,12 @@ impl Beach {
         [arc, upper]
     }
 
-    /// Takes an arc away that has one on either side.
+    /// Removes an arc that has a neighbor on either side.
     pub fn remove(&mut self, arc: u32) {
         let Arc { below, above, .. } = self.arcs[arc as usize];
         //      below               below
-        //     /     \             /     \        As neighbours they meet at the root; nothing is
-        //    L      arc     ->   L       R       between them.
+        //     /     \             /     \        Consecutive arcs meet at the root, with
+        //    L      arc     ->   L       R       nothing between them.
         //              \
         //               R
         self.splay(below, NONE);
@@ -187,7 +189,7 @@ impl Beach {
         self.free.push(arc);
     }
 
-    /// Rotates `arc` up until its parent is `top`, by two levels where there are two.
+    /// Rotates `arc` up until its parent is `top`, by two levels where possible.
     fn splay(&mut self, arc: u32, top: u32) {
         loop {
             let parent = self.arcs[arc as usize].parent;
@@ -207,10 +209,10 @@ impl Beach {
         usize::from(self.arcs[parent as usize].child[1] == child)
     }
 
-    /// Puts an arc in the place of its parent.
+    /// Rotates an arc into the place of its parent.
     fn rotate(&mut self, arc: u32) {
         //       parent            arc
-        //       /    \           /   \          or the other way round
+        //       /    \           /   \          or mirrored
         //     arc     C   ->    A   parent
         //    /   \                  /    \
         //   A     B                B      C

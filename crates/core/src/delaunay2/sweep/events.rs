@@ -1,12 +1,14 @@
-//! The circles to come, in a binary heap by their right ends. Each arc knows the place of its
-//! circle, so circles that come to nothing leave at once and the heap is no longer than the front.
+//! The circle events in a binary heap, ordered by the right ends of the circles.
+//!
+//! Each arc knows the slot of its circle, so obsolete circles are removed at once and the heap is
+//! no longer than the front.
 
 use delone_predicates::sweep::{CircleEnd, circle_end_abscissa, circle_ends};
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::beach::{Beach, NONE};
 
-/// The circle of an arc and the two beside it.
+/// The circle of an arc and its two neighbors.
 #[derive(Debug, Clone, Copy)]
 struct Event {
     end: CircleEnd,
@@ -24,7 +26,7 @@ fn before(beach: &Beach, s: &Event, t: &Event) -> bool {
     let sign = s.end.minus(&t.end).unwrap_or_else(|| {
         match (beach.triple(s.arc), beach.triple(t.arc)) {
             (Some(s), Some(t)) => circle_ends(s, t),
-            // Only arcs between two others have circles.
+            // Only arcs with two neighbors have circles.
             _ => Sign::Zero,
         }
     });
@@ -48,7 +50,7 @@ impl Events {
         (sign != Some(Sign::Positive)).then_some(first.arc)
     }
 
-    /// Adds the circle of `arc`, which has none here, if the arc shrinks.
+    /// Adds the circle of `arc`, which has none in the heap, if the arc shrinks.
     pub fn renew(&mut self, beach: &mut Beach, arc: u32) {
         let Some(triple) = beach.triple(arc) else {
             return;
@@ -60,8 +62,8 @@ impl Events {
         }
     }
 
-    /// Takes the circle of `arc` out, if it has one. Its neighbours must be those it was added
-    /// with.
+    /// Removes the circle of `arc`, if it has one. The neighbors of the arc must be those with
+    /// which it was added.
     pub fn remove(&mut self, beach: &mut Beach, arc: u32) {
         let slot = std::mem::replace(&mut beach.arcs[arc as usize].slot, NONE);
         if slot == NONE {
@@ -75,7 +77,7 @@ impl Events {
         }
     }
 
-    /// Moves the event at `slot` up to its place: at most once a level.
+    /// Moves the event at `slot` up to its place: at most one step per level.
     fn rise(&mut self, beach: &mut Beach, mut slot: usize) {
         let event = self.heap[slot];
         while slot > 0 && before(beach, &event, &self.heap[(slot - 1) / 2]) {
@@ -85,7 +87,7 @@ impl Events {
         self.put(beach, slot, event);
     }
 
-    /// Moves the event at `slot` down to its place: at most once a level.
+    /// Moves the event at `slot` down to its place: at most one step per level.
     fn sink(&mut self, beach: &mut Beach, mut slot: usize) {
         let event = self.heap[slot];
         loop {

@@ -1,51 +1,50 @@
-//! Fortune's sweep: a vertical line moves over the points from left to right.
+//! Fortune's sweep line algorithm: a vertical line moves over the points from left to right.
 //!
-//! S. Fortune, "A sweepline algorithm for Voronoi diagrams", Algorithmica 2 (1987), by way of the
-//! dual: where a Voronoi vertex is found, a triangle is made. O(n log n) in the worst case: n
-//! points and at most 2 n triangles, each with a search in a splay tree and a few changes of a
-//! heap.
+//! S. Fortune, "A sweepline algorithm for Voronoi diagrams", Algorithmica 2 (1987), for the dual:
+//! where a Voronoi vertex is found, a triangle is made. O(n log n) in the worst case: n points and
+//! at most 2 n triangles, each with a search in a splay tree and a few heap operations.
 //!
 //! # The front
 //!
-//! A place left of the line is *settled* when it is nearer to some point than to the line. The
-//! settled places end in the beach line, arcs of parabolas, each belonging to a point and all
-//! places on it having that point nearest; from below to above they name a sequence of points, the
-//! *front*. Two points that follow each other there have an empty circle which touches the line
-//! between them: their edge is Delaunay. The front is the right boundary of what is triangulated so
-//! far, an edge without a triangle being passed twice.
+//! A location left of the line is *settled* if it is nearer to some point than to the line. The
+//! settled region is bounded by the beach line, arcs of parabolas. Each arc belongs to the point
+//! that is nearest to all locations on it. From bottom to top the arcs name a sequence of points,
+//! the *front*. Two consecutive points of the front have an empty circle that touches the line
+//! between them: their edge is Delaunay. The front is the right boundary of the region triangulated so
+//! far; an edge without a triangle is traversed twice.
 //!
 //! ```text
 //!        c                 c            The line reaches q at the height of b's arc: b, q, b.
 //!        |                 |            The line reaches the right end of the circle a b c, whose
-//!        b     q    ->     b----q       arc b has shrunk to nothing: b goes and the triangle
-//!       /                 /             a c b is made.
+//!        b     q    ->     b----q       arc b has shrunk to nothing: b is removed, and the
+//!       /                 /             triangle a c b is made.
 //!      a                 a
 //! ```
 //!
 //! # Order and ties
 //!
-//! Points go lexicographically; ends of circles are compared exactly, square root and all (see
-//! `delone_predicates::sweep`), so each stop is made in the state that the paper proves right.
-//! Equal stops may come in any order:
+//! Points are processed lexicographically; ends of circles are compared exactly, square root
+//! included (see `delone_predicates::sweep`), so each event happens in the state that the paper
+//! proves right. Simultaneous events may be processed in any order:
 //!
-//! - Points with one abscissa come from below to above. Those that are leftmost of all follow each
-//!   other in the front from the start: their arcs are rays. For any later one the arc at its
+//! - Points with equal abscissas are processed from bottom to top. The leftmost points are
+//!   consecutive in the front from the start: their arcs are rays. For any later one the arc at its
 //!   height is found as for others, since a point on the line has its ray there, below.
 //! - Circles that end together: an arc that has shrunk to nothing at the end of the circle a b c
-//!   has a, b, c on an empty circle through its place. Taking b away leaves the front as it is but
-//!   for arcs of no length; a further point of that circle, d, still ends with a, c at the same
+//!   has a, b, c on an empty circle through that location. Removing b changes the front only in
+//!   arcs of zero length; a further point of that circle, d, still ends with a, c at the same
 //!   abscissa, as three points of a circle turn strictly. So the order picks one triangulation of
 //!   the polygon of cocircular points, and all are Delaunay.
-//! - A circle that ends on the abscissa of a point goes first. If the point is its right end, it
-//!   meets two arcs at once, and splits either: the arc of no length between it and the other is
-//!   the circle's again, and its end, the present abscissa, comes next.
+//! - A circle that ends on the abscissa of a point is processed first. If the point is its right
+//!   end, it meets two arcs at once, and splits either: the arc of zero length between it and the
+//!   other is the circle's again, and its end, the present abscissa, is the next event.
 //!
 //! `ties` makes the result canonical.
 //!
-//! # Ends
+//! # Termination
 //!
-//! Each point is met once, and each circle takes away one arc of those that points have made, two
-//! a point.
+//! Each point is processed once, and each circle removes one of the arcs that points have made, two
+//! per point.
 
 mod beach;
 mod events;
@@ -62,11 +61,11 @@ use crate::memory::with_room;
 use crate::mesh2::{Code, Patch};
 use crate::watch::Watch;
 
-/// Stops between two looks at the watch.
+/// Events between two checks for interruption.
 const WATCH_EVERY: usize = 4096;
 
-/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; nothing where the
-/// block is collinear. `points` end with NaN for infinity.
+/// Fills `mesh` with the triangulation of vertices `block` and returns a ghost; `None` if the block
+/// is collinear. `points` end with NaN for infinity.
 pub fn build(
     points: &[Point2],
     block: Range<u32>,
@@ -94,7 +93,7 @@ pub fn build(
     Ok(Some(ghost))
 }
 
-/// The line's state.
+/// The state of the sweep.
 struct Sweep<'a> {
     mesh: Patch<'a>,
     watch: &'a Watch<'a>,
@@ -103,19 +102,20 @@ struct Sweep<'a> {
     room: usize,
     beach: Beach,
     events: Events,
-    /// How many points are leftmost.
+    /// How many points have the smallest abscissa.
     column: usize,
-    /// The ghosts left of them, from below to above.
+    /// The ghosts to the left of them, from bottom to top.
     left: Vec<Code>,
 }
 
-/// A mesh of n vertices has 2 n - 2 triangles; a bug that makes more ends here.
+/// The error of a broken invariant. A mesh of n vertices has 2 n - 2 triangles; a bug that makes
+/// more ends here.
 fn broken() -> Error {
     Error::Internal("the sweep's front is broken".into())
 }
 
 impl<'a> Sweep<'a> {
-    /// The state when the line has met the leftmost points.
+    /// The state when the line has passed the leftmost points.
     fn start(sites: &[Site], mesh: Patch<'a>, watch: &'a Watch<'a>) -> Result<Self> {
         let leftmost = sites[0].0[0];
         let column = sites.partition_point(|s| s.0[0] == leftmost);
@@ -133,7 +133,8 @@ impl<'a> Sweep<'a> {
         for &site in &sites[..column] {
             let arc = sweep.beach.insert_after(below, site);
             if below != NONE {
-                // Left of the edge from the one below to this: its hull edge runs down.
+                // The ghost left of the edge from the point below to this one: its hull edge runs
+                // down.
                 let inf = sweep.mesh.infinite();
                 let ghost =
                     sweep.triangle([inf, sweep.beach.arcs[below as usize].vertex, site.1])?;
@@ -153,7 +154,7 @@ impl<'a> Sweep<'a> {
         Ok(8 * t)
     }
 
-    /// Counts a stop of the line.
+    /// Counts an event.
     fn count(&mut self) -> Result<()> {
         self.stops += 1;
         if self.stops.is_multiple_of(WATCH_EVERY) {
@@ -162,7 +163,7 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// The line meets a point: it splits the arc at its height.
+    /// Point event: the new point splits the arc at its height.
     fn site(&mut self, site: Site) -> Result<()> {
         self.count()?;
         let arc = self.beach.find(site.0).ok_or_else(broken)?;
@@ -174,7 +175,8 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// The next circle, if it ends before the line meets `site`: its arc goes, its triangle comes.
+    /// Circle event: processes the next circle if it ends before the line meets `site`. Its arc is
+    /// removed and its triangle added.
     fn circle(&mut self, site: Option<Point2>) -> Result<bool> {
         let Some(arc) = self.events.first_until(&self.beach, site.map(|p| p[0])) else {
             return Ok(false);
@@ -200,7 +202,7 @@ impl<'a> Sweep<'a> {
         Ok(true)
     }
 
-    /// The edge above `arc` gets the triangle's side `code` on its right.
+    /// Links the edge above `arc` to the triangle's side `code` on its right.
     fn settle(&mut self, arc: u32, code: Code) {
         let edge = self.beach.arcs[arc as usize];
         if edge.twin == NONE {
@@ -211,7 +213,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// The line is past all: the front is the right side of the hull. Returns a ghost.
+    /// Ends the sweep: the front is now the right side of the hull. Returns a ghost.
     fn close(mut self) -> Result<Code> {
         let mut ring: Vec<Code> = Vec::new();
         let mut arc = self.beach.lowest();
@@ -234,7 +236,7 @@ impl<'a> Sweep<'a> {
             return Err(broken());
         }
         for (i, &ghost) in ring.iter().enumerate() {
-            // A ghost and the one that begins where it ends share the edge to that end.
+            // Consecutive ghosts share the edge to their common vertex.
             self.mesh.link(ghost + 2, ring[(i + 1) % ring.len()] + 1);
         }
         Ok(ring[0])
