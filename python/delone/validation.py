@@ -274,7 +274,7 @@ def of_triangles(faults: _core.Faults2) -> ValidationReport:
     Parameters
     ----------
     faults : Faults2
-        The culprits.
+        What is wrong.
 
     Returns
     -------
@@ -300,7 +300,7 @@ def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
     Parameters
     ----------
     faults : Faults3
-        The culprits.
+        What is wrong.
 
     Returns
     -------
