@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
     Arrays = Mapping[str, NDArray[Any]]
+    # Names and seconds; a dictionary is made when it is asked for.
+    Stages = dict[str, float] | tuple[tuple[str, float], ...]
 
 __all__ = ["Complex", "Stored"]
 
@@ -153,9 +155,9 @@ class Complex(Stored):
     _neighbors: Indices
     _points: Floats
     _simplices: Indices
-    _stages: dict[str, float]
+    _stages: Stages
 
-    def _fill(self, arrays: Arrays, stages: dict[str, float], workers: int | None) -> None:
+    def _fill(self, arrays: Arrays, stages: Stages, workers: int | None) -> None:
         """Set everything; afterwards nothing can be set."""
         self._hold(
             stages=stages,
@@ -167,11 +169,11 @@ class Complex(Stored):
     def _from_arrays(
         cls,
         arrays: Arrays,
-        stages: dict[str, float] | None = None,
+        stages: Stages = (),
         workers: int | None = None,
     ) -> Self:
         made = cls.__new__(cls)
-        made._fill(arrays, stages or {}, workers)
+        made._fill(arrays, stages, workers)
         return made
 
     def _arrays(self) -> dict[str, NDArray[Any]]:

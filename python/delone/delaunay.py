@@ -200,7 +200,7 @@ class Delaunay(PointTriangulation):
             "neighbors": made.neighbors,
             "duplicates": made.duplicates,
         }
-        self._fill(arrays, dict(made.stages), workers)
+        self._fill(arrays, made.stages, workers)
 
     @property
     def _sites(self) -> tuple[Any, Indices | None]:

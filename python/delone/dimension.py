@@ -63,8 +63,9 @@ class Dimension:
         beside, facets of the boundary, and weights of their corners.
     on_facets : callable
         Points of facets, of points, facets and the weights of their corners.
-    delaunay : callable
-        Simplices and neighbors of the Delaunay triangulation, of points and workers.
+    delaunay : callable or None
+        Simplices and neighbors of the Delaunay triangulation, of points and workers; None if the
+        index finds the nearest vertex in any triangulation.
     """
 
     ndim: int
@@ -80,7 +81,7 @@ class Dimension:
     locator: Callable[[Floats, Indices, Indices], Any]
     located: Callable[[Any, Floats, int], tuple[Indices, Floats, Indices, Indices, Floats]]
     on_facets: Callable[[Floats, Indices, Floats], Floats]
-    delaunay: Callable[[Floats, int], tuple[Indices, Indices]]
+    delaunay: Callable[[Floats, int], tuple[Indices, Indices]] | None
 
 
 F = TypeVar("F", bound="Callable[..., Any]")

@@ -101,9 +101,16 @@ def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
     """Return an array over memory of ours that neither it nor its base can make writeable."""
-    # The owner of memory may always ask for writing again, and a view leads to it by its base; the
-    # base of this array is a memoryview, which cannot.
     array.flags.writeable = False
+    # The owner of memory may always ask for writing again, and a view leads to it by its base. The
+    # memory of the core has an owner that cannot; other arrays are put on a memoryview, which
+    # cannot either.
+    base = array.base
+    if isinstance(base, np.ndarray):
+        base.flags.writeable = False
+        base = base.base
+    if type(base).__name__ == "PySliceContainer":
+        return array
     return np.asarray(array.data)
 
 

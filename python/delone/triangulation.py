@@ -207,13 +207,15 @@ class Triangulation(Complex):
     @property
     @kept
     def _sites(self) -> tuple[Any, Indices | None]:
-        """An index over a Delaunay triangulation of the vertices, and which rows these are."""
+        """An index that finds the nearest vertex, and the rows of its points; None for all."""
+        triangulate = self._dimension.delaunay
+        if triangulate is None:
+            return self._locator, None
         rows = np.unique(self._simplices)
         if not len(rows):
             return None, rows
         sites = self._points[rows]
-        delaunay = self._dimension.delaunay(sites, as_workers(self._workers))
-        return self._dimension.locator(sites, *delaunay), rows
+        return self._dimension.locator(sites, *triangulate(sites, as_workers(self._workers))), rows
 
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
@@ -283,10 +285,10 @@ class Triangulation(Complex):
 
         Notes
         -----
-        Exact: distances are compared by predicates, from vertex to vertex: in a Delaunay
+        Exact: distances are compared by predicates. In 2-D from vertex to vertex: in a Delaunay
         triangulation, a neighbor of each vertex is nearer until the nearest one is reached. The
         vertices of any other triangulation get a Delaunay triangulation of their own in the first
-        call.
+        call. In 3-D, and at vertices of high degree, by a tree of boxes over the vertices.
 
         Examples
         --------

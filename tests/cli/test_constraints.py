@@ -86,7 +86,7 @@ def test_report_for_people(tmp_path, command):
 
 def test_crossings_may_be_an_error(coast, tmp_path, command):
     out = tmp_path / "mesh.vtu"
-    code, text, err = command("triangulate", coast, "--crossing", "error", "-o", out)
+    code, text, err = command("triangulate", coast, "--crossing", "raise", "-o", out)
     assert (code, text) == (4, "")
     assert err.count("\n") == 1
     assert "4 pairs of segments cross, at (" in err

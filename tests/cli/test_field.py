@@ -99,7 +99,7 @@ def test_crossval(soundings, figures, command):
         (("--grid", "9x9", "--value", "height"), 3, "height"),
         (("--grid", "9x9", "-o", "a.asc"), 5, "known are"),
         (("--grid", "9000000x9000000"), 7, "GB"),
-        (("--grid", "9x9", "--bounds", "0,0,9,9", "--extrapolate", "error"), 2, "outside"),
+        (("--grid", "9x9", "--bounds", "0,0,9,9", "--extrapolate", "raise"), 2, "outside"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(soundings, command, arguments, code, words):

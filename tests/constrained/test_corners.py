@@ -82,6 +82,6 @@ def test_too_many_crossings_end_before_memory_does() -> None:
     rng = np.random.default_rng(0)
     points = rng.random((8000, 2))
     segments = np.arange(8000).reshape(-1, 2)
-    for crossing in ("error", "split"):
+    for crossing in ("raise", "split"):
         with pytest.raises(BudgetExceededError, match="crossing"):
             ConstrainedDelaunay(points, segments, crossing=crossing, max_points=10)

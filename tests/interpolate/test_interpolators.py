@@ -143,11 +143,11 @@ def test_shapes_and_kinds(method: str) -> None:
 @pytest.mark.parametrize("method", ALL)
 def test_queries_that_are_no_numbers(method: str) -> None:
     points = datasets.uniform(30)
-    for extrapolate in ("nan", "nearest", "error"):
+    for extrapolate in ("nan", "nearest", "raise"):
         made = interpolator(method, points, linear(points), extrapolate=extrapolate)
         found = made([(np.nan, 0.5), (0.5, np.nan), tuple(points[3])])
         assert np.isnan(found[:2]).all() and found[2] == linear(points)[3]
-        if extrapolate != "error":
+        if extrapolate != "raise":
             assert np.isnan(made([(0.5, np.inf), (-np.inf, 0.5)])).all()
 
 
@@ -226,7 +226,7 @@ def test_matrices_share_duplicates(method: str, drop: bool) -> None:
     queries = np.concatenate((np.random.default_rng(5).random((100, 2)), points))
     for policy in ("first", "last", "mean"):
         made = interpolator(
-            method, points, values, duplicates=policy, nan="drop" if drop else "error"
+            method, points, values, duplicates=policy, nan="drop" if drop else "raise"
         )
         matrix = made.weights(queries).csr()
         assert matrix.shape == (136, 36)

@@ -100,7 +100,7 @@ def test_beyond_the_strip() -> None:
     points, values = sites(60)
     made = {
         how: Linear(PeriodicDelaunay(points, periods=(360, None)), values, extrapolate=how)
-        for how in ("nan", "nearest", "linear", "error")
+        for how in ("nan", "nearest", "linear", "raise")
     }
     copies = spelled_out(points, values, (360, None))
     out = np.array([(33.0, 50.0), (-300.0, -20.0)])
@@ -109,9 +109,9 @@ def test_beyond_the_strip() -> None:
         found = Linear(*copies, extrapolate=how)(out)
         np.testing.assert_allclose(made[how](out), found, rtol=0, atol=1e-9)
     with pytest.raises(InputError, match="outside the hull: rows 0, 1"):
-        made["error"](out)
+        made["raise"](out)
     # There is no left and no right outside.
-    assert np.isfinite(made["error"]([(1e6, 10.0), (-1e6, 10.0)])).all()
+    assert np.isfinite(made["raise"]([(1e6, 10.0), (-1e6, 10.0)])).all()
     odd = made["nearest"]([(np.nan, 0), (np.inf, 0), (0, np.nan)])
     assert np.isnan(odd).all()
 

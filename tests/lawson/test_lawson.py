@@ -327,7 +327,7 @@ def test_other_errors() -> None:
 
 
 def test_records_have_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["delone.lawson"], "_MOST_ANGLES", 11)
+    monkeypatch.setattr(sys.modules["delone.flips"], "_MOST_ANGLES", 11)
     with pytest.raises(LimitError, match="1 flips of 2 triangles have 12 angles"):
         lawson(SQUARE[:4], [(0, 1, 3), (1, 2, 3)], record=True)
     assert lawson(SQUARE[:4], [(0, 1, 3), (1, 2, 3)]).flips == 1

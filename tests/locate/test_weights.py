@@ -212,7 +212,7 @@ def test_scipys_scheme_and_gradients() -> None:
     interpolate = pytest.importorskip("scipy.interpolate")
     rng = np.random.default_rng(11)
     points, values = rng.random((300, 2)), rng.random((300, 2))
-    theirs = interpolate.CloughTocher2DInterpolator(points, values, tol=1e-9, max_iter=1000)
+    theirs = interpolate.CloughTocher2DInterpolator(points, values, tol=1e-9, maxiter=1000)
     mesh, index = locator(points)
     indptr, indices = mesh.vertex_neighbor_vertices
     gradients, sweeps = _core.gradients_global2(points, indptr, indices, values, 1e-9, 1000, 2)

@@ -30,7 +30,7 @@ CASES: dict[str, tuple[list[tuple[float, float]], list[tuple[int, int]], dict[st
         [(3, 2 + 2 * U), (3 + 2 * U, 3 + 2 * U), (2, 3 - 2 * U), (3, 1), (3 - 2 * U, TINY),
          (2 + 2 * U, -TINY), (2 - U, 2 - U)],
         [*ring(7), (4, 0), (0, 6)],
-        {"min_angle": 25, "max_area": 0.012, "frozen": "boundary"},
+        {"min_angle": 25, "max_area": 0.012, "fixed": "boundary"},
     ),
     "a budget that ends": (
         [(2 - U, 2 - U), (3 - 2 * U, 3 - 2 * U), (2 - U, TINY), (3 + 2 * U, 1 - U / 2), (3, TINY),

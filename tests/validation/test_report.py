@@ -44,7 +44,7 @@ def test_any_culprit_is_false_and_is_named(name: str) -> None:
 
 def test_text_shows_the_first_few() -> None:
     text = str(ValidationReport(**{k: np.array(v) for k, v in CULPRITS.items()}))
-    assert "6 triangles have wrong neighbours: 3, 5, 6, 7, 8, ..." in text
+    assert "6 triangles have wrong neighbors: 3, 5, 6, 7, 8, ..." in text
     assert "2 directed edges are used more than once: 1-2, 2-1" in text
     assert "1 pair of triangles is not locally Delaunay: 10-11" in text
     assert "19 triangles, 20 expected" in text

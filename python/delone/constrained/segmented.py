@@ -106,7 +106,7 @@ class Segmented(PointTriangulation):
         given: Given,
         made: _core.ConstrainedTriangulation,
         options: Options,
-        stages: dict[str, float],
+        stages: Any,
     ) -> None:
         points, given = sealed(points), given.sealed()
         made = _core.ConstrainedTriangulation(*map(sealed, made.arrays()))
@@ -323,7 +323,7 @@ class Segmented(PointTriangulation):
         given: Given,
         made: _core.ConstrainedTriangulation,
         options: Options,
-        stages: dict[str, float],
+        stages: Any,
     ) -> Self:
         mesh = cls.__new__(cls)
         mesh._set(points, given, made, options, stages)

@@ -66,9 +66,9 @@ _WRITERS = {
 }
 # What holds tetrahedra, or triangles in 3-D, or draws them.
 _TETRAHEDRA = (".vtu", ".msh", ".xdmf", ".inp", ".su2", ".npz", ".png")
-_SURFACES = (*_MESHES, ".xdmf", ".inp", ".png")
+_SURFACES = (*_MESHES, ".npz", ".xdmf", ".inp", ".png")
 # What holds triangles that share no points.
-_SEPARATE = (*_MESHES, ".xdmf", ".gpkg", ".geojson")
+_SEPARATE = (*_MESHES, ".npz", ".xdmf", ".gpkg", ".geojson")
 _HOLDERS: dict[str, tuple[tuple[str, ...], str]] = {
     "triangles": (tuple(_WRITERS), "triangles"),
     "separate": (_SEPARATE, "triangles that share no points"),

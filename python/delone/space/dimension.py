@@ -28,11 +28,6 @@ def _edges(simplices: Indices, _: Indices, npoints: int, workers: int | None) ->
     return topology.edges(simplices, npoints, workers)
 
 
-def _delaunay(points: Floats, workers: int) -> tuple[Indices, Indices]:
-    made = _core.triangulate3(points, workers)
-    return made.simplices, made.neighbors
-
-
 SPACE = Dimension(
     ndim=3,
     simplex="tetrahedron",
@@ -47,5 +42,5 @@ SPACE = Dimension(
     locator=_core.Locator3,
     located=location.located,
     on_facets=location.on_faces,
-    delaunay=_delaunay,
+    delaunay=None,
 )
