@@ -36,7 +36,7 @@ NEEDS_bench := -E $(EXTRAS) -G bench
 help:
 	@echo 'make demo    triangulate the lidar tile in examples/data: report, picture, mesh file'
 	@echo 'make test    every test: Rust, Python, doctests, documentation examples, layers'
-	@echo 'make lint    clippy, rustfmt, ruff, mypy, and the stub against the built module'
+	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, and the stub against the built module'
 	@echo 'make docs    the documentation, into docs/_build/html'
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
@@ -94,6 +94,7 @@ test: $(STAMPS)/test
 lint: $(STAMPS)/test
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --exclude delone-bindings --no-deps --quiet
 	cargo fmt --manifest-path benchmarks/peers/Cargo.toml --check
 	cargo clippy --manifest-path benchmarks/peers/Cargo.toml -- -D warnings
 	$(BIN)/ruff check .

@@ -115,6 +115,7 @@ CORE: dict[str, set[str]] = {
 NEEDS = {
     "predicates": set[str](),
     "core": {"delone-predicates", "num-bigint", "thiserror", "libc"},
+    "delone": {"delone-core", "delone-predicates", "thiserror"},
     "bindings": {"delone-core", "delone-predicates", "pyo3", "numpy"},
 }
 NAMES_OF_CRATES = ("delone_predicates", "delone_core", "pyo3", "numpy", "libc")

@@ -170,7 +170,7 @@ fn decode(x: f64) -> (u64, i32) {
     }
 }
 
-/// Magnitude and exponent as from [`decode`], with an odd magnitude or zero.
+/// Magnitude and exponent as from `decode`, with an odd magnitude or zero.
 #[inline]
 pub fn decode_odd(x: f64) -> (u64, i32) {
     let (magnitude, exponent) = decode(x);

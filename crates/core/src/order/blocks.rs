@@ -59,7 +59,7 @@ pub struct Cuts {
 }
 
 impl Cuts {
-    /// Splits for `points`: enough for blocks of at most about [`BLOCK`].
+    /// Splits for `points`: enough for blocks of at most about `BLOCK`.
     pub fn of(points: &[Point2]) -> Self {
         let blocks = points.len().div_ceil(BLOCK).next_power_of_two();
         let step = (points.len() / (SAMPLE * blocks)).max(1);
