@@ -29,8 +29,11 @@ __all__ = [
     "Locator2",
     "Locator3",
     "NaturalWeights",
+    "PeriodicFaults",
     "PeriodicTriangulation",
     "RefinedMesh",
+    "RegularFaults2",
+    "RegularFaults3",
     "RegularTriangulation",
     "Triangulation",
     "WeightRows",
@@ -87,6 +90,9 @@ __all__ = [
     "triangulate3",
     "validate2",
     "validate3",
+    "validate_periodic2",
+    "validate_regular2",
+    "validate_regular3",
     "volumes3",
     "voronoi2",
     "voronoi3",
@@ -211,6 +217,72 @@ class PeriodicTriangulation:
     @property
     def moved(self) -> NDArray[np.int32]:
         """By how many periods each copy is moved, (c, 2)."""
+
+@final
+class RegularFaults2:
+    """What is wrong with a 2-D regular triangulation."""
+
+    @property
+    def faults(self) -> Faults2:
+        """Faults as without weights; `missing` has points outside all triangles."""
+    @property
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though triangles cover them, (k,)."""
+    @property
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, (n,)."""
+
+@final
+class RegularFaults3:
+    """What is wrong with a 3-D regular triangulation."""
+
+    @property
+    def faults(self) -> Faults3:
+        """Faults as without weights; `missing` has points outside all tetrahedra."""
+    @property
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though tetrahedra cover them, (k,)."""
+    @property
+    def stands_for(self) -> NDArray[np.int32]:
+        """The row that stands for each point, (n,)."""
+
+@final
+class PeriodicFaults:
+    """What is wrong with a periodic triangulation; arrays are empty where nothing is."""
+
+    @property
+    def offsets(self) -> NDArray[np.int32]:
+        """Triangles with impossible offsets; if any, nothing else is checked, (k,)."""
+    @property
+    def orientation(self) -> NDArray[np.int32]:
+        """Triangles that are not counter-clockwise, (k,)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """Triangles whose neighbors or partners are wrong, (k,)."""
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Edges without a partner that are not on the boundary of the strip, (k, 2)."""
+    @property
+    def missing(self) -> NDArray[np.int32]:
+        """Rows of distinct points that no triangle uses, (k,)."""
+    @property
+    def repeats(self) -> NDArray[np.int32]:
+        """Rows that are used although another row stands for them, (k,)."""
+    @property
+    def hidden(self) -> NDArray[np.int32]:
+        """Rows that should be vertices though triangles cover them, (k,)."""
+    @property
+    def delaunay(self) -> NDArray[np.int32]:
+        """Pairs of triangles that are not locally Delaunay or regular, (k, 2)."""
+    @property
+    def ties(self) -> NDArray[np.int32]:
+        """Pairs of triangles on a tie that are not canonical, (k, 2)."""
+    @property
+    def count(self) -> NDArray[np.int32]:
+        """Numbers of triangles expected and found, (2,), where they differ; else (0,)."""
+    @property
+    def layers(self) -> NDArray[np.int32]:
+        """How often the triangles cover the plane, (1,), if not once; else (0,)."""
 
 @final
 class Hull3:
@@ -746,6 +818,27 @@ def triangulate3(points: NDArray[np.float64], workers: int) -> Triangulation: ..
 def validate3(
     points: NDArray[np.float64], simplices: NDArray[np.int32], neighbors: NDArray[np.int32]
 ) -> Faults3: ...
+def validate_regular2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> RegularFaults2: ...
+def validate_regular3(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+) -> RegularFaults3: ...
+def validate_periodic2(
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    periods: tuple[float, float],
+    simplices: NDArray[np.int32],
+    offsets: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    partners: NDArray[np.int32],
+) -> PeriodicFaults: ...
 def fault2(
     points: NDArray[np.float64],
     simplices: NDArray[np.int32],

@@ -116,8 +116,7 @@ class Stored(Immutable):
         -----
         Shapes, dtypes, ranges, duplicates, mutual neighbors and orientations are checked in linear
         time; `validate` proves the rest. A `ConvexHull`, `RegularTriangulation`,
-        `PeriodicDelaunay` and `Voronoi` are computed again from their input, which takes no longer
-        than to prove them.
+        `PeriodicDelaunay` and `Voronoi` are computed again from their input.
 
         Examples
         --------

@@ -22,6 +22,7 @@ from delone.errors import DegenerateInputError, InputError, InternalError, Shape
 from delone.immutable import kept, own_copy, sealed
 from delone.plane.dimension import PLANE
 from delone.regular import as_weights
+from delone.regular_validation import PeriodicReport, validate_periodic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -251,6 +252,32 @@ class PeriodicDelaunay(Complex):
         """
         found: Any = PLANE.quality(*self._separate, self._workers)
         return found  # type: ignore[no-any-return]
+
+    def validate(self) -> PeriodicReport:
+        """Prove that this is the canonical periodic triangulation, or name what is wrong.
+
+        Returns
+        -------
+        PeriodicReport
+            Truthy if all is right: triangles are counter-clockwise and cover the plane, or the
+            strip, exactly once, neighbors and partners are mutual and fit the offsets, each edge
+            is locally Delaunay (with weights, locally regular), ties are broken canonically, and
+            each distinct point is a vertex or, with weights, above the triangle that holds it.
+
+        Notes
+        -----
+        Exact on the sums of coordinates and periods. Linear in the number of triangles, after a
+        sort of the points and with short walks to the hidden points.
+
+        Examples
+        --------
+        >>> from delone import PeriodicDelaunay
+        >>> mesh = PeriodicDelaunay([(0.25, 0.5), (0.5, 0.75)], (1, None))
+        >>> print(mesh.validate())
+        a canonical periodic triangulation
+        """
+        topology = self._simplices, self._offsets, self._neighbors, self._partners
+        return validate_periodic(self._points, self.weights, self.periods, topology)
 
     @property
     def _separate(self) -> tuple[Floats, Indices]:

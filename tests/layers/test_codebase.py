@@ -145,6 +145,7 @@ PUBLIC_MODULES = (
     "delone.predicates",
     "delone.reference",
     "delone.regular",
+    "delone.regular_validation",
     "delone.constrained.segments",
     "delone.testing",
     "delone.validation",

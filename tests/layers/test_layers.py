@@ -42,7 +42,7 @@ PYTHON: tuple[set[str], ...] = (
     {"space"},
     {"archive", "validation"},
     {"complex"},
-    {"triangulation"},
+    {"triangulation", "regular_validation"},
     {"delaunay", "constrained", "regular", "tetmesh"},
     {"hull", "periodic", "refine"},
     {"io"},
@@ -71,13 +71,14 @@ CORE: dict[str, set[str]] = {
     "watch": {"error"},
     "parallel": GROUND,
     "points": {"error", "memory", "delone_predicates"},
+    "proof": GROUND,
     "order": {"points", "parallel", "delone_predicates"} | GROUND,
     # Topology alone: neither coordinates nor predicates.
     "mesh2": {"parallel"} | GROUND,
-    "delaunay2": {"mesh2", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "delaunay2": {"mesh2", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
     "mesh3": GROUND,
     "measure": {"parallel", "wide", "num_bigint", "delone_predicates"} | GROUND,
-    "delaunay3": {"mesh3", "order", "points", "parallel", "delone_predicates"} | GROUND,
+    "delaunay3": {"mesh3", "order", "points", "parallel", "proof", "delone_predicates"} | GROUND,
     "constrained": {"delaunay2", "mesh2", "order", "points", "delone_predicates"} | GROUND,
     "refine": {"constrained", "delaunay2", "mesh2", "wide", "delone_predicates"} | GROUND,
     "improve": {"delone_predicates"} | GROUND,
@@ -86,7 +87,7 @@ CORE: dict[str, set[str]] = {
     "locate3": {"locate", "points", "wide", "delone_predicates"} | GROUND,
     "wide": {"delone_predicates"},
     "distributed": {"locate", "points", "parallel", "delone_predicates"} | GROUND,
-    "regular": {"order", "points", "wide", "delone_predicates"} | GROUND,
+    "regular": {"delaunay2", "order", "points", "proof", "wide", "delone_predicates"} | GROUND,
     "voronoi": {
         "measure",
         "regular",
@@ -97,7 +98,17 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
-    "regular3": {"regular", "locate3", "order", "points", "wide", "delone_predicates"} | GROUND,
+    "regular3": {
+        "delaunay3",
+        "regular",
+        "locate3",
+        "order",
+        "points",
+        "proof",
+        "wide",
+        "delone_predicates",
+    }
+    | GROUND,
     "voronoi3": {
         "measure",
         "regular3",

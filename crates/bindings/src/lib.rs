@@ -18,6 +18,7 @@ mod measure;
 mod predicates;
 mod refine;
 mod regular;
+mod regular_faults;
 mod results;
 mod signals;
 mod space;
@@ -40,6 +41,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<space::Faults3>()?;
     m.add_class::<regular::RegularTriangulation>()?;
     m.add_class::<regular::PeriodicTriangulation>()?;
+    m.add_class::<regular_faults::RegularFaults2>()?;
+    m.add_class::<regular_faults::RegularFaults3>()?;
+    m.add_class::<regular_faults::PeriodicFaults>()?;
     m.add_class::<hull::Hull3>()?;
     m.add_class::<lawson::FlippedTriangulation>()?;
     m.add_class::<constrained::ConstrainedTriangulation>()?;
@@ -65,6 +69,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;
     m.add_function(wrap_pyfunction!(space::triangulate3, m)?)?;
     m.add_function(wrap_pyfunction!(space::validate3, m)?)?;
+    m.add_function(wrap_pyfunction!(regular_faults::validate_regular2, m)?)?;
+    m.add_function(wrap_pyfunction!(regular_faults::validate_regular3, m)?)?;
+    m.add_function(wrap_pyfunction!(regular_faults::validate_periodic2, m)?)?;
     m.add_function(wrap_pyfunction!(locate::find_simplex2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::constrained2, m)?)?;
     m.add_function(wrap_pyfunction!(constrained::components2, m)?)?;

@@ -1,7 +1,7 @@
 //! Triangulations of points in space as arrays.
 
 use delone_core::delaunay3::triangulate;
-use delone_core::delaunay3::validate::validate;
+use delone_core::delaunay3::validate::{Findings3, validate};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
@@ -59,6 +59,11 @@ pub fn validate3<'py>(
 ) -> PyResult<Faults3> {
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| validate(given, watch))?;
+    faults3(py, found)
+}
+
+/// What is wrong, as arrays.
+pub fn faults3(py: Python<'_>, found: Findings3) -> PyResult<Faults3> {
     Ok(Faults3 {
         orientation: numbers(py, found.orientation),
         facets: number_rows(py, found.facets)?,

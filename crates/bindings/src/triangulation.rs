@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use delone_core::delaunay2::validate::validate;
+use delone_core::delaunay2::validate::{Findings, validate};
 use delone_core::delaunay2::{Method, triangulate};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
@@ -99,6 +99,11 @@ pub fn validate2<'py>(
 ) -> PyResult<Faults2> {
     let given = checked(&points, &simplices, &neighbors).map_err(|e| raise(py, &e))?;
     let found = watched(py, |watch| validate(given, watch))?;
+    faults2(py, found)
+}
+
+/// What is wrong, as arrays.
+pub fn faults2(py: Python<'_>, found: Findings) -> PyResult<Faults2> {
     Ok(Faults2 {
         orientation: numbers(py, found.orientation),
         edges: number_rows(py, found.edges)?,

@@ -23,6 +23,7 @@ pub mod mesh3;
 pub mod order;
 mod parallel;
 pub mod points;
+pub mod proof;
 pub mod refine;
 pub mod regular;
 pub mod regular3;

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use delone_core::Point2;
-use delone_core::arrays::{Tetrahedra, Triangles};
+use delone_core::arrays::{Given, Tetrahedra, Triangles};
 use delone_core::constrained::{Options, constrain};
 use delone_core::delaunay2::lawson::lawson;
 use delone_core::delaunay2::validate::validate;
@@ -11,8 +11,9 @@ use delone_core::delaunay2::{Method, triangulate};
 use delone_core::error::{Error, Result};
 use delone_core::interpolate::{self, Field, Kind, Method as Left, Order, global_gradients};
 use delone_core::locate::{self, Batch, Kept, Locator};
+use delone_core::regular::{PeriodicFindings, Wrapped, validate_periodic};
 use delone_core::watch::{IDLE, Watch};
-use delone_core::{delaunay3, hull, interpolate3, locate3, measure, order};
+use delone_core::{delaunay3, hull, interpolate3, locate3, measure, order, regular, regular3};
 
 /// More tasks than any of these calls has.
 const TASKS: usize = 100;
@@ -176,6 +177,82 @@ fn a_large_triangulation_and_its_diagram() {
     let field = Field::of_rows(points.len(), &values, None, 1).unwrap();
     let found = checks(|watch| global_gradients(&points, around, field, 1e-6, None, 9, 1, watch));
     assert!(found > 20, "{found}");
+}
+
+#[test]
+fn proofs_of_regular_triangulations() {
+    let points = scattered::<2>(200_000);
+    let weights: Vec<f64> = scattered::<1>(200_000)
+        .iter()
+        .map(|w| 1e-5 * w[0])
+        .collect();
+    let made = regular::regular(&points, &weights, &IDLE)
+        .unwrap()
+        .triangles;
+    let given = Given {
+        points: &points,
+        simplices: &made.simplices,
+        neighbors: &made.neighbors,
+    };
+    let found = looks(|watch| regular::validate(given, &weights, watch));
+    // Lots of triangles, and of steps to hidden points.
+    assert!(
+        found > looks(|watch| order::arrange(&points, 1, watch)) + 20,
+        "{found}"
+    );
+    let report = regular::validate(given, &weights, &IDLE).unwrap();
+    assert_eq!((report.faults, report.hidden), Default::default());
+    let solid = scattered::<3>(20_000);
+    let weights = &weights[..20_000];
+    let made = regular3::regular(&solid, weights, &IDLE)
+        .unwrap()
+        .tetrahedra;
+    let given = Given {
+        points: &solid,
+        simplices: &made.simplices,
+        neighbors: &made.neighbors,
+    };
+    assert!(looks(|watch| regular3::validate(given, weights, watch)) > 20);
+}
+
+#[test]
+fn proofs_of_periodic_triangulations() {
+    // A lattice, each square cut from its smallest corner.
+    let n = 300;
+    let square = |i: i32, j: i32| i.rem_euclid(n) * n + j.rem_euclid(n);
+    let (mut points, mut simplices, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut neighbors, mut partners) = (Vec::new(), Vec::new());
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        points.push([f64::from(i), f64::from(j)]);
+        let (x, y) = (i32::from(i == n - 1), i32::from(j == n - 1));
+        let far = square(i + 1, j + 1);
+        simplices.push([square(i, j), square(i + 1, j), far]);
+        simplices.push([square(i, j), far, square(i, j + 1)]);
+        offsets.push([0, 0, x, 0, x, y]);
+        offsets.push([0, 0, x, y, 0, y]);
+        let right = 2 * square(i + 1, j) + 1;
+        let own = 2 * square(i, j);
+        let below = 2 * square(i, j - 1) + 1;
+        neighbors.push([right, own + 1, below]);
+        partners.push([3 * right + 1, 3 * (own + 1) + 2, 3 * below]);
+        let (above, left) = (2 * square(i, j + 1), 2 * square(i - 1, j));
+        neighbors.push([above, left, own]);
+        partners.push([3 * above + 2, 3 * left, 3 * own + 1]);
+    }
+    let given = Wrapped {
+        points: &points,
+        weights: &[],
+        periods: [f64::from(n); 2],
+        simplices: &simplices,
+        offsets: &offsets,
+        neighbors: &neighbors,
+        partners: &partners,
+    };
+    let report = validate_periodic(given, &IDLE).unwrap();
+    assert_eq!(report, PeriodicFindings::default());
+    let found = looks(|watch| validate_periodic(given, watch));
+    // Offsets, triangles and areas, each in lots.
+    assert!(found > 3 * (180_000 >> 14), "{found}");
 }
 
 #[test]

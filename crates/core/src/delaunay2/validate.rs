@@ -10,9 +10,10 @@ use delone_predicates::{Sign, incircle, lexicographic, orient2d, tie_flips};
 
 use crate::arrays::Triangles;
 use crate::error::Result;
-use crate::memory::{filled, zeroed};
-use crate::order::{Arranged, arrange};
+use crate::memory::zeroed;
+use crate::order::arrange;
 use crate::points;
+use crate::proof::{Expected, Verdict};
 use crate::watch::{Pace, Watch};
 
 /// Triangles, or vertices, between two checks for interruption in cheap loops.
@@ -61,33 +62,68 @@ impl Triangles<'_> {
 pub fn validate(given: Triangles, watch: &Watch) -> Result<Findings> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, 1, watch)?;
+    let expected = Expected {
+        rows: &ordered.rows,
+        others: &ordered.duplicates,
+        may_hide: false,
+    };
+    let judge = |sites: [i32; 4]| {
+        let [p, u, v, q] = sites.map(|v| given.point(v));
+        match incircle(p, u, v, q) {
+            Sign::Positive => Verdict::Wrong,
+            Sign::Zero if tie_flips(u, v, p, q) => Verdict::Tie,
+            _ => Verdict::Right,
+        }
+    };
+    let (mut found, mut unused) = examine(given, expected, judge, watch)?;
+    unused.sort_unstable();
+    found.missing = unused;
+    Ok(found)
+}
+
+/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner edge: about
+/// p, u, v, q, where triangle p, u, v is to the left of the edge from u to v, and q is opposite. Gives
+/// the faults, all but `missing`, and the expected rows that no triangle uses.
+pub fn examine(
+    given: Triangles,
+    expected: Expected,
+    judge: impl Fn([i32; 4]) -> Verdict,
+    watch: &Watch,
+) -> Result<(Findings, Vec<u32>)> {
     let mut found = Findings {
         edges: repeated_edges(given, watch)?,
         ..Findings::default()
     };
-    missing(given, &ordered, &mut found, watch)?;
+    let unused = expected.unused(given.simplices, &mut found.repeats, watch)?;
     let mut boundary = Vec::new();
     for t in 0..given.simplices.len() {
         if t % WATCH_EVERY == 0 {
             watch.check()?;
         }
-        triangle(given, t, &mut found, &mut boundary);
+        triangle(given, t, &judge, &mut found, &mut boundary);
     }
-    let count = [2 * ordered.points.len(), boundary.len() + 2];
-    let expected = count[0].saturating_sub(count[1]);
-    if expected != given.simplices.len() {
+    let hidden = if expected.may_hide { unused.len() } else { 0 };
+    let count = [2 * (expected.rows.len() - hidden), boundary.len() + 2];
+    let count = count[0].saturating_sub(count[1]);
+    if count != given.simplices.len() {
         found
             .count
-            .push([expected as u32, given.simplices.len() as u32]);
+            .push([count as u32, given.simplices.len() as u32]);
     }
     watch.check()?;
     hull(given, boundary, &mut found);
-    Ok(found)
+    Ok((found, unused))
 }
 
-/// Checks one triangle: its orientation, its neighbors, the circumcircles across its edges.
-fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec<[i32; 2]>) {
-    let [a, b, c] = given.simplices[t].map(|v| given.point(v));
+/// Checks one triangle: its orientation, its neighbors, the verdicts across its edges.
+fn triangle(
+    given: Triangles,
+    t: usize,
+    judge: &impl Fn([i32; 4]) -> Verdict,
+    found: &mut Findings,
+    boundary: &mut Vec<[i32; 2]>,
+) {
+    let [a, b, c] = given.corners(t);
     if orient2d(a, b, c) != Sign::Positive {
         found.orientation.push(t as u32);
     }
@@ -104,17 +140,12 @@ fn triangle(given: Triangles, t: usize, found: &mut Findings, boundary: &mut Vec
             continue;
         };
         if t < other {
-            let apex = given.simplices[other][j];
-            let [u, v] = given.edge(t, k).map(|v| given.point(v));
+            let [u, v] = given.edge(t, k);
             let pair = [t as u32, other as u32];
-            match incircle(a, b, c, given.point(apex)) {
-                Sign::Positive => found.delaunay.push(pair),
-                Sign::Zero
-                    if tie_flips(u, v, given.point(given.simplices[t][k]), given.point(apex)) =>
-                {
-                    found.ties.push(pair);
-                }
-                _ => {}
+            match judge([given.simplices[t][k], u, v, given.simplices[other][j]]) {
+                Verdict::Wrong => found.delaunay.push(pair),
+                Verdict::Tie => found.ties.push(pair),
+                Verdict::Right => {}
             }
         }
     }
@@ -160,36 +191,6 @@ fn repeated_edges(given: Triangles, watch: &Watch) -> Result<Vec<[u32; 2]>> {
     }
     repeated.dedup();
     Ok(repeated)
-}
-
-/// Distinct points none of whose rows is a vertex, and vertices that repeat an earlier row.
-fn missing(
-    given: Triangles,
-    ordered: &Arranged,
-    found: &mut Findings,
-    watch: &Watch,
-) -> Result<()> {
-    let mut used = filled(given.points.len(), false)?;
-    for lot in given.simplices.chunks(LOT) {
-        watch.check()?;
-        for &v in lot.as_flattened() {
-            used[v as usize] = true;
-        }
-    }
-    for &[row, first] in &ordered.duplicates {
-        if used[row as usize] {
-            found.repeats.push(row);
-            used[first as usize] = true;
-        }
-    }
-    found.missing = ordered
-        .rows
-        .iter()
-        .copied()
-        .filter(|&r| !used[r as usize])
-        .collect();
-    found.missing.sort_unstable();
-    Ok(())
 }
 
 /// The boundary must be one cycle that ascends and descends lexicographically exactly once and

@@ -23,8 +23,9 @@ use crate::arrays::Tetrahedra;
 use crate::error::Result;
 use crate::memory::{filled, push, zeroed};
 use crate::mesh3::FACETS;
-use crate::order::space::{Arranged3, arrange};
+use crate::order::space::arrange;
 use crate::points;
+use crate::proof::{Expected, Verdict};
 use crate::watch::{Pace, Watch};
 
 /// Facets, or tetrahedra, between two checks for interruption in cheap loops.
@@ -82,31 +83,60 @@ fn smallest_first([a, b, c]: [i32; 3]) -> [i32; 3] {
 pub fn validate(given: Tetrahedra, watch: &Watch) -> Result<Findings3> {
     points::scan(given.points)?;
     let ordered = arrange(given.points, watch)?;
+    let expected = Expected {
+        rows: &ordered.rows,
+        others: &ordered.duplicates,
+        may_hide: false,
+    };
+    let judge = |sites: [i32; 5]| {
+        let [a, b, c, d, e] = sites.map(|v| given.point(v));
+        match insphere(a, b, c, d, e) {
+            Sign::Positive => Verdict::Wrong,
+            Sign::Zero if insphere_canonical(a, b, c, d, e) == Sign::Positive => Verdict::Tie,
+            _ => Verdict::Right,
+        }
+    };
+    let (mut found, mut unused) = examine(given, expected, judge, watch)?;
+    unused.sort_unstable();
+    found.missing = unused;
+    Ok(found)
+}
+
+/// Checks that `given` tiles the convex hull of its vertices, and asks `judge` at each inner facet: about
+/// the corners of a tetrahedron and the apex of its neighbor. Gives the faults, all but `missing`, and
+/// the expected rows that no tetrahedron uses.
+pub fn examine(
+    given: Tetrahedra,
+    expected: Expected,
+    judge: impl Fn([i32; 5]) -> Verdict,
+    watch: &Watch,
+) -> Result<(Findings3, Vec<u32>)> {
     let mut found = Findings3 {
         facets: repeated_facets(given, watch)?,
         ..Findings3::default()
     };
-    missing(given, &ordered, &mut found, watch)?;
+    let unused = expected.unused(given.simplices, &mut found.repeats, watch)?;
     let mut boundary = Vec::new();
     for t in 0..given.simplices.len() {
         if t % WATCH_EVERY == 0 {
             watch.check()?;
         }
-        tetrahedron(given, t, &mut found, &mut boundary)?;
+        tetrahedron(given, t, &judge, &mut found, &mut boundary)?;
     }
     watch.check()?;
     hull(given, &boundary, &mut found);
-    Ok(found)
+    Ok((found, unused))
 }
 
-/// Checks one tetrahedron: its orientation, its neighbors, the circumspheres across its facets.
+/// Checks one tetrahedron: its orientation, its neighbors, the verdicts across its facets.
 fn tetrahedron(
     given: Tetrahedra,
     t: usize,
+    judge: &impl Fn([i32; 5]) -> Verdict,
     found: &mut Findings3,
     boundary: &mut Vec<[i32; 3]>,
 ) -> Result<()> {
-    let [a, b, c, d] = given.simplices[t].map(|v| given.point(v));
+    let [a, b, c, d] = given.corners(t);
     if orient3d(a, b, c, d) != Sign::Positive {
         found.orientation.push(t as u32);
     }
@@ -123,14 +153,12 @@ fn tetrahedron(
             continue;
         };
         if t < other {
-            let apex = given.point(given.simplices[other][j]);
+            let [a, b, c, d] = given.simplices[t];
             let pair = [t as u32, other as u32];
-            match insphere(a, b, c, d, apex) {
-                Sign::Positive => found.delaunay.push(pair),
-                Sign::Zero if insphere_canonical(a, b, c, d, apex) == Sign::Positive => {
-                    found.ties.push(pair);
-                }
-                _ => {}
+            match judge([a, b, c, d, given.simplices[other][j]]) {
+                Verdict::Wrong => found.delaunay.push(pair),
+                Verdict::Tie => found.ties.push(pair),
+                Verdict::Right => {}
             }
         }
     }
@@ -173,32 +201,6 @@ fn repeated_facets(given: Tetrahedra, watch: &Watch) -> Result<Vec<[u32; 3]>> {
     }
     repeated.dedup();
     Ok(repeated)
-}
-
-/// Distinct points none of whose rows is a vertex, and vertices that repeat an earlier row.
-fn missing(
-    given: Tetrahedra,
-    ordered: &Arranged3,
-    found: &mut Findings3,
-    watch: &Watch,
-) -> Result<()> {
-    let mut used = filled(given.points.len(), false)?;
-    for lot in given.simplices.chunks(LOT) {
-        watch.check()?;
-        for &v in lot.as_flattened() {
-            used[v as usize] = true;
-        }
-    }
-    for &[row, first] in &ordered.duplicates {
-        if used[row as usize] {
-            found.repeats.push(row);
-            used[first as usize] = true;
-        }
-    }
-    let rows = ordered.rows.iter().copied();
-    found.missing = rows.filter(|&r| !used[r as usize]).collect();
-    found.missing.sort_unstable();
-    Ok(())
 }
 
 /// The orientation of a, b, c as seen along the tilted z axis: the sign of their normal along z, or

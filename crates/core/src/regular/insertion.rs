@@ -17,6 +17,7 @@ use super::records::{GHOST, NONE, Records};
 use crate::arrays::Arrays;
 use crate::error::{Error, Result};
 use crate::memory::filled;
+use crate::proof::Verdict;
 use crate::watch::Watch;
 
 /// Sites inserted between two checks for interruption.
@@ -40,6 +41,16 @@ pub trait Sites {
         match self.height(sites) {
             Sign::Zero => self.tie(sites) == Sign::Positive,
             sign => sign == Sign::Positive,
+        }
+    }
+
+    /// Whether triangle p, u, v and its neighbor across the edge from u to v, with apex q, are locally
+    /// regular.
+    fn verdict(&self, [p, u, v, q]: [u32; 4]) -> Verdict {
+        match self.height([p, u, v, q]) {
+            Sign::Positive => Verdict::Wrong,
+            Sign::Zero if self.tie([p, u, v, q]) == Sign::Positive => Verdict::Tie,
+            _ => Verdict::Right,
         }
     }
 

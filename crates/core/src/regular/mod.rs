@@ -8,6 +8,8 @@ mod insertion;
 mod periodic;
 mod power;
 mod records;
+mod validate;
+mod validate_periodic;
 
 use delone_predicates::Point2;
 
@@ -22,6 +24,8 @@ pub use insertion::Sites;
 pub use periodic::{Copies, Images, periodic};
 pub use power::{Weighted, power_sign};
 pub use records::{GHOST, NONE, Records};
+pub use validate::{Checked, others, unused, validate};
+pub use validate_periodic::{PeriodicFindings, Wrapped, validate_periodic};
 
 /// The regular triangulation of weighted points.
 #[derive(Debug)]

@@ -54,7 +54,7 @@ pub struct Images<'a> {
     /// Weights of the points; empty for none.
     pub weights: &'a [f64],
     /// The point of each copy, and the number of periods by which it is translated.
-    pub of: Vec<(u32, [i8; 2])>,
+    pub of: Vec<(u32, [i32; 2])>,
 }
 
 /// A triangulation of copies.
@@ -80,13 +80,13 @@ pub fn periodic(
     taken: &[[i32; 3]],
     watch: &Watch,
 ) -> Result<Copies> {
-    let images: Vec<(u32, [i8; 2])> = taken
+    let images: Vec<(u32, [i32; 2])> = taken
         .iter()
-        .map(|&[row, x, y]| (row as u32, [x as i8, y as i8]))
+        .map(|&[row, x, y]| (row as u32, [x, y]))
         .collect();
     // Rounded copies are only used for the insertion order; two may round to the same point.
     let mut near = with_room(images.len())?;
-    let at = |&(row, moved): &(u32, [i8; 2]), share: f64| {
+    let at = |&(row, moved): &(u32, [i32; 2]), share: f64| {
         let p = points[row as usize];
         [0, 1].map(|k| p[k] * share + f64::from(moved[k]) * (periods[k] * share))
     };
@@ -113,11 +113,7 @@ pub fn periodic(
         triangles,
         chain,
         rows: sites.of.iter().map(|&(row, _)| row as i32).collect(),
-        moved: sites
-            .of
-            .iter()
-            .map(|&(_, moved)| moved.map(i32::from))
-            .collect(),
+        moved: sites.of.iter().map(|&(_, moved)| moved).collect(),
     })
 }
 

@@ -2,6 +2,7 @@
 
 mod insertion;
 mod power;
+mod validate;
 
 use delone_predicates::{Point3, orient3d};
 
@@ -13,6 +14,7 @@ use crate::regular::{Heaviest, Weighted, heaviest};
 use crate::watch::Watch;
 
 pub use power::{power_canonical, power_sign};
+pub use validate::validate;
 
 /// The regular triangulation of weighted points in 3-D.
 #[derive(Debug)]

@@ -62,7 +62,7 @@ fn one(
         of: corners
             .iter()
             .chain(apexes)
-            .map(|&[row, x, y]| (row as u32, [x as i8, y as i8]))
+            .map(|&[row, x, y]| (row as u32, [x, y]))
             .collect(),
     };
     let (at, low) = images.coordinates([0, 1, 2]);

@@ -1,0 +1,273 @@
+"""Reports of exact validation of regular and periodic triangulations.
+
+The checks run in the core, as those of `validation`. This module names the faults.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from delone import _core
+from delone.space.plane import twins
+from delone.validation import SENTENCES, SpaceReport, ValidationReport, of_tetrahedra, of_triangles
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = [
+    "PeriodicReport",
+    "RegularReport",
+    "RegularSpaceReport",
+    "validate_periodic",
+    "validate_regular",
+]
+
+_REGULAR = {
+    "missing": (
+        "point is outside all simplices",
+        "points are outside all simplices",
+    ),
+    "repeats": (
+        "vertex is not the first of the heaviest rows with its coordinates",
+        "vertices are not the first of the heaviest rows with their coordinates",
+    ),
+    "delaunay": (
+        "pair of simplices is not locally regular",
+        "pairs of simplices are not locally regular",
+    ),
+    "ties": (
+        "pair of simplices on a tie is not canonical",
+        "pairs of simplices on ties are not canonical",
+    ),
+    "hidden": ("hidden point should be a vertex", "hidden points should be vertices"),
+    "duplicates": ("row has the wrong duplicate", "rows have the wrong duplicates"),
+}
+
+
+def _none() -> NDArray[np.int64]:
+    return np.empty(0, dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RegularReport(ValidationReport):
+    """The result of ``RegularTriangulation.validate()``: truthy if the triangulation is right.
+
+    The fields are those of `ValidationReport`, with these changes: `missing` has points outside all
+    triangles, `repeats` has vertices that are not the first of the heaviest rows with their
+    coordinates, and `delaunay` and `ties` are about lifted points. Two more:
+
+    Parameters
+    ----------
+    hidden : ndarray of int, shape (k,)
+        Rows that should be vertices, though triangles cover them. These and `missing` are looked
+        for only if the triangles are otherwise right.
+    duplicates : ndarray of int, shape (k,)
+        Rows that should be listed as duplicates and are not, or the other way around.
+
+    Examples
+    --------
+    >>> from delone import RegularTriangulation
+    >>> mesh = RegularTriangulation([(0, 0), (4, 0), (0, 4), (1, 1)], [0, 0, 0, -9])
+    >>> print(mesh.validate())
+    a canonical regular triangulation
+    """
+
+    hidden: NDArray[np.integer] = field(default_factory=_none)
+    duplicates: NDArray[np.integer] = field(default_factory=_none)
+
+    _SUBJECT: ClassVar[str] = "a canonical regular triangulation"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | _REGULAR
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RegularSpaceReport(SpaceReport):
+    """The result of ``RegularTriangulation.validate()`` in 3-D.
+
+    The fields are those of `SpaceReport`, with the changes of `RegularReport`. Two more:
+
+    Parameters
+    ----------
+    hidden : ndarray of int, shape (k,)
+        Rows that should be vertices, though tetrahedra cover them.
+    duplicates : ndarray of int, shape (k,)
+        Rows that should be listed as duplicates and are not, or the other way around.
+
+    Examples
+    --------
+    >>> from delone import RegularTriangulation
+    >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    >>> RegularTriangulation(corners, [0, 0, 0, 1]).validate().ok
+    True
+    """
+
+    hidden: NDArray[np.integer] = field(default_factory=_none)
+    duplicates: NDArray[np.integer] = field(default_factory=_none)
+
+    _SUBJECT: ClassVar[str] = RegularReport._SUBJECT
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**SpaceReport._SENTENCES, **_REGULAR}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PeriodicReport(ValidationReport):
+    """The result of ``PeriodicDelaunay.validate()``: truthy if the triangulation is right.
+
+    The fields are those of `ValidationReport`, with these changes: `neighbors` has triangles whose
+    `neighbors` or `partners` are wrong, `hull` has edges without a partner that are not on the
+    boundary of the strip, and `edges` is always empty. With v vertices and h edges without a
+    partner, `count` expects 2v - h triangles. With weights, `delaunay` and `ties` are about lifted
+    points, and `missing` is always empty. More:
+
+    Parameters
+    ----------
+    offsets : ndarray of int, shape (k,)
+        Triangles with impossible offsets: the first corner is moved, another one is moved by more
+        than one period, or in a direction without a period. If there are any, nothing else is
+        checked.
+    hidden : ndarray of int, shape (k,)
+        Rows that should be vertices, though triangles cover them; looked for only if all else is
+        right.
+    layers : ndarray of int, shape (1,) or (0,)
+        How often the triangles cover the plane, if this is not once. Found only if orientations,
+        neighbors and boundary are right.
+
+    Examples
+    --------
+    >>> from delone import PeriodicDelaunay
+    >>> print(PeriodicDelaunay([(0.25, 0.5)], (1, 1)).validate())
+    a canonical periodic triangulation
+    """
+
+    offsets: NDArray[np.integer] = field(default_factory=_none)
+    hidden: NDArray[np.integer] = field(default_factory=_none)
+    layers: NDArray[np.integer] = field(default_factory=_none)
+
+    _SUBJECT: ClassVar[str] = "a canonical periodic triangulation"
+    _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | {
+        "offsets": ("triangle has impossible offsets", "triangles have impossible offsets"),
+        "neighbors": (
+            "triangle has wrong neighbors or partners",
+            "triangles have wrong neighbors or partners",
+        ),
+        "hull": (
+            "boundary edge is not on the boundary of the strip",
+            "boundary edges are not on the boundary of the strip",
+        ),
+        "delaunay": (
+            "pair of triangles is not locally Delaunay or regular",
+            "pairs of triangles are not locally Delaunay or regular",
+        ),
+        "ties": (
+            "pair of triangles on a tie is not canonical",
+            "pairs of triangles on ties are not canonical",
+        ),
+        "repeats": _REGULAR["repeats"],
+        "hidden": _REGULAR["hidden"],
+    }
+
+    def __str__(self) -> str:
+        text = super().__str__()
+        if self.layers.size:
+            text += f"\n  layers: triangles cover the plane {self.layers[0]} times, 1 expected"
+        return text
+
+
+def validate_regular(
+    points: Floats, weights: Floats, simplices: Indices, neighbors: Indices, duplicates: Indices
+) -> RegularReport | RegularSpaceReport:
+    """Check the arrays of a regular triangulation.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, d)
+        Coordinates.
+    weights : ndarray of float64, shape (n,)
+        Weights.
+    simplices, neighbors : ndarray of int32, shape (m, d + 1)
+        Simplices, and those opposite their vertices.
+    duplicates : ndarray of int32, shape (k, 2)
+        Rows that repeat others, and these.
+
+    Returns
+    -------
+    RegularReport or RegularSpaceReport
+        What is wrong.
+    """
+    if points.shape[1] == 3:
+        solid = _core.validate_regular3(points, weights, simplices, neighbors)
+        return RegularSpaceReport(
+            **vars(of_tetrahedra(solid.faults)),
+            hidden=solid.hidden,
+            duplicates=_differing(duplicates, twins(solid.stands_for, weights)),
+        )
+    flat = _core.validate_regular2(points, weights, simplices, neighbors)
+    return RegularReport(
+        **vars(of_triangles(flat.faults)),
+        hidden=flat.hidden,
+        duplicates=_differing(duplicates, twins(flat.stands_for, weights)),
+    )
+
+
+def _differing(found: Indices, expected: Indices) -> NDArray[np.int64]:
+    """Return the rows of pairs that stand in one array only; of all where the order differs."""
+    if np.array_equal(found, expected):
+        return _none()
+    pairs, count = np.unique(np.concatenate((found, expected)), axis=0, return_counts=True)
+    single = pairs[count != 2] if (count != 2).any() else pairs
+    return np.unique(single[:, 0]).astype(np.int64)
+
+
+def validate_periodic(
+    points: Floats,
+    weights: Floats | None,
+    periods: tuple[float | None, float | None],
+    topology: tuple[Indices, Indices, Indices, Indices],
+) -> PeriodicReport:
+    """Check the arrays of a periodic triangulation.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Coordinates.
+    weights : ndarray of float64, shape (n,), or None
+        Weights.
+    periods : tuple of two floats or None
+        The periods in x and y.
+    topology : tuple of ndarray of int32
+        Simplices, offsets, neighbors and partners, as `PeriodicDelaunay` has them.
+
+    Returns
+    -------
+    PeriodicReport
+        What is wrong.
+    """
+    simplices, offsets, neighbors, partners = topology
+    found = _core.validate_periodic2(
+        points,
+        weights,
+        (periods[0] or 0.0, periods[1] or 0.0),
+        simplices,
+        offsets.reshape(-1, 6),
+        neighbors,
+        partners,
+    )
+    return PeriodicReport(
+        offsets=found.offsets,
+        orientation=found.orientation,
+        neighbors=found.neighbors,
+        hull=found.hull,
+        missing=found.missing,
+        repeats=found.repeats,
+        hidden=found.hidden,
+        delaunay=found.delaunay,
+        ties=found.ties,
+        count=found.count,
+        layers=found.layers,
+    )
