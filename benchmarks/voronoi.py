@@ -72,8 +72,8 @@ def within(outline: shapely.Polygon, n: int) -> Any:
 
 def delone_arrays(points: Any, workers: int) -> None:
     diagram = delone.Voronoi(points, workers=workers)
-    _ = diagram.vertices, diagram.ridge_points, diagram.ridge_vertices
-    _ = diagram.region_vertices, diagram.point_region
+    _ = diagram.vertices, diagram.ridge_points, diagram.ridge_rows
+    _ = diagram.region_rows, diagram.point_region
 
 
 def scipy_lists(points: Any) -> None:

@@ -31,7 +31,7 @@ SLOW = 20.0
 
 def arrays(points: Any, workers: int) -> None:
     diagram = delone.Voronoi(points, workers=workers)
-    _ = diagram.vertices, diagram.ridge_points, diagram.region_vertices, diagram.point_region
+    _ = diagram.vertices, diagram.ridge_points, diagram.region_rows, diagram.point_region
 
 
 def lists(points: Any, workers: int) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from delone.errors import InputError
 from delone.immutable import Immutable, kept, sealed
 
 if TYPE_CHECKING:
@@ -124,7 +125,12 @@ class Stored(Immutable):
         """
         from delone import archive
 
-        return cls._loaded(archive.read(path, cls._stored_as()))
+        arrays = archive.read(path, cls._stored_as())
+        try:
+            return cls._loaded(arrays)
+        except InputError as error:
+            # Arrays that are the input of a constructor.
+            raise archive.refusal(path, error) from error
 
     @classmethod
     def _stored_as(cls) -> str:

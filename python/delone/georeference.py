@@ -331,7 +331,7 @@ def warn_of_degrees(
         return
     found = by or degrees_in(data)
     if found and may_be_degrees(coordinates):
-        warnings.warn(message_of_degrees(name, found), GeographicWarning, stacklevel=_level())
+        warnings.warn(message_of_degrees(name, found), GeographicWarning, stacklevel=caller_level())
 
 
 def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
@@ -380,8 +380,14 @@ def message_of_degrees(what: str, by: str) -> str:
     )
 
 
-def _level() -> int:
-    """The stack level of the first caller outside the package."""
+def caller_level() -> int:
+    """Return the stack level of the first caller outside of the package, for a warning.
+
+    Returns
+    -------
+    int
+        For ``warnings.warn`` in the function that calls this one.
+    """
     level, frame = 2, sys._getframe(2)
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("delone."):
         level, frame = level + 1, frame.f_back

@@ -60,6 +60,7 @@ CONVERTED = (
     "crates/predicates/src/*.rs",
     "fuzz/fuzz_targets/*.rs",
     "fuzz/src/*.rs",
+    "python/delone/voronoi/*.py",
 )
 
 # Each is written out in the left column of the table in CONTRIBUTING.md.

@@ -37,7 +37,7 @@ def alone(diagram: Voronoi, row: int, **options: Any) -> Voronoi:
 
 def cells(diagram: Voronoi) -> Iterator[NDArray[np.int32]]:
     """The vertices of each cell, site by site."""
-    starts, entries = diagram.region_vertices
+    starts, entries = diagram.region_rows
     listed = [entries[a:b] for a, b in pairwise(starts.tolist())]
     return (listed[region] for region in diagram.point_region.tolist())
 
@@ -49,7 +49,7 @@ def plane() -> Voronoi:
 
 def test_ridges_of_the_plane(plane: Voronoi) -> None:
     """Ends are as far from one site as from the other, and in the order that is promised."""
-    points, ends = plane.points, plane.ridge_vertices
+    points, ends = plane.points, np.array(plane.ridge_vertices)
     a, b = (points[plane.ridge_points[:, k]] for k in (0, 1))
     assert len(ends) > 2 * (1 << 14)
     for k in (0, 1):
@@ -66,7 +66,7 @@ def test_ridges_of_the_plane(plane: Voronoi) -> None:
 def test_cells_of_the_plane(plane: Voronoi) -> None:
     """Counter-clockwise, and the vertices are those of the ridges around."""
     of_ridges: list[set[int]] = [set() for _ in range(plane.npoints)]
-    for sites, ends in zip(plane.ridge_points.tolist(), plane.ridge_vertices.tolist(), strict=True):
+    for sites, ends in zip(plane.ridge_points.tolist(), plane.ridge_vertices, strict=True):
         for site in sites:
             of_ridges[site] |= set(ends)
     checked = 0

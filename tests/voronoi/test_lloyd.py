@@ -142,7 +142,7 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
         ({"tol": float("nan")}, "tol"),
         ({"density": lambda p: p}, "shape"),
         ({"density": lambda p: -p[:, 0]}, "not negative"),
-        ({"density": lambda p: 0 * p[:, 0]}, "nothing but zeros"),
+        ({"density": lambda p: 0 * p[:, 0]}, "returned only zeros"),
         ({"density": lambda p: ["a"] * len(p)}, "density must return real numbers"),
         ({"density": 5}, "density must be a function"),
         ({"progress": 5}, "progress must be a function"),
@@ -151,8 +151,8 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
         ({"iterations": True}, "iterations must be an integer"),
         ({"tol": "a"}, "tol must be a real number"),
         ({"tol": True}, "tol must be a real number"),
-        ({"clip": {}}, "clip {} is no geometry: it has no type"),
-        ({"clip": {"type": 5}}, "is no geometry: its type is 5"),
+        ({"clip": {}}, "clip {} is not a geometry: it has no type"),
+        ({"clip": {"type": 5}}, "is not a geometry: its type is 5"),
     ],
 )
 def test_bad_options_are_refused(options: dict[str, Any], message: str) -> None:

@@ -67,10 +67,10 @@ def jagged(rng: np.random.Generator, corners: int) -> Any:
 def check(points: Any, outline: Any) -> Voronoi:
     """Measures are those of what boxed cells and the outline share; returns the diagram."""
     diagram = Voronoi(points, clip=outline)
-    clipped = diagram._clipped
+    clipped = diagram._left
     size = outline.area
     for cell in range(len(clipped.areas)):
-        ring = exact(clipped.ring(cell))
+        ring = exact(clipped.corners[clipped.starts[cell] : clipped.starts[cell + 1]])
         whole, x, y = common(ring, outline) if len(ring) > 2 else (ZERO, ZERO, ZERO)
         assert clipped.areas[cell] == pytest.approx(float(whole), rel=1e-12, abs=1e-15 * size)
         if whole > size * 1e-6:
@@ -89,8 +89,8 @@ def test_what_is_left_of_cells_is_that_of_fractions(seed: int) -> None:
     outline = jagged(rng, 40) - shapely.Point(0.5, 0.5).buffer(0.1, quad_segs=3)
     diagram = check(rng.random((12, 2)), outline)
     # The core has cut them all.
-    assert not len(diagram._clipped._doubtful)  # type: ignore[attr-defined]
-    assert (diagram._clipped._side == 2).sum() > 5  # type: ignore[attr-defined]
+    assert not len(diagram._left._doubtful)  # type: ignore[attr-defined]
+    assert (diagram._left._side == 2).sum() > 5  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -102,7 +102,7 @@ def test_corners_that_coincide_are_left_to_shapely(seed: int) -> None:
         [shapely.box(x, y, x + w, y + h) for x, y, w, h in rng.integers(1, 5, (4, 4)).tolist()]
     )
     diagram = check(points, outline)
-    assert len(diagram._clipped._doubtful)  # type: ignore[attr-defined]
+    assert len(diagram._left._doubtful)  # type: ignore[attr-defined]
     assert diagram.cell_areas[np.unique(diagram.duplicate_of)].sum() == pytest.approx(outline.area)
 
 
@@ -118,7 +118,7 @@ def test_islands_and_ponds_within_one_cell() -> None:
     outline = shapely.MultiPolygon([lake, island, other, across])
     assert outline.is_valid
     diagram = check([(-3.0, 0.0), (3.0, 0.0)], outline)
-    assert not len(diagram._clipped._doubtful)  # type: ignore[attr-defined]
+    assert not len(diagram._left._doubtful)  # type: ignore[attr-defined]
     left, right = diagram.polygons()
     holes = sorted(len(part.interiors) for part in left.geoms)
     assert holes == [0, 0, 1, 1]
@@ -137,12 +137,12 @@ def test_crossings_are_the_doubles_nearest_to_the_true_ones() -> None:
     rng = np.random.default_rng(3)
     outline = jagged(rng, 12)
     diagram = Voronoi(rng.random((8, 2)), clip=outline)
-    clipped = diagram._clipped
+    clipped = diagram._left
     segments = list(pairwise(exact(shapely.get_coordinates(outline))))
     known = {tuple(map(float, p)) for p, _ in segments}
     wanted = set()
     for cell in range(8):
-        ring = exact(clipped.ring(cell))
+        ring = exact(clipped.corners[clipped.starts[cell] : clipped.starts[cell + 1]])
         known |= {tuple(map(float, p)) for p in ring}
         for p, q in pairwise([*ring, ring[0]]):
             for a, b in segments:

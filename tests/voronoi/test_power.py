@@ -58,8 +58,8 @@ def test_vertices_have_equal_power_to_their_sites() -> None:
     diagram = Voronoi(points, weights=weights)
     mesh = diagram.triangulation
     assert mesh is not None
-    near = np.abs(diagram.vertices[diagram.triangle_vertices]).max(axis=1) < 10
-    at = diagram.vertices[diagram.triangle_vertices][near]
+    near = np.abs(diagram.vertices[diagram.simplex_vertices]).max(axis=1) < 10
+    at = diagram.vertices[diagram.simplex_vertices][near]
     corners = mesh.simplices[near]
     power = ((at[:, None] - points[corners]) ** 2).sum(axis=2) - weights[corners]
     assert np.allclose(power, power[:, :1], rtol=0, atol=1e-12)

@@ -39,7 +39,7 @@ def check(points: Any, weights: Any, box: list[float], seed: int = 0) -> None:
         assert np.isfinite(diagram.rays.origin).all()
         assert np.hypot(*diagram.rays.direction.T) == pytest.approx(1)
         assert not np.isnan(diagram.cell_areas).any()
-        assert not np.isnan(diagram.neighbors.lengths).any()
+        assert not np.isnan(diagram.neighbors.sizes).any()
     rows = np.setdiff1d(np.unique(diagram.duplicate_of), diagram.hidden).tolist()
     rings = {row: exact(part[0]) for row in rows for part in diagram.cell(row).parts}
     left, bottom, right, top = map(Fraction, box)
@@ -108,7 +108,7 @@ def test_outlines_of_any_size(scale: float) -> None:
     plain, found = Voronoi(points, clip=outline), Voronoi(points * scale, clip=scaled)
     assert found.cell_areas == pytest.approx(plain.cell_areas * scale * scale, rel=1e-12)
     assert found.cell_perimeters == pytest.approx(plain.cell_perimeters * scale, rel=1e-12)
-    assert found.neighbors.lengths == pytest.approx(plain.neighbors.lengths * scale, rel=1e-12)
+    assert found.neighbors.sizes == pytest.approx(plain.neighbors.sizes * scale, rel=1e-12)
     centers = found.cell_centroids / scale
     assert centers == pytest.approx(plain.cell_centroids, rel=1e-12, nan_ok=True)
     back = shapely.transform(found.polygons(), lambda places: places / scale)

@@ -31,7 +31,7 @@ def replaced(result: Any, **changes: Any) -> Any:
 
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_a_diagram_has_the_arrays_that_it_is_made_of(ndim: int) -> None:
-    dual = diagram(ndim)._dual
+    dual = diagram(ndim)._cells.dual
     again = pickle.loads(pickle.dumps(dual))
     copied = replaced(dual)
     assert len(names(dual)) == len(dual.arrays())
@@ -44,7 +44,7 @@ def test_a_diagram_has_the_arrays_that_it_is_made_of(ndim: int) -> None:
 
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_arrays_of_other_shapes_are_refused(ndim: int) -> None:
-    dual = diagram(ndim)._dual
+    dual = diagram(ndim)._cells.dual
     for name in names(dual):
         array = getattr(dual, name)
         with pytest.raises(TypeError):
@@ -60,17 +60,17 @@ def test_arrays_of_other_shapes_are_refused(ndim: int) -> None:
 
 def test_numbers_out_of_range_are_refused_where_they_are_used() -> None:
     flat = diagram(2)
-    wrong = replaced(flat._dual, region_vertices=flat._dual.region_vertices + 10**6)
+    wrong = replaced(flat._cells.dual, region_vertices=flat._cells.dual.region_vertices + 10**6)
     with pytest.raises(ShapeError, match="region_vertices"):
         _core.voronoi_clip2(flat.points, None, wrong, BOX, 1)
     solid = diagram(3)
-    wrong = replaced(solid._dual, region_ridges=solid._dual.region_ridges + 10**6)
+    wrong = replaced(solid._cells.dual, region_ridges=solid._cells.dual.region_ridges + 10**6)
     with pytest.raises(ShapeError, match="region_ridges"):
         _core.measures3(solid.points, None, wrong, 1)
 
 
 def test_the_core_takes_no_dictionary() -> None:
     flat = diagram(2)
-    arrays: Any = {name: getattr(flat._dual, name) for name in names(flat._dual)}
+    arrays: Any = {name: getattr(flat._cells.dual, name) for name in names(flat._cells.dual)}
     with pytest.raises(TypeError):
         _core.voronoi_clip2(flat.points, None, arrays, BOX, 1)

@@ -3,6 +3,6 @@
 `file` writes and reads, `kinds` has the layouts, `checks` the checks of their content.
 """
 
-from delone.archive.file import read, write
+from delone.archive.file import read, refusal, write
 
-__all__ = ["read", "write"]
+__all__ = ["read", "refusal", "write"]

@@ -25,6 +25,7 @@ __all__ = [
     "ContradictionError",
     "check_constrained",
     "check_delaunay",
+    "check_diagram",
     "check_input",
     "check_mesh",
     "check_tetrahedra",
@@ -83,6 +84,52 @@ def check_input(**arrays: NDArray[Any]) -> None:
     """Check input that is computed again."""
     require(len(arrays["points"]) > 0, "it has no points")
     require(np.isfinite(arrays["points"]).all(), "a coordinate is not finite")
+
+
+def check_diagram(**arrays: NDArray[Any]) -> None:
+    """Check the sites of a diagram, and its clip."""
+    check_input(**arrays)
+    ndim = arrays["points"].shape[1]
+    require(len(arrays["weights"]) in (0, len(arrays["points"])), "weights and points do not match")
+    require(len(arrays["periods"]) in (0, 2), "it has other than two periods")
+    require(len(arrays["box"]) in (0, 2 * ndim), "the box is incomplete")
+    shape = "outline" if ndim == 2 else "corners"
+    require(not (len(arrays["box"]) and len(arrays[shape])), "it has two clips")
+    if ndim == 3:
+        _check_polyhedron(*(arrays[name] for name in ("corners", "starts", "faces", "planes")))
+
+
+# The plane of a face contains its corners up to this share of the products that make the sum.
+_ROUNDING = 2.0**-40
+
+
+def _check_polyhedron(
+    corners: NDArray[np.float64],
+    starts: NDArray[np.int32],
+    faces: NDArray[np.int32],
+    planes: NDArray[np.float64],
+) -> None:
+    """Check that faces close a surface, and that planes are theirs."""
+    if not len(planes):
+        empty = len(corners) == len(starts) == len(faces) == 0
+        require(empty, "it has a polyhedron without planes")
+        return
+    require(np.isfinite(corners).all() and np.isfinite(planes).all(), "the clip is not finite")
+    require(len(starts) == len(planes) + 1, "faces and planes do not match")
+    require(starts[0] == 0 and starts[-1] == len(faces), "faces are out of range")
+    require((np.diff(starts) > 2).all(), "a face has fewer than three corners")
+    _check_range("faces", faces, 0, len(corners))
+    following = np.arange(1, len(faces) + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    tail, head = faces.astype(np.int64), faces[following].astype(np.int64)
+    keys, reverse = np.sort(tail * len(corners) + head), np.sort(head * len(corners) + tail)
+    closed = (keys == reverse).all() and (keys[1:] > keys[:-1]).all()
+    require(closed, "the clip is not one closed surface")
+    normal, offset = (np.repeat(each, np.diff(starts), axis=0) for each in np.split(planes, [3], 1))
+    with np.errstate(all="ignore"):
+        terms = np.column_stack((normal * corners[faces], -offset))
+        near = np.abs(terms.sum(axis=1)) <= _ROUNDING * np.abs(terms).sum(axis=1)
+    require(near.all(), "a plane does not contain its face")
 
 
 def _check_simplices(

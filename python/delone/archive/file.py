@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["read", "write"]
+__all__ = ["read", "refusal", "write"]
 
 _VERSION = 1
 # Bytes, four for each character: no WKT is as long.
@@ -100,9 +100,9 @@ def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, N
             texts = {name: _scalar(archive, name, _LONGEST_TEXT) for name in present}
         kind.check(**arrays)
     except _DAMAGE as error:
-        raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from error
+        raise refusal(path, error) from error
     except ContradictionError as error:
-        raise FileFormatError(f"{path}: {_REFUSAL}: {error}") from None
+        raise refusal(path, error) from None
     return arrays | {name: np.array(str(text)) for name, text in texts.items()}
 
 
@@ -120,7 +120,24 @@ _DAMAGE = (
     LookupError,
     struct.error,
 )
-_REFUSAL = "not a file of this class, or truncated"
+
+
+def refusal(path: str | os.PathLike[str], why: Exception) -> FileFormatError:
+    """Return the error of a file whose arrays are wrong.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    why : Exception
+        What is wrong.
+
+    Returns
+    -------
+    FileFormatError
+        To be raised.
+    """
+    return FileFormatError(f"{path}: not a file of this class, or truncated: {why}")
 
 
 def _kind(archive: zipfile.ZipFile, kinds: tuple[Kind, ...]) -> Kind:

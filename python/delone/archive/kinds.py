@@ -107,10 +107,14 @@ _TET_MESH = Kind(
 )
 
 
-def _input(name: str, ndim: int, **further: tuple[str, int]) -> Kind:
+def _input(
+    name: str,
+    ndim: int,
+    check: Callable[..., None] = checks.check_input,
+    **further: tuple[str, int],
+) -> Kind:
     """Return the layout of a class that is computed again from its input."""
-    layout = {"points": ("<f8", ndim)} | further
-    return Kind(f"delone.{name} {ndim}-D", layout, checks.check_input)
+    return Kind(f"delone.{name} {ndim}-D", {"points": ("<f8", ndim)} | further, check)
 
 
 _WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)
@@ -126,5 +130,30 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
         _input("RegularTriangulation", ndim, weights=_WEIGHTS) for ndim in (2, 3)
     ),
     "PeriodicDelaunay": (_input("PeriodicDelaunay", 2, weights=_WEIGHTS, periods=_PERIODS),),
+    "Voronoi": (
+        # The clip is a box or an outline, as WKB; what is not there is empty.
+        _input(
+            "Voronoi",
+            2,
+            checks.check_diagram,
+            weights=_WEIGHTS,
+            periods=_PERIODS,
+            box=("<f8", 0),
+            outline=("|u1", 0),
+        ),
+        # The clip is a box or a convex polyhedron.
+        _input(
+            "Voronoi",
+            3,
+            checks.check_diagram,
+            weights=_WEIGHTS,
+            periods=_PERIODS,
+            box=("<f8", 0),
+            corners=("<f8", 3),
+            faces=("<i4", 0),
+            starts=("<i4", 0),
+            planes=("<f8", 4),
+        ),
+    ),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
 }

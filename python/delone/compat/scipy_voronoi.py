@@ -12,7 +12,6 @@ positive length or area, and vertices, ridges and regions are in delone's order.
 
 from __future__ import annotations
 
-import itertools
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +23,7 @@ from delone.compat.qhull import Incremental, triangulate
 from delone.compat.qhull_options import VORONOI
 from delone.duplicates import first_rows
 from delone.errors import ShapeError
-from delone.voronoi.lists import gaps_once, ridge_lists
+from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -139,7 +138,7 @@ class Voronoi(Incremental):
     def ridge_vertices(self) -> list[list[int]]:
         """The vertices of each ridge; -1, which comes first, where it is unbounded."""
         if isinstance(self._dual, _core.Diagram3):
-            return ridge_lists(self._dual)
+            return as_lists(*from_the_gap(self._dual.ridge_starts, self._dual.ridge_entries))
         found: list[list[int]] = np.maximum(self._dual.ends, -1).tolist()
         return found
 
@@ -151,9 +150,7 @@ class Voronoi(Incremental):
 
     @cached_property
     def _regions(self) -> tuple[list[list[int]], NDArray[np.int64]]:
-        entries = self._dual.region_vertices.tolist()
-        starts = self._dual.region_starts.tolist()
-        cells = [gaps_once(entries[a:b]) for a, b in itertools.pairwise(starts)]
+        cells = as_lists(*one_gap(self._dual.region_starts, self._dual.region_vertices))
         of_point = self._dual.region.astype(np.int64)
         infinite = self._options.infinite_point and not self.furthest_site
         lists: list[list[int]] = [[]] if infinite else []

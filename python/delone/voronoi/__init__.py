@@ -1,27 +1,25 @@
 """2-D and 3-D Voronoi diagrams, whole or clipped to an outline or polyhedron.
 
-`diagram` has the class, `dual` the arrays of the core and of sites on one line, `cells` what a cell
-is, `outline` where they end, `clipping` what that leaves of them, by `pieces` and `overlay`, and
-`thin` which of them rounding has taken. `shapes` has geometries, tables and pictures, `centroidal`
-Lloyd's method, `torus` periodic sets. Of space, `space` has the class, `bodies` what a cell is, and
-`polyhedra` what cells are cut to.
+`diagram` has the class, which holds the `cells` of its dimension, `plane` or `space`. `sites` has
+their triangulation, `dual` and `torus` the arrays of 2-D diagrams, `rows` lists of vertices,
+`results` what is returned besides arrays. 2-D cells are cut to an `outline` by `clipping`, with
+`pieces` and `overlay`, 3-D cells (`bodies`) to one of `polyhedra`; `thin` finds the cells that
+rounding has emptied. `line` has the nearest of collinear sites, `centroidal` Lloyd's method.
 """
 
-from delone.voronoi.bodies import SpaceCell, SpaceNeighbors
-from delone.voronoi.cells import Cell, Neighbors, Rays
 from delone.voronoi.centroidal import LloydResult, lloyd
 from delone.voronoi.diagram import Voronoi
-from delone.voronoi.space import SpaceVoronoi
+from delone.voronoi.polyhedra import Polyhedron
+from delone.voronoi.results import Cell, Neighbors, PolyhedralCell, Rays
 from delone.voronoi.thin import ThinCellWarning
 
 __all__ = [
     "Cell",
     "LloydResult",
     "Neighbors",
+    "PolyhedralCell",
+    "Polyhedron",
     "Rays",
-    "SpaceCell",
-    "SpaceNeighbors",
-    "SpaceVoronoi",
     "ThinCellWarning",
     "Voronoi",
     "lloyd",

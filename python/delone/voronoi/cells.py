@@ -1,147 +1,93 @@
-"""What a diagram hands out besides arrays: rays, neighbours, one cell."""
+"""What the cells of both dimensions have in common: the sites, the whole diagram and the clip.
+
+`delone.Voronoi` holds the cells of one dimension, `plane` or `space`, which have the same methods.
+"""
 
 from __future__ import annotations
 
-import operator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
-from delone.errors import DtypeError
+import numpy as np
+
+from delone._arrays import as_workers
+from delone.immutable import sealed
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
+    from delone.delaunay import Delaunay
+    from delone.periodic import PeriodicDelaunay
+    from delone.regular import RegularTriangulation
+
     Floats = NDArray[np.float64]
-    Indices = NDArray[np.int32]
+    Periods = tuple[float | None, float | None]
 
-__all__ = ["Cell", "Neighbors", "Rays", "as_site"]
-
-
-class Rays(NamedTuple):
-    """The ridges that go on for ever, each with where it begins and whither it goes.
-
-    A ridge between two sites alone, or between neighbours among sites on one line, is a line: it
-    has two rays, in opposite directions from one origin.
-
-    Parameters
-    ----------
-    ridge : ndarray of int32, shape (k,)
-        The ridge.
-    origin : ndarray of float64, shape (k, 2)
-        Its one vertex; on a line, the point nearest to both sites.
-    direction : ndarray of float64, shape (k, 2)
-        Of length 1. In space origins and directions have three columns.
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> rays = Voronoi([(0, 0), (2, 0), (0, 2)]).rays
-    >>> rays.origin[0].tolist(), rays.direction[0].tolist()
-    ([1.0, 1.0], [0.0, -1.0])
-    """
-
-    ridge: Indices
-    origin: Floats
-    direction: Floats
-
-
-class Neighbors(NamedTuple):
-    """The neighbours of all sites as compressed rows.
-
-    Parameters
-    ----------
-    indptr : ndarray of int32, shape (n + 1,)
-        Where those of each site begin: ``indices[indptr[i]:indptr[i + 1]]``.
-    indices : ndarray of int32, shape (k,)
-        The neighbours of each site, ascending.
-    lengths : ndarray of float64, shape (k,)
-        The length of the edge that both cells have in common.
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> strips = Voronoi([(0, 0), (2, 0), (4, 0)], clip=(-1, -1, 5, 1))
-    >>> indptr, indices, lengths = strips.neighbors
-    >>> indices[indptr[1]:indptr[2]].tolist(), lengths[indptr[1]:indptr[2]].tolist()
-    ([0, 2], [2.0, 2.0])
-    """
-
-    indptr: Indices
-    indices: Indices
-    lengths: Floats
+__all__ = ["Cells"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Cell:
-    """One cell of a diagram.
+class Cells:
+    """The cells of sites: arrays that never change, and what follows from them.
 
     Parameters
     ----------
-    site : int
-        Row of the site.
-    vertices : ndarray of float64, shape (k, 2)
-        The vertices of the whole cell, counter-clockwise. An unbounded one begins after the ray
-        that comes in and ends before the one that goes out.
-    bounded : bool
-        Whether the whole cell is bounded.
-    parts : tuple of tuple of ndarray of float64, shape (j, 2)
-        What is left of it within the clip: for each part its rings, the outer one first, each
-        without repetition of its first corner. Empty where nothing is left, and for an unbounded
-        cell that is not clipped.
-    neighbors : ndarray of int32, shape (j,)
-        The sites of the cells beside it.
-    lengths : ndarray of float64, shape (j,)
-        Of the edges common with them.
-    area, perimeter : float
-        As in the diagram.
-    centroid : ndarray of float64, shape (2,)
-        As in the diagram.
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> cell = Voronoi([(0, 0), (2, 0), (4, 0)], clip=(-1, -1, 5, 1)).cell(1)
-    >>> cell.bounded, cell.area, cell.centroid.tolist(), cell.neighbors.tolist()
-    (False, 4.0, [2.0, 0.0], [0, 2])
+    points : ndarray of float64, shape (n, d)
+        The sites.
+    weights : ndarray of float64, shape (n,), optional
+        Their weights.
+    mesh : Delaunay, RegularTriangulation, PeriodicDelaunay or None
+        The triangulation; None if all sites lie on one line.
+    dual : Diagram2 or Diagram3
+        The arrays of the whole diagram.
+    clip : Clip or Polyhedron, optional
+        Where cells end.
+    periods : tuple of two floats or None, optional
+        The periods of the sites.
+    workers : int, optional
+        Number of threads; None for one per core.
     """
 
-    site: int
-    vertices: Floats
-    bounded: bool
-    parts: tuple[tuple[Floats, ...], ...]
-    neighbors: Indices
-    lengths: Floats
-    area: float
-    perimeter: float
-    centroid: Floats
+    points: Floats
+    weights: Floats | None
+    mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
+    dual: Any
+    clip: Any
+    periods: Periods | None = None
+    workers: int | None
+
+    def __post_init__(self) -> None:
+        self._put("points", sealed(self.points))
+        if self.weights is not None:
+            self._put("weights", sealed(self.weights))
+        self._put("dual", type(self.dual)(*map(sealed, self.dual.arrays())))
+
+    def _put(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What has been computed from the fields is left out; arrays are protected again.
+        return _made, (type(self), {each.name: getattr(self, each.name) for each in fields(self)})
+
+    @property
+    def _threads(self) -> int:
+        return as_workers(self.workers)
+
+    def _lost(self, empty: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which empty cells rounding has emptied: those whose site is inside the clip.
+
+        A cell without weights contains its site and a neighborhood of it. With weights it is
+        unknown.
+        """
+        found = np.zeros(len(empty), dtype=bool)
+        rows = np.flatnonzero(empty)
+        if self.weights is not None or not len(rows):
+            return found
+        if self.clip is not None:
+            rows = rows[self.clip.holds(self.points[self.dual.site[rows]])]
+        found[rows] = True
+        return found
 
 
-def as_site(i: Any) -> int:
-    """Return the row of a site as a Python integer.
-
-    Parameters
-    ----------
-    i : int
-        What the caller passed.
-
-    Returns
-    -------
-    int
-        The row, of which it is not known whether it is there.
-
-    Raises
-    ------
-    DtypeError
-        It is no integer.
-
-    Examples
-    --------
-    >>> from delone.voronoi.cells import as_site
-    >>> as_site(2)
-    2
-    """
-    try:
-        return operator.index(i)
-    except TypeError:
-        raise DtypeError(f"i must be the row of a site, got {i!r:.60}") from None
+def _made(kind: type[Cells], parts: dict[str, Any]) -> Cells:
+    return kind(**parts)

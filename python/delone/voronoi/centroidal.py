@@ -1,8 +1,8 @@
-"""Centroidal diagrams: sites go to the centroids of their cells, repeatedly.
+"""Centroidal Voronoi diagrams: sites move to the centroids of their cells, repeatedly.
 
-Lloyd's method makes the step to the centroids, which is the gradient of the energy divided by twice
-the mass of each cell. The quasi-Newton method L-BFGS takes it for a first guess and learns from the
-last steps how the energy bends.
+Lloyd's method moves each site to its centroid, by the gradient of the energy divided by twice the
+mass of the cell. The quasi-Newton method L-BFGS starts with this step and estimates the curvature
+of the energy from the last steps.
 
 S. P. Lloyd, "Least squares quantization in PCM", IEEE Transactions on Information Theory 28 (1982);
 Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi tessellations", SIAM Review 41 (1999);
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 __all__ = ["LloydResult", "lloyd"]
 
-_PLANE = 2
-
 # J. Radon's seven points of degree 5 on a triangle: barycentric coordinates and weights.
 _ROOT = math.sqrt(15)
 _CENTER = [1 / 3] * 3
@@ -58,35 +56,35 @@ _MEMORY, _TRIES, _FALL, _ROUNDING = 7, 4, 1e-4, 1e-14
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LloydResult(ReadOnly):
-    """What `lloyd` came to.
+    """The result of `lloyd`.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        The sites where they are now.
+        The sites at their new places.
     diagram : Voronoi
         Their diagram, clipped.
     iterations : int
-        How often the sites were moved.
+        Number of steps.
     converged : bool
-        Whether at last no site was further from the centroid of its cell than `tol`, before the
-        last step took it there; False where there was no `tol`.
+        Whether no site was farther than `tol` from the centroid of its cell before the last step;
+        False without `tol`.
     displacements : ndarray of float64, shape (iterations,)
-        How far any site was from the centroid of its cell, before each step. With Lloyd's method
-        this is how far the site went that moved furthest.
+        The greatest distance of a site from the centroid of its cell, before each step. With
+        Lloyd's method this is the greatest step.
     energies : ndarray of float64, shape (iterations + 1,)
         The integral of density times squared distance to the nearest site, before the first step
         and after each.
     empty : ndarray of int64, shape (k,)
-        Sites that have no cell within the clip, and so have not moved in the last step.
+        Sites that have no cell within the clip, so that they did not move in the last step.
     evaluations : int
-        How many diagrams were computed: one more than steps, and those that L-BFGS has tried in
-        vain.
+        Number of diagrams that were computed: one more than steps, and those of the steps that
+        L-BFGS rejected.
 
     Examples
     --------
     >>> from delone import lloyd
-    >>> result = lloyd([(0.1, 0.5), (0.3, 0.5)], (0, 0, 1, 1), iterations=3)
+    >>> result = lloyd([(0.1, 0.5), (0.3, 0.5)], (0, 0, 1, 1), max_iter=3)
     >>> result.iterations, result.converged, len(result.energies), result.evaluations
     (3, False, 4, 4)
     """
@@ -105,64 +103,64 @@ def lloyd(
     points: ArrayLike,
     clip: Any,
     *,
-    iterations: int = 100,
+    max_iter: int = 100,
     tol: float | None = None,
     density: Density | None = None,
     method: str = "lloyd",
     progress: Callable[[int, float, float], object] | None = None,
     workers: int | None = None,
 ) -> LloydResult:
-    """Move sites to the centroids of their cells until they rest there.
+    """Move sites to the centroids of their cells until they converge.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        Where the sites are at first.
+        The initial sites.
     clip : "box", sequence of 4 floats, or geometry
-        The domain, as for `Voronoi`. ``"box"`` is the box of the sites as they are at first.
-    iterations : int, optional
-        How many steps to make at most.
+        The domain, as for `Voronoi`. ``"box"`` is the bounding box of the initial sites.
+    max_iter : int, optional
+        Maximum number of steps.
     tol : float, optional
-        End as soon as no site is further than this from the centroid of its cell, in the unit of
-        the points.
+        Stop when no site is farther than this from the centroid of its cell, in the unit of the
+        points.
     density : callable, optional
-        Takes places, (k, 2), and returns a number for each, (k,), none negative and not all of them
-        0: sites will be denser where it is larger. It may be asked for places outside an outline
-        that is not convex, but within its box. By default it is 1 everywhere.
+        Takes locations, (k, 2), and returns a number for each, (k,), not negative and not all 0:
+        sites will be denser where it is larger. It may be called for locations outside an outline
+        that is not convex, but within its bounding box. By default it is 1 everywhere.
     method : {"lloyd", "l-bfgs"}, optional
-        How to make the steps: to the centroids, or with a quasi-Newton method, which needs fewer of
-        them to come to rest.
+        How to compute steps: to the centroids, or by a quasi-Newton method, which needs fewer steps
+        to converge.
     progress : callable, optional
-        Is told after each step its number (from 1), how far any site was from the centroid of its
-        cell before it, and the energy.
+        Called after each step with its number (from 1), the greatest distance of a site from the
+        centroid of its cell before it, and the energy.
     workers : int, optional
-        How many threads may work; by default one for each core.
+        How many threads may work; by default one per core.
 
     Returns
     -------
     LloydResult
-        Sites, their diagram, and how it went.
+        Sites, their diagram, and the course of the iteration.
 
     Raises
     ------
     InputError
-        `clip` is None or not what `Voronoi` takes; `iterations` or `tol` is negative; `method` is
-        unknown; or `density` returns another number of values, some that are negative or not
-        finite, or nothing but zeros.
+        `clip` is None or not what `Voronoi` takes; `max_iter` or `tol` is negative; `method` is
+        unknown; or `density` returns another number of values, values that are negative or not
+        finite, or only zeros.
     DtypeError
-        `iterations` is no integer, `tol` no number, `density` or `progress` no function, or
-        `density` returns no numbers.
+        `max_iter` is not an integer, `tol` not a number, `density` or `progress` not a function,
+        or `density` does not return numbers.
 
     Notes
     -----
-    The energy falls with each step, and sites converge to a place where each is the centroid of its
-    cell: a local minimum, as a rule. Convergence of Lloyd's method is linear and slows down with
-    the number of sites. L-BFGS comes to rest in several times fewer steps, at another minimum, as a
-    rule, which is a little lower; where it finds no descent it makes a step of Lloyd's.
+    The energy decreases with each step, and sites converge to places where each is the centroid of
+    its cell: usually a local minimum. Convergence of Lloyd's method is linear and slows down with
+    the number of sites. L-BFGS converges in several times fewer steps, usually to another minimum
+    that is slightly lower; if it finds no descent it makes a step of Lloyd's method.
 
-    Integrals are exact up to rounding without `density`, and take its values at seven places in
-    each triangle between a cell's centroid and an edge with it. A site whose cell is empty stays
-    where it is, and sites with the same coordinates stay together.
+    Integrals are exact up to rounding without `density`; with it they use its values at seven
+    locations in each triangle between a cell's centroid and an edge. A site whose cell is empty
+    does not move, and sites with the same coordinates stay together.
 
     Examples
     --------
@@ -172,8 +170,8 @@ def lloyd(
     (True, [[0.25, 0.5], [0.75, 0.5]])
     """
     if clip is None:
-        raise InputError("lloyd needs a clip: without one, cells have no centroids")
-    iterations = as_count(iterations, name="iterations")
+        raise InputError("lloyd needs a clip: without one, some cells have no centroids")
+    max_iter = as_count(max_iter, name="max_iter")
     tol = None if tol is None else as_number(tol, name="tol")
     if tol is not None and not tol >= 0:
         raise InputError(f"tol must not be negative, got {tol}")
@@ -182,16 +180,16 @@ def lloyd(
             raise DtypeError(f"{name} must be a function, got {function!r:.60}")
     quasi_newton = as_choice(method, _METHODS, name="method") == "l-bfgs"
     diagram = Voronoi(points, clip=clip, workers=workers)
-    if diagram.ndim != _PLANE:
-        raise InputError("lloyd is for points in the plane; cell_centroids are there in space, too")
+    if diagram.ndim != 2:
+        raise InputError("lloyd is only available in 2-D; 3-D diagrams have cell_centroids")
     domain = diagram.clip
-    unit = outline.unit_of(np.array(diagram._clip.bounds))  # type: ignore[union-attr]
+    unit = outline.unit_of(np.array(getattr(domain, "bounds", domain)))
     if unit != 1:
         scaled = outline.as_scaled(domain, unit)
         found_in_units = lloyd(
             diagram.points * unit,
             scaled,
-            iterations=iterations,
+            max_iter=max_iter,
             tol=None if tol is None else tol * unit,
             density=None if density is None else lambda places: density(places / unit),
             method=method,
@@ -202,20 +200,20 @@ def lloyd(
         )
         return _scaled_back(found_in_units, domain, unit, workers)
     return _iterated(
-        diagram, iterations, tol, density=density, quasi_newton=quasi_newton, progress=progress
+        diagram, max_iter, tol, density=density, quasi_newton=quasi_newton, progress=progress
     )
 
 
 def _iterated(
     diagram: Voronoi,
-    iterations: int,
+    max_iter: int,
     tol: float | None,
     *,
     density: Density | None,
     quasi_newton: bool,
     progress: Callable[[int, float, float], object] | None,
 ) -> LloydResult:
-    """Move the sites of a diagram until they hardly move, or often enough."""
+    """Move the sites of a diagram until they converge, or the steps are used up."""
     workers = diagram._workers
     at = _state(diagram, density)
     displacements: list[float] = []
@@ -223,7 +221,7 @@ def _iterated(
     converged = False
     memory = _Memory()
     evaluations = 1
-    while len(displacements) < iterations and not converged:
+    while len(displacements) < max_iter and not converged:
         away = float(np.hypot(*(at.centers - at.sites).T).max())
         converged = tol is not None and away <= tol
         found = None
@@ -232,7 +230,7 @@ def _iterated(
             evaluations += tries
         if found is None:
             memory.forget()
-            found = _state(Voronoi(at.centers, clip=diagram._clip, workers=workers), density)
+            found = _state(Voronoi(at.centers, clip=diagram._cells.clip, workers=workers), density)
             evaluations += 1
         if quasi_newton:
             memory.learn(at, found)
@@ -254,13 +252,13 @@ def _iterated(
 
 
 def _back(energy: Any, unit: float) -> Any:
-    """An energy, a fourth power of lengths, that was computed in units."""
+    """Return an energy, a fourth power of lengths, that was computed in other units."""
     with np.errstate(over="ignore", under="ignore"):
         return np.multiply(energy, 1 / unit) / unit / unit / unit
 
 
 def _scaled_back(result: LloydResult, domain: Any, unit: float, workers: int | None) -> LloydResult:
-    """What was computed in units of a power of two, so that no product exceeds the range."""
+    """Return a result that was computed in units of a power of two, to avoid overflow."""
     diagram = Voronoi(result.points / unit, clip=domain, workers=workers)
     return replace(
         result,
@@ -272,7 +270,7 @@ def _scaled_back(result: LloydResult, domain: Any, unit: float, workers: int | N
 
 
 class _State(NamedTuple):
-    """Sites, their diagram, and what follows: where they go next and the energy as they are."""
+    """Sites, their diagram, its centroids and masses, and the energy."""
 
     diagram: Voronoi
     sites: Floats
@@ -282,30 +280,30 @@ class _State(NamedTuple):
 
     @property
     def gradient(self) -> Floats:
-        """How the energy changes with each coordinate."""
+        """The derivative of the energy by each coordinate."""
         slopes: Floats = 2 * self.masses[:, None] * (self.sites - self.centers)
         return slopes
 
 
 class _Memory:
-    """The last steps and how the gradient changed on each, from which L-BFGS makes its steps."""
+    """The last steps and the change of the gradient on each, from which L-BFGS computes steps."""
 
     def __init__(self) -> None:
         self._steps: deque[tuple[Floats, Floats, float]] = deque(maxlen=_MEMORY)
 
     def forget(self) -> None:
-        """Begin anew."""
+        """Remove all steps."""
         self._steps.clear()
 
     def learn(self, before: _State, after: _State) -> None:
-        """Remember a step on which the energy is convex; others would spoil the guess."""
+        """Add a step along which the energy is convex; others would spoil the estimate."""
         step, change = after.sites - before.sites, after.gradient - before.gradient
         product = float((step * change).sum())
         if product > 0:
             self._steps.append((step, change, product))
 
     def direction(self, at: _State) -> Floats:
-        """The step to where the gradient should vanish: at first that of Lloyd's method."""
+        """Return the step to where the gradient should vanish: at first that of Lloyd's method."""
         with np.errstate(divide="ignore"):
             inverse = np.where(at.masses > 0, 0.5 / at.masses, 0.0)[:, None]
         rest = at.gradient
@@ -328,7 +326,7 @@ class _Memory:
 def _descent(
     at: _State, memory: _Memory, density: Density | None, workers: int | None
 ) -> tuple[_State | None, int]:
-    """A step of L-BFGS on which the energy falls and no site loses its cell; and how many tries."""
+    """Return a step of L-BFGS that decreases the energy and keeps all cells, and the tries."""
     step = memory.direction(at)
     slope = float((at.gradient * step).sum())
     filled = int((at.masses > 0).sum())
@@ -336,7 +334,7 @@ def _descent(
     while slope < 0 and tries < _TRIES:
         share = 0.5**tries
         tries += 1
-        moved = Voronoi(at.sites + share * step, clip=at.diagram._clip, workers=workers)
+        moved = Voronoi(at.sites + share * step, clip=at.diagram._cells.clip, workers=workers)
         found = _state(moved, density)
         enough = at.energy + _FALL * share * slope + _ROUNDING * at.energy
         if found.energy <= enough and int((found.masses > 0).sum()) >= filled:
@@ -345,14 +343,14 @@ def _descent(
 
 
 def _state(diagram: Voronoi, density: Density | None) -> _State:
-    """What there is to know of sites that lie as they do."""
-    clipped, region = diagram._clipped, diagram.point_region
+    """Return the diagram of sites with masses, centroids and the energy."""
+    clipped, region = diagram._left, diagram.point_region
     cell, begin, end = clipped.edges()
     origin = clipped.centroids
     a, b = begin - origin[cell], end - origin[cell]
-    # Signed, so that rings around holes and notches take away what others have counted.
+    # Signed, so that rings around holes and notches are subtracted.
     size = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
-    site = diagram.points[diagram._dual.site]
+    site = diagram.points[diagram._cells.dual.site]
     centers = site.copy()
     if density is None:
         mass = clipped.areas
@@ -360,8 +358,8 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
         centers[filled] = origin[filled]
         # The integral of x.x over a triangle with corners 0, a and b.
         inertia = size / 6 * ((a + b) * (a + b) - a * b).sum(axis=1)
-        way = centers - site
-        energy = float(inertia.sum() + (mass * (way * way).sum(axis=1)).sum())
+        step = centers - site
+        energy = float(inertia.sum() + (mass * (step * step).sum(axis=1)).sum())
         return _State(diagram, diagram.points, centers[region], mass[region], energy)
     mass, moment, energy = np.zeros(len(origin)), np.zeros_like(origin), 0.0
     for place, share in zip(_PLACES, _SHARES, strict=True):
@@ -370,11 +368,11 @@ def _state(diagram: Voronoi, density: Density | None) -> _State:
         mass += np.bincount(cell, amount, len(origin))
         for k in range(2):
             moment[:, k] += np.bincount(cell, amount * at[:, k], len(origin))
-        way = at + (origin - site)[cell]
-        energy += float((amount * (way * way).sum(axis=1)).sum())
+        away = at + (origin - site)[cell]
+        energy += float((amount * (away * away).sum(axis=1)).sum())
     filled = mass > 0
     if not filled.any():
-        raise InputError("density returned nothing but zeros: no cell has a centroid")
+        raise InputError("density returned only zeros: no cell has a centroid")
     centers[filled] = origin[filled] + moment[filled] / mass[filled, None]
     return _State(diagram, diagram.points, centers[region], mass[region], energy)
 

@@ -1,10 +1,10 @@
-"""What a clip leaves of cells: boxes and outlines by the core, by shapely what is degenerate.
+"""Clipped 2-D cells: the core cuts them to boxes and outlines, shapely in degenerate cases.
 
-A cell is convex, and most cells of a clipped diagram lie wholly inside or outside. The core cuts
-all cells to a box a little larger than the outline, finds the cells that the outline comes near,
-and joins the others to groups on one side of it; one point of each group tells on which. Only the
-cells that the outline comes near are cut to it, by the core where exact signs leave no doubt
-(`pieces`), and by shapely where corners and edges of both coincide (`overlay`).
+A cell is convex, and most cells of a clipped diagram lie entirely inside or outside. The core cuts
+all cells to a box slightly larger than the outline, finds the cells near the outline, and joins the
+others into groups on one side of it; one point of each group decides which side. Only the cells
+near the outline are cut to it: by the core if exact signs leave no doubt (`pieces`), by shapely if
+corners and edges of both coincide (`overlay`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _OUTSIDE, _INSIDE, _CUT = 0, 1, 2
 
 
 class Clipped:
-    """What is left of the cells, in the order of the cells.
+    """The clipped cells, in the order of the cells, and their measures.
 
     Parameters
     ----------
@@ -44,14 +44,14 @@ class Clipped:
     ridge_count : int
         Number of ridges.
     workers : int
-        How many threads may work.
+        Number of threads.
 
     Attributes
     ----------
     areas, perimeters : ndarray of float64, shape (c,)
-        Measures.
+        Measures; infinite for unbounded cells.
     centroids : ndarray of float64, shape (c, 2)
-        Centres of gravity.
+        Centers of gravity; NaN for unbounded and empty cells.
     """
 
     def __init__(
@@ -64,23 +64,19 @@ class Clipped:
         self.perimeters = measures.perimeters
 
     def _next(self) -> NDArray[np.int64]:
-        """The corner after each corner."""
+        """Return the corner after each corner."""
         return next_corner(self.starts, len(self.corners))
 
     def _edge_lengths(self) -> Floats:
-        """The length of each edge from a corner to the next."""
+        """Return the length of the edge from each corner to the next."""
         return _distances(self.corners, self.corners[self._next()])
 
-    def ridge_lengths(self) -> Floats:
-        """Return how long what is left of each ridge is."""
+    def ridge_sizes(self) -> Floats:
+        """Return the length of each clipped ridge; infinite for an unbounded one."""
         lengths = np.zeros(self.ridge_count)
         along = self.ridges >= 0
         lengths[self.ridges[along]] = self._edge_lengths()[along]
         return lengths
-
-    def ring(self, cell: int) -> Floats:
-        """Return the corners of a cell."""
-        return self.corners[self.starts[cell] : self.starts[cell + 1]]
 
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
         """Return all boundaries: cell, begin and end of each edge, the cell to its left."""
@@ -89,8 +85,21 @@ class Clipped:
 
     def parts(self, cell: int) -> tuple[tuple[Floats, ...], ...]:
         """Return the rings of each part of a cell."""
-        ring = self.ring(cell)
+        ring = self.corners[self.starts[cell] : self.starts[cell + 1]]
         return ((ring,),) if len(ring) > 2 else ()
+
+    def simple(self) -> tuple[Indices, Floats, NDArray[np.int64]]:
+        """Return polygons without holes that cover the cells.
+
+        Returns
+        -------
+        starts, corners : ndarray
+            The corners of each polygon as compressed rows.
+        cell : ndarray of int64
+            The cell of each polygon.
+        """
+        rows = np.flatnonzero(np.diff(self.starts) > 2)
+        return *_taken(self.starts, self.corners, rows), rows
 
     def polygons(self) -> NDArray[Any]:
         """Return the cells as geometries."""
@@ -98,15 +107,15 @@ class Clipped:
 
 
 class _Bounded(Clipped):
-    """The bounded cells, where nothing is clipped; the others are infinite."""
+    """The bounded cells without a clip; the measures of the others are infinite."""
 
     def __init__(self, dual: Diagram2, workers: int) -> None:
         starts, vertices = dual.region_starts, dual.region_vertices
         sizes = np.diff(starts)
         gaps = np.concatenate(([0], np.cumsum(vertices < 0)))
-        self._open = (gaps[starts[1:]] > gaps[starts[:-1]]) | (sizes == 0)
-        kept = np.repeat(~self._open, sizes)
-        sizes[self._open] = 0
+        self._unbounded = (gaps[starts[1:]] > gaps[starts[:-1]]) | (sizes == 0)
+        kept = np.repeat(~self._unbounded, sizes)
+        sizes[self._unbounded] = 0
         bounded = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
         super().__init__(
             bounded,
@@ -116,10 +125,10 @@ class _Bounded(Clipped):
             workers,
         )
         self._dual = dual
-        self.areas[self._open] = np.inf
-        self.perimeters[self._open] = np.inf
+        self.areas[self._unbounded] = np.inf
+        self.perimeters[self._unbounded] = np.inf
 
-    def ridge_lengths(self) -> Floats:
+    def ridge_sizes(self) -> Floats:
         ends = self._dual.ends
         lengths = np.full(len(ends), np.inf)
         finite = (ends >= 0).all(axis=1)
@@ -129,25 +138,26 @@ class _Bounded(Clipped):
 
     def polygons(self) -> NDArray[Any]:
         found = super().polygons()
-        found[self._open] = None
+        found[self._unbounded] = None
         return found
 
 
 class _InOutline(Clipped):
     """Cells cut to an outline.
 
-    The core cuts those on the outline wherever exact signs leave no doubt (see `pieces`); the
-    others are geometries of their own.
+    The core cuts those on the outline if exact signs leave no doubt (see `pieces`); the others are
+    geometries of shapely.
     """
 
     def __init__(self, whole: Clipped, clip: Clip, workers: int) -> None:
         super().__init__(whole.starts, whole.corners, whole.ridges, whole.ridge_count, workers)
-        # What the outline meets is in these units; all else is in those of the points.
+        # Cells on the outline are in these units, all others in those of the points.
         self._scale = clip.unit
         self._outline = clip.scaled
-        self._side = _sides(whole, clip)
+        corners = whole.corners * clip.unit
+        self._side = _sides(whole, corners, clip)
         rows = np.flatnonzero(self._side == _CUT)
-        found = pieces.cut(self, rows, clip, workers)
+        found = pieces.cut(whole.starts, corners, whole.ridges, rows, clip, workers=workers)
         self._side[rows] = found.sides(_OUTSIDE, _INSIDE, _CUT)
         self._pieces = found
         self._doubtful = rows[found.doubtful]
@@ -169,7 +179,8 @@ class _InOutline(Clipped):
         self.areas[outside] = self.perimeters[outside] = 0
         self.centroids[outside] = np.nan
         found, traced = self._pieces, self._pieces.traced
-        self.areas[rows[traced]] = found.areas[traced] / self._scale / self._scale
+        with np.errstate(over="ignore"):
+            self.areas[rows[traced]] = found.areas[traced] / self._scale / self._scale
         self.perimeters[rows[traced]] = found.perimeters[traced] / self._scale
         self.centroids[rows[traced]] = found.centroids[traced] / self._scale
         if len(self._doubtful):
@@ -180,12 +191,12 @@ class _InOutline(Clipped):
             self.centroids[self._doubtful] = centers / self._scale
 
     def _geometries(self) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """The cells on the outline, and what is left of each."""
+        """Return the cells on the outline, and the clipped geometry of each."""
         if self._cut is None:
             rows, traced = self._pieces.polygons()
             wrong = np.flatnonzero(~shapely_or_say().is_valid(traced))
             if len(wrong):
-                # Rings that touch themselves, or that rounding has made to.
+                # Rings that touch themselves, or do so because of rounding.
                 traced[wrong] = self._overlay(rows[wrong], self._pieces.corners)
             rows = np.concatenate((rows, self._doubtful))
             order = np.argsort(rows)
@@ -195,7 +206,7 @@ class _InOutline(Clipped):
 
     _cut: tuple[NDArray[np.int64], NDArray[Any]] | None = None
 
-    def ridge_lengths(self) -> Floats:
+    def ridge_sizes(self) -> Floats:
         shapely = shapely_or_say()
 
         owner = np.repeat(np.arange(len(self._side)), np.diff(self.starts))
@@ -205,13 +216,13 @@ class _InOutline(Clipped):
         lengths[self.ridges[inside]] = self._edge_lengths()[inside]
         ridges, traced = self._pieces.ridge_lengths(self.ridge_count)
         lengths[ridges] = traced / self._scale
-        # A ridge between two doubtful cells is met twice, with one result.
+        # A ridge between two doubtful cells occurs twice, with the same result.
         doubtful = np.zeros(len(self._side), dtype=bool)
         doubtful[self._doubtful] = True
-        told = np.zeros(self.ridge_count, dtype=bool)
-        told[self.ridges[along & ~doubtful[owner]]] = True
+        known = np.zeros(self.ridge_count, dtype=bool)
+        known[self.ridges[along & ~doubtful[owner]]] = True
         cut = np.flatnonzero(along & doubtful[owner])
-        cut = cut[~told[self.ridges[cut]]]
+        cut = cut[~known[self.ridges[cut]]]
         if len(cut):
             _, once = np.unique(self.ridges[cut], return_index=True)
             cut = cut[once]
@@ -256,6 +267,29 @@ class _InOutline(Clipped):
             found.append(tuple(shapely.get_coordinates(ring)[:-1] for ring in rings))
         return tuple(part for part in found if part)
 
+    def simple(self) -> tuple[Indices, Floats, NDArray[np.int64]]:
+        shapely = shapely_or_say()
+
+        inside = np.flatnonzero((self._side == _INSIDE) & (np.diff(self.starts) > 2))
+        starts, corners = _taken(self.starts, self.corners, inside)
+        cells, cut = self._geometries()
+        parts, row = shapely.get_parts(cut, return_index=True)
+        parts, cells = parts[~shapely.is_empty(parts)], cells[row][~shapely.is_empty(parts)]
+        # Polygons with holes become triangles.
+        holed = np.flatnonzero(shapely.get_num_interior_rings(parts))
+        triangles, row = shapely.get_parts(
+            shapely.constrained_delaunay_triangles(parts[holed]), return_index=True
+        )
+        rings = shapely.get_exterior_ring(
+            shapely.orient_polygons(np.concatenate((np.delete(parts, holed), triangles)))
+        )
+        places, ring = shapely.get_coordinates(rings, return_index=True)
+        last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
+        sizes = np.concatenate((np.diff(starts), np.bincount(ring[~last], minlength=len(rings))))
+        cell = np.concatenate((inside, np.delete(cells, holed), cells[holed][row]))
+        begins = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
+        return begins, np.concatenate((corners, places[~last])), cell
+
     def polygons(self) -> NDArray[Any]:
         outside = np.flatnonzero(self._side == _OUTSIDE)
         sizes = np.diff(self.starts)
@@ -277,7 +311,7 @@ def cells(
     periods: tuple[float | None, float | None] | None = None,
     workers: int,
 ) -> Clipped:
-    """Return what is left of the cells of a diagram.
+    """Return the clipped cells of a diagram.
 
     Parameters
     ----------
@@ -292,7 +326,7 @@ def cells(
     periods : tuple of two floats or None, optional
         The periods of the sites.
     workers : int
-        How many threads may work.
+        Number of threads.
 
     Returns
     -------
@@ -319,9 +353,9 @@ def _in_strip(
     periods: tuple[float | None, float | None],
     workers: int,
 ) -> Clipped:
-    """Cells with one period, each around its site, cut in the other direction."""
-    at, heavy, cells_alone = torus.unrolled(points, weights, dual, periods)
-    # As wide as no cell is: none reaches further than its neighbours.
+    """Return cells with one period, each around its site, cut in the other direction."""
+    at, at_weights, cells_alone = torus.unrolled(points, weights, dual, periods)
+    # Wider than any cell: none extends further than its neighbors.
     reach = np.concatenate((at, dual.cells.vertices))
     low, high = reach.min(axis=0), reach.max(axis=0)
     with np.errstate(over="ignore"):
@@ -329,7 +363,7 @@ def _in_strip(
     bounds = np.where(np.isfinite(clip.bounds), clip.bounds, wide)
     largest = float(np.finfo(np.float64).max)
     left, bottom, right, top = np.clip(bounds, -largest, largest).tolist()
-    cut = _core.voronoi_clip2(at, heavy, cells_alone, (left, bottom, right, top), workers)
+    cut = _core.voronoi_clip2(at, at_weights, cells_alone, (left, bottom, right, top), workers)
     # The ridges of the cells alone are their entries.
     entries, of_entries = cut.ridges, np.append(dual.cells.region_ridges, -1)
     ridges = np.where(entries < 0, -1, of_entries[entries]).astype(np.int32)
@@ -337,14 +371,14 @@ def _in_strip(
 
 
 def _distances(a: Floats, b: Floats) -> Floats:
-    """Lengths, infinite beyond the range of doubles."""
+    """Return lengths, infinite beyond the range of doubles."""
     with np.errstate(over="ignore"):
         lengths: Floats = np.hypot(*(b - a).T)
     return lengths
 
 
 def _taken(starts: Indices, corners: Floats, rows: NDArray[np.int64]) -> tuple[Indices, Floats]:
-    """Some of the polygons."""
+    """Return some of the polygons."""
     sizes = np.diff(starts)
     mask = np.zeros(len(sizes), dtype=bool)
     mask[rows] = True
@@ -352,13 +386,13 @@ def _taken(starts: Indices, corners: Floats, rows: NDArray[np.int64]) -> tuple[I
     return chosen, corners[np.repeat(mask, sizes)]
 
 
-def _sides(whole: Clipped, clip: Clip) -> NDArray[np.int8]:
-    """Whether cells lie outside, inside, or where the outline passes."""
+def _sides(whole: Clipped, corners: Floats, clip: Clip) -> NDArray[np.int8]:
+    """Return which cells lie outside, inside, or on the outline; corners are in its units."""
     shapely = shapely_or_say()
 
     rings, places = clip.rings
     segments = np.column_stack((places, places[next_corner(rings, len(places))]))
-    group, _count = _core.touched2(whole.starts, whole.corners * clip.unit, whole.ridges, segments)
+    group, _count = _core.touched2(whole.starts, corners, whole.ridges, segments)
     side = np.full(len(group), _CUT, dtype=np.int8)
     side[np.diff(whole.starts) == 0] = _OUTSIDE
     free = np.flatnonzero(group >= 0)
@@ -369,7 +403,7 @@ def _sides(whole: Clipped, clip: Clip) -> NDArray[np.int8]:
 
 
 def _points_or_nan(points: NDArray[Any]) -> NDArray[Any]:
-    """Points, those that are empty with NaN for coordinates."""
+    """Return points, with NaN for the coordinates of empty ones."""
     shapely = shapely_or_say()
 
     points[shapely.is_empty(points)] = shapely.Point(np.nan, np.nan)

@@ -1,110 +1,120 @@
-"""The class Voronoi: the diagram of points in the plane as immutable arrays.
+"""The class Voronoi: 2-D and 3-D diagrams as immutable arrays.
 
-The core makes the arrays of the whole diagram (see `dual`); what follows from them, and what a clip
-leaves of the cells, is computed on first use and kept.
+A diagram holds the cells of its dimension, `plane` or `space`, which have the arrays of the core
+and the same methods. What follows from them is computed on first use and kept.
 """
 
 from __future__ import annotations
 
-import inspect
-import itertools
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from delone._arrays import as_flag, as_workers
+from delone.complex import Stored
 from delone.counting import counted
-from delone.exchange.geopandas import by_region, cells_to_geopandas
+from delone.dimension import only
+from delone.errors import InputError
 from delone.georeference import warn_of_degrees
-from delone.immutable import Immutable, kept, own_copy, sealed
+from delone.immutable import kept, own_copy, sealed
 from delone.regular import as_weights
-from delone.voronoi import clipping, dual, outline, sites, thin
-from delone.voronoi.cells import Cell, Neighbors, Rays, as_site
-from delone.voronoi.lists import compressed, gaps_once
-from delone.voronoi.torus import PeriodicDual
+from delone.validation import ValidationReport
+from delone.voronoi import line, thin
+from delone.voronoi.plane import PlaneCells
+from delone.voronoi.results import Neighbors, Rays, as_site
+from delone.voronoi.rows import as_lists, of_pairs
+from delone.voronoi.space import SpaceCells
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone._core import Diagram2, Diagram3
     from delone.delaunay import Delaunay
     from delone.periodic import PeriodicDelaunay
     from delone.regular import RegularTriangulation
-    from delone.voronoi.clipping import Clipped
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
 __all__ = ["Voronoi"]
 
-_SPACE = 3
+# By the number of coordinates.
+_CELLS: dict[int, type[PlaneCells | SpaceCells]] = {2: PlaneCells, 3: SpaceCells}
 
 
-class Voronoi(Immutable):
-    """The Voronoi diagram of points in the plane, whole or clipped; of points in space, likewise.
+class Voronoi(Stored):
+    """The Voronoi diagram of 2-D or 3-D points, whole or clipped.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2)
-        The sites, finite, in any unit. They are copied and taken as the exact numbers which they
-        denote. Of points of shape (n, 3) the diagram of space is made, which is described at
-        `delone.voronoi.SpaceVoronoi`.
-    clip : "box", sequence of 4 floats, or geometry, optional
-        What to cut the cells to: the box of the sites; the box
-        ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or without
-        holes, also as a mapping of the form of GeoJSON, or the polygons of a table or series of
-        geopandas together. Sites may lie outside.
+    points : array_like, shape (n, 2) or (n, 3)
+        The sites, finite, in any unit. They are copied, and results are exact for the given
+        doubles.
+    clip : "box", sequence of floats, geometry or polyhedron, optional
+        Where cells end: ``"box"`` is the bounding box of the sites. Sites may lie outside.
+
+        In 2-D a box ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or
+        without holes, also as a GeoJSON-like mapping; or the polygons of a table or series of
+        geopandas together.
+
+        In 3-D a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
+        half-spaces of shape (k, 4), each ``(a, b, c, d)`` for ``a x + b y + c z + d <= 0``, that
+        bound a region together; or points of shape (k, 3), or an object with points and simplices
+        such as a `ConvexHull`, for the convex hull of these.
     fix : bool, optional
-        Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of refusing
-        it.
+        Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of rejecting
+        it. A polyhedron is never invalid.
     weights : array_like, shape (n,), optional
-        Weights of the sites, in the square of the unit of the points: then this is the power
-        diagram, in which a place belongs to the site with the least ``|x - p|**2 - w``.
+        Weights of the sites, in the square of the unit of the points. The diagram is then the power
+        diagram, in which a location belongs to the site with the least ``|x - p|**2 - w``.
     periods : tuple of two floats or None, optional
-        ``(Lx, Ly)``: the sites come again after these distances in x and in y, as for
-        `PeriodicDelaunay`; None for a direction in which they do not. With two periods there is
-        nothing to clip. With one, `clip` is ``"box"`` or a box that is infinite in the direction
-        of the period, as ``(-inf, ymin, inf, ymax)``.
+        2-D only. ``(Lx, Ly)``: the sites repeat after these distances in x and in y, as for
+        `PeriodicDelaunay`; None for a direction without a period. With two periods there is
+        nothing to clip. With one, `clip` is ``"box"`` or a box that is infinite in the direction of
+        the period, such as ``(-inf, ymin, inf, ymax)``.
     workers : int, optional
-        How many threads may work; by default one for each core. The answer is the same.
+        How many threads may work; by default one per core. Results do not depend on it.
     planar : bool, optional
-        As for `Delaunay`: longitudes and latitudes are meant as coordinates of a plane.
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
     Attributes
     ----------
-    points : ndarray of float64, shape (n, 2)
+    points : ndarray of float64, shape (n, d)
         The sites.
     weights : ndarray of float64, shape (n,), or None
         Their weights.
-    vertices : ndarray of float64, shape (k, 2)
+    vertices : ndarray of float64, shape (k, d)
         The vertices of the whole diagram.
     ridge_points : ndarray of int32, shape (r, 2)
-        The two sites between which each ridge (an edge of cells) lies.
-    ridge_vertices : ndarray of int32, shape (r, 2)
-        The two vertices of each ridge; -1, which comes first, where it goes on for ever.
+        The two sites of each ridge, an edge or face between two cells.
+    ridge_vertices : list of list of int
+        The vertices of each ridge; -1, which comes first, if it is unbounded. In 3-D they are
+        counter-clockwise as seen from the second site.
     regions : list of list of int
-        For each cell its vertices, counter-clockwise, with -1 where it is open.
+        The vertices of each cell, with -1 if it is unbounded: in 2-D counter-clockwise, in 3-D
+        ascending.
     point_region : ndarray of int32, shape (n,)
         The cell of each point, as an index of `regions`. Points with the same coordinates share
         their cell. -1 for a site that weights leave without a cell.
     furthest_site : bool
         False.
     npoints, ndim : int
-        Number of points, and 2.
+        Number of points and of coordinates.
 
     Raises
     ------
     DegenerateInputError
-        There is no point at all.
+        There is no point. Or 3-D points lie in one plane, or there are fewer than four; the error
+        is that of `Delaunay` or `RegularTriangulation`: ``error.plane`` has the triangulation of
+        the plane, and its ``circumcenters`` are the vertices of the diagram there.
     NonFiniteError
-        A coordinate is NaN or infinite; ``error.rows`` tells where.
+        A coordinate or weight is NaN or infinite; ``error.rows`` has the rows.
     ShapeError, DtypeError
-        `points` is no array of real points in the plane, or there are not as many weights.
+        `points` is not a real array of shape (n, 2) or (n, 3), or there are not as many weights.
     InputError
-        `clip` has no area, is no polygon, or is invalid; the message says where. Or there are
-        periods, and it is no box as above.
+        `clip` has no area or volume, is unbounded, is none of the above, or is invalid; the message
+        says where. Or `periods` do not go with the points or the clip.
     LimitError
-        There are periods, and a vertex lies beyond the range of doubles, or, with one period, the
+        There are periods, and a vertex lies beyond the range of doubles; or, with one period, the
         next copy of a site does.
     MissingExtraError
         `clip` is a geometry, and shapely is not installed.
@@ -112,37 +122,48 @@ class Voronoi(Immutable):
     Warns
     -----
     ThinCellWarning
-        When areas or polygons are asked for: cells are only a few units in the last place wide, so
-        that rounding leaves nothing of their areas; ``warning.rows`` has their rows.
+        When measures or polygons are computed: cells are only a few units in the last place wide,
+        so that rounding leaves nothing of their areas or volumes; ``warning.rows`` has their rows.
 
     Notes
     -----
     The diagram is the dual of the exact Delaunay triangulation (with weights, of the regular one),
-    and all that is combinatorial in it is exact: sites on one circle share one vertex, whatever
-    their number, and no ridge has length 0. One thing is rounded, the coordinates of vertices: each
+    and its combinatorics are exact: sites on one circle or sphere share one vertex, however many
+    they are, and no ridge has length or area 0. Only the coordinates of vertices are rounded: each
     is within 4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex
-    beyond the range of doubles is not listed; ridges that lead to it end in -1 and have a ray.
+    beyond the range of doubles is not listed; ridges that lead to it have -1 in its place.
 
-    Names and meanings are those of ``scipy.spatial.Voronoi``. What SciPy refuses is no exception
-    here: one site has the whole plane for its cell, two have half-planes, and sites on one line
-    have strips between two half-planes.
+    Names and meanings are those of ``scipy.spatial.Voronoi``. Input that SciPy rejects is allowed
+    in 2-D: the cell of a single site is the whole plane, two have half-planes, and sites on one
+    line have strips between two half-planes.
 
-    With weights a cell need not hold its site, and a site may have no cell: it is *hidden*. Edges
-    lie on radical axes instead of bisectors.
+    With weights a cell need not contain its site, and a site may have no cell: it is *hidden*.
+    Edges lie on radical axes instead of bisectors.
 
     With two periods all cells are bounded, and their areas sum to that of one period; with one,
-    cells at the border of the strip are open. Each cell is given around its site, where that is:
-    vertices are listed with all translates that some cell or ridge has, and `ridge_offsets` tells
-    across which border of the period a neighbour lies.
+    cells at the border of the strip are unbounded. Each cell lies around its site: all translates
+    of vertices that a cell or ridge has are listed, and `ridge_offsets` says across which border of
+    the period a neighbor lies.
 
-    In a `clip`, areas, centroids, perimeters, neighbours and polygons are those of what is left of
-    the cells; the attributes listed above remain those of the whole diagram. In a box the exact
-    areas of the polygons sum to that of the box without any rounding.
+    With a `clip`, measures, centroids, neighbors and cells are those of the clipped cells; the
+    attributes listed above remain those of the whole diagram. In a 2-D box the exact areas of the
+    polygons sum to that of the box without any rounding.
 
-    Arrays are read-only and attributes cannot be set; the attributes not listed above are computed
-    on first use and kept. Time is that of the triangulation and O(n) for the rest; clipping to an
-    outline costs O(s + c) more for its s segments, and the intersection of each of the c cells on
-    it.
+    In 3-D, cells whose vertices all lie inside the clip stay as they are; the others are the
+    polyhedron, cut by the planes of their neighbors one after the other. An area or a volume beyond
+    the range of doubles is infinite; below it, the smallest double. Clipped corners are accurate to
+    about 1e-13 of the largest coordinate, also between sites that are close together, because exact
+    arithmetic computes them where planes meet at a flat angle. Which corners there are is decided
+    on rounded numbers: that may lose or add faces as small as roundings, and wrong ones between
+    sites that differ by a few units in the last place. A cell has the same corner twice if its
+    surface would not be closed otherwise. Half-spaces are compared exactly, whatever their
+    exponents, and the corners of their intersection are rounded once: O(k^2) expected time for k of
+    them, about half a second for 300.
+
+    Arrays are read-only and attributes cannot be set; attributes that are not listed above are
+    computed on first use and kept. Time is that of the triangulation and O(n) for the rest;
+    clipping to an outline adds O(s + c) for its s segments, and the intersection of each of the c
+    cells on it.
 
     See Also
     --------
@@ -160,42 +181,23 @@ class Voronoi(Immutable):
     >>> from delone import Voronoi
     >>> diagram = Voronoi([(0, 0), (4, 0), (4, 4), (0, 4), (2, 2)], clip=(-1, -1, 5, 5))
     >>> diagram
-    <Voronoi diagram of 5 points: 4 vertices, 8 ridges, clipped to a box>
+    <Voronoi of 5 points: 4 vertices, 8 ridges, clipped to a box>
     >>> diagram.cell_areas.tolist(), diagram.cell_areas.sum()
     ([7.0, 7.0, 7.0, 7.0, 8.0], np.float64(36.0))
     >>> region = diagram.regions[diagram.point_region[4]]
     >>> sorted(diagram.vertices[region].tolist())
     [[0.0, 2.0], [2.0, 0.0], [2.0, 4.0], [4.0, 2.0]]
+    >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
+    >>> diagram = Voronoi([*corners, (2, 2, 2)], clip=((-1, -1, -1), (5, 5, 5)))
+    >>> diagram
+    <Voronoi of 9 points: 6 vertices, 20 ridges, clipped to a box>
+    >>> diagram.cell_volumes[8].round(9), diagram.cell_volumes.sum().round(9)
+    (np.float64(36.0), np.float64(216.0))
     """
 
-    __slots__ = (
-        "_clip",
-        "_dual",
-        "_mesh",
-        "_periods",
-        "_points",
-        "_repeated",
-        "_weights",
-        "_workers",
-    )
+    __slots__ = ("_cells",)
 
-    _clip: outline.Clip | None
-    _dual: Diagram2
-    _mesh: Delaunay | RegularTriangulation | PeriodicDelaunay | None
-    _periods: tuple[float | None, float | None] | None
-    _points: Floats
-    # The diagram and what belongs to it, where there are periods.
-    _repeated: PeriodicDual | None
-    _weights: Floats | None
-    _workers: int
-
-    def __new__(cls, points: ArrayLike | None = None, **options: Any) -> Voronoi:
-        """Make a `SpaceVoronoi` where points have three coordinates."""
-        if cls is Voronoi and _columns(points) == _SPACE:
-            from delone.voronoi.space import SpaceVoronoi
-
-            return object.__new__(SpaceVoronoi)
-        return object.__new__(cls)
+    _cells: PlaneCells | SpaceCells
 
     def __init__(
         self,
@@ -208,97 +210,75 @@ class Voronoi(Immutable):
         workers: int | None = None,
         planar: bool = False,
     ) -> None:
-        if hasattr(self, "_points"):
-            raise AttributeError("a Voronoi never changes: make another one")
-        threads = as_workers(workers)
+        if workers is not None:
+            as_workers(workers)
         repair = as_flag(fix, name="fix")
-        own = own_copy(points)
+        own = own_copy(points, ndim=None)
         if periods is None:
             warn_of_degrees(points, own, planar=planar)
-        heavy = None if weights is None else as_weights(weights, len(own))
-        mesh: Any
-        arrays: Diagram2 | PeriodicDual
-        lengths = None
-        if periods is None:
-            mesh, arrays = sites.in_plane(own, heavy, threads)
-        else:
-            mesh, arrays, lengths = sites.repeated(own, heavy, periods, threads)
-        where = outline.as_clip(clip, own, fix=repair, periods=lengths)
-        self._fill(
-            points=own,
-            weights=heavy,
-            mesh=mesh,
-            dual=arrays,
-            clip=where,
-            periods=lengths,
-            workers=threads,
+        own_weights = None if weights is None else as_weights(weights, len(own))
+        cells = _CELLS[own.shape[1]].made(
+            own, own_weights, clip=clip, fix=repair, periods=periods, workers=workers
         )
-
-    # What the constructor takes is said by __init__, not by __new__.
-    __signature__: ClassVar[inspect.Signature] = inspect.Signature(
-        list(inspect.signature(__init__).parameters.values())[1:]
-    )
-
-    def _fill(
-        self,
-        *,
-        dual: Diagram2 | Diagram3 | PeriodicDual,
-        points: Floats,
-        weights: Floats | None,
-        **rest: Any,
-    ) -> None:
-        """Set everything there is; afterwards nothing can be set."""
-        repeated = None
-        if isinstance(dual, PeriodicDual):
-            repeated = dual.sealed()
-            dual = repeated.cells
-        else:
-            dual = type(dual)(*map(sealed, dual.arrays()))
-        self._hold(
-            points=sealed(points),
-            weights=None if weights is None else sealed(weights),
-            dual=dual,
-            repeated=repeated,
-            **rest,
-        )
+        self._hold(cells=cells, workers=workers)
 
     @classmethod
-    def _from_parts(cls, parts: dict[str, Any]) -> Voronoi:
+    def _from_cells(cls, cells: PlaneCells | SpaceCells, workers: int | None) -> Self:
         diagram = cls.__new__(cls)
-        diagram._fill(**parts)
+        diagram._hold(cells=cells, workers=workers)
         return diagram
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("points", "weights", "mesh", "clip", "periods", "workers")
-        parts = {name: getattr(self, f"_{name}") for name in names}
-        return self._from_parts, (parts | {"dual": self._repeated or self._dual},)
+        return self._from_cells, (self._cells, self._workers)
+
+    def _saved(self) -> dict[str, NDArray[Any]]:
+        periods = () if self.periods is None else self.periods
+        return {
+            "points": self.points,
+            "weights": np.empty(0) if self.weights is None else self.weights,
+            "periods": np.array(
+                [np.nan if each is None else each for each in periods], dtype=float
+            ),
+        } | self._cells.saved_clip()
+
+    @classmethod
+    def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        points, weights = arrays["points"], arrays["weights"]
+        x_y = [None if np.isnan(each) else each for each in arrays["periods"].tolist()]
+        options: dict[str, Any] = {"periods": tuple(x_y) or None}
+        if len(weights):
+            options["weights"] = weights
+        clip = _CELLS[points.shape[1]].loaded_clip(arrays)
+        return cls(points, clip=clip, planar=True, **options)
 
     @property
     def points(self) -> Floats:
         """The sites, (n, d), where d is `ndim`."""
-        return self._points
+        return self._cells.points
 
     @property
     def weights(self) -> Floats | None:
         """The weights, (n,); None without."""
-        return self._weights
+        return self._cells.weights
 
     @property
     def clip(self) -> Any:
-        """Where cells end: a box ``(xmin, ymin, xmax, ymax)``, a geometry, or None."""
-        if self._clip is None:
-            return None
-        return self._clip.bounds if self._clip.outline is None else self._clip.outline
+        """Where cells end; None without a clip.
+
+        In 2-D a box ``(xmin, ymin, xmax, ymax)`` or a geometry of shapely, in 3-D a
+        `delone.voronoi.Polyhedron`.
+        """
+        return self._cells.public_clip
 
     @property
     def npoints(self) -> int:
         """Number of points, duplicates included."""
-        return len(self._points)
+        return len(self.points)
 
     @property
     def ndim(self) -> int:
-        """Number of coordinates, 2."""
-        return 2
+        """Number of coordinates, 2 or 3."""
+        return int(self.points.shape[1])
 
     @property
     def furthest_site(self) -> bool:
@@ -308,70 +288,86 @@ class Voronoi(Immutable):
     @property
     def periods(self) -> tuple[float | None, float | None] | None:
         """The periods in x and y; None without."""
-        return self._periods
+        return self._cells.periods
 
     @property
     def triangulation(self) -> Delaunay | RegularTriangulation | PeriodicDelaunay | None:
-        """The triangulation whose dual this is; None where all sites lie on one line."""
-        return self._mesh
+        """The triangulation whose dual this is; None if all sites lie on one line."""
+        return self._cells.mesh
 
     @property
     def vertices(self) -> Floats:
         """The vertices of the whole diagram, (k, d)."""
-        return self._dual.vertices
+        return self._cells.dual.vertices
+
+    @property
+    def simplex_vertices(self) -> Indices:
+        """The vertex of each simplex of `triangulation`, (m,); -1 beyond the range of doubles."""
+        return self._cells.dual.simplex_vertex
 
     @property
     def ridge_points(self) -> Indices:
         """The two sites of each ridge, (r, 2).
 
-        The first lies to the left of the way from the first of its `ridge_vertices` to the second.
+        In 2-D the first lies to the left of the direction from the first of its `ridge_vertices`
+        to the second.
         """
-        return self._dual.sites
+        return self._cells.dual.sites
 
     @property
     @kept
-    def ridge_offsets(self) -> Indices:
-        """By how many periods the second site of each ridge is moved, (r, 2), seen from the first.
-
-        Zeros without periods. The vertices of a ridge lie where its first site sees them.
-        """
-        if self._repeated is not None:
-            return self._repeated.moved
-        return sealed(np.zeros((len(self.ridge_points), 2), dtype=np.int32))
+    def ridge_rows(self) -> tuple[Indices, Indices]:
+        """`ridge_vertices` as compressed rows (indptr, indices)."""
+        indptr, indices = self._cells.ridge_rows()
+        return sealed(indptr), sealed(indices)
 
     @property
     @kept
-    def ridge_vertices(self) -> Indices:
-        """The two vertices of each ridge, (r, 2); -1, which comes first, where it is open."""
-        ends = self._dual.ends
-        return ends if not len(self._dual.rays) else sealed(np.maximum(ends, -1))
+    def ridge_vertices(self) -> list[list[int]]:
+        """The vertices of each ridge; -1, which comes first, if it is unbounded.
+
+        In 2-D two, in 3-D all around it, counter-clockwise as seen from its second site.
+        """
+        return as_lists(*self.ridge_rows)
 
     @property
     @kept
     def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
-        """The two vertices of each ridge by the pair of its sites."""
+        """The vertices of each ridge by the pair of its sites."""
         pairs = map(tuple, self.ridge_points.tolist())
-        return dict(zip(pairs, self.ridge_vertices.tolist(), strict=True))
+        return dict(zip(pairs, self.ridge_vertices, strict=True))
+
+    @property
+    @only(2, "3-D diagrams have no periods")
+    @kept
+    def ridge_offsets(self) -> Indices:
+        """By how many periods the second site of each ridge is moved, (r, 2); 2-D only.
+
+        As seen from the first site, where the vertices of the ridge are. Zeros without periods.
+        """
+        cells: Any = self._cells
+        return sealed(cells.ridge_offsets())
+
+    @property
+    @kept
+    def region_rows(self) -> tuple[Indices, Indices]:
+        """`regions` as compressed rows (indptr, indices)."""
+        indptr, indices = self._cells.region_rows()
+        return sealed(indptr), sealed(indices)
 
     @property
     @kept
     def regions(self) -> list[list[int]]:
-        """For each cell its vertices, counter-clockwise, with -1 where it is open."""
-        indptr, indices = (array.tolist() for array in self.region_vertices)
-        lists = [indices[a:b] for a, b in itertools.pairwise(indptr)]
-        if len(self._dual.rays):
-            return [gaps_once(region) for region in lists]
-        return lists
+        """The vertices of each cell, with -1 if it is unbounded.
 
-    @property
-    def region_vertices(self) -> tuple[Indices, Indices]:
-        """`regions` as compressed rows (indptr, indices), a -1 for each open end of a ridge."""
-        return self._dual.region_starts, self._dual.region_vertices
+        In 2-D counter-clockwise, in 3-D ascending.
+        """
+        return as_lists(*self.region_rows)
 
     @property
     def point_region(self) -> Indices:
-        """The cell of each point, (n,), as an index of `regions`."""
-        return self._dual.region
+        """The cell of each point, (n,), as an index of `regions`; -1 for a hidden site."""
+        return self._cells.dual.region
 
     @property
     @kept
@@ -379,7 +375,7 @@ class Voronoi(Immutable):
         """The site of each row, (n,): the first row with the same coordinates (and weight)."""
         found = np.arange(self.npoints, dtype=np.int32)
         has_cell = self.point_region >= 0
-        found[has_cell] = self._dual.site[self.point_region[has_cell]]
+        found[has_cell] = self._cells.dual.site[self.point_region[has_cell]]
         return sealed(found)
 
     @property
@@ -389,136 +385,103 @@ class Voronoi(Immutable):
         return sealed(np.flatnonzero(self.point_region < 0).astype(np.int32))
 
     @property
-    def triangle_vertices(self) -> Indices:
-        """The vertex of each triangle of `triangulation`, (m,); -1 beyond the range of doubles."""
-        return self._dual.simplex_vertex
-
-    @property
     @kept
     def rays(self) -> Rays:
-        """The ridges that go on for ever, with origins and directions.
+        """The unbounded ridges, with their origins and directions.
 
-        A ridge that lies beyond the range of doubles as a whole has no ray. Where only its ends do,
-        it has two from one origin, like a line.
+        In 2-D a ridge that lies entirely beyond the range of doubles has no ray. If only its ends
+        do, it has two from one origin, like a line. In 3-D an unbounded ridge has two rows: in the
+        first its boundary comes in from infinity, in the second it goes out.
         """
-        ends, directions = self._dual.ends, self._dual.rays
-        ridge, which = np.nonzero(ends < 0)
-        other = ends[ridge, 1 - which]
-        line = np.flatnonzero(other < 0)
-        a, b = self._ends_of(ridge[line])
-        heavy = None if self._weights is None else self._weights[self.ridge_points[ridge[line]]]
-        origin = np.empty((len(ridge), 2))
-        origin[line] = dual.foot(a, b, heavy)
-        origin[other >= 0] = self.vertices[other[other >= 0]]
-        direction = directions[~ends[ridge, which]]
-        there: NDArray[np.bool_] = np.all(np.isfinite(origin), axis=1)
-        there[line] &= self._lies_between(origin[line], ends[ridge[line]])
-        rows = sealed(ridge[there].astype(np.int32))
-        return Rays(rows, sealed(origin[there]), sealed(direction[there]))
-
-    def _lies_between(self, origin: Floats, ends: Indices) -> NDArray[np.bool_]:
-        """Whether points of lines lie before the vertices beyond the range that end them."""
-        found = np.ones(len(origin), dtype=bool)
-        for end in ends.T:
-            direction, place = self._dual.rays[~end], self._dual.beyond[~end]
-            k = np.abs(direction).argmax(axis=1)[:, None]
-            with np.errstate(over="ignore", invalid="ignore"):
-                way = np.take_along_axis(direction, k, 1) * np.take_along_axis(place - origin, k, 1)
-            found &= ~(way[:, 0] <= 0)
-        return found
-
-    def _ends_of(self, ridges: NDArray[Any]) -> tuple[Floats, Floats]:
-        """Where the two sites of some ridges are, as the first one sees the second."""
-        a, b = self._points[self.ridge_points[ridges]].swapaxes(0, 1)
-        if self.periods is None:
-            return a, b
-        lengths = np.array([length or 0.0 for length in self.periods])
-        return a, b + self.ridge_offsets[ridges] * lengths
+        ridge, origin, direction = self._cells.rays()
+        return Rays(sealed(ridge), sealed(origin), sealed(direction))
 
     @property
     @kept
-    def _clipped(self) -> Clipped:
-        """What is left of the cells: all bounded ones where there is no clip."""
-        found = clipping.cells(
-            self._points,
-            self._weights,
-            self._repeated or self._dual,
-            self._clip,
-            periods=self._periods,
-            workers=self._workers,
-        )
-        thin.tell(self._rows_of(self._thin(found)), "areas")
-        return found
-
-    def _thin(self, clipped: Clipped) -> NDArray[np.bool_]:
-        """Which cells are too thin for their areas to be known."""
-        # A cell without weights has its site, and something of what is around it.
-        lost = np.flatnonzero((clipped.areas == 0) & (clipped.perimeters == 0))
-        if self._weights is not None:
-            lost = lost[:0]
-        elif self._clip is not None and len(lost):
-            lost = lost[self._clip.holds(self._points[self._dual.site[lost]])]
-        found = thin.among(clipped.areas, clipped.perimeters, clipped.starts, clipped.corners)
-        found[lost] = True
+    def _left(self) -> Any:
+        """The clipped cells; without a clip the whole ones."""
+        found = self._cells.left
+        thin.warn(self._rows_of(self._cells.thin()), self._cells.measure)
         return found
 
     def _rows_of(self, cells: NDArray[np.bool_]) -> Indices:
-        """The rows whose cells are marked."""
+        """Return the rows whose cells are marked."""
         return np.flatnonzero(np.append(cells, False)[self.point_region]).astype(np.int32)
+
+    def _by_row(self, measures: Floats, of_hidden: float = 0.0) -> Floats:
+        """Return a measure of cells for each row."""
+        fill = np.full((1, *measures.shape[1:]), of_hidden)
+        return sealed(np.concatenate((measures, fill))[self.point_region])
 
     @property
     @kept
     def thin_cells(self) -> Indices:
-        """The rows whose cells within the clip are only a few units in the last place wide, (k,).
+        """The rows whose clipped cells are only a few units in the last place wide, (k,).
 
-        Rounded corners tell nothing of the area of such a cell, which may be 0. A
-        `ThinCellWarning` names the rows when areas, perimeters, centroids or polygons are asked
-        for. Of cells that have weights, and nothing left within the clip, it is not known whether
-        rounding has taken it.
+        Rounded corners do not determine the area or volume of such a cell, which may be 0. A
+        `ThinCellWarning` names the rows when measures, polygons or faces are computed. If a cell
+        with weights is empty within the clip, it is unknown whether rounding is the cause.
         """
-        return sealed(self._rows_of(self._thin(self._clipped)))
+        return sealed(self._rows_of(self._cells.thin()))
 
     @property
     @kept
     def cell_areas(self) -> Floats:
-        """Areas of the cells within the clip, (n,), in the square of the unit of the points.
+        """Areas of the clipped cells, in 3-D of their surfaces, (n,), in the square of the unit.
 
-        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites.
-        Rows with the same coordinates share one cell and have the same area each.
+        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites. Rows with the
+        same coordinates share one cell, and each has its area.
         """
-        return sealed(np.append(self._clipped.areas, 0.0)[self.point_region])
+        return self._by_row(self._left.areas)
 
     @property
+    @only(2, "3-D cells have `cell_areas`, those of their surfaces")
     @kept
     def cell_perimeters(self) -> Floats:
-        """Perimeters of the cells within the clip, (n,), in the unit of the points, holes included.
+        """Perimeters of the clipped cells, (n,), including those of holes; 2-D only.
 
-        Infinite for an unbounded cell, 0 for one of which nothing is left and for hidden sites.
+        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites.
         """
-        return sealed(np.append(self._clipped.perimeters, 0.0)[self.point_region])
+        return self._by_row(self._left.perimeters)
+
+    @property
+    @only(3, "2-D cells have `cell_areas`")
+    @kept
+    def cell_volumes(self) -> Floats:
+        """Volumes of the clipped cells, (n,), in the cube of the unit of the points; 3-D only.
+
+        Infinite for an unbounded cell, 0 if nothing is left and for hidden sites.
+        """
+        return self._by_row(self._left.volumes)
 
     @property
     @kept
     def cell_centroids(self) -> Floats:
-        """Centroids of the cells within the clip, (n, 2); NaN for unbounded and empty ones."""
-        nowhere = [[np.nan, np.nan]]
-        return sealed(np.concatenate((self._clipped.centroids, nowhere))[self.point_region])
+        """Centroids of the clipped cells, (n, d); NaN for unbounded and empty ones."""
+        return self._by_row(self._left.centroids, np.nan)
+
+    @property
+    @only(3, "the lengths of 2-D ridges are in `neighbors`")
+    @kept
+    def ridge_areas(self) -> Floats:
+        """Areas of the clipped ridges, (r,); infinite for unbounded ones; 3-D only."""
+        return sealed(self._left.ridge_sizes())
 
     @property
     @kept
     def neighbors(self) -> Neighbors:
-        """Sites whose cells have an edge in common, with its length, as compressed rows.
+        """Sites whose cells share an edge or face, with its length or area, as compressed rows.
 
-        In a clip only what is left of an edge counts. A duplicate has no neighbours of its own:
-        those of its cell are with the first row.
+        In a clip only clipped edges and faces count. A duplicate has no neighbors: those of its
+        cell belong to the first row.
         """
-        lengths = self._clipped.ridge_lengths()
-        rows = np.flatnonzero(lengths > 0) if self._clip is not None else np.arange(len(lengths))
+        sizes = self._left.ridge_sizes()
+        rows = np.arange(len(sizes)) if self._cells.clip is None else np.flatnonzero(sizes > 0)
         pairs = self.ridge_points[rows].astype(np.int64)
-        indptr, indices, beside = compressed(pairs, lengths[rows], self.npoints)
+        indptr, indices, beside = of_pairs(pairs, sizes[rows], self.npoints)
         return Neighbors(sealed(indptr), sealed(indices), sealed(beside))
 
-    def cell(self, i: int) -> Cell:
+    def cell(self, i: int) -> Any:
         """Return the cell of a site.
 
         Parameters
@@ -528,8 +491,8 @@ class Voronoi(Immutable):
 
         Returns
         -------
-        Cell
-            Its vertices, what is left of it within the clip, neighbours and measures.
+        Cell or PolyhedralCell
+            In 2-D or 3-D: its vertices, the clipped cell, its neighbors and measures.
 
         Raises
         ------
@@ -540,40 +503,96 @@ class Voronoi(Immutable):
         --------
         >>> from delone import Voronoi
         >>> cell = Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1)).cell(0)
-        >>> cell.area, cell.neighbors.tolist(), cell.lengths.tolist()
+        >>> cell.area, cell.neighbors.tolist(), cell.sizes.tolist()
         (4.0, [1], [2.0])
         >>> [ring.tolist() for ring in cell.parts[0]]
         [[[-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]]]
+        >>> sites = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]
+        >>> cell = Voronoi(sites, clip=((0, 0, 0), (2, 2, 2))).cell(0)
+        >>> cell.volume, cell.bounded, len(cell.faces)
+        (8.0, False, 6)
         """
         row = as_site(i)
         region, site = int(self.point_region[row]), int(self.duplicate_of[row])
-        start, end = self._dual.region_starts[region : region + 2] if region >= 0 else (0, 0)
-        entries = self._dual.region_vertices[start:end]
-        bounded = region < 0 or (bool(len(entries)) and bool((entries >= 0).all()))
-        if not bounded and len(entries):
-            entries = np.roll(entries, -int(np.flatnonzero(entries < 0)[0]))
-        indptr, indices, lengths = self.neighbors
+        indptr, indices, sizes = self.neighbors
         beside = slice(indptr[site], indptr[site + 1])
-        return Cell(
+        return self._cells.cell(
+            region,
             site=site,
-            vertices=self.vertices[entries[entries >= 0]],
-            bounded=bounded,
-            parts=self._clipped.parts(region) if region >= 0 else (),
             neighbors=indices[beside],
-            lengths=lengths[beside],
+            sizes=sizes[beside],
             area=float(self.cell_areas[row]),
-            perimeter=float(self.cell_perimeters[row]),
             centroid=self.cell_centroids[row],
         )
 
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """Find the sites whose cells contain points, which are the nearest sites.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., d)
+            Points, inside or outside the clip.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            The site whose whole cell contains the point, the one of the smallest row if it lies
+            between cells; -1 if a coordinate is NaN or infinite.
+
+        Raises
+        ------
+        InputError
+            The diagram has weights or periods.
+        ShapeError, DtypeError
+            `xi` is not a real array of shape (..., d).
+
+        Notes
+        -----
+        Exact: distances are compared by predicates, in the triangulation from vertex to vertex. If
+        all sites lie on one line, they are searched along it.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> Voronoi([(0, 0), (4, 0), (4, 4), (0, 4)]).nearest([(1, 1), (9, 3), (2, 2)])
+        array([0, 2, 0], dtype=int32)
+        """
+        if self.weights is not None or self.periods is not None:
+            raise InputError("nearest is only available without weights and periods")
+        if self.triangulation is None:
+            return line.nearest(self.points, self._cells.dual.site, xi)
+        mesh: Any = self.triangulation
+        found: Indices = mesh.nearest(xi)
+        return found
+
+    def validate(self) -> ValidationReport:
+        """Prove that the triangulation whose dual this is is correct.
+
+        Returns
+        -------
+        ValidationReport
+            That of `triangulation`: truthy if it is correct. Empty, so truthy, if all sites lie on
+            one line, whose order is exact.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> bool(Voronoi([(0, 0), (4, 0), (4, 4), (0, 4)]).validate())
+        True
+        """
+        mesh: Any = self.triangulation
+        report: ValidationReport = ValidationReport() if mesh is None else mesh.validate()
+        return report
+
+    @only(2, "`cell` has the faces of 3-D cells, `to_pyvista` the polyhedra")
     def polygons(self) -> NDArray[Any]:
-        """Return what is left of the cells as geometries of shapely (extra ``geo``).
+        """Return the clipped cells as geometries of shapely (extra ``geo``); 2-D only.
 
         Returns
         -------
         ndarray of object, shape (n,)
-            For each point a polygon, or a multipolygon where the outline cuts a cell into parts; an
-            empty polygon where nothing is left; None for an unbounded cell without a clip.
+            For each point a polygon, or a multipolygon if the outline cuts a cell into parts; an
+            empty polygon if nothing is left; None for an unbounded cell without a clip.
 
         Raises
         ------
@@ -587,16 +606,19 @@ class Voronoi(Immutable):
         >>> left.area, left.intersection(right).length
         (4.0, 2.0)
         """
-        return by_region(self._clipped.polygons(), self.point_region)
+        from delone.exchange.geopandas import by_region
 
+        return by_region(self._left.polygons(), self.point_region)
+
+    @only(2, "geopandas has no polyhedra")
     def to_geopandas(self, data: Any = None, *, crs: Any = None) -> Any:
-        """Return the cells as a table of geopandas (extra ``geo``).
+        """Convert the cells to a table of geopandas (extra ``geo``); 2-D only.
 
         Parameters
         ----------
         data : DataFrame or mapping, optional
-            Columns to carry, a row for each point. The geometry of a GeoDataFrame gives way to the
-            cells, and its reference system is kept.
+            Columns to carry, a row for each point. The cells replace the geometry of a
+            GeoDataFrame, and its reference system is kept.
         crs : any, optional
             Reference system, as geopandas takes it.
 
@@ -620,35 +642,90 @@ class Voronoi(Immutable):
         >>> table.columns.tolist(), table.area.tolist()
         (['name', 'geometry'], [4.0, 4.0])
         """
+        from delone.exchange.geopandas import cells_to_geopandas
+
         return cells_to_geopandas(self.polygons(), data, crs)
 
-    def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw the diagram with matplotlib (extra ``plot``).
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; by default on new axes.
-        **options
-            ``values``, array_like of float, shape (n,): cells are coloured by them; ``cmap``: the
-            colours; ``colorbar``: False leaves the scale out; ``points``: whether sites are drawn,
-            by default where there are few enough to be told apart; ``linewidth``: that of edges.
+    def to_pyvista(self) -> Any:
+        """Convert the bounded or clipped cells to a mesh of PyVista (extra ``pyvista``).
 
         Returns
         -------
-        matplotlib Axes
-            What was drawn on.
+        pyvista.PolyData or pyvista.UnstructuredGrid
+            In 2-D polygons at z = 0, cells with holes in triangles; in 3-D polyhedra. Cell data
+            ``"site"`` is the row of the site, ``"area"`` or ``"volume"`` the measure of its cell.
 
         Raises
         ------
         MissingExtraError
-            matplotlib is not installed.
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1)).to_pyvista().n_cells
+        2
+        >>> grid = [(x, y, z) for x in range(3) for y in range(3) for z in range(3)]
+        >>> Voronoi(grid).to_pyvista().n_cells
+        1
+        """
+        return self._with_measures.to_pyvista()
+
+    def to_meshio(self) -> Any:
+        """Convert the bounded or clipped cells to a mesh of meshio (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            In 2-D polygons at z = 0, cells with holes in triangles; in 3-D polyhedra. There is a
+            block for each number of corners, with the values of `to_pyvista`.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone import Voronoi
+        >>> mesh = Voronoi([(0, 0), (2, 0)], clip=(-1, -1, 3, 1)).to_meshio()
+        >>> [(block.type, block.data.shape) for block in mesh.cells]
+        [('polygon', (2, 4))]
+        """
+        return self._with_measures.to_meshio()
+
+    @property
+    def _with_measures(self) -> PlaneCells | SpaceCells:
+        """The cells, after a warning of thin ones."""
+        _ = self._left
+        return self._cells
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw with matplotlib (extra ``plot``) or, in 3-D, with PyVista (extra ``pyvista``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or pyvista Plotter, optional
+            Where to draw; by default on a new one.
+        **options
+            As for `delone.plot.plot`.
+
+        Returns
+        -------
+        matplotlib Axes or pyvista Plotter
+            Where it is drawn.
+
+        Raises
+        ------
+        MissingExtraError
+            The library is not installed.
         InputError
-            ``values`` has another length.
+            An option does not exist for this kind of object, or has a wrong value.
 
         Notes
         -----
-        Without a clip the diagram is drawn as far as the box of the sites and a tenth more.
+        Without a clip a 2-D diagram is drawn as far as the box of the sites and a tenth more. In
+        3-D bounded and clipped cells are drawn.
 
         Examples
         --------
@@ -661,21 +738,11 @@ class Voronoi(Immutable):
 
         return plot(self, ax, **options)
 
-    def __repr__(self) -> str:
-        if not hasattr(self, "_clip"):  # the constructor failed, or has not run
-            return "<Voronoi diagram of nothing yet>"
-        where = "" if self._clip is None else f", clipped to {self._clip.name}"
-        where += "" if self.periods is None else ", periodic"
-        numbers = [counted(self.npoints, "point")]
-        numbers.append(counted(len(self.vertices), "vertex"))
-        numbers.append(counted(len(self.ridge_points), "ridge"))
-        return f"<Voronoi diagram of {numbers[0]}: {', '.join(numbers[1:])}{where}>"
-
-
-def _columns(points: ArrayLike | None) -> int:
-    """How many coordinates points have; 0 where they are no table."""
-    try:
-        shape = np.shape(points) if points is not None else ()
-    except ValueError:  # rows of different lengths, which the constructor refuses
-        return 0
-    return int(shape[1]) if len(shape) > 1 else 0
+    def _described(self) -> str:
+        cells = self._cells
+        parts = [counted(len(self.vertices), "vertex"), counted(len(self.ridge_points), "ridge")]
+        if cells.clip is not None:
+            parts.append(f"clipped to {cells.clip.name}")
+        if cells.periods is not None:
+            parts.append("periodic")
+        return f"{counted(self.npoints, 'point')}: {', '.join(parts)}"

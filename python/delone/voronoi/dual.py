@@ -1,15 +1,15 @@
-"""The arrays of a diagram: from the core, or from the order of sites that lie on one line.
+"""The arrays of a 2-D diagram: from the core, or from the order of sites that lie on one line.
 
-A `Diagram2` is what the core's `voronoi2` returns, and means the same in both cases:
+A `Diagram2`, as the core's `voronoi2` returns it, has the same meaning in both cases:
 
 * ridge r has the sites ``sites[r]`` and the ends ``ends[r]``: vertex v, or ``~i`` for ray i with
   direction ``rays[i]``. The ray leads to the vertex ``beyond[i]``, outside the range of doubles and
-  with infinite coordinates there, or on for ever where that is NaN. The first site of a ridge lies
-  to the left of the way from its first end to its second.
+  with infinite coordinates, or is unbounded if that is NaN. The first site of a ridge lies to the
+  left of the direction from its first end to its second.
 * cell c has the site ``site[c]`` and the entries ``region_starts[c]:region_starts[c + 1]``:
-  counter-clockwise, a vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge that
-  leads on from there in ``region_ridges``.
-* ``region[p]`` is the cell of point p; -1 where it has none.
+  counter-clockwise, a vertex (-1 for an end at infinity) in ``region_vertices`` and the ridge from
+  there to the next in ``region_ridges``.
+* ``region[p]`` is the cell of point p; -1 if it has none.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["foot", "of_chain"]
 
-# Squares of lengths between these have lost nothing to under- or overflow.
+# Squares of lengths between these are not affected by underflow or overflow.
 _SMALLEST, _LARGEST = 2.0**-900, 2.0**900
 
 
@@ -82,21 +82,21 @@ def of_chain(points: Floats, chain: Indices) -> Diagram2:
 
 
 def _directions(a: Floats, b: Floats) -> Floats:
-    """Vectors from a to b, which differ, made of length 1."""
+    """Return vectors from a to b, which differ, normalized to length 1."""
     with np.errstate(over="ignore"):
         vector = b - a
     overflown = ~np.isfinite(vector).all(axis=1)
     vector[overflown] = b[overflown] / 2 - a[overflown] / 2
     share = vector / np.abs(vector).max(axis=1, initial=0.0)[:, None]
     unit: Floats = share / np.hypot(*share.T)[:, None]
-    # What is not along an axis must not seem to be, however little is missing.
+    # A direction that is not along an axis must not be rounded to one.
     lost = (unit == 0) & (vector != 0)
     unit[lost] = np.copysign(5e-324, vector[lost])
     return unit
 
 
 def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
-    """Return the points of bisectors that lie on the lines through the two sites.
+    """Return the points where bisectors intersect the lines through their two sites.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
     Returns
     -------
     ndarray of float64, shape (k, 2)
-        Points; where one is beyond the range of doubles, the point of the same axis that is
-        nearest to the origin of the plane, and infinity where that is beyond the range, too.
+        Points; if one is beyond the range of doubles, the point of the bisector that is nearest to
+        the origin of the plane, and infinity if that is beyond the range, too.
 
     Examples
     --------
@@ -124,11 +124,10 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
         found: Floats = np.where(np.isfinite(total), total / 2, a / 2 + b / 2)
         if weights is None:
             return found
-        heavy = weights[:, 0] - weights[:, 1]
-        way = b - a
-        square = (way * way).sum(axis=1)
-        share = heavy / square / 2
-        found += np.where(share[:, None] == 0, 0.0, way * share[:, None])
+        along = b - a
+        square = (along * along).sum(axis=1)
+        share = (weights[:, 0] - weights[:, 1]) / square / 2
+        found += np.where(share[:, None] == 0, 0.0, along * share[:, None])
         safe = (square > _SMALLEST) & (square < _LARGEST) & np.isfinite(found).all(axis=1)
     for row in np.flatnonzero(~safe & (weights[:, 0] != weights[:, 1])).tolist():
         found[row] = _exact_foot(a[row].tolist(), b[row].tolist(), *weights[row].tolist())
@@ -136,14 +135,14 @@ def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
 
 
 def _exact_foot(a: list[float], b: list[float], u: float, v: float) -> list[float]:
-    """The same in fractions; beyond the range the point of the line that is nearest to (0, 0)."""
+    """Return the same in fractions; beyond the range the point of the bisector nearest to 0."""
     p, q = [Fraction(x) for x in a], [Fraction(x) for x in b]
     d = [y - x for x, y in zip(p, q, strict=True)]
     square = d[0] * d[0] + d[1] * d[1]
-    heavy = Fraction(u) - Fraction(v)
-    right = sum(y * y - x * x for x, y in zip(p, q, strict=True)) + heavy
+    weight = Fraction(u) - Fraction(v)
+    right = sum(y * y - x * x for x, y in zip(p, q, strict=True)) + weight
     try:
-        share = heavy / square / 2
+        share = weight / square / 2
         return [float((p[k] + q[k]) / 2 + d[k] * share) for k in range(2)]
     except OverflowError:
         share = right / square / 2

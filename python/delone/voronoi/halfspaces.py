@@ -1,16 +1,16 @@
-"""What half-spaces have in common, exactly: whether it has volume and an end, and its corners.
+"""The intersection of half-spaces, exactly: whether it has volume and is bounded, and its corners.
 
-A half-space a x + b y + c z + d <= 0 becomes a half-space through the origin of four dimensions,
-with a coordinate t beside x, y and z, and what they have in common, with t >= 0, a cone. Its
-extreme rays with t > 0 are the corners, those with t = 0 the directions in which there is no end.
+A half-space a x + b y + c z + d <= 0 becomes a half-space through the origin in four dimensions,
+with a coordinate t in addition to x, y and z, and the intersection, with t >= 0, a cone. Its
+extreme rays with t > 0 are the corners, those with t = 0 the directions in which it is unbounded.
 The rays come from the double description method (T. S. Motzkin, H. Raiffa, G. L. Thompson and R. M.
 Thrall, "The double description method", in: Contributions to the Theory of Games II, 1953; K.
 Fukuda and A. Prodon, "Double description method revisited", 1996), in integers, which doubles times
 powers of two are.
 
-Half-spaces come in one shuffled order, so that k of them expect to make and remove O(k) rays; each
-is held against all rays, O(k^2) in all, most in floating point. Many planes through one corner cost
-more: O(k^3) at worst.
+Half-spaces are inserted in a shuffled order, so that k of them create and remove O(k) rays in
+expectation; each is compared with all rays, O(k^2) in all, mostly in floating point. Many planes
+through one corner cost more: O(k^3) at worst.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ if TYPE_CHECKING:
 
 __all__ = ["common_part"]
 
-# Of values of at most 8 in all: what is larger has its sign in floating point.
+# Products of values whose sum is at most 8: if they are larger, their floating-point sign is right.
 _CERTAIN = 1e-14
-# The number of the half-space t >= 0; those of the others count from 0.
+# The number of the half-space t >= 0; the others are numbered from 0.
 _END = -1
 _AXES: list[Row] = [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)]
 
 
 @dataclass(slots=True)
 class _Ray:
-    """A vector of coprime integers, and the half-spaces on whose boundary it lies."""
+    """A vector of coprime integers, and the half-spaces that have it on their boundary."""
 
     at: Row
     on: frozenset[int]
 
 
 def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]:
-    """Return corners and faces of what half-spaces have in common.
+    """Return corners and faces of the intersection of half-spaces.
 
     Parameters
     ----------
@@ -64,14 +64,14 @@ def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]
     corners : ndarray of float64, shape (p, 3)
         The corners, ascending, each coordinate the double nearest to the true one.
     faces : list of list of int
-        The corners of each face, counter-clockwise from outside, the first one first.
+        The corners of each face, counter-clockwise as seen from outside, the least one first.
     rows : list of int
         The row of each face, ascending; the first one of equal half-spaces.
 
     Raises
     ------
     InputError
-        There is no point, no volume or no end; or a corner is beyond the range of doubles.
+        It is empty, flat or unbounded; or a corner is beyond the range of doubles.
 
     Examples
     --------
@@ -97,15 +97,16 @@ def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]
     free = [ray.at for ray in rays if not ray.at[3]]
     if free:
         largest = max(map(abs, free[0]))
-        way = ", ".join(f"{x / largest:.6g}" for x in free[0][:3])
+        direction = ", ".join(f"{x / largest:.6g}" for x in free[0][:3])
         raise InputError(
-            f"what the half-spaces of clip have in common has no end in the direction ({way})"
+            f"the intersection of the half-spaces of clip is unbounded in the direction "
+            f"({direction})"
         )
     return _polyhedron(rows, ends)
 
 
 def _integers(row: Iterable[float]) -> Row:
-    """The coprime integers of which the numbers of a row are one multiple."""
+    """Return the coprime integers of which the numbers of a row are a multiple."""
     parts = [x.as_integer_ratio() for x in row]
     unit = max(below for _, below in parts)
     return _coprime(above * (unit // below) for above, below in parts)
@@ -122,7 +123,7 @@ def _product(row: Row, at: Row) -> int:
 
 
 def _normal(a: Row, b: Row, c: Row) -> Row:
-    """The vector of four dimensions that is upright on three, zero where these hang together."""
+    """Return the 4-D vector orthogonal to three others, zero if these are linearly dependent."""
     found = []
     for k in range(4):
         (a0, a1, a2), (b0, b1, b2), (c0, c1, c2) = (v[:k] + v[k + 1 :] for v in (a, b, c))
@@ -132,25 +133,25 @@ def _normal(a: Row, b: Row, c: Row) -> Row:
 
 
 def _rays(halfspaces: dict[int, Row]) -> list[_Ray]:
-    """The extreme rays of the cone.
+    """Return the extreme rays of the cone.
 
-    Where normals do not span space, the cone has lines in it, and no rays; half-spaces of axes
-    beside them halve these. That changes nothing of whether there are points or volume, and leaves
-    a direction without end.
+    If the normals do not span 3-D, the cone contains lines, and has no extreme rays; half-spaces of
+    axes cut these in half. That does not change whether there are points or volume, and leaves an
+    unbounded direction.
     """
     rows: dict[int, Row] = {_END: (0, 0, 0, -1)} | halfspaces
     rows |= {-2 - k: row for k, row in enumerate(_AXES[:3])}
     basis: list[int] = []
-    # The end comes first, and axes only where nothing else is left.
+    # t >= 0 comes first, and axes only if nothing else is left.
     for number in [_END, *halfspaces, -2, -3, -4]:
         if len(basis) < 4 and _independent([rows[i] for i in (*basis, number)]):
             basis.append(number)
     cone = _Cone()
     for number in basis:
         others = [i for i in basis if i != number]
-        way = _normal(*(rows[i] for i in others))
-        away = _product(rows[number], way) > 0
-        cone.add(_Ray(_coprime(-x if away else x for x in way), frozenset(others)))
+        normal = _normal(*(rows[i] for i in others))
+        outside = _product(rows[number], normal) > 0
+        cone.add(_Ray(_coprime(-x if outside else x for x in normal), frozenset(others)))
     order = [number for number in halfspaces if number not in basis]
     random.Random(0).shuffle(order)
     for number in order:
@@ -159,7 +160,7 @@ def _rays(halfspaces: dict[int, Row]) -> list[_Ray]:
 
 
 def _independent(rows: list[Row]) -> bool:
-    """Whether up to four vectors, of which all but the last are independent, are."""
+    """Tell whether up to four vectors are independent; all but the last are."""
     for fill in combinations(_AXES, 4 - len(rows)):
         a, b, c, d = rows + list(fill)
         if _product(d, _normal(a, b, c)):
@@ -174,7 +175,7 @@ class _Cone:
         self._rays: list[_Ray | None] = []
         self._near: Floats = np.zeros((64, 4))
         self._of: dict[int, set[int]] = {}
-        # Numbers of rays that were removed, to be given to others.
+        # Numbers of removed rays, for reuse.
         self._free: list[int] = []
 
     def left(self) -> list[_Ray]:
@@ -194,7 +195,7 @@ class _Cone:
             self._of.setdefault(i, set()).add(number)
 
     def cut(self, number: int, row: Row) -> None:
-        """Removes what lies beyond a half-space."""
+        """Cut off what lies outside of a half-space."""
         near = self._near[: len(self._rays)] @ _unit(row)
         within = near < -_CERTAIN
         beyond: list[int] = np.flatnonzero(near > _CERTAIN).tolist()
@@ -228,7 +229,7 @@ class _Cone:
         return ray
 
     def _beside(self, j: int) -> list[int]:
-        """The rays that span an edge of the cone with one: no other ray is on all that both are."""
+        """Return the rays adjacent to one: no other ray is on all half-spaces that both are on."""
         on = self._ray(j).on
         seen: dict[int, int] = {}
         for i in on:
@@ -252,7 +253,7 @@ class _Cone:
 
 
 def _unit(numbers: Row) -> list[float]:
-    """A vector in doubles, its largest component 1."""
+    """Return a vector in doubles, its largest component 1."""
     largest = max(map(abs, numbers))
     return [x / largest for x in numbers]
 
@@ -260,7 +261,7 @@ def _unit(numbers: Row) -> list[float]:
 def _polyhedron(
     rows: dict[int, Row], rays: list[_Ray]
 ) -> tuple[Floats, list[list[int]], list[int]]:
-    """Corners and faces of a body with volume, out of its rays."""
+    """Return corners and faces of a bounded polyhedron from its rays."""
     try:
         corners = np.array([[x / ray.at[3] for x in ray.at[:3]] for ray in rays]) + 0.0
     except OverflowError:
@@ -271,23 +272,23 @@ def _polyhedron(
     for corner, ray in enumerate(rays):
         for number in ray.on:
             of[number].add(corner)
-    # Half-spaces that touch no more than an edge make no face.
+    # Half-spaces that touch only an edge or a corner have no face.
     made = {number: mine for number, mine in sorted(of.items()) if len(mine) > 2}
     faces = []
     for number, mine in made.items():
         beside = {i for corner in mine for i in rays[corner].on} & made.keys() - {number}
         turn = _around([mine & made[i] for i in beside])
         a, b, c = (rays[i].at for i in turn[:3])
-        # Ways from a, times positive numbers.
+        # Vectors from a, times positive numbers.
         p, q = ([y * a[3] - x * to[3] for x, y in zip(a, to, strict=True)] for to in (b, c))
-        upright = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
-        outward = sum(x * y for x, y in zip(rows[number][:3], upright, strict=True)) > 0
+        normal = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+        outward = sum(x * y for x, y in zip(rows[number][:3], normal, strict=True)) > 0
         faces.append(turn if outward else [turn[0], *turn[:0:-1]])
     return corners, faces, list(made)
 
 
 def _ascending(corners: Floats, rays: list[_Ray]) -> list[int]:
-    """The order of corners by exact coordinates: that of doubles, but where these are equal."""
+    """Return the order of corners by exact coordinates, which decide if doubles are equal."""
     if len(np.unique(corners[:, 0])) == len(corners):
         found: list[int] = np.argsort(corners[:, 0]).tolist()
         return found
@@ -296,7 +297,7 @@ def _ascending(corners: Floats, rays: list[_Ray]) -> list[int]:
 
 
 def _around(edges: list[set[int]]) -> list[int]:
-    """The turn of edges, pairs of corners; what is no pair is a corner alone."""
+    """Return the cycle of edges, which are pairs of corners; sets of another size are skipped."""
     beside: dict[int, list[int]] = {}
     for edge in edges:
         if len(edge) == 2:

@@ -1,7 +1,7 @@
-"""Where cells are to end: boxes, and outlines by shapely, from whatever stands for one.
+"""2-D clips: boxes and outlines, which are geometries of shapely, from what callers pass.
 
-GEOS computes with squares and products of coordinates, which must neither over- nor underflow:
-where coordinates are very large or small, it gets them multiplied by a power of two.
+GEOS computes squares and products of coordinates, which must neither overflow nor underflow: very
+large or small coordinates are multiplied by a power of two before they are passed to it.
 """
 
 from __future__ import annotations
@@ -21,12 +21,21 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Clip", "areal_parts", "as_clip", "as_scaled", "next_corner", "times", "unit_of"]
+__all__ = [
+    "Clip",
+    "areal_parts",
+    "as_clip",
+    "as_scaled",
+    "next_corner",
+    "of_wkb",
+    "times",
+    "unit_of",
+]
 
-# By this share of its extent the box is larger than the outline that is in it.
+# The box around an outline is larger by this share of its extent.
 _MARGIN = 2.0**-6
 _POLYGON, _MULTIPOLYGON = 3, 6
-# Coordinates up to these magnitudes GEOS gets as they are.
+# Coordinates of magnitudes between these are passed to GEOS as they are.
 _SMALL, _LARGE = 2.0**-100, 2.0**100
 
 
@@ -68,9 +77,8 @@ class Clip:
 
     @cached_property
     def scaled(self) -> Any:
-        """The outline in these units, its inside to the left of its rings, prepared."""
+        """The outline in these units, its interior to the left of its rings, prepared."""
         shapely = shapely_or_say()
-
         found = shapely.orient_polygons(times(self.outline, self.unit))
         shapely.prepare(found)
         return found
@@ -79,7 +87,6 @@ class Clip:
     def rings(self) -> tuple[NDArray[np.int32], Floats]:
         """The corners of its rings, in these units, as compressed rows; none is repeated."""
         shapely = shapely_or_say()
-
         rings = shapely.get_rings(shapely.get_parts(self.scaled))
         corners, ring = shapely.get_coordinates(rings, return_index=True)
         # Equal corners in a row, the first one at the end included, are one.
@@ -98,12 +105,12 @@ def as_clip(
     fix: bool,
     periods: tuple[float | None, float | None] | None = None,
 ) -> Clip | None:
-    """Return what a caller wants to clip to.
+    """Return the clip that a caller gave.
 
     Parameters
     ----------
     clip : None, "box", sequence of 4 floats, geometry, or Clip
-        As for `delone.Voronoi`; or what this function has returned.
+        As for `delone.Voronoi`; or a result of this function.
     points : ndarray of float64, shape (n, 2)
         The sites.
     fix : bool
@@ -119,7 +126,7 @@ def as_clip(
     Raises
     ------
     InputError
-        It has no area, is no polygon, or is invalid.
+        It has no area, is not a polygon, or is invalid.
 
     Examples
     --------
@@ -141,11 +148,11 @@ def as_clip(
 
 
 def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]) -> Clip:
-    """A box that is infinite where sites come again."""
+    """Return a box that is infinite in the direction in which sites repeat."""
     if None not in periods:
         raise InputError(
-            "cells that come again in x and in y have no border that a clip could cut them to; "
-            "intersect their polygons() with it instead"
+            "clip is not available with two periods, where all cells are bounded; intersect their "
+            "polygons() with it instead"
         )
     axis = 0 if periods[1] is None else 1
     whole = "(-inf, ymin, inf, ymax)" if axis == 0 else "(xmin, -inf, xmax, inf)"
@@ -154,7 +161,7 @@ def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]
         box = np.concatenate((points.min(axis=0), points.max(axis=0)))
         box[[axis, axis + 2]] = -np.inf, np.inf
     elif isinstance(clip, str) or hasattr(clip, "geom_type") or hasattr(clip, "geometry"):
-        raise InputError(f"{only}; intersect polygons() with others instead")
+        raise InputError(f"{only}; intersect polygons() with other shapes instead")
     else:
         try:
             box = np.array([float(x) for x in clip])
@@ -170,9 +177,8 @@ def _strip(clip: Any, points: Floats, periods: tuple[float | None, float | None]
 
 
 def _together(geometries: Any) -> Any:
-    """All polygons of a table as one; what is invalid stays so, and is named later."""
+    """Return all polygons of a table as one; invalid ones stay so, and are reported later."""
     shapely = shapely_or_say()
-
     found = np.array([each for each in geometries if each is not None], dtype=object)
     if len(found) == 1:
         return found[0]
@@ -185,7 +191,7 @@ def _together(geometries: Any) -> Any:
 
 
 def _geometry(clip: Any) -> Any:
-    """A geometry of shapely for whatever stands for one, None for what does not."""
+    """Return a geometry of shapely, converted if necessary, or None for input of another kind."""
     if hasattr(clip, "geometry") and hasattr(clip.geometry, "values"):
         return _together(clip.geometry.values)
     if hasattr(clip, "geom_type"):
@@ -196,7 +202,7 @@ def _geometry(clip: Any) -> Any:
 
 
 def _of_mapping(mapping: Any) -> Any:
-    """A geometry from a mapping of the form of GeoJSON, a feature's included."""
+    """Return a geometry from a GeoJSON-like mapping, a feature or collection included."""
     shape = shapely_or_say().geometry.shape
     mapping = getattr(mapping, "__geo_interface__", mapping)
     try:
@@ -207,15 +213,15 @@ def _of_mapping(mapping: Any) -> Any:
     except Exception as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"clip {mapping!r:.80} is no geometry: {error}") from error
+        raise InputError(f"clip {mapping!r:.80} is not a geometry: {error}") from error
 
 
 def _typed(mapping: Any) -> Any:
-    """A mapping that says which geometry it is; others would fail without a word of that."""
+    """Return a mapping that has a type; shapely would not report that it is missing."""
     kind = mapping.get("type") if isinstance(mapping, dict) else None
     if not isinstance(kind, str):
         why = "it has no type" if kind is None else f"its type is {kind!r:.40}"
-        raise InputError(f"clip {mapping!r:.80} is no geometry: {why}")
+        raise InputError(f"clip {mapping!r:.80} is not a geometry: {why}")
     return mapping
 
 
@@ -237,9 +243,33 @@ def _box(numbers: Any) -> Clip:
     return Clip(bounds=(left, bottom, right, top))
 
 
+def of_wkb(data: bytes) -> Any:
+    """Return the geometry of well-known binary.
+
+    Parameters
+    ----------
+    data : bytes
+        The geometry.
+
+    Returns
+    -------
+    geometry
+        Of shapely.
+
+    Raises
+    ------
+    InputError
+        It is not well-known binary.
+    """
+    shapely = shapely_or_say()
+    try:
+        return shapely.from_wkb(data)
+    except shapely.errors.ShapelyError as error:
+        raise InputError(f"the outline is not well-known binary: {error}") from error
+
+
 def _outline(geometry: Any, fix: bool) -> Clip:
     shapely = shapely_or_say()
-
     if shapely.get_type_id(geometry) not in (_POLYGON, _MULTIPOLYGON):
         raise InputError(f"clip must be a polygon or a multipolygon, got a {geometry.geom_type}")
     geometry = shapely.force_2d(geometry)
@@ -278,7 +308,7 @@ def unit_of(coordinates: Floats) -> float:
     Returns
     -------
     float
-        1 unless they are very large or very small.
+        1 unless they are very large or small.
     """
     largest = float(np.abs(coordinates).max(initial=0.0))
     if largest == 0 or _SMALL < largest < _LARGE:
@@ -320,7 +350,7 @@ def times(geometry: Any, factor: float) -> Any:
     Returns
     -------
     geometry or ndarray of such
-        The same, where the factor is 1.
+        The same if the factor is 1.
     """
     if factor == 1:
         return geometry
@@ -328,9 +358,8 @@ def times(geometry: Any, factor: float) -> Any:
 
 
 def areal_parts(geometries: NDArray[Any]) -> NDArray[Any]:
-    """Leave out the points and lines in which areas touch."""
+    """Remove the points and lines where areas touch."""
     shapely = shapely_or_say()
-
     mixed = np.flatnonzero(~np.isin(shapely.get_type_id(geometries), (_POLYGON, _MULTIPOLYGON)))
     for row in mixed:
         parts = shapely.get_parts(geometries[row])

@@ -1,9 +1,9 @@
-"""Many small polygons, and what an outline with very many corners leaves of them.
+"""Intersections of many small polygons with an outline that may have very many corners.
 
-Where the outline has many corners, polygons and outline are halved together until there are few on
-both sides, so that no polygon meets corners that are far from it. The same crossing may come out
-differently then for the two polygons that have it: corners that differ by rounding alone are made
-one.
+If the outline has many corners, polygons and outline are halved together until there are few on
+both sides, so that no polygon is compared with corners far from it. The same crossing may then be
+rounded differently for the two polygons that share it: corners that differ only by rounding are
+merged.
 """
 
 from __future__ import annotations
@@ -25,18 +25,17 @@ __all__ = ["as_polygons", "intersections", "with_shared_corners"]
 
 # Outlines with fewer corners than this are not halved, nor are fewer polygons than this.
 _FEW_CORNERS, _FEW_POLYGONS = 256, 8
-# By this share of its extent the box is larger than the polygons that are in it.
+# The box around polygons is larger by this share of its extent.
 _MARGIN = 2.0**-6
 _POLYGON = 3
-# Corners within this share of the largest coordinate, 64 units in the last place, are one corner,
-# and so many places apart at most along the direction in which they are sorted.
+# Corners within this share of the largest coordinate, 64 units in the last place, are merged if
+# they are at most so many places apart in the direction in which they are sorted.
 _SAME, _PLACES = 2.0**-46, 4
 
 
 def as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:
-    """Polygons of shapely, empty where there are no corners."""
+    """Return polygons of shapely, empty ones for cells without corners."""
     shapely = shapely_or_say()
-
     sizes = np.diff(starts)
     filled = sizes > 0
     # Rings repeat their first corner at the end.
@@ -51,12 +50,11 @@ def as_polygons(starts: Indices, corners: Floats) -> NDArray[Any]:
 
 
 def _make_sound(polygons: NDArray[Any], starts: Indices, corners: Floats) -> None:
-    """Give cells whose corners rounding has put in no convex order their hull.
+    """Replace cells whose corners are not in convex order, because of rounding, by their hulls.
 
-    Cells a few units in the last place wide may have lost their area, too: those become empty.
+    Cells a few units in the last place wide may have lost their area, too: they become empty.
     """
     shapely = shapely_or_say()
-
     after = next_corner(starts, len(corners))
     a, b, c = corners, corners[after], corners[after[after]]
     with np.errstate(all="ignore"):
@@ -75,10 +73,9 @@ def _make_sound(polygons: NDArray[Any], starts: Indices, corners: Floats) -> Non
 def intersections(geometries: NDArray[Any], outline: Any, *, areal: bool = True) -> NDArray[Any]:
     """Intersect many small geometries with one that may have very many corners."""
     shapely = shapely_or_say()
-
     found = np.full(len(geometries), shapely.Polygon(), dtype=object)
     boxes = shapely.bounds(geometries)
-    # What is empty has no box.
+    # Empty geometries have no box.
     _halve(geometries, boxes, np.flatnonzero(~np.isnan(boxes[:, 0])), outline, found)
     return areal_parts(found) if areal else found
 
@@ -92,7 +89,6 @@ def _halve(
 ) -> None:
     """Intersect some of the geometries; each call has half as many as the one before it."""
     shapely = shapely_or_say()
-
     if len(rows) <= _FEW_POLYGONS or shapely.get_num_coordinates(outline) <= _FEW_CORNERS:
         found[rows] = shapely.intersection(geometries[rows], outline)
         return
@@ -108,18 +104,17 @@ def _halve(
 
 
 def with_shared_corners(cut: NDArray[Any], corners: Floats, outline: Any) -> NDArray[Any]:
-    """Make corners one that differ by rounding alone: crossings that were computed more than once.
+    """Merge corners that differ only by rounding: crossings that were computed more than once.
 
-    Corners of whole cells and of the outline stay where they are.
+    Corners of whole cells and of the outline stay at their places.
     """
     shapely = shapely_or_say()
-
     places, owner = shapely.get_coordinates(cut, return_index=True)
     if not len(places):
         return cut
     distinct, number = np.unique(_as_complex(places), return_inverse=True)
     known = np.isin(distinct, _as_complex(np.vstack((corners, shapely.get_coordinates(outline)))))
-    # Known corners first: those that are met are called by the least number.
+    # Known corners first: merged corners get the least number.
     rank = np.empty(len(distinct), dtype=np.int64)
     by_rank = np.argsort(~known, kind="stable")
     rank[by_rank] = np.arange(len(distinct))
@@ -127,8 +122,8 @@ def with_shared_corners(cut: NDArray[Any], corners: Floats, outline: Any) -> NDA
     order = np.argsort(distinct.real * 0.8 + distinct.imag * 0.6)
     name = rank[order]
     for shift in range(1, min(_PLACES, len(order) - 1) + 1):
-        way = distinct[order[shift:]] - distinct[order[:-shift]]
-        near = (np.abs(way.real) <= close) & (np.abs(way.imag) <= close)
+        step = distinct[order[shift:]] - distinct[order[:-shift]]
+        near = (np.abs(step.real) <= close) & (np.abs(step.imag) <= close)
         near &= ~(known[order[shift:]] & known[order[:-shift]])
         least = np.minimum(name[shift:], name[:-shift])
         name[shift:] = np.where(near, least, name[shift:])

@@ -1,4 +1,4 @@
-"""What the core has left of the cells that an outline passes: rings, and what follows from them."""
+"""Cells that the core has cut to an outline: their rings, and what follows from them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from delone._core import CellPieces2
-    from delone.voronoi.clipping import Clipped
     from delone.voronoi.outline import Clip
 
     Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
 
 __all__ = ["Pieces", "cut"]
 
-# What the core says of a cell.
+# What the core returns for a cell.
 _DOUBTFUL, _NOTHING, _WHOLE, _PARTS = -1, 0, 1, 2
 
 
@@ -33,16 +33,16 @@ class Pieces:
     rows : ndarray of int64, shape (k,)
         The cells, ascending.
     found : CellPieces2
-        What the core has left.
+        The result of the core.
 
     Attributes
     ----------
     doubtful, traced : ndarray of bool, shape (k,)
-        Whether exact signs do not tell what is left; whether parts are.
+        Whether exact signs do not decide what is left; whether parts are left.
     corners : ndarray of float64, shape (p, 2)
         The corners of all rings.
     areas, perimeters : ndarray of float64, shape (k,)
-        Measures of what is left of the cells that have parts.
+        Measures of the cells that have parts.
     centroids : ndarray of float64, shape (k, 2)
         Their centers of gravity.
     """
@@ -61,7 +61,7 @@ class Pieces:
         Parameters
         ----------
         outside, inside, cut : int
-            For cells of which nothing is left, or all, and for the others.
+            For cells of which nothing is left, for whole cells, and for the others.
 
         Returns
         -------
@@ -73,7 +73,7 @@ class Pieces:
         return found.astype(np.int8)
 
     def _owner(self) -> NDArray[np.int64]:
-        """The cell of each corner."""
+        """Return the cell of each corner."""
         found = self._found
         return np.repeat(self._rows, np.diff(found.rings[found.parts[found.cells]]))
 
@@ -91,7 +91,7 @@ class Pieces:
         return self._owner(), self.corners, self.corners[after]
 
     def ridge_lengths(self, count: int) -> tuple[NDArray[np.int64], Floats]:
-        """Return how long what is left of ridges is, each by one of its cells alone.
+        """Return the lengths of clipped ridges, each computed from one of its cells.
 
         Parameters
         ----------
@@ -123,8 +123,8 @@ class Pieces:
         rows : ndarray of int64, shape (t,)
             The cells that have parts, ascending.
         polygons : ndarray of object, shape (t,)
-            Polygons, and multipolygons of several parts. They may be invalid: a ring may touch
-            itself.
+            Polygons, and multipolygons if there are several parts. They may be invalid: a ring may
+            touch itself.
         """
         shapely = shapely_or_say()
 
@@ -146,29 +146,36 @@ class Pieces:
         return self._rows[self.traced], found
 
 
-def cut(cells: Clipped, rows: NDArray[np.int64], clip: Clip, workers: int) -> Pieces:
+def cut(
+    starts: Indices,
+    corners: Floats,
+    ridges: Indices,
+    rows: NDArray[np.int64],
+    clip: Clip,
+    *,
+    workers: int,
+) -> Pieces:
     """Cut some convex cells to an outline.
 
     Parameters
     ----------
-    cells : Clipped
-        All cells, in the units of the sites.
+    starts, corners, ridges : ndarray
+        All cells: their corners in the units of the outline, and the ridge along each edge.
     rows : ndarray of int64, shape (k,)
         Those to cut, ascending, none without corners.
     clip : Clip
         The outline.
     workers : int
-        How many threads may work.
+        Number of threads.
 
     Returns
     -------
     Pieces
-        What is left.
+        The clipped cells.
     """
-    corners = cells.corners * clip.unit
-    first = corners[cells.starts[:-1][rows]]
+    first = corners[starts[:-1][rows]]
     inside = shapely_or_say().contains_xy(clip.scaled, first)
     found = _core.pieces2(
-        cells.starts, corners, cells.ridges, rows.astype(np.int32), inside, *clip.rings, workers
+        starts, corners, ridges, rows.astype(np.int32), inside, *clip.rings, workers
     )
     return Pieces(rows, found)

@@ -1,7 +1,8 @@
-"""Convex polyhedra that cells of space are cut to: boxes, half-spaces, hulls of points.
+"""3-D clips: convex polyhedra from boxes, half-spaces, or hulls of points.
 
-The core takes corners, faces and planes. A box has them as they are; those of half-spaces are found
-exactly (`halfspaces`) and rounded once; those of a hull are its facets, each a whole polygon.
+The core takes corners, faces and planes. Those of a box are given; those of half-spaces are
+computed exactly (`halfspaces`) and rounded once; those of a hull are its facets, each a whole
+polygon.
 """
 
 from __future__ import annotations
@@ -24,13 +25,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Polyhedron", "as_polyhedron"]
+__all__ = ["Polyhedron", "as_polyhedron", "loaded", "saved"]
 
-# The corners of a box by the bits of their numbers, and its faces counter-clockwise from outside:
-# x low, x high, y low, and so on.
+# The faces of a box, whose corners are numbered by bits, counter-clockwise as seen from outside: x
+# low, x high, y low, and so on.
 _FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
-# Points in a box at most, and planes that are held against all boxes together.
+# At most so many points are in a box, and so many planes are compared with all boxes together.
 _BOX, _BATCH = 64, 256
+_BOX_NAME, _SOLID_NAME = "a box", "a convex polyhedron"
 _CHOICES = (
     "clip must be 'box', a box ((xmin, ymin, zmin), (xmax, ymax, zmax)), half-spaces (k, 4), "
     "points (k, 3) or a convex hull"
@@ -39,18 +41,26 @@ _CHOICES = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Polyhedron:
-    """A convex polyhedron with an inside.
+    """A convex polyhedron to which 3-D cells are clipped.
 
     Parameters
     ----------
     points : ndarray of float64, shape (p, 3)
         Its corners.
     starts, corners : ndarray of int32
-        Faces as compressed rows of numbers of corners, counter-clockwise from outside.
+        Faces as compressed rows of `points`, counter-clockwise as seen from outside.
     planes : ndarray of float64, shape (f, 4)
-        For each face n and c: inside is ``n @ x <= c``.
+        For each face n and c: the interior is ``n @ x <= c``.
     name : str
         What it is, in a few words.
+
+    Examples
+    --------
+    >>> from delone import Voronoi
+    >>> sites = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]
+    >>> clip = Voronoi(sites, clip="box").clip
+    >>> clip.name, clip.bounds.tolist()
+    ('a box', [[0.0, 0.0, 0.0], [4.0, 4.0, 4.0]])
     """
 
     points: Floats
@@ -72,12 +82,12 @@ class Polyhedron:
 
 
 def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
-    """Return what a caller wants to clip to.
+    """Return the clip that a caller gave.
 
     Parameters
     ----------
-    clip : None, "box" or array_like
-        As for `delone.Voronoi` of points in space.
+    clip : None, "box", array_like or Polyhedron
+        As for `delone.Voronoi` of 3-D points; or a result of this function.
     points : ndarray of float64, shape (n, 3)
         The sites.
 
@@ -89,7 +99,7 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
     Raises
     ------
     InputError
-        It has no volume, no end, or is none of these.
+        It has no volume, is unbounded, or is none of these.
 
     Examples
     --------
@@ -99,8 +109,8 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
     >>> as_polyhedron("box", sites).bounds.tolist()
     [[0.0, 0.0, 0.0], [2.0, 1.0, 4.0]]
     """
-    if clip is None:
-        return None
+    if clip is None or isinstance(clip, Polyhedron):
+        return clip
     if isinstance(clip, str):
         if clip != "box":
             raise InputError(f"{_CHOICES}; got {clip!r}")
@@ -108,7 +118,7 @@ def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
     if hasattr(clip, "simplices") and hasattr(clip, "points"):
         clip = np.asarray(clip.points)[np.unique(clip.simplices)]
     try:
-        # Rows of unequal length have no shape.
+        # Rows of different lengths have no shape.
         shape = np.shape(clip)
         array = as_vectors(clip, shape[-1] if shape else 0, name="clip")
     except (DeloneError, ValueError) as error:
@@ -140,7 +150,7 @@ def _box(bounds: Floats) -> Polyhedron:
         starts=np.arange(0, 25, 4, dtype=np.int32),
         corners=np.array(_FACES, dtype=np.int32).reshape(-1),
         planes=planes,
-        name="a box",
+        name=_BOX_NAME,
     )
 
 
@@ -164,21 +174,21 @@ def _hull(points: Floats) -> Polyhedron:
         starts=starts.astype(np.int32),
         corners=corners.reshape(-1).astype(np.int32),
         planes=np.column_stack((normal, offset)),
-        name="a convex polyhedron",
+        name=_SOLID_NAME,
     )
 
 
 def _farthest(normals: Floats, points: Floats, least: Floats) -> Floats:
-    """The greatest product of each normal with any of the points: `least` or a little more.
+    """Return the greatest product of each normal with any of the points: `least` or a little more.
 
-    Only the points of boxes that reach so far are asked.
+    Only points in boxes that extend so far are considered.
     """
     boxes = _in_boxes(points)
     middle, half = (boxes.max(axis=1) + boxes.min(axis=1)) / 2, np.ptp(boxes, axis=1) / 2
     found = least.copy()
     for rows in np.array_split(np.arange(len(normals)), max(1, len(normals) // _BATCH)):
         bound = normals[rows] @ middle.T + np.abs(normals[rows]) @ half.T
-        # Rounding of products and sums, with room.
+        # A bound of the rounding of products and sums.
         bound += 2.0**-48 * (np.abs(normals[rows]) @ np.abs(boxes).max(axis=1).T)
         plane, box = np.nonzero(bound >= least[rows, None])
         reached = np.einsum("ik,ijk->ij", normals[rows[plane]], boxes[box]).max(axis=1)
@@ -187,7 +197,7 @@ def _farthest(normals: Floats, points: Floats, least: Floats) -> Floats:
 
 
 def _in_boxes(points: Floats) -> Floats:
-    """The points in groups of neighbors of one size, (k, j, 3); some points are in two groups."""
+    """Return the points in groups of nearby ones, (k, j, 3); some points are in two groups."""
     groups = np.arange(len(points))[None]
     while groups.shape[1] > _BOX:
         size = groups.shape[1]
@@ -200,21 +210,21 @@ def _in_boxes(points: Floats) -> Floats:
 
 
 def _common(halfspaces: Floats) -> Polyhedron:
-    """The polyhedron where all of n @ x + d <= 0."""
+    """Return the polyhedron of all x with n @ x + d <= 0."""
     largest = np.abs(halfspaces[:, :3]).max(axis=1)
     if not (largest > 0).all():
         row = int(largest.argmin())
-        raise InputError(f"row {row} of clip is no half-space: its normal is zero")
+        raise InputError(f"row {row} of clip is not a half-space: its normal is zero")
     points, faces, rows = common_part(halfspaces)
     try:
         Delaunay(points)
     except DegenerateInputError:
         raise InputError(
-            "what the half-spaces of clip have in common is so thin that its corners, rounded to "
+            "the intersection of the half-spaces of clip is so thin that its corners, rounded to "
             "doubles, span no volume"
         ) from None
-    # By powers of two, so that planes are as they were given; components of at most 1/4 keep their
-    # products with corners within the range of doubles.
+    # Scaled by powers of two, so that planes are those that were given; with components of at most
+    # 1/4 their products with corners stay within the range of doubles.
     power = np.frexp(largest[rows])[1] + 2
     planes = np.ldexp(halfspaces[rows], -power[:, None])
     planes[:, 3] *= -1
@@ -224,5 +234,63 @@ def _common(halfspaces: Floats) -> Polyhedron:
         starts=starts.astype(np.int32),
         corners=np.concatenate(faces).astype(np.int32),
         planes=planes,
-        name="a convex polyhedron",
+        name=_SOLID_NAME,
+    )
+
+
+def saved(clip: Polyhedron | None) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a file that `loaded` reads.
+
+    Parameters
+    ----------
+    clip : Polyhedron, optional
+        The clip.
+
+    Returns
+    -------
+    dict of ndarray
+        The six numbers of a box, or the arrays of any other polyhedron; what is not there is empty.
+    """
+    found: dict[str, NDArray[Any]] = {
+        "box": np.empty(0),
+        "corners": np.empty((0, 3)),
+        "faces": np.empty(0, dtype=np.int32),
+        "starts": np.empty(0, dtype=np.int32),
+        "planes": np.empty((0, 4)),
+    }
+    if clip is None:
+        return found
+    if clip.name == _BOX_NAME:
+        return found | {"box": clip.bounds.reshape(-1)}
+    return found | {
+        "corners": clip.points,
+        "faces": clip.corners,
+        "starts": clip.starts,
+        "planes": clip.planes,
+    }
+
+
+def loaded(arrays: dict[str, NDArray[Any]]) -> Any:
+    """Return the clip of the arrays of a file.
+
+    Parameters
+    ----------
+    arrays : dict of ndarray
+        As from `saved`.
+
+    Returns
+    -------
+    ndarray, Polyhedron or None
+        A box, or a polyhedron.
+    """
+    if len(arrays["box"]):
+        return arrays["box"].reshape(2, 3)
+    if not len(arrays["planes"]):
+        return None
+    return Polyhedron(
+        points=arrays["corners"],
+        starts=arrays["starts"],
+        corners=arrays["faces"],
+        planes=arrays["planes"],
+        name=_SOLID_NAME,
     )

@@ -1,4 +1,4 @@
-"""From sites to the triangulation whose dual a diagram is, and to the arrays of the diagram."""
+"""From sites to their triangulation, and to the arrays of its dual."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
+from delone._arrays import as_workers
 from delone.delaunay import Delaunay
 from delone.duplicates import first_rows
 from delone.errors import DegenerateInputError
@@ -23,13 +24,13 @@ if TYPE_CHECKING:
 
 __all__ = ["in_plane", "in_space", "repeated"]
 
-_NO_SITE = "there is no point; a diagram needs one"
+_NO_SITE = "there are no points; a diagram needs at least one"
 
 
 def in_plane(
-    points: Floats, weights: Floats | None, workers: int
+    points: Floats, weights: Floats | None, workers: int | None
 ) -> tuple[Delaunay | RegularTriangulation | None, Diagram2]:
-    """Triangulate sites in the plane, and take the dual.
+    """Triangulate 2-D sites, and compute the dual.
 
     Parameters
     ----------
@@ -37,13 +38,13 @@ def in_plane(
         The sites.
     weights : ndarray of float64, shape (n,), or None
         Their weights.
-    workers : int
-        How many threads may work.
+    workers : int, optional
+        Number of threads.
 
     Returns
     -------
     mesh : Delaunay, RegularTriangulation or None
-        The triangulation; None where all sites lie on one line.
+        The triangulation; None if all sites lie on one line.
     arrays : Diagram2
         As `dual` describes them.
 
@@ -52,10 +53,10 @@ def in_plane(
     DegenerateInputError
         There is no site.
     """
-    return _plain(points, workers) if weights is None else _power(points, weights, workers)
+    return _delaunay(points, workers) if weights is None else _regular(points, weights, workers)
 
 
-def _plain(points: Floats, workers: int) -> tuple[Delaunay | None, Diagram2]:
+def _delaunay(points: Floats, workers: int | None) -> tuple[Delaunay | None, Diagram2]:
     try:
         mesh = Delaunay(points, workers=workers)
     except DegenerateInputError as error:
@@ -64,20 +65,21 @@ def _plain(points: Floats, workers: int) -> tuple[Delaunay | None, Diagram2]:
         arrays = dual.of_chain(points, error.chain.astype(np.int32))
         arrays.region[:] = arrays.region[first_rows(points)]
         return None, arrays
-    arrays = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, workers)
+    arrays = _core.voronoi2(mesh.points, None, mesh.simplices, mesh.neighbors, as_workers(workers))
     duplicate, first = mesh._duplicates.T
     arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays
 
 
-def _power(
-    points: Floats, weights: Floats, workers: int
+def _regular(
+    points: Floats, weights: Floats, workers: int | None
 ) -> tuple[RegularTriangulation | None, Diagram2]:
     found, chain = triangulated(points, weights)
     mesh = None
     if len(found["simplices"]):
         mesh = RegularTriangulation._from_arrays(found, {}, workers)
-        arrays = _core.voronoi2(points, weights, mesh.simplices, mesh.neighbors, workers)
+        topology = mesh.simplices, mesh.neighbors, as_workers(workers)
+        arrays = _core.voronoi2(points, weights, *topology)
     elif len(chain):
         arrays = dual.of_chain(points, chain)
     else:
@@ -88,9 +90,9 @@ def _power(
 
 
 def repeated(
-    points: Floats, weights: Floats | None, periods: Any, workers: int
+    points: Floats, weights: Floats | None, periods: Any, workers: int | None
 ) -> tuple[PeriodicDelaunay | None, torus.PeriodicDual, tuple[float | None, float | None]]:
-    """Triangulate sites that come again at a period, and take the dual.
+    """Triangulate periodic sites, and compute the dual.
 
     Parameters
     ----------
@@ -99,14 +101,14 @@ def repeated(
     weights : ndarray of float64, shape (n,), or None
         Their weights.
     periods : tuple of two floats or None
-        As the caller gave them.
-    workers : int
-        How many threads may work.
+        As given by the caller.
+    workers : int, optional
+        Number of threads.
 
     Returns
     -------
     mesh : PeriodicDelaunay or None
-        The triangulation; None where all copies lie on one line.
+        The triangulation; None if all copies lie on one line.
     arrays : PeriodicDual
         As `torus` describes them.
     periods : tuple of two floats or None
@@ -123,13 +125,13 @@ def repeated(
         region = arrays.cells.region
         region[:] = region[vertex_of(points, weights)]
         return None, arrays, lengths
-    return mesh, torus.of_periodic(mesh, workers), mesh.periods
+    return mesh, torus.of_periodic(mesh, as_workers(workers)), mesh.periods
 
 
 def in_space(
-    points: Floats, weights: Floats | None, workers: int
+    points: Floats, weights: Floats | None, workers: int | None
 ) -> tuple[Delaunay | RegularTriangulation, Diagram3]:
-    """Triangulate sites in space, and take the dual.
+    """Triangulate 3-D sites, and compute the dual.
 
     Parameters
     ----------
@@ -137,15 +139,15 @@ def in_space(
         The sites.
     weights : ndarray of float64, shape (n,), or None
         Their weights.
-    workers : int
-        How many threads may work.
+    workers : int, optional
+        Number of threads.
 
     Returns
     -------
     mesh : Delaunay or RegularTriangulation
         The triangulation.
     arrays : Diagram3
-        As `delone.voronoi.space` describes them.
+        As `space` describes them.
     """
     mesh: Delaunay | RegularTriangulation
     if weights is None:
@@ -153,7 +155,8 @@ def in_space(
     else:
         found, _ = triangulated(points, weights)
         mesh = RegularTriangulation._from_arrays(found, {}, workers)
-    arrays = _core.voronoi3(points, weights, mesh.simplices, mesh.neighbors, workers)
+    topology = mesh.simplices, mesh.neighbors, as_workers(workers)
+    arrays = _core.voronoi3(points, weights, *topology)
     duplicate, first = mesh._duplicates.T
     arrays.region[duplicate] = arrays.region[first]
     return mesh, arrays

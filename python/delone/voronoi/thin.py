@@ -1,8 +1,8 @@
-"""Cells so thin that rounded corners tell nothing of their measures.
+"""Cells so thin that rounded corners do not determine their measures.
 
 A corner is rounded by up to 4 units in the last place of each coordinate. That changes the area of
-a cell by up to that times its extent along the other axis, on either side. Where the area is no
-more, not one digit of it is known, and it may be 0.
+a cell by up to that times its extent along the other axis, on either side. If the area is not
+greater, not one digit of it is known, and it may be 0.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.georeference import caller_level
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
 
-__all__ = ["ThinCellWarning", "among", "tell"]
+__all__ = ["ThinCellWarning", "among", "warn"]
 
 # Four units in the last place, on either side, of numbers up to 1.
 _ROUNDING = 2.0**-49
@@ -27,14 +29,14 @@ _MOST_ROWS = 8
 
 
 class ThinCellWarning(UserWarning):
-    """Cells are so thin that rounded corners tell nothing of their areas, or volumes.
+    """Cells are so thin that rounded corners do not determine their areas or volumes.
 
-    ``rows`` has the sites, as has `Voronoi.thin_cells`.
+    ``rows`` has the sites, as `Voronoi.thin_cells` does.
 
     Parameters
     ----------
     message : str
-        What is said.
+        The message.
     rows : ndarray of int32
         The rows of the sites.
     """
@@ -47,7 +49,7 @@ class ThinCellWarning(UserWarning):
 def among(
     areas: Floats, perimeters: Floats, starts: NDArray[np.int32], corners: Floats
 ) -> NDArray[np.bool_]:
-    """Return which cells of the plane are thin, of those that have a perimeter.
+    """Return which 2-D cells are thin, among those that have a perimeter.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def among(
     starts : ndarray of int32, shape (c + 1,)
         Where the corners of each cell begin, and the end.
     corners : ndarray of float64, shape (k, 2)
-        Corners of the cells, before an outline cuts them.
+        Corners of the cells, before they are cut to an outline.
 
     Returns
     -------
@@ -74,34 +76,34 @@ def among(
     """
     found = np.zeros(len(areas), dtype=bool)
     rows = np.flatnonzero((np.diff(starts) > 0) & (perimeters > 0) & np.isfinite(perimeters))
-    # No bound is larger than this one.
+    # No bound below is larger than this one.
     largest = float(np.abs(corners).max(initial=0.0))
     with np.errstate(over="ignore"):
         rows = rows[~(areas[rows] > _ROUNDING * largest * perimeters[rows])]
     if not len(rows):
         return found
-    # Cells without corners have no place in `corners`, so the others follow each other.
+    # Cells without corners have no entry in `corners`, so the others are adjacent.
     filled = np.flatnonzero(np.diff(starts) > 0)
     low = np.minimum.reduceat(corners, starts[:-1][filled], axis=0)[np.searchsorted(filled, rows)]
     high = np.maximum.reduceat(corners, starts[:-1][filled], axis=0)[np.searchsorted(filled, rows)]
     error = _ROUNDING * np.maximum(np.abs(low), np.abs(high))
     with np.errstate(all="ignore"):
-        # How far a cell reaches across the axis along which its corners are moved.
+        # The extent of a cell across the axis along which its corners are moved.
         reach = np.minimum(high - low, perimeters[rows, None] / 2)
         bound = (error * reach[:, ::-1]).sum(axis=1)
-        # What is below the range of doubles is 0 without being thin.
+        # Areas below the range of doubles are 0 without being thin.
         found[rows] = (areas[rows] <= bound) & (bound > _SMALLEST) & np.isfinite(bound)
     return found
 
 
-def tell(rows: NDArray[np.int32], what: str) -> None:
-    """Warn of cells that are thin, if there are any.
+def warn(rows: NDArray[np.int32], measures: str) -> None:
+    """Warn of thin cells, if there are any, at the line that called the package.
 
     Parameters
     ----------
     rows : ndarray of int32
         Their rows.
-    what : str
+    measures : str
         "areas" or "volumes".
     """
     if not len(rows):
@@ -113,10 +115,10 @@ def tell(rows: NDArray[np.int32], what: str) -> None:
     warnings.warn(
         ThinCellWarning(
             f"{count} only a few units in the last place of the coordinates wide "
-            f"({row} {listed}): rounded corners tell nothing of such {what}, which may be 0. "
+            f"({row} {listed}): rounded corners do not determine such {measures}, which may be 0. "
             "thin_cells has the rows. Subtract an offset that all points share before they are "
             "rounded, or merge such sites",
             rows,
         ),
-        stacklevel=6,
+        stacklevel=caller_level(),
     )

@@ -1,14 +1,14 @@
-"""Diagrams of periodic sets of sites: the arrays of a `dual` from a periodic triangulation.
+"""Diagrams of periodic sites: the arrays of `dual` from a periodic triangulation.
 
-A vertex of the periodic diagram has translates; those around a site are listed where they are. A
-corner of a triangle that is moved by some periods sees the centre of the triangle moved back by as
-many. Where triangles share their centre, decided exactly, it is known of each by how many periods
-it is moved against that of the first of them.
+A vertex of the periodic diagram has translates; those around a site are listed at their places. A
+corner of a triangle that is moved by some periods sees the circumcenter moved back by as many. If
+triangles share their circumcenter, which is decided exactly, the shift of each relative to the
+first of them is known.
 
 With one period the hull is a strip: its two borders are parallel to the period, and the ridges that
-cross them are rays at right angles to it. Sites on one line along the period have strips for cells.
+cross them are rays perpendicular to it. The cells of sites on one line along the period are strips.
 
-A `PeriodicDual` has the arrays that every `dual` has, and what the periods add to them.
+A `PeriodicDual` has the arrays of any diagram, and what the periods add to them.
 """
 
 from __future__ import annotations
@@ -39,21 +39,32 @@ _GAP = -1
 
 
 class PeriodicDual(NamedTuple):
-    """The diagram of a periodic set."""
+    """The diagram of periodic sites."""
 
     cells: Diagram2
     # (r, 2): by how many periods the second site of each ridge is moved, seen from the first. The
     # ends of a ridge lie where its first site sees them.
     moved: Indices
-    # (e,): for each entry of a cell the site across the ridge that leads on from there.
+    # (e,): for each entry of a cell the site across the ridge from there to the next.
     beside: Indices
     # (e, 2): by how many periods that site is moved, seen from the cell.
     beside_moved: Indices
 
-    def sealed(self) -> PeriodicDual:
-        """Return the same with arrays that cannot be written to."""
+    def sealed(self, cells: Diagram2) -> PeriodicDual:
+        """Return the same with arrays that cannot be written to, and these cells.
+
+        Parameters
+        ----------
+        cells : Diagram2
+            The same cells, sealed.
+
+        Returns
+        -------
+        PeriodicDual
+            The same diagram.
+        """
         return PeriodicDual(
-            cells=Diagram2(*map(sealed, self.cells.arrays())),
+            cells=cells,
             moved=sealed(self.moved),
             beside=sealed(self.beside),
             beside_moved=sealed(self.beside_moved),
@@ -61,19 +72,19 @@ class PeriodicDual(NamedTuple):
 
 
 def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
-    """Return the diagram of a set with a period in x, in y, or both.
+    """Return the diagram of sites with a period in x, in y, or both.
 
     Parameters
     ----------
     mesh : PeriodicDelaunay
-        Its triangulation.
+        Their triangulation.
     workers : int
-        How many threads may work.
+        Number of threads.
 
     Returns
     -------
     PeriodicDual
-        Its diagram.
+        Their diagram.
 
     Raises
     ------
@@ -90,7 +101,7 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
     site, starts, codes, gaps = _cells(mesh.simplices, np.where(bounded, partners, -1), shared)
     t, k = np.divmod(codes, 3)
     entries = np.column_stack((first[t], shift[t] - mesh.offsets[t, k]))
-    # An end at infinity leads on along the edge at which the way around its site begins.
+    # An end at infinity is followed by the edge at which the path around its site begins.
     along = np.where(gaps, (k + 2) % 3, (k + 1) % 3)
     left, e = np.divmod(edges, 3)
     right, seen_from = triangle[left, e], mesh.offsets[left, (e + 1) % 3]
@@ -141,10 +152,10 @@ def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
 
 
 def _across(mesh: PeriodicDelaunay) -> tuple[NDArray[Any], ...]:
-    """What lies across each edge; an edge without a neighbour is across from itself.
+    """Return what lies across each edge; an edge without a neighbor is its own partner.
 
-    Whether there is one, the edge from its side, its number, its corner, and by how many periods it
-    is moved against its own place.
+    Whether there is a neighbor, the edge as seen from there, that triangle, its corner, and by how
+    many periods it is moved relative to its own place.
     """
     bounded = mesh.partners >= 0
     partners = np.where(bounded, mesh.partners, np.arange(mesh.partners.size).reshape(-1, 3))
@@ -155,7 +166,7 @@ def _across(mesh: PeriodicDelaunay) -> tuple[NDArray[Any], ...]:
 
 
 def _numbered(*parts: NDArray[Any]) -> tuple[NDArray[Any], list[Indices]]:
-    """The distinct rows of some tables, and for each table the numbers of its rows."""
+    """Return the distinct rows of some tables, and for each table the numbers of its rows."""
     rows, number = np.unique(np.concatenate(parts), axis=0, return_inverse=True)
     cuts = np.cumsum([len(part) for part in parts[:-1]])
     numbers = np.split(number.reshape(-1).astype(np.int32), cuts)
@@ -163,7 +174,7 @@ def _numbered(*parts: NDArray[Any]) -> tuple[NDArray[Any], list[Indices]]:
 
 
 def require_room(points: Floats, periods: tuple[float | None, float | None]) -> None:
-    """Refuse sites in a strip whose next copies are no doubles.
+    """Reject sites in a strip whose next copies are beyond the range of doubles.
 
     Parameters
     ----------
@@ -175,7 +186,7 @@ def require_room(points: Floats, periods: tuple[float | None, float | None]) -> 
     Raises
     ------
     LimitError
-        A copy lies beyond the range of doubles, and rays and cells cannot be told from it.
+        A copy lies beyond the range of doubles, so that rays and cells cannot be computed.
     """
     if None not in periods:
         return
@@ -204,7 +215,7 @@ def _centers(
 
 
 def _outward(mesh: PeriodicDelaunay, sites: Indices) -> Floats:
-    """The directions in which ridges cross the border on which sites lie."""
+    """Return the directions in which ridges cross the border on which sites lie."""
     axis = 1 if mesh.periods[1] is None else 0
     heights = mesh.points[sites, axis]
     found = np.zeros((len(sites), 2))
@@ -215,7 +226,7 @@ def _outward(mesh: PeriodicDelaunay, sites: Indices) -> Floats:
 def of_line(
     points: Floats, chain: Indices, periods: tuple[float | None, float | None]
 ) -> PeriodicDual:
-    """Return the diagram of sites on one line along their one period: strips.
+    """Return the diagram of sites on one line along their only period: strips.
 
     Parameters
     ----------
@@ -236,8 +247,8 @@ def of_line(
     ridges = np.arange(k, dtype=np.int32)
     moved = np.zeros((k, 2), dtype=np.int32)
     moved[-1, axis] = 1
-    # The way of a ridge has its first site to its left.
-    way = np.array([0.0, 1.0] if axis == 0 else [-1.0, 0.0])
+    # The direction of a ridge has its first site to the left.
+    along = np.array([0.0, 1.0] if axis == 0 else [-1.0, 0.0])
     region = np.full(len(points), -1, dtype=np.int32)
     region[chain] = ridges
     # Each cell has the ridge to the site after it, then that to the site before it.
@@ -248,7 +259,7 @@ def of_line(
         simplex_vertex=np.empty(0, dtype=np.int32),
         sites=np.column_stack((chain, after_site)).astype(np.int32),
         ends=~np.column_stack((2 * ridges, 2 * ridges + 1)),
-        rays=np.tile([-way, way], (k, 1)) + 0.0,
+        rays=np.tile([-along, along], (k, 1)) + 0.0,
         beyond=np.full((2 * k, 2), np.nan),
         region=region,
         site=chain.astype(np.int32),
@@ -270,7 +281,7 @@ def unrolled(
     dual: PeriodicDual,
     periods: tuple[float | None, float | None],
 ) -> tuple[Floats, Floats | None, Diagram2]:
-    """Return the cells of one period with ridges of their own, as parts of a diagram without one.
+    """Return the cells of one period, each with its own ridges, as a diagram without a period.
 
     Parameters
     ----------
@@ -286,10 +297,10 @@ def unrolled(
     Returns
     -------
     points, weights : ndarray
-        The sites, and behind them for each entry of a cell the one across its ridge, where the cell
-        sees that.
+        The sites, and after them for each entry of a cell the site across its ridge, at the place
+        where the cell sees it.
     cells : Diagram2
-        The cells alone. Their ridges are their entries.
+        The cells. Their ridges are their entries.
     """
     lengths = np.array([length or 0.0 for length in periods])
     cells = dual.cells
@@ -301,7 +312,7 @@ def unrolled(
     at = points[dual.beside] + dual.beside_moved * lengths
     ends = np.column_stack((entries, entries[following]))
     opens = np.flatnonzero(ends < 0)
-    # A ray leads up or down with the border beside its site; a line first down, then up.
+    # A ray points out of the border on which its site lies; a line first down, then up.
     axis = 1 if periods[1] is None else 0
     rays = np.zeros((len(opens), 2))
     turned = cells.region_ridges[opens // 2]
@@ -325,14 +336,14 @@ def unrolled(
         region_vertices=entries,
         region_ridges=np.arange(count, dtype=np.int32),
     )
-    heavy = None if weights is None else np.concatenate((weights, weights[dual.beside]))
-    return np.concatenate((points, at)), heavy, unfolded
+    at_weights = None if weights is None else np.concatenate((weights, weights[dual.beside]))
+    return np.concatenate((points, at)), at_weights, unfolded
 
 
 def _shared_centers(
     neighbor: Longs, tau: NDArray[Any], shared: NDArray[np.bool_]
 ) -> tuple[Longs, Longs]:
-    """The first triangle with the same centre, and by how much its centre is moved from there."""
+    """Return the first triangle with the same circumcenter, and the shift from there."""
     first = np.arange(len(neighbor))
     shift = np.zeros((len(neighbor), 2), dtype=np.int64)
     seen = np.zeros(len(neighbor), dtype=bool)
@@ -341,7 +352,7 @@ def _shared_centers(
             continue
         seen[start] = True
         stack = [start]
-        # Each triangle is seen once, and pushed then.
+        # Each triangle is pushed once, when it is first seen.
         while stack:
             t = stack.pop()
             for k in np.flatnonzero(shared[t]).tolist():
@@ -357,7 +368,7 @@ def _shared_centers(
 def _ridges(
     partners: NDArray[Any], shared: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """The ridge of each edge of each triangle, and for each ridge the first edge that has it.
+    """Return the ridge of each edge of each triangle, and for each ridge its first edge.
 
     An edge of the border is its own partner.
     """
@@ -372,11 +383,11 @@ def _ridges(
 def _cells(
     simplices: Indices, partners: NDArray[Any], shared: NDArray[np.bool_]
 ) -> tuple[Indices, Indices, Longs, NDArray[np.bool_]]:
-    """Sites, where the entries of each begin, and the corner (3 t + k) of each entry.
+    """Return sites, where the entries of each begin, and the corner (3 t + k) of each entry.
 
-    All sites are gone around at once, a triangle a step, so that there are as many steps as the
-    largest number of triangles around one site. On a border the way begins there, with an entry
-    for the end at infinity; the last result tells which these are.
+    All sites are circled at once, one triangle per step, so that there are as many steps as the
+    largest number of triangles around one site. On a border the path begins there, with an entry
+    for the end at infinity; the last result marks these.
     """
     across = partners[:, _AFTER].astype(np.int64)
     after = np.where(across < 0, -1, across // 3 * 3 + (across % 3 + 1) % 3).reshape(-1)
