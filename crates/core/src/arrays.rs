@@ -12,6 +12,12 @@ pub struct Given<'a, const D: usize, const N: usize> {
     pub neighbors: &'a [[i32; N]],
 }
 
+/// The corners of the facet opposite each corner of a tetrahedron, from the side of that corner: a
+/// facet followed by its opposite corner is positively oriented if the tetrahedron is.
+pub const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+/// The same facets counterclockwise seen from outside.
+pub const OUTWARD: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
 /// Triangles in 2-D.
 pub type Triangles<'a> = Given<'a, 2, 3>;
 /// Tetrahedra in 3-D.

@@ -194,10 +194,10 @@ fn proofs_of_regular_triangulations() {
         simplices: &made.simplices,
         neighbors: &made.neighbors,
     };
-    let found = looks(|watch| regular::validate(given, &weights, watch));
+    let found = checks(|watch| regular::validate(given, &weights, watch));
     // Lots of triangles, and of steps to hidden points.
     assert!(
-        found > looks(|watch| order::arrange(&points, 1, watch)) + 20,
+        found > checks(|watch| order::arrange(&points, 1, watch)) + 20,
         "{found}"
     );
     let report = regular::validate(given, &weights, &IDLE).unwrap();
@@ -212,7 +212,7 @@ fn proofs_of_regular_triangulations() {
         simplices: &made.simplices,
         neighbors: &made.neighbors,
     };
-    assert!(looks(|watch| regular3::validate(given, weights, watch)) > 20);
+    assert!(checks(|watch| regular3::validate(given, weights, watch)) > 20);
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn proofs_of_periodic_triangulations() {
     };
     let report = validate_periodic(given, &IDLE).unwrap();
     assert_eq!(report, PeriodicFindings::default());
-    let found = looks(|watch| validate_periodic(given, watch));
+    let found = checks(|watch| validate_periodic(given, watch));
     // Offsets, triangles and areas, each in lots.
     assert!(found > 3 * (180_000 >> 14), "{found}");
 }

@@ -8,14 +8,12 @@
 
 use delone_predicates::Point3;
 
+pub use crate::arrays::FACETS as FACES;
 use crate::error::{Error, Result};
 use crate::memory::{filled, push, with_room};
 
 /// No tetrahedron, or no vertex.
 pub const NONE: u32 = u32::MAX;
-
-/// The corners of the face opposite each corner, such that the corner lies on its positive side.
-pub const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// Vertices of a tetrahedron, positively oriented.
 pub type Corners = [u32; 4];

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use delone_predicates::{Point3, Sign, orient3d};
 
+pub use crate::arrays::OUTWARD as FACES;
+
 pub use crate::arrays::Tetrahedra;
 
 /// A corner of a tetrahedron, and the opposite face.
@@ -14,9 +16,6 @@ pub struct Side {
     /// The corner, 0 to 3.
     pub corner: usize,
 }
-
-/// The corners of the face opposite each corner, counterclockwise seen from outside.
-pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 impl Tetrahedra<'_> {
     /// The vertex at a corner.

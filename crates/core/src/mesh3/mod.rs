@@ -8,4 +8,5 @@
 
 mod storage;
 
-pub use storage::{Code, FACETS, LIMIT, Mesh3, Records, corner, tetrahedron};
+pub use crate::arrays::FACETS;
+pub use storage::{Code, LIMIT, Mesh3, Records, corner, tetrahedron};

@@ -1,5 +1,6 @@
 //! Records of tetrahedra, in two arrays that are exported as they are.
 
+use crate::arrays::FACETS;
 use crate::error::{Error, Result};
 use crate::memory::zeroed;
 
@@ -8,10 +9,6 @@ pub type Code = u32;
 
 /// Records that codes of 32 bits can address.
 pub const LIMIT: usize = 1 << 30;
-
-/// The corners of the facet opposite each corner, from the side of that corner: a facet followed by
-/// its opposite corner is positively oriented if the tetrahedron is.
-pub const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// The tetrahedron of a code.
 #[inline(always)]
