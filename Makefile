@@ -3,6 +3,9 @@
 # Everything is installed into .venv beside this file. A stamp in .venv/stamps stands for one set of
 # requirements; it is renewed when pyproject.toml or a Rust source changes, so a second call of a
 # target builds and installs nothing. `make PYTHON=python3.12 ...` chooses the interpreter.
+#
+# The core is built with the profile `dev` of Cargo.toml, in a minute; what is measured and published
+# is built with `release`, which takes several.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
@@ -19,18 +22,22 @@ BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 SOURCES := pyproject.toml Cargo.toml $(wildcard Cargo.lock) $(wildcard crates/*/Cargo.toml) \
 	$(shell find crates -name '*.rs' 2>/dev/null)
+PYTHON_SOURCES := $(shell find python -name '*.py' -o -name '*.pyi')
 # The bindings crate is a Python extension: its tests are those of the Python package.
 CARGO_TEST := cargo test --workspace --exclude delone-bindings
 
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+
 # What each environment needs, as extras (-E) and dependency groups (-G) of pyproject.toml.
 NEEDS_build :=
-NEEDS_demo := -E cli,las,mesh,plot
+DEMO_EXTRAS := cli,las,mesh,plot
+NEEDS_demo := -E $(DEMO_EXTRAS)
 EXTRAS := cli,fem,geo,las,mesh,plot,pyvista,raster,xarray,dask,learn
 NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
-NEEDS_bench := -E $(EXTRAS) -G bench
+NEEDS_bench := --release -E $(EXTRAS) -G bench
 
-.PHONY: help need build demo test lint docs bench fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel test lint docs bench fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
@@ -41,11 +48,23 @@ help:
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
+	@echo 'make wheel   a wheel for this machine, optimized as in a release, into dist'
 	@echo 'make map     the charts and tables of modules in ARCHITECTURE.md'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
 
 # Says all that is missing at once, then stops.
+need-python:
+	@missing=0; say() { echo "delone: $$*" >&2; missing=1; }; \
+	if [ -z "$(PYTHON)" ]; then \
+		say 'Python is missing. Install Python 3.11 or later: https://www.python.org/downloads'; \
+	elif ! $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
+		say '$(PYTHON) is not Python 3.11 or later: https://www.python.org/downloads'; \
+	elif ! $(PYTHON) -c 'import venv, ensurepip' 2>/dev/null; then \
+		say "Python's venv module is missing (Debian, Ubuntu: apt install python3-venv)"; \
+	fi; \
+	exit $$missing
+
 need:
 	@missing=0; say() { echo "delone: $$*" >&2; missing=1; }; \
 	rust=$$(rustc --version 2>/dev/null | sed -n 's/^rustc 1\.\([0-9]*\).*/\1/p'); \
@@ -58,25 +77,52 @@ need:
 		say 'A C compiler is missing: Rust links with it. Install gcc or clang' \
 			'(Debian, Ubuntu: apt install gcc; macOS: xcode-select --install)'; \
 	fi; \
-	if [ -z "$(PYTHON)" ]; then \
-		say 'Python is missing. Install Python 3.11 or later: https://www.python.org/downloads'; \
-	elif ! $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then \
-		say '$(PYTHON) is not Python 3.11 or later: https://www.python.org/downloads'; \
-	elif ! $(PYTHON) -c 'import venv, ensurepip' 2>/dev/null; then \
-		say "Python's venv module is missing (Debian, Ubuntu: apt install python3-venv)"; \
-	fi; \
+	$(MAKE) --no-print-directory need-python || missing=1; \
 	exit $$missing
 
-$(STAMPS)/tools: | need
+$(STAMPS)/tools: | need-python
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.9,<2'
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/%: $(SOURCES) $(STAMPS)/tools | need
-	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release $(NEEDS_$*)
+	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop $(NEEDS_$*)
 	@touch $@
 
 build: $(STAMPS)/build
+
+# Linked with zig against an old glibc, a wheel made on Linux runs on all distributions since 2014.
+wheel: $(STAMPS)/tools | need
+	@if [ "$$(uname -s)" = Linux ]; then \
+		$(BIN)/python -m pip install --quiet ziglang; \
+		PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --out dist --interpreter \
+			$(abspath $(BIN))/python --zig --compatibility manylinux_2_17; \
+	else \
+		$(BIN)/maturin build --release --out dist --interpreter $(abspath $(BIN))/python; \
+	fi
+
+demo-says:
+	@echo 'make demo triangulates 212,550 lidar points: a report, a picture and a mesh file. The first' \
+		'run installs everything into $(VENV): a minute with a wheel, three where Rust must compile.'
+
+# The demo takes a wheel where there is one: of dist, unless a source is newer, or, if this version is
+# released, of the package index. Otherwise, or where a package in development mode would be replaced,
+# it compiles.
+$(STAMPS)/demo: $(SOURCES) $(PYTHON_SOURCES) | demo-says need-python
+	@$(MAKE) --no-print-directory $(STAMPS)/tools
+	@wheel=$$(ls -t dist/delone-$(VERSION)-*.whl 2>/dev/null | head -n 1); \
+	if ls $(addprefix $(STAMPS)/,build test docs bench) 2>/dev/null | grep -q .; then false; \
+	elif [ -n "$$wheel" ] && [ -z "$$(find $^ -newer "$$wheel")" ]; then \
+		echo "Installing $$wheel"; \
+		$(BIN)/python -m pip install --quiet --force-reinstall --no-deps "$$wheel" && \
+		$(BIN)/python -m pip install --quiet "$$wheel[$(DEMO_EXTRAS)]"; \
+	elif grep -q '^## \[$(VERSION)\] - ' CHANGELOG.md; then \
+		echo 'Installing the wheel of version $(VERSION)'; \
+		$(BIN)/python -m pip install --quiet --only-binary delone 'delone[$(DEMO_EXTRAS)]==$(VERSION)'; \
+	else false; fi || { \
+		$(MAKE) --no-print-directory need && \
+		VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop $(NEEDS_demo); }
+	@touch $@
 
 demo: $(STAMPS)/demo
 	@mkdir -p demo
@@ -97,6 +143,8 @@ lint: $(STAMPS)/test
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --exclude delone-bindings --no-deps --quiet
 	cargo fmt --manifest-path benchmarks/peers/Cargo.toml --check
 	cargo clippy --manifest-path benchmarks/peers/Cargo.toml -- -D warnings
+	$(BIN)/python .github/licenses.py --check
+	$(BIN)/python .github/check_release.py
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

@@ -5,6 +5,7 @@ The tests run in random order (pytest-randomly); the last lines of a run say how
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 from fnmatch import fnmatch
@@ -79,6 +80,7 @@ EXPECTED_SKIPS = {
     ("tests/refine/test_gaps.py*", "needs the countries*"): "data that are not shipped",
     ("*", "*POSIX*"): "Windows",
     ("*", "RLIMIT_AS is kept on Linux alone"): "macOS and Windows",
+    ("*", "prctl and limits of Linux alone"): "macOS and Windows",
     ("*", "links need a privilege on Windows"): "Windows",
     ("*", "pipes of 64 KiB that open both ways"): "macOS and Windows",
     ("*", "longdouble is float64 on this platform"): "Windows, and macOS on ARM",
@@ -87,6 +89,56 @@ EXPECTED_SKIPS = {
 }
 # Set where extras are missing on purpose: then every skip is expected.
 ANY_SKIP = "DELONE_ANY_SKIP"
+
+# What `pytest --quick` runs: a minute of tests that cover each part of the core, for wheels in
+# fresh environments and for emulated processors; and the library without which a file is left out.
+QUICK = {
+    "arrays/test_arrays.py": None,
+    "compat/test_scipy.py": "scipy",
+    "constrained/test_constrained.py": None,
+    "delaunay/test_archive.py": None,
+    "delaunay/test_attributes.py": "scipy",
+    "delaunay/test_find_simplex.py": None,
+    "delaunay/test_immutable.py": None,
+    "delaunay/test_input.py": "pandas",
+    "delaunay/test_triangles.py": None,
+    "environments/*": None,
+    "errors/*": None,
+    "hull/test_hull.py": "scipy",
+    "lawson/*": None,
+    "locate/test_locator.py": None,
+    "parallel/test_shared_meshes.py": None,
+    "platforms/*": None,
+    "predicates/*": None,
+    "refine/test_report.py": None,
+    "space/test_degenerate.py": None,
+    "space/test_tetrahedra.py": None,
+    "voronoi/test_diagram.py": "scipy",
+}
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--quick", action="store_true", help="only the files listed in QUICK")
+
+
+def _is_quick(name: str, *, folder: bool) -> bool:
+    """Whether a file, or anything in a folder, is listed and has the library that it needs."""
+    found = {
+        pattern: library
+        for pattern, library in QUICK.items()
+        if (pattern.startswith(f"{name}/") if folder else fnmatch(name, pattern))
+    }
+    return any(lib is None or importlib.util.find_spec(lib) is not None for lib in found.values())
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    folder = Path(__file__).parent
+    if not config.getoption("quick") or folder not in collection_path.parents:
+        return None
+    name = collection_path.relative_to(folder).as_posix()
+    # None: pytest decides.
+    return None if _is_quick(name, folder=collection_path.is_dir()) else True
+
 
 _unexpected: list[pytest.CollectReport | pytest.TestReport] = []
 

@@ -118,10 +118,9 @@ def build(mutant: Mutant) -> None:
     if not mutant.in_rust:
         return
     if mutant.pytest:
-        call("cargo", "build", "--release", "-q", "-p", "delone-bindings",
-             "--features", "pyo3/abi3-py311")  # fmt: skip
+        call("cargo", "build", "-q", "-p", "delone-bindings", "--features", "pyo3/abi3-py311")
         made = [
-            p for p in (BUILT / "release").glob("*_core.*") if p.suffix in (".so", ".dylib", ".dll")
+            p for p in (BUILT / "debug").glob("*_core.*") if p.suffix in (".so", ".dylib", ".dll")
         ]
         (module,) = built_modules(COPY)
         # A new file: the old one may be mapped.
