@@ -4,11 +4,11 @@
 >>> Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)])
 <Delaunay of 5 points: 4 triangles>
 
-`Delaunay` is of points in the plane or in space, `ConstrainedDelaunay` and `from_geometry` of
-segments and polygons, too. `mesh` and `improve` make triangles and tetrahedra of good shape;
-`Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay` are their kin. The modules
+`Delaunay` triangulates 2-D or 3-D points; `ConstrainedDelaunay` and `from_geometry` also take
+segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
+structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
 `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`, `reference` and
-`compat` have the rest. What goes wrong is a `DeloneError`.
+`compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
 from __future__ import annotations
@@ -124,8 +124,8 @@ __all__ = [
     "triangulate_polygon",
 ]
 
-# Modules that not every program needs; they are imported when they are first asked for.
-_LATER = frozenset(
+# Modules that not every program needs; they are imported on first access.
+_LAZY = frozenset(
     {
         "compat",
         "datasets",
@@ -140,10 +140,10 @@ _LATER = frozenset(
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LATER:
+    if name in _LAZY:
         return importlib.import_module(f"delone.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER})
+    return sorted({*globals(), *_LAZY})

@@ -1,4 +1,4 @@
-"""The compiled core. All arrays are C-contiguous; inputs must be of the dtypes given here."""
+"""The compiled core. All arrays are C-contiguous; inputs must have the dtypes given here."""
 
 from collections.abc import Callable
 from typing import Final, final
@@ -115,14 +115,14 @@ class Triangulation:
         """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat others, and the first of these, (k, 2)."""
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
     @property
     def stages(self) -> tuple[tuple[str, float], ...]:
-        """Pairs of the name of each stage and its seconds."""
+        """Pairs of stage name and seconds."""
 
 @final
 class Faults2:
-    """What is wrong with a triangulation of the plane; arrays are empty where nothing is."""
+    """Faults of a 2-D triangulation; arrays are empty if there are none."""
 
     @property
     def orientation(self) -> NDArray[np.int32]:
@@ -141,7 +141,7 @@ class Faults2:
         """Rows of distinct points that no triangle uses, (k,)."""
     @property
     def repeats(self) -> NDArray[np.int32]:
-        """Rows used in spite of an earlier row with the same coordinates, (k,)."""
+        """Rows that are used although an earlier row has the same coordinates, (k,)."""
     @property
     def delaunay(self) -> NDArray[np.int32]:
         """Pairs of triangles that are not locally Delaunay, (k, 2)."""
@@ -150,11 +150,11 @@ class Faults2:
         """Pairs of cocircular triangles that are not canonical, (k, 2)."""
     @property
     def count(self) -> NDArray[np.int32]:
-        """Numbers of triangles expected and found, (2,), where they differ; else (0,)."""
+        """Numbers of triangles expected and found, (2,), if they differ; otherwise (0,)."""
 
 @final
 class Faults3:
-    """What is wrong with a triangulation of space; arrays are empty where nothing is."""
+    """Faults of a 3-D triangulation; arrays are empty if there are none."""
 
     @property
     def orientation(self) -> NDArray[np.int32]:
@@ -173,7 +173,7 @@ class Faults3:
         """Rows of distinct points that no tetrahedron uses, (k,)."""
     @property
     def repeats(self) -> NDArray[np.int32]:
-        """Rows used in spite of an earlier row with the same coordinates, (k,)."""
+        """Rows that are used although an earlier row has the same coordinates, (k,)."""
     @property
     def delaunay(self) -> NDArray[np.int32]:
         """Pairs of tetrahedra that are not locally Delaunay, (k, 2)."""
@@ -193,10 +193,10 @@ class RegularTriangulation:
         """The simplex opposite each vertex, -1 outside, (m, d + 1)."""
     @property
     def chain(self) -> NDArray[np.int32]:
-        """Rows that are not hidden in order, where all points lie on one line, (k,)."""
+        """Rows that are not hidden, in order along the line, if all points are collinear, (k,)."""
     @property
     def stands_for(self) -> NDArray[np.int32]:
-        """The row that stands for each point, -1 for one that is hidden, (n,)."""
+        """The row that represents each point, -1 for hidden points, (n,)."""
 
 @final
 class PeriodicTriangulation:
@@ -210,13 +210,13 @@ class PeriodicTriangulation:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
     def chain(self) -> NDArray[np.int32]:
-        """The copies in their order, where all lie on one line, (k,)."""
+        """The copies, in order along the line, if all are collinear, (k,)."""
     @property
     def rows(self) -> NDArray[np.int32]:
         """The row of each copy, (c,)."""
     @property
     def moved(self) -> NDArray[np.int32]:
-        """By how many periods each copy is moved, (c, 2)."""
+        """The number of periods by which each copy is shifted, (c, 2)."""
 
 @final
 class RegularFaults2:
@@ -286,7 +286,7 @@ class PeriodicFaults:
 
 @final
 class Hull3:
-    """The convex hull of points in space."""
+    """The convex hull of 3-D points."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
@@ -299,17 +299,17 @@ class Hull3:
         """The facet of each triangle, (m,)."""
     @property
     def polygons(self) -> NDArray[np.int32]:
-        """Vertices of the facets one after the other, (k,)."""
+        """Vertices of all facets, one facet after the other, (k,)."""
     @property
     def starts(self) -> NDArray[np.int32]:
-        """Where the vertices of each facet begin, and the end, (f + 1,)."""
+        """Start of the vertices of each facet, and the end, (f + 1,)."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat others, and the first of these, (d, 2)."""
+        """Rows that repeat earlier rows, and the first of these, (d, 2)."""
 
 @final
 class FlippedTriangulation:
-    """A triangulation that flips have made canonical."""
+    """A triangulation made canonical by flips."""
 
     @property
     def simplices(self) -> NDArray[np.int32]:
@@ -319,10 +319,10 @@ class FlippedTriangulation:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
     @property
     def flips(self) -> int:
-        """How many flips there were."""
+        """Number of flips."""
     @property
     def sequence(self) -> NDArray[np.int32] | None:
-        """The vertices of each flip, (flips, 4); None where they were not recorded."""
+        """The vertices of each flip, (flips, 4); None if they were not recorded."""
 
 @final
 class ConstrainedTriangulation:
@@ -330,10 +330,10 @@ class ConstrainedTriangulation:
 
     @property
     def added(self) -> NDArray[np.float64]:
-        """Vertices that the input does not have, (a, 2)."""
+        """Added vertices, (a, 2)."""
     @property
     def simplices(self) -> NDArray[np.int32]:
-        """Vertices of the triangles, added ones behind the input, (m, 3)."""
+        """Vertices of the triangles; added vertices follow the input, (m, 3)."""
     @property
     def neighbors(self) -> NDArray[np.int32]:
         """The triangle opposite each vertex, -1 outside, (m, 3)."""
@@ -342,28 +342,28 @@ class ConstrainedTriangulation:
         """Whether the edge opposite each vertex is a subsegment, (m, 3)."""
     @property
     def duplicates(self) -> NDArray[np.int32]:
-        """Rows that repeat others, and the first of these, (k, 2)."""
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
     @property
     def segments(self) -> NDArray[np.int32]:
         """The subsegments, (q, 2)."""
     @property
     def source_start(self) -> NDArray[np.int64]:
-        """Where the rows of each subsegment begin in `source`, and the end, (q + 1,)."""
+        """Start of the rows of each subsegment in `source`, and the end, (q + 1,)."""
     @property
     def source(self) -> NDArray[np.int32]:
         """The rows of segments that cover subsegments, (c,)."""
     @property
     def forward(self) -> NDArray[np.bool_]:
-        """Whether each of these runs as the subsegment does, (c,)."""
+        """Whether each of these has the direction of the subsegment, (c,)."""
     @property
     def zero(self) -> NDArray[np.int32]:
-        """Rows of segments whose ends are one point, (k,)."""
+        """Rows of segments of zero length, (k,)."""
     @property
     def through(self) -> NDArray[np.int32]:
-        """Rows of segments and the vertices of the input inside them, (k, 2)."""
+        """Rows of segments, and input vertices inside them, (k, 2)."""
     @property
     def crossings(self) -> NDArray[np.int32]:
-        """Rows of segments that crossed, two by two, and where they meet, (k, 3)."""
+        """Pairs of rows of segments that cross, and the vertex at the crossing, (k, 3)."""
     def __new__(
         cls,
         added: NDArray[np.float64],
@@ -381,9 +381,9 @@ class ConstrainedTriangulation:
     ) -> ConstrainedTriangulation:
         """Check the shapes of the arrays."""
     def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order in which the constructor takes them."""
+        """All arrays, in the order of the arguments of the constructor."""
     def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """What a pickle holds."""
+        """The arguments for unpickling."""
 
 @final
 class RefinedMesh:
@@ -391,7 +391,7 @@ class RefinedMesh:
 
     @property
     def added(self) -> NDArray[np.float64]:
-        """Vertices that were added; they come behind those given, (a, 2)."""
+        """Added vertices; they follow the input vertices, (a, 2)."""
     @property
     def on(self) -> NDArray[np.int32]:
         """The line that each of these lies on, or -1, (a,)."""
@@ -409,37 +409,37 @@ class RefinedMesh:
         """The label of each triangle, -1 outside of the domain, (m,)."""
     @property
     def needles(self) -> NDArray[np.int32]:
-        """The number of the needle that each triangle is left in, or -1, (m,)."""
+        """The number of the unrefined needle that contains each triangle, or -1, (m,)."""
     @property
     def for_segments(self) -> int:
-        """How many vertices were added on segments."""
+        """Number of vertices added on segments."""
     @property
     def for_angles(self) -> int:
-        """How many were added inside for angles."""
+        """Number of vertices added inside for angles."""
     @property
     def for_sizes(self) -> int:
-        """How many were added inside for sizes."""
+        """Number of vertices added inside for sizes."""
     @property
     def exhausted(self) -> bool:
-        """Whether the limit on vertices ended the work."""
+        """Whether the limit on vertices was reached."""
 
 @final
 class JudgedTriangles:
-    """Triangles whose angles are known to be small, or large, or not known."""
+    """Triangles with small, extreme or unknown angles."""
 
     @property
     def below(self) -> NDArray[np.int32]:
         """Those with an angle below the bound, (k,)."""
     @property
     def extremes(self) -> NDArray[np.int32]:
-        """Those among which the smallest and the largest angles are, (e,)."""
+        """Those that include the smallest and the largest angle, (e,)."""
     @property
     def beyond(self) -> NDArray[np.int32]:
         """Those that are beyond the range of doubles, (b,)."""
 
 @final
 class ImprovementCounts:
-    """How often tetrahedra were changed, by kind."""
+    """Numbers of changes to tetrahedra, by kind."""
 
     @property
     def edges(self) -> int:
@@ -455,13 +455,13 @@ class ImprovementCounts:
         """Vertices moved."""
     @property
     def weights(self) -> int:
-        """Weights given."""
+        """Weights assigned."""
     @property
     def passes(self) -> int:
         """Passes."""
     @property
     def refused(self) -> int:
-        """Changes refused."""
+        """Changes rejected."""
 
 @final
 class ImprovedMesh:
@@ -484,14 +484,14 @@ class ImprovedMesh:
         """The label of each tetrahedron, (m,)."""
     @property
     def counts(self) -> ImprovementCounts:
-        """What was done."""
+        """Numbers of changes."""
     @property
     def exhausted(self) -> bool:
-        """Whether the limit on passes ended the work while it still gained."""
+        """Whether the limit on passes was reached while passes still made progress."""
 
 @final
 class Diagram2:
-    """A Voronoi or power diagram of the plane."""
+    """A 2-D Voronoi or power diagram."""
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -510,7 +510,7 @@ class Diagram2:
         """Directions of the rays, (q, 2)."""
     @property
     def beyond(self) -> NDArray[np.float64]:
-        """The vertex beyond the range to which each ray leads, NaN without, (q, 2)."""
+        """The vertex beyond the range of doubles at the end of each ray, NaN if none, (q, 2)."""
     @property
     def region(self) -> NDArray[np.int32]:
         """The cell of each point, -1 for none, (n,)."""
@@ -519,13 +519,13 @@ class Diagram2:
         """The point of each cell, (c,)."""
     @property
     def region_starts(self) -> NDArray[np.int32]:
-        """Where the entries of each cell begin, and the end, (c + 1,)."""
+        """Start of the entries of each cell, and the end, (c + 1,)."""
     @property
     def region_vertices(self) -> NDArray[np.int32]:
         """Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,)."""
     @property
     def region_ridges(self) -> NDArray[np.int32]:
-        """Entries: the ridge that leads on from each vertex, (e,)."""
+        """Entries: the ridge that starts at each vertex, (e,)."""
     def __new__(
         cls,
         vertices: NDArray[np.float64],
@@ -542,23 +542,23 @@ class Diagram2:
     ) -> Diagram2:
         """Check the shapes of the arrays."""
     def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order in which the constructor takes them."""
+        """All arrays, in the order of the arguments of the constructor."""
     def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """What a pickle holds."""
+        """The arguments for unpickling."""
 
 @final
 class ClippedCells2:
-    """What a box leaves of cells: convex polygons."""
+    """Cells clipped to a box: convex polygons."""
 
     @property
     def starts(self) -> NDArray[np.int32]:
-        """Where the corners of each cell begin, and the end, (c + 1,)."""
+        """Start of the corners of each cell, and the end, (c + 1,)."""
     @property
     def corners(self) -> NDArray[np.float64]:
         """The corners, counter-clockwise, (p, 2)."""
     @property
     def ridges(self) -> NDArray[np.int32]:
-        """The ridge along the edge that leads on from each corner, or -1, (p,)."""
+        """The ridge along the edge that starts at each corner, or -1, (p,)."""
 
 @final
 class CellMeasures2:
@@ -569,40 +569,40 @@ class CellMeasures2:
         """Areas, (c,)."""
     @property
     def centroids(self) -> NDArray[np.float64]:
-        """Centers of gravity, (c, 2)."""
+        """Centroids, (c, 2)."""
     @property
     def perimeters(self) -> NDArray[np.float64]:
         """Perimeters, (c,)."""
 
 @final
 class CellPieces2:
-    """What an outline leaves of polygons."""
+    """Polygons clipped to an outline."""
 
     @property
     def left(self) -> NDArray[np.int8]:
-        """For each polygon -1 (doubtful), 0 (nothing), 1 (all) or 2 (parts), (k,)."""
+        """For each polygon what is left: -1 (unknown), 0 (nothing), 1 (all) or 2 (parts), (k,)."""
     @property
     def cells(self) -> NDArray[np.int64]:
-        """Where the parts of each polygon begin, and the end, (k + 1,)."""
+        """Start of the parts of each polygon, and the end, (k + 1,)."""
     @property
     def parts(self) -> NDArray[np.int64]:
-        """Where the rings of each part begin, and the end."""
+        """Start of the rings of each part, and the end."""
     @property
     def rings(self) -> NDArray[np.int64]:
-        """Where the corners of each ring begin, and the end."""
+        """Start of the corners of each ring, and the end."""
     @property
     def points(self) -> NDArray[np.float64]:
         """The corners, (p, 2)."""
     @property
     def ridges(self) -> NDArray[np.int32]:
-        """The ridge along the edge from each corner, negative for none, (p,)."""
+        """The ridge along the edge that starts at each corner, negative for none, (p,)."""
     @property
     def measures(self) -> CellMeasures2:
-        """Measures of what is left of each polygon."""
+        """Measures of each clipped polygon."""
 
 @final
 class Diagram3:
-    """A Voronoi or power diagram of space."""
+    """A 3-D Voronoi or power diagram."""
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -615,10 +615,10 @@ class Diagram3:
         """The two sites of each ridge, (r, 2)."""
     @property
     def ridge_starts(self) -> NDArray[np.int32]:
-        """Where the entries of each ridge begin, and the end, (r + 1,)."""
+        """Start of the entries of each ridge, and the end, (r + 1,)."""
     @property
     def ridge_entries(self) -> NDArray[np.int32]:
-        """A vertex, or ~i for ray i, with which an open ridge begins and ends."""
+        """A vertex, or ~i for ray i, at both ends of an open ridge."""
     @property
     def rays(self) -> NDArray[np.float64]:
         """Directions of the rays, (q, 3)."""
@@ -630,13 +630,13 @@ class Diagram3:
         """The point of each cell, (c,)."""
     @property
     def region_starts(self) -> NDArray[np.int32]:
-        """Where the vertices of each cell begin, and the end, (c + 1,)."""
+        """Start of the vertices of each cell, and the end, (c + 1,)."""
     @property
     def region_vertices(self) -> NDArray[np.int32]:
-        """Vertices of cells, ascending, -1 first where a cell is open."""
+        """Vertices of cells, ascending, -1 first if a cell is unbounded."""
     @property
     def region_ridge_starts(self) -> NDArray[np.int32]:
-        """Where the ridges of each cell begin, and the end, (c + 1,)."""
+        """Start of the ridges of each cell, and the end, (c + 1,)."""
     @property
     def region_ridges(self) -> NDArray[np.int32]:
         """Ridges of cells, ascending."""
@@ -657,9 +657,9 @@ class Diagram3:
     ) -> Diagram3:
         """Check the shapes of the arrays."""
     def arrays(self) -> tuple[NDArray[np.generic], ...]:
-        """All arrays, in the order in which the constructor takes them."""
+        """All arrays, in the order of the arguments of the constructor."""
     def __getnewargs__(self) -> tuple[NDArray[np.generic], ...]:
-        """What a pickle holds."""
+        """The arguments for unpickling."""
 
 @final
 class CellMeasures3:
@@ -676,30 +676,30 @@ class CellMeasures3:
         """Areas of surfaces, (c,)."""
     @property
     def centroids(self) -> NDArray[np.float64]:
-        """Centers of gravity, (c, 3)."""
+        """Centroids, (c, 3)."""
 
 @final
 class ClippedCells3:
-    """What a convex polyhedron leaves of cells."""
+    """Cells clipped to a convex polyhedron."""
 
     @property
     def measures(self) -> CellMeasures3:
-        """Measures of what is left of each cell and each ridge."""
+        """Measures of each clipped cell and ridge."""
     @property
     def cut(self) -> NDArray[np.int32]:
-        """The cells that have been cut, (b,)."""
+        """The cells that were clipped, (b,)."""
     @property
     def point_starts(self) -> NDArray[np.int32]:
-        """Where the corners of each of these begin, and the end, (b + 1,)."""
+        """Start of the corners of each of these, and the end, (b + 1,)."""
     @property
     def points(self) -> NDArray[np.float64]:
         """The corners, (p, 3)."""
     @property
     def face_starts(self) -> NDArray[np.int32]:
-        """Where the faces of each of these begin, and the end, (b + 1,)."""
+        """Start of the faces of each of these, and the end, (b + 1,)."""
     @property
     def corner_starts(self) -> NDArray[np.int32]:
-        """Where the corners of each face begin, and the end, (f + 1,)."""
+        """Start of the corners of each face, and the end, (f + 1,)."""
     @property
     def corners(self) -> NDArray[np.int32]:
         """Corners of faces, as rows of `points`, counter-clockwise from outside."""
@@ -709,11 +709,11 @@ class ClippedCells3:
 
 @final
 class Location2:
-    """Where queries lie among triangles."""
+    """Locations of queries in triangles."""
 
     @property
     def simplex(self) -> NDArray[np.int32]:
-        """The triangle that holds each query, -1 outside, (q,)."""
+        """The triangle that contains each query, -1 outside, (q,)."""
     @property
     def weights(self) -> NDArray[np.float64]:
         """Weights of its corners, NaN outside, (q, 3)."""
@@ -725,15 +725,15 @@ class Location2:
         """Outside, the boundary edge with that point; else -1, (q, 2)."""
     @property
     def along(self) -> NDArray[np.float64]:
-        """Outside, how far along that edge the point is; else NaN, (q,)."""
+        """Outside, the position of the point along that edge, from 0 to 1; else NaN, (q,)."""
 
 @final
 class Location3:
-    """Where queries lie among tetrahedra."""
+    """Locations of queries in tetrahedra."""
 
     @property
     def simplex(self) -> NDArray[np.int32]:
-        """The tetrahedron that holds each query, -1 outside, (q,)."""
+        """The tetrahedron that contains each query, -1 outside, (q,)."""
     @property
     def weights(self) -> NDArray[np.float64]:
         """Weights of its corners, NaN outside, (q, 4)."""
@@ -753,7 +753,7 @@ class CornerWeights:
 
     @property
     def simplex(self) -> NDArray[np.int32]:
-        """The triangle that holds each query, -1 outside, (q,)."""
+        """The triangle that contains each query, -1 outside, (q,)."""
     @property
     def weights(self) -> NDArray[np.float64]:
         """Weights of values at its corners, (q, 3)."""
@@ -767,7 +767,7 @@ class NaturalWeights:
 
     @property
     def indptr(self) -> NDArray[np.int64]:
-        """Where the neighbors of each query begin, and the end, (q + 1,)."""
+        """Start of the neighbors of each query, and the end, (q + 1,)."""
     @property
     def indices(self) -> NDArray[np.int32]:
         """The neighbors, (k,)."""
@@ -776,10 +776,10 @@ class NaturalWeights:
         """Their weights, (k,)."""
     @property
     def slopes(self) -> NDArray[np.float64] | None:
-        """Weights of their gradients, (k, 2); None where the kind has none."""
+        """Weights of their gradients, (k, 2); None if the kind has none."""
     @property
     def simplex(self) -> NDArray[np.int32]:
-        """The simplex that holds each query, -1 outside, (q,)."""
+        """The simplex that contains each query, -1 outside, (q,)."""
 
 @final
 class WeightRows:
@@ -787,7 +787,7 @@ class WeightRows:
 
     @property
     def indptr(self) -> NDArray[np.int64]:
-        """Where the entries of each row begin, and the end, (n + 1,)."""
+        """Start of the entries of each row, and the end, (n + 1,)."""
     @property
     def indices(self) -> NDArray[np.int32]:
         """Vertices, (k,)."""
@@ -801,13 +801,13 @@ class DeepestPoints:
 
     @property
     def starts(self) -> NDArray[np.int64]:
-        """Where the points of each triangle begin, and the end, (m + 1,)."""
+        """Start of the points of each triangle, and the end, (m + 1,)."""
     @property
     def rows(self) -> NDArray[np.int32]:
         """Rows of points, (k,)."""
     @property
     def complete(self) -> NDArray[np.bool_]:
-        """Whether these are all in conflict with the triangle, (m,)."""
+        """Whether these are all points in conflict with the triangle, (m,)."""
 
 def methods2() -> list[str]: ...
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...

@@ -1,4 +1,4 @@
-"""Values that belong to points: converted to float64, their number checked."""
+"""Values at points, converted to float64 and checked for length."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def as_values(
     values : array_like, shape (count,), or None
         Numbers.
     count : int
-        How many there must be.
+        The number of points.
     name : str, optional
         The name of the argument in error messages.
 
@@ -37,7 +37,7 @@ def as_values(
     Raises
     ------
     ShapeError
-        Another number of values.
+        The number of values is not `count`.
     DtypeError
         The values are not real numbers.
 

@@ -1,7 +1,6 @@
 """Base classes of immutable objects, which any number of threads may share.
 
-What follows from an object is computed on first use and kept; arrays that it hands out cannot be
-written to.
+Attributes derived from an object are computed on first use and kept; its arrays are read-only.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ __all__ = ["Immutable", "ReadOnly", "kept", "own_copy", "sealed"]
 
 
 class Immutable:
-    """An object that is filled once; the base of public classes."""
+    """An object whose attributes are set once; the base of public classes."""
 
     __slots__ = ("__weakref__", "_cache", "_lock")
 
@@ -32,10 +31,10 @@ class Immutable:
     _lock: threading.RLock
 
     def _hold(self, **values: Any) -> None:
-        """Set everything, each value under its name and an underscore, once."""
+        """Set all attributes once, each under its name with a leading underscore."""
         if hasattr(self, "_cache"):
             name = type(self).__name__
-            raise AttributeError(f"a {name} never changes: make another one")
+            raise AttributeError(f"a {name} never changes: create a new one")
         put = object.__setattr__
         put(self, "_cache", {})
         put(self, "_lock", threading.RLock())
@@ -56,7 +55,7 @@ class Immutable:
 
 
 class ReadOnly:
-    """The base of frozen dataclasses whose arrays cannot be written to, nor those of a pickle."""
+    """The base of frozen dataclasses with read-only arrays, also after unpickling."""
 
     def __post_init__(self) -> None:
         self._protect()
@@ -67,7 +66,7 @@ class ReadOnly:
                 value.flags.writeable = False
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        # NumPy does not pickle whether an array may be written to.
+        # NumPy does not pickle the writeable flag of arrays.
         vars(self).update(state)
         self._protect()
 
@@ -83,7 +82,7 @@ Of = TypeVar("Of", bound=Immutable)
 
 
 def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
-    """Compute once for each object, also where several threads ask at the same time."""
+    """Compute once per object, even if several threads ask at the same time."""
     name = compute.__name__
 
     @functools.wraps(compute)
@@ -100,11 +99,11 @@ def kept(compute: Callable[[Of], T]) -> Callable[[Of], T]:
 
 
 def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Return an array over memory of ours that neither it nor its base can make writeable."""
+    """Return a read-only array that cannot be made writeable, not even through its base."""
     array.flags.writeable = False
-    # The owner of memory may always ask for writing again, and a view leads to it by its base. The
-    # memory of the core has an owner that cannot; other arrays are put on a memoryview, which
-    # cannot either.
+    # The owner of memory can always be made writeable again, and a view reaches it through its
+    # base. The owner of memory of the core cannot; other arrays get a memoryview as their base,
+    # which cannot either.
     base = array.base
     if isinstance(base, np.ndarray):
         base.flags.writeable = False
@@ -115,7 +114,7 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def own_copy(points: ArrayLike, *, ndim: int | None = 2) -> NDArray[np.float64]:
-    """Return points that no one else can change, neither now nor while the core runs."""
+    """Return points that nobody else can change, not even while the core runs."""
     array = as_points(points, ndim=ndim)
     if array is points:
         return copied(array)

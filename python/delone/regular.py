@@ -17,7 +17,7 @@ from delone.errors import DegenerateInputError, InternalError, NonFiniteError, S
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy, sealed
 from delone.regular_validation import RegularReport, RegularSpaceReport, validate_regular
-from delone.space.plane import plane_of, twins
+from delone.space.plane import plane_of, repeated_rows
 from delone.triangulation import PointTriangulation
 
 if TYPE_CHECKING:
@@ -264,7 +264,7 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
         "weights": weights,
         "simplices": made.simplices,
         "neighbors": made.neighbors,
-        "duplicates": twins(made.stands_for, weights),
+        "duplicates": repeated_rows(made.stands_for, weights),
     }
     return arrays, made.chain
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.space.plane import twins
+from delone.space.plane import repeated_rows
 from delone.validation import SENTENCES, SpaceReport, ValidationReport, of_tetrahedra, of_triangles
 
 if TYPE_CHECKING:
@@ -205,13 +205,13 @@ def validate_regular(
         return RegularSpaceReport(
             **vars(of_tetrahedra(solid.faults)),
             hidden=solid.hidden,
-            duplicates=_differing(duplicates, twins(solid.stands_for, weights)),
+            duplicates=_differing(duplicates, repeated_rows(solid.stands_for, weights)),
         )
     flat = _core.validate_regular2(points, weights, simplices, neighbors)
     return RegularReport(
         **vars(of_triangles(flat.faults)),
         hidden=flat.hidden,
-        duplicates=_differing(duplicates, twins(flat.stands_for, weights)),
+        duplicates=_differing(duplicates, repeated_rows(flat.stands_for, weights)),
     )
 
 

@@ -64,7 +64,7 @@ def test_a_lake_becomes_a_mesh(
 def test_the_report_is_for_people(lake: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["mesh", str(lake), "--size", "30", "--smooth", "2", "--freeze-boundary"]) == 0
     text = capsys.readouterr().out
-    assert "30 asked for" in text
+    assert "requested at least 30" in text
     assert "0 on segments" in text
 
 

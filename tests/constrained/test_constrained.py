@@ -209,7 +209,7 @@ class TestReport:
         assert report.overlaps.tolist() == [[1, 0]]
         assert report.through.tolist() == [[0, 4], [2, 4], [4, 4]]
         assert report.crossings.shape == (0, 3)
-        assert "2 rows of segments have no length: 3, 5" in str(report)
+        assert "2 rows of segments have zero length: 3, 5" in str(report)
 
     def test_crossings_are_named_with_their_vertices(self) -> None:
         mesh = ConstrainedDelaunay(OUTER, [(0, 2), (1, 3)], crossing="split")
@@ -260,7 +260,7 @@ class TestConforming:
         assert {frozenset(edge) for edge in mesh.segments.tolist()} <= edges
         assert mesh.report.steiner[:, 0].tolist() == [0] * mesh.nadded
         assert sorted(mesh.report.steiner[:, 1].tolist()) == list(range(7, mesh.npoints))
-        assert "were put on the way of segments" in str(mesh.report)
+        assert "were added to the paths of segments" in str(mesh.report)
 
     def test_where_nothing_is_to_do_nothing_is_added(self) -> None:
         mesh = ConstrainedDelaunay(OUTER, [*RINGS[:4], (0, 2)], conforming=True)

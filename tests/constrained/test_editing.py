@@ -153,7 +153,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("change", "error", "match"),
         [
-            (lambda e: e.remove_points([9]), errors.InputError, "rows of points.*0 to 3: 9"),
+            (lambda e: e.remove_points([9]), errors.InputError, "rows of points.*0 to 3, got 9"),
             (lambda e: e.remove_points([-1]), errors.InputError, "-1"),
             (lambda e: e.remove_points([0.0]), errors.DtypeError, "float64"),
             (lambda e: e.remove_points([True]), errors.DtypeError, "bool"),

@@ -104,7 +104,7 @@ class TestParts:
         "wrong", [3, "POINT (1 1)", [1, 2], [(0, 0), (1, 1)], {"type": "Topology"}, {}, object()]
     )
     def test_what_is_no_geometry_is_refused(self, wrong: Any) -> None:
-        with pytest.raises(errors.InputError, match="no geometry"):
+        with pytest.raises(errors.InputError, match=r"not a geometry|unknown geometry type"):
             from_geometry(wrong)
 
     def test_unknown_types_and_torn_coordinates_are_refused(self) -> None:
@@ -156,7 +156,7 @@ class TestFromGeometry:
 
     def test_nan_names_geometries(self) -> None:
         bad = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (np.nan, 1)]]}
-        with pytest.raises(errors.NonFiniteError, match="1 geometry holds") as caught:
+        with pytest.raises(errors.NonFiniteError, match="1 geometry has") as caught:
             from_geometry([FRAME, bad])
         assert caught.value.rows.tolist() == [1]
 
@@ -448,7 +448,7 @@ class TestWhatIsNoGeometry:
     @pytest.mark.parametrize("take", [from_geometry, triangulate_polygon])
     def test_numbers_that_no_double_holds(self, take: Any) -> None:
         line = {"type": "Polygon", "coordinates": [[(0, 0), (10**400, 1), (0, 1)]]}
-        with pytest.raises(errors.InputError, match="no double holds"):
+        with pytest.raises(errors.InputError, match="beyond the range of doubles"):
             take(line)
 
     @pytest.mark.parametrize("take", [from_geometry, triangulate_polygon])
@@ -458,5 +458,5 @@ class TestWhatIsNoGeometry:
 
         # Not every shapely can hold a curve; those that can say this.
         monkeypatch.setattr(shapely, "get_rings", refused)
-        with pytest.raises(errors.InputError, match="curve: only straight lines"):
+        with pytest.raises(errors.InputError, match="curves are not supported"):
             take(shapely.Polygon(RING))

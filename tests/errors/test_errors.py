@@ -116,7 +116,7 @@ def one_is_one() -> dict[str, Callable[[], object]]:
             three, [0, 1, 2], extrapolate="raise"
         )([(5, 5)]),
         "1 weight is NaN": lambda: delone.RegularTriangulation(three, [0, nan, 0]),
-        "1 geometry holds NaN": lambda: delone.from_geometry(line),
+        "1 geometry has NaN": lambda: delone.from_geometry(line),
         "segments: 1 of 1 row has indices": lambda: delone.ConstrainedDelaunay(three, [(0, 7)]),
         "1 row holds NaN": lambda: reference.bowyer_watson([(0, 0), (1, 0), (nan, 1)]),
         "1 pair of segments crosses": lambda: reference.constrained_delaunay(

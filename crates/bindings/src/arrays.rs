@@ -1,4 +1,4 @@
-//! NumPy arrays as slices of small arrays and back, without a copy.
+//! Conversion between NumPy arrays and slices of small arrays, without copying.
 
 use numpy::ndarray::{Dimension, IntoDimension};
 use numpy::{
@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 
 use delone_core::error::{Error, Result};
 
-/// A one-dimensional array of Python.
+/// A 1-D NumPy array.
 pub type Column<T> = Py<PyArray1<T>>;
-/// A two-dimensional array of Python.
+/// A 2-D NumPy array.
 pub type Table<T> = Py<PyArray2<T>>;
 
 /// The rows of a C-contiguous array of width `D`.
@@ -51,14 +51,16 @@ pub fn each_in_range(values: &[i32], from: i32, to: usize, name: &str) -> Result
     in_range(values.as_chunks::<1>().0, from, to, name)
 }
 
-/// Checks that `starts` cuts `length` entries into pieces.
+/// Checks that `starts` partitions `length` entries.
 pub fn are_starts(starts: &[i32], length: usize) -> Result<()> {
     let right =
         starts.first() == Some(&0) && starts.last() == Some(&(length as i32)) && starts.is_sorted();
     if right {
         Ok(())
     } else {
-        Err(Error::Shape(format!("starts do not cut {length} entries")))
+        Err(Error::Shape(format!(
+            "starts must partition {length} entries"
+        )))
     }
 }
 
@@ -69,7 +71,7 @@ pub fn table<T: Element, const D: usize>(py: Python<'_>, rows: Vec<[T; D]>) -> P
     Ok(array.unbind())
 }
 
-/// A read-only copy of rows: where they are few, cheaper than an array that owns a vector.
+/// A read-only copy of rows: for few rows, cheaper than an array that owns a vector.
 pub fn frozen<T: Element + Copy, const D: usize>(
     py: Python<'_>,
     rows: &[[T; D]],
@@ -86,7 +88,7 @@ pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Column<T> {
     PyArray1::from_vec(py, values).unbind()
 }
 
-/// The items of a C-contiguous array of any shape, row after row.
+/// The items of a C-contiguous array of any shape, in row-major order.
 pub fn flat<'a, T: Element, D: Dimension>(
     array: &'a PyReadonlyArray<'_, T, D>,
     name: &str,
@@ -96,7 +98,7 @@ pub fn flat<'a, T: Element, D: Dimension>(
         .map_err(|_| Error::Shape(format!("{name} is not C-contiguous")))
 }
 
-/// A vector as an array of the shape that has as many items.
+/// A vector as an array of a shape with the same number of items.
 pub fn shaped<T: Element, S: IntoDimension>(
     py: Python<'_>,
     values: Vec<T>,

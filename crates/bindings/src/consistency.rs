@@ -1,4 +1,4 @@
-//! Whether arrays of unknown origin are a mesh.
+//! Checks whether arrays of unknown origin are a mesh.
 
 use delone_core::consistency::{self, Fault};
 use numpy::PyReadonlyArray2;
@@ -8,7 +8,8 @@ use crate::errors::attached;
 use crate::given::checked;
 use crate::signals::watched;
 
-/// The first fault of triangles: `("neighbors", row)` or `("orientation", row)`; None without any.
+/// The first fault of triangles: `("neighbors", row)` or `("orientation", row)`; None if there is
+/// none.
 #[pyfunction]
 pub fn fault2(
     py: Python<'_>,
@@ -22,7 +23,7 @@ pub fn fault2(
     Ok(found.map(named))
 }
 
-/// The same of tetrahedra.
+/// The same for tetrahedra.
 #[pyfunction]
 pub fn fault3(
     py: Python<'_>,

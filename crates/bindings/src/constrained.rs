@@ -19,29 +19,29 @@ use crate::triangulation::{method_of, seconds};
 /// A constrained Delaunay triangulation of the whole hull.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct ConstrainedTriangulation {
-    /// Vertices that the input does not have, (a, 2).
+    /// Added vertices, (a, 2).
     pub added: Table<f64>,
-    /// Vertices of the triangles, added ones behind those of the input, (m, 3).
+    /// Vertices of the triangles; added vertices follow the input, (m, 3).
     pub simplices: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
     /// Whether the edge opposite each vertex is a subsegment, (m, 3).
     pub constrained: Table<bool>,
-    /// Rows that repeat others, and the first of these, (k, 2).
+    /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,
     /// The subsegments, (q, 2).
     pub segments: Table<i32>,
-    /// Where the rows that cover each subsegment begin in `source`, and the end, (q + 1,).
+    /// Start of the rows that cover each subsegment in `source`, and the end, (q + 1,).
     pub source_start: Column<i64>,
     /// The rows of segments that cover subsegments, (c,).
     pub source: Column<i32>,
-    /// Whether each of these runs as the subsegment does, (c,).
+    /// Whether each of these has the direction of the subsegment, (c,).
     pub forward: Column<bool>,
-    /// Rows of segments whose ends are one point, (k,).
+    /// Rows of segments of zero length, (k,).
     pub zero: Column<i32>,
-    /// Rows of segments and the vertices of the input inside them, (k, 2).
+    /// Rows of segments, and input vertices inside them, (k, 2).
     pub through: Table<i32>,
-    /// Rows of segments that crossed, two by two, and where they meet, (k, 3).
+    /// Pairs of rows of segments that cross, and the vertex at the crossing, (k, 3).
     pub crossings: Table<i32>,
 }
 
@@ -125,7 +125,7 @@ fn arrays_of(py: Python<'_>, made: Constrained) -> PyResult<ConstrainedTriangula
     })
 }
 
-/// Components of triangles that share edges which are not constrained.
+/// Components of triangles that share unconstrained edges.
 #[pyfunction]
 pub fn components2(
     py: Python<'_>,
@@ -167,10 +167,10 @@ pub fn polygon2(
     Ok((table(py, filled.added)?, table(py, filled.simplices)?))
 }
 
-/// A copy of the points and the triangles of one ring, read-only; nothing unless it is known to be
-/// simple, and `points` an array that can be read as it lies.
+/// A read-only copy of the points and the triangles of one ring; None unless the ring is known to
+/// be simple and `points` is a contiguous array of doubles.
 ///
-/// It holds the GIL: such rings are short, and giving it back would cost as much as the triangles.
+/// It holds the GIL: such rings are short, and releasing it would cost as much as triangulating.
 #[pyfunction]
 pub fn ring2(
     py: Python<'_>,
@@ -188,7 +188,7 @@ pub fn ring2(
     Ok(Some((frozen(py, points)?, frozen(py, &simplices)?)))
 }
 
-/// Where each ring begins, and the end: ascending, within `n` points.
+/// The start of each ring, and the end: ascending, within `n` points.
 fn bounds(starts: &PyReadonlyArray1<'_, i32>, n: usize) -> Result<Vec<usize>> {
     let starts = starts
         .as_slice()
@@ -196,7 +196,7 @@ fn bounds(starts: &PyReadonlyArray1<'_, i32>, n: usize) -> Result<Vec<usize>> {
     let ascend = starts.windows(2).all(|w| w[0] <= w[1]);
     let inside = starts.iter().all(|&s| s >= 0 && s as usize <= n);
     if !(ascend && inside) {
-        let message = format!("starts must ascend from 0 to {n} at most");
+        let message = format!("starts must ascend, from 0 to at most {n}");
         return Err(Error::Shape(message));
     }
     Ok(starts.iter().map(|&s| s as usize).collect())

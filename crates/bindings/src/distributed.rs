@@ -10,10 +10,11 @@ use crate::arrays::{Column, Table, column, in_range, rows, table};
 use crate::errors::raise;
 use crate::signals::watched;
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const LOT: usize = 1 << 18;
 
-/// Centre and radius of disks that hold the closed circumdisks; an infinite radius is the plane.
+/// Center and radius of disks that contain the closed circumdisks; an infinite radius means the
+/// whole plane.
 #[pyfunction]
 pub fn disks2(
     py: Python<'_>,
@@ -57,15 +58,16 @@ pub fn within2(
 /// Points in conflict with triangles, those deepest in circles first.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct DeepestPoints {
-    /// Where the points of each triangle begin, and the end, (m + 1,).
+    /// Start of the points of each triangle, and the end, (m + 1,).
     pub starts: Column<i64>,
     /// Rows of points, (k,).
     pub rows: Column<i32>,
-    /// Whether these are all in conflict with the triangle, (m,).
+    /// Whether these are all points in conflict with the triangle, (m,).
     pub complete: Column<bool>,
 }
 
-/// For each triangle, six coordinates a row, up to `most` points in conflict, and whether that is all.
+/// For each triangle (rows of six coordinates), up to `most` points in conflict, and whether these
+/// are all.
 #[pyfunction]
 pub fn deepest2(
     py: Python<'_>,

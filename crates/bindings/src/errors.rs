@@ -1,4 +1,4 @@
-//! Errors of the core as the exceptions of `delone.errors`; a panic becomes `InternalError`.
+//! Conversion of core errors to the exceptions of `delone.errors`; a panic becomes `InternalError`.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -15,12 +15,12 @@ pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send
     py.detach(|| caught(work)).map_err(|e| raise(py, &e))
 }
 
-/// Runs `work`, which is short, with the GIL.
+/// Runs short `work` with the GIL.
 pub fn attached<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> {
     caught(work).map_err(|e| raise(py, &e))
 }
 
-/// What `work` gives, a panic as an error: the core is called through here alone.
+/// The result of `work`, with a panic converted to an error: all calls of the core go through here.
 fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
@@ -40,7 +40,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let details = PyDict::new(py);
     let (class, message) = match error {
         Error::Interrupted => {
-            // The signal's own handler has raised already, as a rule; that exception is kept.
+            // Usually the signal handler has already raised an exception, which is kept.
             return Ok(PyErr::take(py).unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
         }
         Error::Memory { .. } => return Ok(PyMemoryError::new_err(error.to_string())),
@@ -84,7 +84,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         }
         Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
         Error::Crossing { pairs, points } => {
-            // As arrays: there may be millions.
+            // As arrays, because there may be millions.
             details.set_item("pairs", table(py, pairs.clone())?)?;
             details.set_item("points", table(py, points.clone())?)?;
             ("CrossingSegmentsError", crossing(pairs, points))
@@ -121,7 +121,7 @@ fn crossing(pairs: &[[u32; 2]], points: &[Point2]) -> String {
     format!("{what}; crossing=\"split\" makes crossings vertices")
 }
 
-/// Names the segments that take most of the vertices that are too many.
+/// Names the segments with most of the vertices that exceed the budget.
 fn crowded(crowd: &Crowd) -> String {
     let names: Vec<String> = crowd.segments.iter().map(u32::to_string).collect();
     let (names, count) = (names.join(", "), names.len());

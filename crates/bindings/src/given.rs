@@ -1,5 +1,5 @@
-//! Triangulations that are given as arrays: borrowed and checked for one call, or held for many; and
-//! what else is given beside points: weights, edges.
+//! Triangulations passed as arrays: borrowed and checked for one call, or held for many; and other
+//! arrays passed with points: weights, edges.
 
 use delone_core::arrays::Given;
 use delone_core::error::{Error, Result};
@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use crate::arrays::{flat, in_range, rows};
 use crate::signals::{watched, watched_attached};
 
-/// Queries below which a call keeps the GIL: it is over before another thread could run.
+/// Up to this number of queries a call keeps the GIL: it is over before another thread could run.
 const FEW: usize = 16;
 
-/// Borrowed arrays. An index in them that is out of range is an `InternalError` when it is used.
+/// Borrowed arrays. An index that is out of range causes an `InternalError` when it is used.
 fn borrowed<'a, const D: usize, const N: usize>(
     points: &'a PyReadonlyArray2<'_, f64>,
     simplices: &'a PyReadonlyArray2<'_, i32>,
@@ -26,7 +26,7 @@ fn borrowed<'a, const D: usize, const N: usize>(
     })
 }
 
-/// Borrowed arrays whose indices have been checked, which takes a look at each.
+/// Borrowed arrays, after a check of every index.
 pub fn checked<'a, const D: usize, const N: usize>(
     points: &'a PyReadonlyArray2<'_, f64>,
     simplices: &'a PyReadonlyArray2<'_, i32>,
@@ -43,7 +43,7 @@ pub fn checked<'a, const D: usize, const N: usize>(
     Ok(given)
 }
 
-/// Arrays that have been checked and never change.
+/// Checked arrays that never change.
 pub struct Held {
     points: Py<PyArray2<f64>>,
     simplices: Py<PyArray2<i32>>,
@@ -58,7 +58,7 @@ pub struct Lent<'py> {
 }
 
 impl Held {
-    /// Keeps arrays; the caller has checked them.
+    /// Holds arrays that the caller has checked.
     pub fn new(
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
@@ -93,7 +93,7 @@ impl Lent<'_> {
     }
 }
 
-/// Does `work` for `count` queries, without the GIL unless they are few.
+/// Runs `work` for `count` queries, without the GIL unless there are few.
 pub fn answered<T: Send>(
     py: Python<'_>,
     count: usize,
@@ -105,12 +105,12 @@ pub fn answered<T: Send>(
     watched(py, work)
 }
 
-/// What is wrong with arrays that do not fit together.
+/// The error for arrays whose lengths do not match.
 pub fn unequal() -> Error {
     Error::Shape("arrays that belong together differ in length".into())
 }
 
-/// Weights of `n` points; none where nothing is given.
+/// Weights of `n` points; empty if none are given.
 pub fn weights_of<'a>(
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
     n: usize,
@@ -123,7 +123,7 @@ pub fn weights_of<'a>(
     Err(unequal())
 }
 
-/// The same, and all of them finite.
+/// The same, after a check that all are finite.
 pub fn finite_weights<'a>(
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
     n: usize,

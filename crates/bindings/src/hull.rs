@@ -11,7 +11,7 @@ use crate::signals::watched;
 /// `(vertices, duplicates)`.
 type Chain = (Column<i32>, Table<i32>);
 
-/// The extreme points in the plane, counter-clockwise, and the rows that repeat them.
+/// The extreme points in 2-D, counter-clockwise, and the rows that repeat them.
 #[pyfunction]
 pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chain> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
@@ -19,7 +19,7 @@ pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chai
     Ok((numbers(py, vertices), number_rows(py, duplicates)?))
 }
 
-/// The convex hull of points in space.
+/// The convex hull of 3-D points.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Hull3 {
     /// Vertices of the triangles of facets, (m, 3).
@@ -28,15 +28,15 @@ pub struct Hull3 {
     pub neighbors: Table<i32>,
     /// The facet of each triangle, (m,).
     pub facet_of: Column<i32>,
-    /// Vertices of the facets one after the other, (k,).
+    /// Vertices of all facets, one facet after the other, (k,).
     pub polygons: Column<i32>,
-    /// Where the vertices of each facet begin, and the end, (f + 1,).
+    /// Start of the vertices of each facet, and the end, (f + 1,).
     pub starts: Column<i32>,
-    /// Rows that repeat others, and the first of these, (d, 2).
+    /// Rows that repeat earlier rows, and the first of these, (d, 2).
     pub duplicates: Table<i32>,
 }
 
-/// The hull of points in space; nothing where they span no volume.
+/// The hull of 3-D points; None if they span no volume.
 #[pyfunction]
 pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Option<Hull3>> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;

@@ -9,7 +9,7 @@ use crate::arrays::{Column, Table, column, flat, in_range, rows, table};
 use crate::errors::raise;
 use crate::signals::watched;
 
-/// How often tetrahedra were changed, by kind.
+/// Numbers of changes to tetrahedra, by kind.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct ImprovementCounts {
     /// Edges removed.
@@ -20,11 +20,11 @@ pub struct ImprovementCounts {
     pub faces: usize,
     /// Vertices moved.
     pub moves: usize,
-    /// Weights given.
+    /// Weights assigned.
     pub weights: usize,
     /// Passes.
     pub passes: usize,
-    /// Changes refused.
+    /// Changes rejected.
     pub refused: usize,
 }
 
@@ -41,14 +41,14 @@ pub struct ImprovedMesh {
     pub weights: Column<f64>,
     /// The label of each tetrahedron, (m,).
     pub labels: Column<i32>,
-    /// What was done.
+    /// Numbers of changes.
     pub counts: Py<ImprovementCounts>,
-    /// Whether the limit on passes ended the work while it still gained.
+    /// Whether the limit on passes was reached while passes still made progress.
     pub exhausted: bool,
 }
 
-/// Better tetrahedra. `progress` is called after each pass with its number and how many
-/// tetrahedra are below the bound.
+/// Improves tetrahedra. `progress` is called after each pass with its number and the number of
+/// tetrahedra below the bound.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, fixed, min_angle, flips, smooth, exude, turn, passes,
                     progress=None))]
@@ -85,25 +85,25 @@ pub fn improve3<'py>(
         })
     };
     let task = task().map_err(|e| raise(py, &e))?;
-    let mut refused = None;
-    let mut tell = |pass: usize, below: usize| -> Result<()> {
+    let mut failure = None;
+    let mut notify = |pass: usize, below: usize| -> Result<()> {
         let Some(progress) = &progress else {
             return Ok(());
         };
-        let answer = Python::attach(|py| progress.call1(py, (pass, below)).map(|_| ()));
-        answer.map_err(|error| {
-            refused = Some(error);
+        let result = Python::attach(|py| progress.call1(py, (pass, below)).map(|_| ()));
+        result.map_err(|error| {
+            failure = Some(error);
             Error::Interrupted
         })
     };
-    let outcome = watched(py, |watch| improve(task, watch, &mut tell));
-    if let Some(error) = refused {
+    let outcome = watched(py, |watch| improve(task, watch, &mut notify));
+    if let Some(error) = failure {
         return Err(error);
     }
     arrays_of(py, outcome?)
 }
 
-/// The arrays, as Python has them.
+/// The result as Python arrays.
 fn arrays_of(py: Python<'_>, made: Improved) -> PyResult<ImprovedMesh> {
     let counts = ImprovementCounts {
         edges: made.counts.edges,

@@ -1,4 +1,4 @@
-//! Interpolation: the bodies of the methods of `Locator2`, and functions beside it.
+//! Interpolation: the bodies of the methods of `Locator2`, and other functions.
 
 use delone_core::error::{Error, Result};
 use delone_core::interpolate::{
@@ -27,7 +27,7 @@ pub type Gradients<'py> = PyReadonlyArray3<'py, f64>;
 /// Closed edges.
 pub type Closed<'py> = PyReadonlyArray2<'py, bool>;
 
-/// An array of two axes, or of three where there are derivatives.
+/// An array with two axes, or with three for derivatives.
 type Array = Py<PyAny>;
 
 fn order_of(order: usize) -> PyResult<Order> {
@@ -40,7 +40,7 @@ fn kind_of(kind: &str) -> PyResult<Kind> {
     Kind::named(kind).ok_or_else(message)
 }
 
-/// The barrier, empty for none; a row for each triangle.
+/// The barrier, one row per triangle; empty if there is none.
 fn barrier_of<'a>(barrier: Option<&'a Closed<'_>>, triangles: usize) -> Result<Barrier<'a>> {
     let Some(array) = barrier else {
         return Ok(&[]);
@@ -49,11 +49,13 @@ fn barrier_of<'a>(barrier: Option<&'a Closed<'_>>, triangles: usize) -> Result<B
     if closed.len() == triangles {
         Ok(closed)
     } else {
-        Err(Error::Shape("barrier needs a row for each triangle".into()))
+        Err(Error::Shape(
+            "barrier must have one row per triangle".into(),
+        ))
     }
 }
 
-/// A result of `columns` columns, by order of derivatives.
+/// A result with `columns` columns, and an axis for derivatives if there are any.
 fn table_of(
     py: Python<'_>,
     found: Vec<f64>,
@@ -87,7 +89,7 @@ pub fn linear_of(
     table_of(py, found, n, columns, order)
 }
 
-/// What Clough-Tocher interpolation and natural neighbours are given.
+/// The input of Clough-Tocher and natural neighbor interpolation.
 pub struct Smooth<'a, 'py> {
     /// Columns of values.
     pub values: &'a Values<'py>,
@@ -97,13 +99,13 @@ pub struct Smooth<'a, 'py> {
     pub xi: &'a Points<'py>,
     /// Closed edges.
     pub barrier: Option<&'a Closed<'py>>,
-    /// Which derivatives.
+    /// The order of derivatives.
     pub order: usize,
-    /// How many threads.
+    /// Number of threads.
     pub workers: usize,
 }
 
-/// Clough-Tocher interpolation, or natural neighbours of a kind.
+/// Clough-Tocher interpolation, or natural neighbor interpolation if there is a kind.
 pub fn smooth_of(
     py: Python<'_>,
     locator: &Plane,
@@ -118,7 +120,7 @@ pub fn smooth_of(
     let slopes = given.gradients.map(|g| flat(g, "gradients"));
     let slopes = slopes.transpose().map_err(fail)?;
     if slopes.is_none() & kind.is_none_or(Kind::is_smooth) {
-        return Err(PyValueError::new_err("this kind needs gradients"));
+        return Err(PyValueError::new_err("this kind requires gradients"));
     }
     let barrier = barrier_of(given.barrier, locator.held.count(py)).map_err(fail)?;
     let (found, n) = locator.batch(given.xi, given.workers, |batch| {
@@ -134,7 +136,7 @@ pub fn smooth_of(
 /// Weights of Clough-Tocher interpolation.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct CornerWeights {
-    /// The triangle that holds each query, -1 outside, (q,).
+    /// The triangle that contains each query, -1 outside, (q,).
     pub simplex: Column<i32>,
     /// Weights of values at its corners, (q, 3).
     pub weights: Table<f64>,
@@ -163,19 +165,19 @@ pub fn corner_weights_of(
 /// Weights of natural neighbors as compressed rows.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct NaturalWeights {
-    /// Where the neighbors of each query begin, and the end, (q + 1,).
+    /// Start of the neighbors of each query, and the end, (q + 1,).
     pub indptr: Column<i64>,
     /// The neighbors, (k,).
     pub indices: Column<i32>,
     /// Their weights, (k,).
     pub weights: Column<f64>,
-    /// Weights of their gradients, (k, 2); None where the kind has none.
+    /// Weights of their gradients, (k, 2); None if the kind has none.
     pub slopes: Option<Table<f64>>,
-    /// The simplex that holds each query, -1 outside, (q,).
+    /// The simplex that contains each query, -1 outside, (q,).
     pub simplex: Column<i32>,
 }
 
-/// The weights of natural neighbours.
+/// The weights of natural neighbors.
 pub fn natural_of(
     py: Python<'_>,
     locator: &Plane,
@@ -207,7 +209,7 @@ pub fn natural_of(
 /// Weights as compressed rows.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct WeightRows {
-    /// Where the entries of each row begin, and the end, (n + 1,).
+    /// Start of the entries of each row, and the end, (n + 1,).
     pub indptr: Column<i64>,
     /// Vertices, (k,).
     pub indices: Column<i32>,
@@ -215,15 +217,16 @@ pub struct WeightRows {
     pub weights: Column<f64>,
 }
 
-/// The weights of all other vertices, for each.
+/// For each vertex, the weights of the others.
 pub fn leave_one_out_of(
     py: Python<'_>,
     locator: &Plane,
     kind: &str,
     workers: usize,
 ) -> PyResult<WeightRows> {
-    let method = Method::named(kind)
-        .ok_or_else(|| PyValueError::new_err(format!("nothing to leave out for {kind:?}")))?;
+    let method = Method::named(kind).ok_or_else(|| {
+        PyValueError::new_err(format!("kind {kind:?} has no leave-one-out weights"))
+    })?;
     let Rows {
         indptr,
         indices,
@@ -241,10 +244,7 @@ pub fn leave_one_out_of(
 
 /// Sums of weights times values, row by row.
 #[pyfunction]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the door takes arrays one by one"
-)]
+#[expect(clippy::too_many_arguments, reason = "Python passes arrays one by one")]
 pub fn combine2(
     py: Python<'_>,
     indptr: PyReadonlyArray1<'_, i64>,
@@ -267,7 +267,9 @@ pub fn combine2(
     };
     let gradients = gradients.transpose().map_err(fail)?;
     if table.slopes.is_some() != gradients.is_some() {
-        return Err(PyValueError::new_err("slopes and gradients go together"));
+        return Err(PyValueError::new_err(
+            "slopes and gradients must be given together",
+        ));
     }
     let items = flat(&values, "values").map_err(fail)?;
     let field = Field::of_rows(n, items, gradients, columns).map_err(fail)?;
@@ -275,13 +277,10 @@ pub fn combine2(
     shaped(py, found, [indptr.shape()[0].saturating_sub(1), columns])
 }
 
-/// Gradients of least bending, and the sweeps for each column.
+/// Gradients of minimal bending energy, and the number of sweeps for each column.
 #[pyfunction]
 #[pyo3(signature = (points, indptr, indices, values, tol, maxiter, workers, floor=None))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the door takes arrays one by one"
-)]
+#[expect(clippy::too_many_arguments, reason = "Python passes arrays one by one")]
 pub fn gradients_global2(
     py: Python<'_>,
     points: Points<'_>,

@@ -1,4 +1,4 @@
-//! Flips of arbitrary triangulations, and their neighbours, as arrays.
+//! Lawson flips of arbitrary triangulations, and neighbors, as arrays.
 
 use delone_core::delaunay2::lawson::lawson;
 use delone_core::mesh2::import::adjacency;
@@ -10,20 +10,20 @@ use crate::errors::raise;
 use crate::given::simplices_of;
 use crate::signals::watched;
 
-/// A triangulation that flips have made canonical.
+/// A triangulation made canonical by flips.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct FlippedTriangulation {
     /// Vertices of the triangles, (m, 3).
     pub simplices: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
-    /// How many flips there were.
+    /// Number of flips.
     pub flips: usize,
-    /// The vertices of each flip, (flips, 4); None where they were not recorded.
+    /// The vertices of each flip, (flips, 4); None if they were not recorded.
     pub sequence: Option<Table<i32>>,
 }
 
-/// The canonical triangulation by flips, how many they were, and which, where that is recorded.
+/// The canonical triangulation by flips, the number of flips, and their sequence if recorded.
 #[pyfunction]
 pub fn lawson2(
     py: Python<'_>,

@@ -1,5 +1,5 @@
-//! The door between Python and the core: arrays in, arrays out, errors as Python exceptions.
-//! No algorithm lives here.
+//! The bindings between Python and the core: arrays in, arrays out, errors as Python exceptions. No
+//! algorithm lives here.
 
 mod arrays;
 mod consistency;

@@ -15,10 +15,10 @@ use crate::interpolate::{
 use crate::locator::Plane;
 use crate::signals::watched;
 
-/// Where queries lie among triangles.
+/// Locations of queries in triangles.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Location2 {
-    /// The triangle that holds each query, -1 outside, (q,).
+    /// The triangle that contains each query, -1 outside, (q,).
     pub simplex: Column<i32>,
     /// Weights of its corners, NaN outside, (q, 3).
     pub weights: Table<f64>,
@@ -26,11 +26,11 @@ pub struct Location2 {
     pub beside: Column<i32>,
     /// Outside, the boundary edge with that point; else -1, (q, 2).
     pub edge: Table<i32>,
-    /// Outside, how far along that edge the point is; else NaN, (q,).
+    /// Outside, the position of the point along that edge, from 0 to 1; else NaN, (q,).
     pub along: Column<f64>,
 }
 
-/// A triangulation for many calls.
+/// A triangulation that is kept for many calls.
 #[pyclass(frozen, module = "delone._core")]
 pub struct Locator2(Plane);
 
@@ -45,7 +45,7 @@ impl Locator2 {
         Plane::new(&points, &simplices, &neighbors, Kept::of).map(Self)
     }
 
-    /// For each query the first triangle that holds it, or -1.
+    /// For each query, the first triangle that contains it, or -1.
     fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
@@ -62,7 +62,7 @@ impl Locator2 {
         })
     }
 
-    /// The nearest vertex to each query; of a Delaunay triangulation.
+    /// The nearest vertex to each query, in a Delaunay triangulation.
     fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }
@@ -76,7 +76,7 @@ impl Locator2 {
     ) -> PyResult<Column<i32>> {
         let end = |p: &PyReadonlyArray1<'_, f64>| {
             let pair = p.as_slice().ok().and_then(|p| p.try_into().ok());
-            pair.ok_or_else(|| raise(py, &Error::Shape("an end needs two coordinates".into())))
+            pair.ok_or_else(|| raise(py, &Error::Shape("an end must have two coordinates".into())))
         };
         let (a, b) = (end(&a)?, end(&b)?);
         let met = self
@@ -98,10 +98,7 @@ impl Locator2 {
     }
 
     /// Clough-Tocher interpolation: values, gradients or Hessians.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the door takes arrays one by one"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "Python passes arrays one by one")]
     fn clough_tocher(
         &self,
         py: Python<'_>,
@@ -134,7 +131,7 @@ impl Locator2 {
         corner_weights_of(py, &self.0, &xi, barrier.as_ref(), workers)
     }
 
-    /// The weights of natural neighbours.
+    /// The weights of natural neighbors.
     fn natural(
         &self,
         py: Python<'_>,
@@ -146,11 +143,8 @@ impl Locator2 {
         natural_of(py, &self.0, kind, &xi, barrier.as_ref(), workers)
     }
 
-    /// Natural neighbour interpolation: values, gradients or Hessians.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the door takes arrays one by one"
-    )]
+    /// Natural neighbor interpolation: values, gradients or Hessians.
+    #[expect(clippy::too_many_arguments, reason = "Python passes arrays one by one")]
     fn natural_values(
         &self,
         py: Python<'_>,
@@ -173,13 +167,13 @@ impl Locator2 {
         smooth_of(py, &self.0, Some(kind), given)
     }
 
-    /// The weights of all other vertices, for each.
+    /// For each vertex, the weights of the others.
     fn leave_one_out(&self, py: Python<'_>, kind: &str, workers: usize) -> PyResult<WeightRows> {
         leave_one_out_of(py, &self.0, kind, workers)
     }
 }
 
-/// For each query the first triangle that holds it, or -1.
+/// For each query, the first triangle that contains it, or -1.
 #[pyfunction]
 pub fn find_simplex2(
     py: Python<'_>,

@@ -9,10 +9,10 @@ use crate::arrays::{Column, Table, column, shaped};
 use crate::interpolate::{NaturalWeights, Points};
 use crate::locator::Space;
 
-/// Where queries lie among tetrahedra.
+/// Locations of queries in tetrahedra.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Location3 {
-    /// The tetrahedron that holds each query, -1 outside, (q,).
+    /// The tetrahedron that contains each query, -1 outside, (q,).
     pub simplex: Column<i32>,
     /// Weights of its corners, NaN outside, (q, 4).
     pub weights: Table<f64>,
@@ -24,7 +24,7 @@ pub struct Location3 {
     pub shares: Table<f64>,
 }
 
-/// A triangulation in space for many calls.
+/// A 3-D triangulation that is kept for many calls.
 #[pyclass(frozen, module = "delone._core")]
 pub struct Locator3(Space);
 
@@ -39,7 +39,7 @@ impl Locator3 {
         Space::new(&points, &simplices, &neighbors, Kept::of).map(Self)
     }
 
-    /// For each query the first tetrahedron that holds it, or -1.
+    /// For each query, the first tetrahedron that contains it, or -1.
     fn find(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, find)
     }
@@ -68,7 +68,7 @@ impl Locator3 {
         })
     }
 
-    /// Laplace weights of natural neighbours, as compressed rows, and the tetrahedra of queries.
+    /// Laplace weights of natural neighbors, as compressed rows, and the tetrahedra of queries.
     fn laplace(&self, py: Python<'_>, xi: Points<'_>, workers: usize) -> PyResult<NaturalWeights> {
         let ((found, simplex), _) = self.0.batch(&xi, workers, natural)?;
         Ok(NaturalWeights {
@@ -80,7 +80,7 @@ impl Locator3 {
         })
     }
 
-    /// The nearest vertex to each query; of a Delaunay triangulation.
+    /// The nearest vertex to each query, in a Delaunay triangulation.
     fn nearest(&self, xi: Points<'_>, workers: usize) -> PyResult<Column<i32>> {
         self.0.column(&xi, workers, nearest)
     }

@@ -1,4 +1,4 @@
-//! Triangulations for many calls, of either dimension: what `Locator2` and `Locator3` have in common.
+//! Triangulations that are kept for many calls: the common part of `Locator2` and `Locator3`.
 
 use delone_core::arrays::Given;
 use delone_core::error::Result;
@@ -13,7 +13,7 @@ use crate::errors::raise;
 use crate::given::{Held, answered, checked};
 use crate::signals::watched;
 
-/// Arrays, which never change, and what the core keeps for them, such as a tree of starts.
+/// Arrays that never change, and the core's index over them, such as a tree of starting points.
 pub struct Tiling<K, const D: usize, const N: usize> {
     pub held: Held,
     kept: K,
@@ -25,7 +25,7 @@ pub type Plane = Tiling<locate::Kept, 2, 3>;
 pub type Space = Tiling<locate3::Kept, 3, 4>;
 
 impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
-    /// Checks the arrays and makes what is kept for them.
+    /// Checks the arrays and builds the index.
     pub fn new(
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
@@ -41,7 +41,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         })
     }
 
-    /// Calls `work` with a locator for `count` queries, without the GIL unless they are few.
+    /// Calls `work` with a locator for `count` queries, without the GIL unless there are few.
     pub fn run<T: Send>(
         &self,
         py: Python<'_>,
@@ -55,7 +55,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         })
     }
 
-    /// Calls `work` with a batch of queries; gives their number, too.
+    /// Calls `work` with a batch of queries; also returns their number.
     pub fn batch<T: Send>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
@@ -75,7 +75,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         Ok((found, queries.len()))
     }
 
-    /// Calls `work`, which has one number for each query.
+    /// Calls `work`, which returns one number per query.
     pub fn column<T: Element + Send>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,

@@ -1,4 +1,4 @@
-//! What is measured on simplices: edges and faces, centers, sizes, shapes.
+//! Measures of simplices: edges and faces, centers, sizes, shapes.
 
 use delone_core::error::Result;
 use delone_core::measure;
@@ -68,7 +68,7 @@ pub fn faces3(
     table(py, found)
 }
 
-/// The neighbors of each vertex along edges, as `edges2` and `edges3` give them: `(indptr, indices)`.
+/// The neighbors of each vertex along the edges of `edges2` or `edges3`: `(indptr, indices)`.
 #[pyfunction]
 pub fn around(
     py: Python<'_>,
@@ -80,7 +80,7 @@ pub fn around(
     Ok((column(py, starts), column(py, found)))
 }
 
-/// What the core measures on the simplices of points.
+/// Calls a measure of the core on simplices.
 fn measured<T: Send, const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
@@ -220,7 +220,7 @@ pub fn dihedral_angles3(
     table(py, found)
 }
 
-/// Which triangles have an angle below a bound, given by the square of its cosine: 1, else 0.
+/// 1 for triangles with an angle below a bound, given by its squared cosine; else 0.
 #[pyfunction]
 pub fn below2(
     py: Python<'_>,

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Column, column, rows};
 use crate::errors::{detached, raise};
 
-/// One sign a row of `M` arrays of `D`-dimensional points.
+/// One sign per row of `M` arrays of `D`-dimensional points.
 fn signs<const D: usize, const M: usize>(
     py: Python<'_>,
     arguments: [&PyReadonlyArray2<'_, f64>; M],
@@ -35,7 +35,7 @@ fn signs<const D: usize, const M: usize>(
     Ok(column(py, signs))
 }
 
-/// Signs of the turn a, b, c.
+/// Orientation signs of the triangles a, b, c.
 #[pyfunction]
 pub fn orient2d(
     py: Python<'_>,
@@ -46,7 +46,7 @@ pub fn orient2d(
     signs(py, [&a, &b, &c], |[a, b, c]| exact::orient2d(a, b, c))
 }
 
-/// Signs of d against the circle a, b, c.
+/// Signs of d relative to the circle through a, b, c.
 #[pyfunction]
 pub fn incircle(
     py: Python<'_>,
@@ -64,7 +64,7 @@ pub fn incircle(
     signs(py, [&a, &b, &c, &d], |[a, b, c, d]| sign(a, b, c, d))
 }
 
-/// Signs of the volume a, b, c, d.
+/// Orientation signs of the tetrahedra a, b, c, d.
 #[pyfunction]
 pub fn orient3d(
     py: Python<'_>,
@@ -78,7 +78,7 @@ pub fn orient3d(
     })
 }
 
-/// Signs of e against the sphere a, b, c, d.
+/// Signs of e relative to the sphere through a, b, c, d.
 #[pyfunction]
 pub fn insphere(
     py: Python<'_>,

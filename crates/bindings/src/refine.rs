@@ -12,7 +12,7 @@ use crate::errors::raise;
 use crate::given::pairs;
 use crate::signals::watched;
 
-/// A vector of one entry for each of `n` things.
+/// A vector that must have `n` entries.
 fn each<'a, T: Element>(
     array: &'a PyReadonlyArray1<'_, T>,
     n: usize,
@@ -36,13 +36,13 @@ type Given<'py> = (
     PyReadonlyArray1<'py, i32>,
 );
 
-/// Least time between two calls of `progress`.
+/// Minimum time between two calls of `progress`.
 const BETWEEN: Duration = Duration::from_millis(100);
 
 /// A refined triangulation of the hull.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct RefinedMesh {
-    /// Vertices that were added; they come behind those given, (a, 2).
+    /// Added vertices; they follow the input vertices, (a, 2).
     pub added: Table<f64>,
     /// The line that each of these lies on, or -1, (a,).
     pub on: Column<i32>,
@@ -54,20 +54,20 @@ pub struct RefinedMesh {
     pub sides: Table<i32>,
     /// The label of each triangle, -1 outside of the domain, (m,).
     pub labels: Column<i32>,
-    /// The number of the needle that each triangle is left in, or -1, (m,).
+    /// The number of the unrefined needle that contains each triangle, or -1, (m,).
     pub needles: Column<i32>,
-    /// How many vertices were added on segments.
+    /// Number of vertices added on segments.
     pub for_segments: usize,
-    /// How many were added inside for angles.
+    /// Number of vertices added inside for angles.
     pub for_angles: usize,
-    /// How many were added inside for sizes.
+    /// Number of vertices added inside for sizes.
     pub for_sizes: usize,
-    /// Whether the limit on vertices ended the work.
+    /// Whether the limit on vertices was reached.
     pub exhausted: bool,
 }
 
-/// A refined triangulation. `progress` is called with the number of vertices added and the
-/// smallest angle now.
+/// Refines a triangulation. `progress` is called with the number of added vertices and the current
+/// smallest angle.
 #[pyfunction]
 #[pyo3(signature = (points, simplices, labels, areas, segments, frozen, min_angle, max_vertices,
                     lines=None, circles=false, sizes_yield=false, progress=None))]
@@ -127,31 +127,31 @@ pub fn refine2<'py>(
         })
     };
     let task = task().map_err(|e| raise(py, &e))?;
-    let mut told = Instant::now();
-    let mut refused = None;
-    let mut tell = |added: usize, smallest: &mut dyn FnMut() -> f64| -> Result<()> {
+    let mut called = Instant::now();
+    let mut failure = None;
+    let mut notify = |added: usize, smallest: &mut dyn FnMut() -> f64| -> Result<()> {
         let Some(progress) = &progress else {
             return Ok(());
         };
-        if told.elapsed() < BETWEEN {
+        if called.elapsed() < BETWEEN {
             return Ok(());
         }
         let angle = smallest();
-        let answer = Python::attach(|py| progress.call1(py, (added, angle)).map(|_| ()));
-        told = Instant::now();
-        answer.map_err(|error| {
-            refused = Some(error);
+        let result = Python::attach(|py| progress.call1(py, (added, angle)).map(|_| ()));
+        called = Instant::now();
+        result.map_err(|error| {
+            failure = Some(error);
             Error::Interrupted
         })
     };
-    let outcome = watched(py, |watch| refine_telling(task, watch, &mut tell));
-    if let Some(error) = refused {
+    let outcome = watched(py, |watch| refine_telling(task, watch, &mut notify));
+    if let Some(error) = failure {
         return Err(error);
     }
     arrays_of(py, outcome?)
 }
 
-/// The arrays, as Python has them.
+/// The result as Python arrays.
 fn arrays_of(py: Python<'_>, made: Refined) -> PyResult<RefinedMesh> {
     Ok(RefinedMesh {
         added: table(py, made.added)?,
@@ -168,19 +168,19 @@ fn arrays_of(py: Python<'_>, made: Refined) -> PyResult<RefinedMesh> {
     })
 }
 
-/// Triangles whose angles are known to be small, or large, or not known.
+/// Triangles with small, extreme or unknown angles.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct JudgedTriangles {
     /// Those with an angle below the bound, (k,).
     pub below: Column<i32>,
-    /// Those among which the smallest and the largest angles are, (e,).
+    /// Those that include the smallest and the largest angle, (e,).
     pub extremes: Column<i32>,
     /// Those that are beyond the range of doubles, (b,).
     pub beyond: Column<i32>,
 }
 
-/// The triangles with an angle below a bound, given by its squared cosine; those among which the
-/// smallest and the largest angles are; and those that are beyond the range of doubles.
+/// The triangles with an angle below a bound, given by its squared cosine; those that include the
+/// smallest and the largest angle; and those beyond the range of doubles.
 #[pyfunction]
 pub fn judge2<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Regular triangulations of weighted points, and triangulations of periodic sets, as arrays.
+//! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
 use delone_core::error::Error;
 use delone_core::{regular, regular3 as space, voronoi};
@@ -17,13 +17,13 @@ pub struct RegularTriangulation {
     pub simplices: Table<i32>,
     /// The simplex opposite each vertex, -1 outside, (m, d + 1).
     pub neighbors: Table<i32>,
-    /// The rows that are not hidden in their order, where all points lie on one line, (k,).
+    /// Rows that are not hidden, in order along the line, if all points are collinear, (k,).
     pub chain: Column<i32>,
-    /// The row that stands for each point, -1 for one that is hidden, (n,).
+    /// The row that represents each point, -1 for hidden points, (n,).
     pub stands_for: Column<i32>,
 }
 
-/// The regular triangulation of weighted points; a chain of rows where all are in line.
+/// The regular triangulation of weighted 2-D points; a chain of rows if all are collinear.
 #[pyfunction]
 pub fn regular2(
     py: Python<'_>,
@@ -43,7 +43,7 @@ pub fn regular2(
     })
 }
 
-/// The regular triangulation of weighted points of space.
+/// The regular triangulation of weighted 3-D points.
 #[pyfunction]
 pub fn regular3(
     py: Python<'_>,
@@ -70,17 +70,16 @@ pub struct PeriodicTriangulation {
     pub simplices: Table<i32>,
     /// The triangle opposite each vertex, -1 outside, (m, 3).
     pub neighbors: Table<i32>,
-    /// The copies in their order, where all lie on one line, (k,).
+    /// The copies, in order along the line, if all are collinear, (k,).
     pub chain: Column<i32>,
     /// The row of each copy, (c,).
     pub rows: Column<i32>,
-    /// By how many periods each copy is moved, (c, 2).
+    /// The number of periods by which each copy is shifted, (c, 2).
     pub moved: Table<i32>,
 }
 
 /// The Delaunay triangulation (with weights the regular one) of points and their copies one period
-/// away: `taken` has rows and by how
-/// many periods they are moved; vertices number the copies.
+/// away: `taken` has the rows and shifts of the copies; vertices are numbers of copies.
 #[pyfunction]
 pub fn periodic2(
     py: Python<'_>,
@@ -89,23 +88,23 @@ pub fn periodic2(
     periods: [f64; 2],
     taken: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<PeriodicTriangulation> {
-    let (points, heavy, taken) = attached(py, || {
+    let (points, point_weights, taken) = attached(py, || {
         let (points, taken) = (rows(&points, "points")?, rows::<i32, 3>(&taken, "taken")?);
-        let heavy = finite_weights(weights.as_ref(), points.len())?;
+        let point_weights = finite_weights(weights.as_ref(), points.len())?;
         let right = |t: &[i32; 3]| {
             t[0] >= 0
                 && (t[0] as usize) < points.len()
                 && t[1..].iter().all(|k| (-1..=1).contains(k))
         };
         if taken.iter().all(right) {
-            return Ok((points, heavy, taken));
+            return Ok((points, point_weights, taken));
         }
         Err(Error::Shape(
-            "copies are rows and periods of -1, 0 or 1".into(),
+            "copies must be rows and shifts of -1, 0 or 1 periods".into(),
         ))
     })?;
     let made = watched(py, |watch| {
-        regular::periodic(points, heavy, periods, taken, watch)
+        regular::periodic(points, point_weights, periods, taken, watch)
     })?;
     Ok(PeriodicTriangulation {
         simplices: table(py, made.triangles.simplices)?,
@@ -116,8 +115,9 @@ pub fn periodic2(
     })
 }
 
-/// `(centers, shared)`: the centre of each triangle of copies, and whether it is that of the neighbour
-/// across each edge, whose apex is given; corners and apexes are rows and periods, three a triangle.
+/// `(centers, shared)`: the center of each triangle of copies, and whether the neighbor across each
+/// edge, with a given apex, has the same center; corners and apexes are rows and shifts, three per
+/// triangle.
 #[pyfunction]
 pub fn periodic_centers2(
     py: Python<'_>,
@@ -128,9 +128,9 @@ pub fn periodic_centers2(
     apexes: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<(Table<f64>, Table<bool>)> {
-    let (points, heavy, corners, apexes) = attached(py, || {
+    let (points, point_weights, corners, apexes) = attached(py, || {
         let points = rows(&points, "points")?;
-        let heavy = finite_weights(weights.as_ref(), points.len())?;
+        let point_weights = finite_weights(weights.as_ref(), points.len())?;
         let (corners, apexes) = (
             rows::<i32, 3>(&corners, "corners")?,
             rows(&apexes, "apexes")?,
@@ -144,14 +144,22 @@ pub fn periodic_centers2(
             && corners.len() % 3 == 0
             && corners.iter().chain(apexes).all(right)
         {
-            return Ok((points, heavy, corners, apexes));
+            return Ok((points, point_weights, corners, apexes));
         }
         Err(Error::Shape(
-            "copies are rows and small numbers of periods".into(),
+            "copies must be rows and shifts of -9 to 9 periods".into(),
         ))
     })?;
     let (centers, shared) = watched(py, |watch| {
-        voronoi::centers(points, heavy, periods, corners, apexes, workers, watch)
+        voronoi::centers(
+            points,
+            point_weights,
+            periods,
+            corners,
+            apexes,
+            workers,
+            watch,
+        )
     })?;
     Ok((table(py, centers)?, table(py, shared)?))
 }

@@ -1,4 +1,4 @@
-//! Results that Python can make, too: from a file, a pickle, or by other means than the core.
+//! Results that Python can also construct: from a file, from a pickle, or from arrays.
 
 use delone_core::error::{Error, Result};
 use numpy::{Element, PyUntypedArrayMethods};
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Column, Table};
 use crate::given::unequal;
 
-/// Gives a class that has nothing but arrays a constructor, which checks them, and lets it be pickled.
+/// Gives a class that consists of arrays a constructor, which checks them, and pickling.
 macro_rules! made_of_arrays {
     ($name:ident { $($field:ident: $kind:ty),+ $(,)? }) => {
         #[pymethods]
@@ -20,12 +20,12 @@ macro_rules! made_of_arrays {
                 Ok(made)
             }
 
-            /// All arrays, in the order in which the constructor takes them.
+            /// All arrays, in the order of the arguments of the constructor.
             fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
                 pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py).into_any()),+])
             }
 
-            /// What a pickle holds.
+            /// The arguments for unpickling.
             fn __getnewargs__<'py>(
                 &self,
                 py: Python<'py>,
@@ -37,7 +37,7 @@ macro_rules! made_of_arrays {
 }
 pub(crate) use made_of_arrays;
 
-/// Checks that a table has `columns` columns; gives the number of its rows.
+/// Checks that a table has `columns` columns; returns the number of its rows.
 pub fn rows_of<T: Element>(
     py: Python<'_>,
     table: &Table<T>,
@@ -59,7 +59,7 @@ pub fn len_of<T: Element>(py: Python<'_>, column: &Column<T>) -> usize {
     column.bind(py).len()
 }
 
-/// Checks that what belongs together is of the same length.
+/// Checks that pairs of lengths are equal.
 pub fn require_equal(pairs: &[(usize, usize)]) -> Result<()> {
     if pairs.iter().all(|(a, b)| a == b) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! How Ctrl-C reaches a long call that runs without the GIL.
+//! Ctrl-C during long calls that run without the GIL.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,10 +11,10 @@ use pyo3::prelude::*;
 
 use crate::errors::{attached, detached};
 
-/// Least time between two looks at Python's signals: a look takes the GIL.
+/// Minimum time between two checks of Python's signals: a check takes the GIL.
 const BETWEEN: Duration = Duration::from_millis(50);
 
-/// Runs `work` without the GIL under a watch on Python's signals.
+/// Runs `work` without the GIL, with checks of Python's signals.
 pub fn watched<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&Watch) -> Result<T> + Send,
@@ -27,8 +27,8 @@ pub fn watched<T: Send>(
     }
 }
 
-/// The same with the GIL, for what is short as a rule. Threads that `work` starts do not look themselves, as
-/// they could not have the GIL.
+/// The same with the GIL, for calls that are usually short. Threads that `work` starts do not check
+/// signals, because they cannot take the GIL.
 pub fn watched_attached<T>(py: Python<'_>, work: impl FnOnce(&Watch) -> Result<T>) -> PyResult<T> {
     let (signals, own) = (Signals::new(), current().id());
     let stop = || (current().id() == own && signals.stop()) || signals.stopped();
@@ -39,46 +39,46 @@ pub fn watched_attached<T>(py: Python<'_>, work: impl FnOnce(&Watch) -> Result<T
     }
 }
 
-/// Looks at Python's pending signals now and then and remembers that one has come.
+/// Checks Python's pending signals from time to time and remembers if one has arrived.
 struct Signals {
-    looked: Mutex<Instant>,
+    checked: Mutex<Instant>,
     stopped: AtomicBool,
     pending: Mutex<Option<PyErr>>,
 }
 
 impl Signals {
-    /// Nothing has come yet.
+    /// No signal has arrived yet.
     fn new() -> Self {
         Self {
-            looked: Mutex::new(Instant::now()),
+            checked: Mutex::new(Instant::now()),
             stopped: AtomicBool::new(false),
             pending: Mutex::new(None),
         }
     }
 
-    /// Whether the call should end. Where another thread looks at this moment, its look counts.
+    /// Whether the call should end. If another thread is checking at this moment, its check counts.
     fn stop(&self) -> bool {
-        if let Ok(mut looked) = self.looked.try_lock()
-            && looked.elapsed() >= BETWEEN
+        if let Ok(mut checked) = self.checked.try_lock()
+            && checked.elapsed() >= BETWEEN
         {
-            // Python runs handlers on its main thread alone; elsewhere this does nothing.
+            // Python runs handlers only on its main thread; elsewhere this has no effect.
             if let Err(error) = Python::attach(|py| py.check_signals()) {
                 self.stopped.store(true, Ordering::Relaxed);
                 if let Ok(mut pending) = self.pending.lock() {
                     *pending = Some(error);
                 }
             }
-            *looked = Instant::now();
+            *checked = Instant::now();
         }
         self.stopped()
     }
 
-    /// Whether a signal has come that ends the call.
+    /// Whether a signal that ends the call has arrived.
     fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// The exception of the signal that stopped the call, where one did.
+    /// The exception of the signal that stopped the call, if any.
     fn exception(self) -> Option<PyErr> {
         self.pending.into_inner().ok().flatten()
     }

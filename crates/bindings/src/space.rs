@@ -1,4 +1,4 @@
-//! Triangulations of points in space as arrays.
+//! 3-D triangulations as arrays.
 
 use delone_core::delaunay3::triangulate;
 use delone_core::delaunay3::validate::{Findings3, validate};
@@ -11,7 +11,7 @@ use crate::given::checked;
 use crate::signals::watched;
 use crate::triangulation::{Triangulation, seconds};
 
-/// The triangulation of the points as arrays.
+/// The Delaunay triangulation of 3-D points.
 #[pyfunction]
 pub fn triangulate3(
     py: Python<'_>,
@@ -28,7 +28,7 @@ pub fn triangulate3(
     })
 }
 
-/// What is wrong with a triangulation of space; arrays are empty where nothing is.
+/// Faults of a 3-D triangulation; arrays are empty if there are none.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Faults3 {
     /// Tetrahedra that are not positively oriented, (k,).
@@ -41,7 +41,7 @@ pub struct Faults3 {
     pub hull: Table<i32>,
     /// Rows of distinct points that no tetrahedron uses, (k,).
     pub missing: Column<i32>,
-    /// Rows that are used in spite of an earlier row with the same coordinates, (k,).
+    /// Rows that are used although an earlier row has the same coordinates, (k,).
     pub repeats: Column<i32>,
     /// Pairs of tetrahedra that are not locally Delaunay, (k, 2).
     pub delaunay: Table<i32>,
@@ -49,7 +49,7 @@ pub struct Faults3 {
     pub ties: Table<i32>,
 }
 
-/// What is wrong with a triangulation of space.
+/// Returns the faults of a 3-D triangulation.
 #[pyfunction]
 pub fn validate3<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Triangulations as arrays.
+//! 2-D triangulations as arrays.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub fn methods2() -> Vec<&'static str> {
     Method::NAMES.iter().map(|&(name, _)| name).collect()
 }
 
-/// The method of a name.
+/// The method with a given name.
 pub fn method_of(name: &str) -> PyResult<Method> {
     let message = || format!("unknown method {name:?}: one of {:?}", methods2());
     Method::named(name).ok_or_else(|| PyValueError::new_err(message()))
@@ -33,13 +33,13 @@ pub struct Triangulation {
     pub simplices: Table<i32>,
     /// The simplex opposite each vertex, -1 outside, (m, d + 1).
     pub neighbors: Table<i32>,
-    /// Rows that repeat others, and the first of these, (k, 2).
+    /// Rows that repeat earlier rows, and the first of these, (k, 2).
     pub duplicates: Table<i32>,
-    /// Pairs of the name of each stage and its seconds.
+    /// Pairs of stage name and seconds.
     pub stages: Py<PyTuple>,
 }
 
-/// Pairs of names and seconds.
+/// Pairs of stage names and seconds.
 pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> PyResult<Py<PyTuple>> {
     let pairs = stages
         .iter()
@@ -47,7 +47,7 @@ pub fn seconds(py: Python<'_>, stages: &[(&'static str, Duration)]) -> PyResult<
     Ok(PyTuple::new(py, pairs)?.unbind())
 }
 
-/// The triangulation of the points as arrays.
+/// The Delaunay triangulation of 2-D points.
 #[pyfunction]
 pub fn triangulate2(
     py: Python<'_>,
@@ -66,7 +66,7 @@ pub fn triangulate2(
     })
 }
 
-/// What is wrong with a triangulation of the plane; arrays are empty where nothing is.
+/// Faults of a 2-D triangulation; arrays are empty if there are none.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Faults2 {
     /// Triangles that are not counter-clockwise, (k,).
@@ -79,17 +79,17 @@ pub struct Faults2 {
     pub hull: Table<i32>,
     /// Rows of distinct points that no triangle uses, (k,).
     pub missing: Column<i32>,
-    /// Rows that are used in spite of an earlier row with the same coordinates, (k,).
+    /// Rows that are used although an earlier row has the same coordinates, (k,).
     pub repeats: Column<i32>,
     /// Pairs of triangles that are not locally Delaunay, (k, 2).
     pub delaunay: Table<i32>,
     /// Pairs of cocircular triangles that are not canonical, (k, 2).
     pub ties: Table<i32>,
-    /// Numbers of triangles expected and found, (2,), where they differ; otherwise (0,).
+    /// Numbers of triangles expected and found, (2,), if they differ; otherwise (0,).
     pub count: Column<i32>,
 }
 
-/// What is wrong with a triangulation.
+/// Returns the faults of a 2-D triangulation.
 #[pyfunction]
 pub fn validate2<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Voronoi and power diagrams, and polygons cut from them, as arrays.
+//! 2-D Voronoi and power diagrams, and polygons clipped from them, as arrays.
 
 use delone_core::Point2;
 use delone_core::error::{Error, Result};
@@ -14,7 +14,7 @@ use crate::given::{checked, unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
 
-/// A triangulation whose dual is wanted.
+/// The triangulation whose dual is computed.
 pub(crate) fn given<'a, const D: usize, const N: usize>(
     points: &'a PyReadonlyArray2<'_, f64>,
     weights: Option<&'a PyReadonlyArray1<'_, f64>>,
@@ -30,7 +30,7 @@ pub(crate) fn given<'a, const D: usize, const N: usize>(
     })
 }
 
-/// A Voronoi or power diagram of the plane.
+/// A 2-D Voronoi or power diagram.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Diagram2 {
     /// Vertices of cells, (k, 2).
@@ -43,17 +43,17 @@ pub struct Diagram2 {
     pub ends: Table<i32>,
     /// Directions of the rays, (q, 2).
     pub rays: Table<f64>,
-    /// The vertex to which each ray leads beyond the range of doubles, NaN without, (q, 2).
+    /// The vertex beyond the range of doubles at the end of each ray, NaN if none, (q, 2).
     pub beyond: Table<f64>,
     /// The cell of each point, -1 for none, (n,).
     pub region: Column<i32>,
     /// The point of each cell, (c,).
     pub site: Column<i32>,
-    /// Where the entries of each cell begin, and the end, (c + 1,).
+    /// Start of the entries of each cell, and the end, (c + 1,).
     pub region_starts: Column<i32>,
     /// Entries: vertices, counter-clockwise, -1 for an end at infinity, (e,).
     pub region_vertices: Column<i32>,
-    /// Entries: the ridge that leads on from each vertex, (e,).
+    /// Entries: the ridge that starts at each vertex, (e,).
     pub region_ridges: Column<i32>,
 }
 
@@ -120,7 +120,7 @@ struct Lent2<'py> {
 }
 
 impl Lent2<'_> {
-    /// The cells, whose indices have been checked.
+    /// The cells, after a check of their indices.
     fn cells<'a>(&'a self, points: &'a [Point2], weights: &'a [f64]) -> Result<Cells<'a>> {
         let cells = Cells {
             points,
@@ -144,7 +144,7 @@ impl Lent2<'_> {
     }
 }
 
-/// The diagram of a triangulation; of the regular one, where there are weights.
+/// The diagram of a triangulation; with weights, of the regular triangulation.
 #[pyfunction]
 pub fn voronoi2(
     py: Python<'_>,
@@ -173,18 +173,18 @@ pub fn voronoi2(
     })
 }
 
-/// What a box leaves of cells: convex polygons.
+/// Cells clipped to a box: convex polygons.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct ClippedCells2 {
-    /// Where the corners of each cell begin, and the end, (c + 1,).
+    /// Start of the corners of each cell, and the end, (c + 1,).
     pub starts: Column<i32>,
     /// The corners, counter-clockwise, (p, 2).
     pub corners: Table<f64>,
-    /// The ridge along the edge that leads on from each corner, -1 for the box, (p,).
+    /// The ridge along the edge that starts at each corner, -1 for the box, (p,).
     pub ridges: Column<i32>,
 }
 
-/// The cells of a diagram cut to a box.
+/// The cells of a diagram, clipped to a box.
 #[pyfunction]
 pub fn voronoi_clip2(
     py: Python<'_>,
@@ -215,7 +215,7 @@ pub fn voronoi_clip2(
 pub struct CellMeasures2 {
     /// Areas, (c,).
     pub areas: Column<f64>,
-    /// Centers of gravity, (c, 2).
+    /// Centroids, (c, 2).
     pub centroids: Table<f64>,
     /// Perimeters, (c,).
     pub perimeters: Column<f64>,
@@ -248,7 +248,8 @@ pub fn measures2(
     measured(py, made)
 }
 
-/// For each polygon its group of those that no segment comes near, or -1; and the number of groups.
+/// For each polygon its connected group of polygons that no segment comes near, or -1; and the
+/// number of groups.
 #[pyfunction]
 pub fn touched2(
     py: Python<'_>,
@@ -270,27 +271,27 @@ pub fn touched2(
     Ok((column(py, groups), count))
 }
 
-/// What an outline leaves of polygons.
+/// Polygons clipped to an outline.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct CellPieces2 {
-    /// For each polygon -1 (doubtful), 0 (nothing), 1 (all) or 2 (parts), (k,).
+    /// For each polygon what is left: -1 (unknown), 0 (nothing), 1 (all) or 2 (parts), (k,).
     pub left: Column<i8>,
-    /// Where the parts of each polygon begin, and the end, (k + 1,).
+    /// Start of the parts of each polygon, and the end, (k + 1,).
     pub cells: Column<i64>,
-    /// Where the rings of each part begin, and the end.
+    /// Start of the rings of each part, and the end.
     pub parts: Column<i64>,
-    /// Where the corners of each ring begin, and the end.
+    /// Start of the corners of each ring, and the end.
     pub rings: Column<i64>,
     /// The corners, (p, 2).
     pub points: Table<f64>,
-    /// The ridge along the edge that leads on from each corner, negative for none, (p,).
+    /// The ridge along the edge that starts at each corner, negative for none, (p,).
     pub ridges: Column<i32>,
-    /// Measures of what is left of each polygon.
+    /// Measures of each clipped polygon.
     pub measures: Py<CellMeasures2>,
 }
 
-/// What an outline, rings with their inside to the left, leaves of some of the polygons: those of
-/// `rows`, of whose first corner `inside` tells whether the outline has it.
+/// Clips the polygons `rows` to an outline: rings with their inside to the left. `inside` is
+/// whether the outline contains the first corner of each of these polygons.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn pieces2<'py>(

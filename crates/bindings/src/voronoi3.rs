@@ -1,4 +1,4 @@
-//! Voronoi and power diagrams of space, their measures, and cells cut to a polyhedron, as arrays.
+//! 3-D Voronoi and power diagrams, their measures, and cells clipped to a polyhedron, as arrays.
 
 use delone_core::Point3;
 use delone_core::error::Result;
@@ -15,7 +15,7 @@ use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
 use crate::signals::watched;
 use crate::voronoi::given;
 
-/// A Voronoi or power diagram of space.
+/// A 3-D Voronoi or power diagram.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct Diagram3 {
     /// Vertices of cells, (k, 3).
@@ -24,9 +24,9 @@ pub struct Diagram3 {
     pub simplex_vertex: Column<i32>,
     /// The two sites of each ridge, (r, 2).
     pub sites: Table<i32>,
-    /// Where the entries of each ridge begin, and the end, (r + 1,).
+    /// Start of the entries of each ridge, and the end, (r + 1,).
     pub ridge_starts: Column<i32>,
-    /// Entries: a vertex, or ~i for ray i, with which an open ridge begins and ends.
+    /// Entries: a vertex, or ~i for ray i, at both ends of an open ridge.
     pub ridge_entries: Column<i32>,
     /// Directions of the rays, (q, 3).
     pub rays: Table<f64>,
@@ -34,11 +34,11 @@ pub struct Diagram3 {
     pub region: Column<i32>,
     /// The point of each cell, (c,).
     pub site: Column<i32>,
-    /// Where the vertices of each cell begin, and the end, (c + 1,).
+    /// Start of the vertices of each cell, and the end, (c + 1,).
     pub region_starts: Column<i32>,
-    /// Vertices of cells, ascending, -1 first where a cell is open.
+    /// Vertices of cells, ascending, -1 first if a cell is unbounded.
     pub region_vertices: Column<i32>,
-    /// Where the ridges of each cell begin, and the end, (c + 1,).
+    /// Start of the ridges of each cell, and the end, (c + 1,).
     pub region_ridge_starts: Column<i32>,
     /// Ridges of cells, ascending.
     pub region_ridges: Column<i32>,
@@ -97,7 +97,7 @@ struct Lent3<'py> {
 }
 
 impl Lent3<'_> {
-    /// The cells, whose indices have been checked.
+    /// The cells, after a check of their indices.
     fn cells<'a>(&'a self, points: &'a [Point3], weights: &'a [f64]) -> Result<Cells<'a>> {
         let cells = Cells {
             points,
@@ -125,7 +125,7 @@ impl Lent3<'_> {
     }
 }
 
-/// The diagram of a triangulation; of the regular one, where there are weights.
+/// The diagram of a triangulation; with weights, of the regular triangulation.
 #[pyfunction]
 pub fn voronoi3(
     py: Python<'_>,
@@ -164,7 +164,7 @@ pub struct CellMeasures3 {
     pub volumes: Column<f64>,
     /// Areas of surfaces, (c,).
     pub areas: Column<f64>,
-    /// Centers of gravity, (c, 3).
+    /// Centroids, (c, 3).
     pub centroids: Table<f64>,
 }
 
@@ -195,20 +195,20 @@ pub fn measures3(
     measured(py, made)
 }
 
-/// What a convex polyhedron leaves of cells.
+/// Cells clipped to a convex polyhedron.
 #[pyclass(frozen, get_all, module = "delone._core")]
 pub struct ClippedCells3 {
-    /// Measures of what is left of each cell and each ridge.
+    /// Measures of each clipped cell and ridge.
     pub measures: Py<CellMeasures3>,
-    /// The cells that have been cut, (b,).
+    /// The cells that were clipped, (b,).
     pub cut: Column<i32>,
-    /// Where the corners of each of these begin, and the end, (b + 1,).
+    /// Start of the corners of each of these, and the end, (b + 1,).
     pub point_starts: Column<i32>,
     /// The corners, (p, 3).
     pub points: Table<f64>,
-    /// Where the faces of each of these begin, and the end, (b + 1,).
+    /// Start of the faces of each of these, and the end, (b + 1,).
     pub face_starts: Column<i32>,
-    /// Where the corners of each face begin, and the end, (f + 1,).
+    /// Start of the corners of each face, and the end, (f + 1,).
     pub corner_starts: Column<i32>,
     /// The corners of faces, as rows of `points`, counter-clockwise from outside.
     pub corners: Column<i32>,
@@ -216,8 +216,8 @@ pub struct ClippedCells3 {
     pub labels: Column<i32>,
 }
 
-/// The cells of a diagram cut to a convex polyhedron, given by corners, faces (counter-clockwise
-/// from outside, as compressed rows) and the planes n . x <= c of these.
+/// The cells of a diagram, clipped to a convex polyhedron given by corners, faces
+/// (counter-clockwise from outside, as compressed rows) and the planes n . x <= c of the faces.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "arrays of two things")]
 pub fn voronoi_clip3<'py>(
@@ -244,8 +244,8 @@ pub fn voronoi_clip3<'py>(
         let full = clip.starts.windows(2).all(|w| w[1] - w[0] > 2);
         if full && clip.starts.len() == clip.planes.len() + 1 {
             let points = rows(&points, "points")?;
-            let heavy = weights_of(weights.as_ref(), points.len())?;
-            return Ok((lent.cells(points, heavy)?, clip));
+            let point_weights = weights_of(weights.as_ref(), points.len())?;
+            return Ok((lent.cells(points, point_weights)?, clip));
         }
         Err(unequal())
     })?;

@@ -1,8 +1,8 @@
 """Constrained triangulations of segments, polygons and lines.
 
-`delaunay` has the class, `segmented` its state, `segments` the report, `regions` and `coverage`
-areas and holes, `editing` changes, `validation` the proof; `polygons` and `geodata` take
-geometries.
+`delaunay` has the class, `segmented` its state, `segments` the input report, `regions` and
+`coverage` find regions and holes, `editing` applies changes, `validation` proves the result;
+`polygons` and `geodata` read geometries.
 """
 
 from delone.constrained.delaunay import ConstrainedDelaunay

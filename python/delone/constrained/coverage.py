@@ -1,9 +1,9 @@
-"""Which polygons have which areas inside.
+"""Which polygon contains each region.
 
-A polygon's rings change its inside to its outside wherever an odd number of them runs. So one walk
-over the areas between segments, from the outside in, finds the polygons of each, without any
-coordinate: crossings and overlaps of rings are subsegments by then, and what rounding bent is still
-closed.
+Crossing an odd number of a polygon's rings switches between its inside and its outside. So one
+traversal of the regions between segments, from the outside in, finds the polygons that contain each
+region, without using coordinates: crossings and overlaps of rings are subsegments by then, and
+rings that rounding has bent are still closed.
 """
 
 from __future__ import annotations
@@ -28,22 +28,22 @@ __all__ = ["closed_rings", "first_polygon"]
 
 
 def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
-    """Tell which rows of segments are sides of rings that are closed.
+    """Return which rows of segments are sides of closed rings.
 
     Parameters
     ----------
     ends : ndarray of int32, shape (s, 2)
-        Vertices of the segments, of equal points always the same one.
+        Vertices of the segments; equal points have the same vertex.
     geometries : ndarray of int32, shape (s,)
-        The geometry of each.
+        The geometry of each segment.
     rings : ndarray of bool, shape (s,)
-        Whether it was made as the side of a ring.
+        Whether it was created as the side of a ring.
 
     Returns
     -------
     ndarray of bool, shape (s,)
-        False for all sides of a geometry one of whose vertices has an odd number of them: a side is
-        missing there, and the geometry has no inside.
+        False for all sides of a geometry if an odd number of them meet at some vertex: then a side
+        is missing, and the geometry has no inside.
 
     Examples
     --------
@@ -57,10 +57,10 @@ def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
         return rings
     count = int(ends.max()) + 1
     keys = geometries[rings, None].astype(np.int64) * count + ends[rings]
-    places, sides = np.unique(keys, return_counts=True)
-    torn = np.zeros(int(geometries.max()) + 1, dtype=bool)
-    torn[places[sides % 2 == 1] // count] = True
-    closed: Bools = rings & ~torn[geometries]
+    vertices, sides = np.unique(keys, return_counts=True)
+    is_open = np.zeros(int(geometries.max()) + 1, dtype=bool)
+    is_open[vertices[sides % 2 == 1] // count] = True
+    closed: Bools = rings & ~is_open[geometries]
     return closed
 
 
@@ -71,14 +71,14 @@ def first_polygon(
     component: Indices,
     sides: Bools,
 ) -> Indices:
-    """Return for each component the first polygon that has it inside.
+    """Return the first polygon that contains each component.
 
     Parameters
     ----------
     made : ConstrainedTriangulation
         Triangles of the whole hull, and subsegments with their rows.
     npoints : int
-        Number of points, added ones included.
+        Number of points, including added ones.
     geometries : ndarray of int32, shape (s,)
         The geometry of each row of segments.
     component : ndarray of int32, shape (m,)
@@ -89,12 +89,12 @@ def first_polygon(
     Returns
     -------
     ndarray of int32, shape (c,)
-        The smallest number of a geometry by whose rings, by the even-odd rule, the component is
-        inside; -1 where there is none.
+        The smallest number of a geometry whose rings, by the even-odd rule, contain the component;
+        -1 if there is none.
 
     Notes
     -----
-    O(m log m), and for each component as much as polygons overlap in it.
+    O(m log m), plus for each component time in proportion to the polygons that overlap in it.
     """
     count = int(component.max(initial=-1)) + 1
     walls = _walls(made, npoints, component, count)
@@ -119,7 +119,7 @@ def first_polygon(
 def _polygons_of_subsegments(
     made: ConstrainedTriangulation, geometries: Indices, sides: Bools, wanted: Rows
 ) -> dict[int, frozenset[int]]:
-    """The polygons of which an odd number of sides covers some subsegments."""
+    """Return the polygons that cover each given subsegment with an odd number of sides."""
     source, start = made.source, made.source_start
     crossed = {}
     for at in wanted[wanted >= 0].tolist():
@@ -132,10 +132,10 @@ def _polygons_of_subsegments(
 
 
 def _walls(made: ConstrainedTriangulation, npoints: int, component: Indices, outside: int) -> Rows:
-    """Return pairs of adjacent components, each once, and a subsegment between them."""
+    """Return each pair of adjacent components once, with a subsegment between them."""
     simplices, neighbors, constrained = made.simplices, made.neighbors, made.constrained
     triangle, corner = np.nonzero(constrained)
-    # The rim of the hull is a wall to the outside, with or without a subsegment.
+    # An edge of the hull separates from the outside, whether it is a subsegment or not.
     rim = component[np.nonzero((neighbors < 0) & ~constrained)[0]]
     other = neighbors[triangle, corner]
     tail, head = (simplices[triangle, (corner + i) % 3] for i in (1, 2))

@@ -1,8 +1,8 @@
-"""The class ConstrainedDelaunay: a triangulation that has given segments among its edges.
+"""The class ConstrainedDelaunay: a triangulation whose edges include given segments.
 
-The core makes the triangles of the whole convex hull; `segmented` holds them and says which of
-them are kept. Here are construction, search, proof and files. Walks go through the whole, so that
-they pass through holes and around bays.
+The core triangulates the whole convex hull; `segmented` holds these triangles and determines which
+of them are kept. This module has construction, queries, validation and files. Walks use all
+triangles of the hull, so they pass through holes and bays.
 
 Chew, L. P. (1989), "Constrained Delaunay triangulations", Algorithmica 4, 97-108.
 """
@@ -43,96 +43,97 @@ if TYPE_CHECKING:
 
 __all__ = ["ConstrainedDelaunay"]
 
-# What vertices a call may add unless it says otherwise: about 1.5 GiB of arrays.
+# How many vertices a call may add by default: about 1.5 GiB of arrays.
 _MOST_ADDED = 4_000_000
-# The third is for polygons alone.
+# The third is for polygons only.
 _BOUNDARIES = ("hull", "outline", "polygons")
 _CROSSINGS = ("raise", "split")
 
 
 class ConstrainedDelaunay(Segmented):
-    """The constrained Delaunay triangulation of points and segments in the plane.
+    """Constrained Delaunay triangulation of points and segments in 2-D.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
         Finite coordinates, as for `Delaunay`.
     segments : array_like of int, shape (s, 2)
-        Edges that the triangulation must have, as pairs of rows of `points`. They may repeat,
-        overlap, have no length or run through points; `report` says which do. Empty is fine.
+        Edges that the triangulation must contain, as pairs of rows of `points`. They may repeat,
+        overlap, have zero length or pass through points; `report` lists those that do. May be
+        empty.
     holes : array_like, shape (h, 2), optional
-        Seeds of holes: the triangles of the area around each are removed, up to the segments.
+        Seeds of holes: the region around each seed, bounded by segments, is removed.
     regions : array_like, shape (k, 2) or (k, 3), optional
-        Seeds of regions: the triangles of the area around each get its label in `region`, the third
-        column (an integer of at least 0) or else its row. Without seeds, areas are numbered from 0.
+        Seeds of regions: the triangles of the region around each seed get its label in `region`.
+        The label is the third column (an integer of at least 0), or the row of the seed. Without
+        seeds, regions are numbered from 0.
     boundary : {"hull", "outline"}, optional
-        What is triangulated: the convex hull, or only what cannot be reached from outside of it
+        What is triangulated: the convex hull, or only the part that cannot be reached from outside
         without crossing a segment.
     crossing : {"raise", "split"}, optional
-        Whether segments that cross are an error, or get a vertex where they do.
+        Whether crossing segments raise an error, or are split at a new vertex.
     conforming : bool, optional
-        Add vertices on segments until the circle over each subsegment holds no vertex in its
-        inside, so that each is an edge of a plain Delaunay triangulation of all vertices. (On a
-        circle with other vertices it may not be that of the canonical one.)
+        Add vertices on segments until the diametral circle of each subsegment has no vertex inside,
+        so that each subsegment is an edge of some unconstrained Delaunay triangulation of all
+        vertices. (If there are other vertices on the circle, that may not be the canonical one.)
     max_points : int, optional
-        How many vertices may be added; by default 4,000,000. It bounds the pairs of crossing
-        segments that are looked at, too, at 8 for each vertex and a million more.
+        Maximum number of added vertices; by default 4,000,000. It also limits the number of pairs
+        of crossing segments that are examined: 8 per vertex, plus a million.
     method, workers, planar : optional
-        As for `Delaunay`. The answer is the same.
+        As for `Delaunay`. The result does not depend on `method` and `workers`.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n + nadded, 2)
-        The rows that were given, then the vertices that were added.
+        The input rows, then the added vertices.
     simplices : ndarray of int32, shape (m, 3)
-        The triangles that are kept, as rows of `points`, counter-clockwise.
+        The triangles, without removed ones, as rows of `points`, counter-clockwise.
     neighbors : ndarray of int32, shape (m, 3)
-        ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1
-        where there is none, or it was removed.
+        ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1 if
+        there is none, or it was removed.
     constrained : ndarray of bool, shape (m, 3)
         Whether the edge opposite vertex k of triangle t is part of a segment.
     segments : ndarray of int32, shape (q, 2)
-        The subsegments: the edges into which points and crossings divide the segments.
+        The subsegments: the edges into which points and crossings split the segments.
 
     Raises
     ------
     CrossingSegmentsError
-        Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` names all pairs of rows,
+        Segments cross, and `crossing` is ``"raise"``; ``error.pairs`` has all pairs of rows, and
         ``error.points`` where they cross.
     BudgetExceededError
-        More than `max_points` would have to be added, or more segments cross than it allows for;
-        ``error.found`` of them were found.
+        More than `max_points` vertices would have to be added, or more segments cross than it
+        allows; ``error.found`` is the number found.
     InputError
-        A segment has an end that is no row of `points`, a label is no integer of at least 0, or an
-        option is none of its choices. The message names the rows.
+        A segment refers to a row that `points` does not have, a label is not an integer of at least
+        0, or an option is not one of its choices. The message names the rows.
     DegenerateInputError, NonFiniteError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
-        As for `Delaunay`; seeds must be finite, too.
+        As for `Delaunay`; seeds must be finite as well.
 
     Notes
     -----
-    Each edge that is no subsegment is locally Delaunay: no vertex that is visible from its
-    triangles lies inside their circles (D. T. Lee and A. K. Lin, "Generalized Delaunay
-    triangulation for planar graphs", 1986; Chew 1989). Ties between cocircular points go by
-    coordinates as in `Delaunay`, so that one set of points and segments has one triangulation,
-    however its rows are ordered, and no segments give the triangles of `Delaunay`.
+    Each edge that is not a subsegment is locally Delaunay: no vertex that is visible from its
+    triangles lies inside their circumcircles (D. T. Lee and A. K. Lin, "Generalized Delaunay
+    triangulation for planar graphs", 1986; Chew 1989). Ties between cocircular points are broken by
+    coordinates as in `Delaunay`, so one set of points and segments has one triangulation, whatever
+    the order of the rows, and without segments the triangles are those of `Delaunay`.
 
-    A crossing that is split gets the exact intersection of the two rows given, rounded once to the
-    nearest doubles, and vertices that ``conforming=True`` adds are rounded as well. Segments then
-    run through rounded vertices, and may bend there by that much; the triangulation is always
-    valid.
+    A crossing is split at the exact intersection of the two input rows, rounded once to the nearest
+    doubles; vertices that ``conforming=True`` adds are rounded as well. Segments then pass through
+    rounded vertices and may bend there by the rounding error; the triangulation is always valid.
 
-    To conform, subsegments are halved, or near corners cut at powers of two, so that segments that
-    meet at sharp angles stop disturbing each other (J. Ruppert, "A Delaunay refinement algorithm
-    for quality 2-dimensional mesh generation", 1995). Subsegments between neighbouring doubles
-    cannot be cut and stay as they are.
+    To make the triangulation conforming, subsegments are split in half, or near corners at powers
+    of two, so that segments that meet at sharp angles stop encroaching upon each other (J. Ruppert,
+    "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995). Subsegments
+    between adjacent doubles cannot be split and stay as they are.
 
-    Two segments that cross where a point of the input lies do not count as crossing: both run
-    through it. Rows of `points` that lie in removed triangles only are no corners of any triangle.
-    A seed that lies on a segment or outside has no effect; `report` names it.
+    Two segments that meet at an input point do not count as crossing: both pass through it. Rows of
+    `points` that are vertices only of removed triangles belong to no triangle. A seed that lies on
+    a segment or outside has no effect; `report` lists it.
 
-    All arrays are read-only, attributes cannot be set. What is not listed above, such as `region`
-    and `report`, is computed on first use and kept; holes and ``boundary="outline"`` are found at
-    once, in linear time.
+    All arrays are read-only, and attributes cannot be set. Attributes that are not listed above,
+    such as `region` and `report`, are computed on first use and kept; holes and
+    ``boundary="outline"`` are applied immediately, in linear time.
 
     Examples
     --------
@@ -173,13 +174,13 @@ class ConstrainedDelaunay(Segmented):
             max_points=_budget(max_points),
             method=as_choice(method, tuple(_core.methods2()), name="method"),
             workers=workers,
-            labelled=False,
+            labeled=False,
         )
         own = own_copy(points)
         warn_of_degrees(points, own, planar=planar)
         rows = _own(as_segments(segments, len(own)), segments)
         given = _given(rows, Origin.of_arrays(len(rows)), holes, regions)
-        self._compute(own, given, options._replace(labelled=len(given.regions) > 0))
+        self._compute(own, given, options._replace(labeled=len(given.regions) > 0))
 
     @classmethod
     def _of_geometries(
@@ -192,18 +193,18 @@ class ConstrainedDelaunay(Segmented):
         regions: ArrayLike | None = None,
         **choices: Any,
     ) -> Self:
-        """Triangulate arrays of ours, with the origin of each segment."""
+        """Triangulate private arrays, with the origin of each segment."""
         as_choice(choices["boundary"], _BOUNDARIES, name="boundary")
         as_choice(choices["crossing"], _CROSSINGS, name="crossing")
         as_choice(choices["method"], tuple(_core.methods2()), name="method")
         choices["max_points"] = _budget(choices["max_points"])
         mesh = cls.__new__(cls)
         given = _given(segments, origin, holes, regions)
-        mesh._compute(points, given, Options(labelled=len(given.regions) > 0, **choices))
+        mesh._compute(points, given, Options(labeled=len(given.regions) > 0, **choices))
         return mesh
 
     def _compute(self, points: Floats, given: Given, options: Options) -> None:
-        """Let the core triangulate, and hold what it made beside what was given."""
+        """Let the core triangulate, and store the result with the input."""
         try:
             made, stages = _core.constrained2(
                 points,
@@ -222,25 +223,24 @@ class ConstrainedDelaunay(Segmented):
         self._set(points, given, made, options, dict(stages))
 
     def triangles_along(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """Return the triangles that a straight way meets, in order.
+        """Return the triangles that a straight line meets, in order.
 
         Parameters
         ----------
         a, b : array_like, shape (2,)
-            Where the way begins and where it ends, outside or inside.
+            Start and end of the line, inside or outside.
 
         Returns
         -------
         ndarray of int32, shape (k,)
-            Triangles that have more than a point of the way, in their order from a to b. Where it
-            leads through a hole or outside, nothing stands for that part. Where it runs along an
-            edge, the triangle to the left of it, unless there is none; a way without length is a
-            point to be found.
+            The triangles that have more than one point of the line, in order from a to b. Parts in
+            holes and outside are skipped. Where the line runs along an edge, the triangle to the
+            left of it, or the only one there is; a line of zero length is located as a point.
 
         Raises
         ------
         ShapeError, DtypeError, NonFiniteError
-            `a` or `b` is no finite point in the plane.
+            `a` or `b` is not a finite 2-D point.
 
         Notes
         -----
@@ -250,35 +250,35 @@ class ConstrainedDelaunay(Segmented):
         --------
         >>> from delone import ConstrainedDelaunay
         >>> mesh = ConstrainedDelaunay([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 2)])
-        >>> way = mesh.triangles_along((0.5, 1.5), (1.5, 0.5))
-        >>> len(way), mesh.neighbors[way[0]].tolist().count(way[1])
+        >>> met = mesh.triangles_along((0.5, 1.5), (1.5, 0.5))
+        >>> len(met), mesh.neighbors[met[0]].tolist().count(met[1])
         (2, 1)
         """
         return self.walk(a, b)
 
     def segments_crossing(self, a: ArrayLike, b: ArrayLike) -> Indices:
-        """Return the subsegments that a straight way crosses, in order.
+        """Return the subsegments that a straight line crosses, in order.
 
         Parameters
         ----------
         a, b : array_like, shape (2,)
-            Where the way begins and where it ends, outside or inside.
+            Start and end of the line, inside or outside.
 
         Returns
         -------
         ndarray of int32, shape (k,)
-            Rows of `segments`, in the order of their crossings from a to b. Those in holes and
-            outside of the outline count, too.
+            Rows of `segments`, in the order of their crossings from a to b, including those in
+            holes and outside of the outline.
 
         Raises
         ------
         ShapeError, DtypeError, NonFiniteError
-            `a` or `b` is no finite point in the plane.
+            `a` or `b` is not a finite 2-D point.
 
         Notes
         -----
-        Exact. To cross is to have one point in common that is an end of neither: a subsegment that
-        only touches the way, or lies along it, does not cross it.
+        Exact. Two lines cross if they have one common point that is an endpoint of neither: a
+        subsegment that only touches the line, or lies along it, does not cross it.
 
         Examples
         --------
@@ -298,23 +298,23 @@ class ConstrainedDelaunay(Segmented):
     @property
     @kept
     def _keys_of_segments(self) -> tuple[NDArray[np.int64], Indices]:
-        """The subsegments as numbers in order, and their rows."""
+        """The sorted keys of the subsegments, and their rows."""
         keys = topology.edge_keys(self.segments[:, 0], self.segments[:, 1], self.npoints)
         order = np.argsort(keys)
         return keys[order], order.astype(np.int32)
 
     def edit(self) -> Editing[Self]:
-        """Return a context that collects changes and makes another triangulation of them.
+        """Return a context manager that collects changes and creates a changed copy.
 
         Returns
         -------
         Editing
-            What takes the changes; see there.
+            Collects the changes; see its documentation.
 
         Notes
         -----
-        The triangulation itself never changes. Since it is canonical, the outcome is the same as
-        that of a new triangulation of the changed input.
+        The triangulation itself never changes. Since triangulations are canonical, the result is
+        the same as that of triangulating the changed input.
 
         Examples
         --------
@@ -329,27 +329,27 @@ class ConstrainedDelaunay(Segmented):
         return Editing(self)
 
     def _arguments(self) -> dict[str, Any]:
-        """What the constructor was given besides points and segments."""
+        """The arguments of the constructor other than points and segments."""
         arguments: dict[str, Any] = self._options._asdict()
-        if arguments.pop("labelled"):
+        if arguments.pop("labeled"):
             seeds, labels = self._given.regions, self._given.labels
             arguments["regions"] = np.column_stack((seeds, labels))
         return arguments | {"holes": self._given.holes}
 
     def validate(self) -> ConstrainedReport:
-        """Prove that this is the canonical constrained triangulation, or name the culprits.
+        """Prove that this is the canonical constrained triangulation, or list the faults.
 
         Returns
         -------
         ConstrainedReport
-            Truthy when all is right: triangles counter-clockwise and tiling the exact convex hull,
-            each edge a subsegment or locally Delaunay, ties broken canonically, and the subsegments
-            of each row a way from its one end to the other, straight where it has neither crossings
-            nor added vertices.
+            Truthy if there are no faults: triangles are counter-clockwise and tile the exact convex
+            hull, each edge is a subsegment or locally Delaunay, ties are broken canonically, and
+            the subsegments of each row form a path from one endpoint to the other, which is
+            straight if the row has neither crossings nor added vertices.
 
         Notes
         -----
-        Exact, in about the time of the triangulation. Removed triangles are checked, too.
+        Exact, in about the time of the triangulation. Removed triangles are checked as well.
 
         Examples
         --------
@@ -363,11 +363,11 @@ class ConstrainedDelaunay(Segmented):
 
     @property
     def crs(self) -> str | None:
-        """The reference system of the geometries, as ``"EPSG:28992"`` or in WKT; None of arrays."""
+        """Coordinate reference system, as ``"EPSG:28992"`` or WKT; None for arrays."""
         return self._options.crs
 
     def _with_crs(self, crs: str | None) -> Self:
-        """The same, said to be in another reference system."""
+        """The same triangulation, declared to be in another reference system."""
         options = self._options._replace(crs=crs)
         return self._restored(self._points, self._given, self._made, options, self._stages)
 
@@ -390,7 +390,7 @@ class ConstrainedDelaunay(Segmented):
         choices = (
             _BOUNDARIES.index(options.boundary),
             _CROSSINGS.index(options.crossing),
-            options.labelled,
+            options.labeled,
             options.conforming,
             options.max_points,
         )
@@ -398,7 +398,7 @@ class ConstrainedDelaunay(Segmented):
         return self._columns() | {"options": np.array(choices, dtype=np.int64)} | crs
 
     def _columns(self) -> dict[str, NDArray[Any]]:
-        """What a file holds besides the options, by the names that it has there."""
+        """The contents of a file other than the options, by their names in the file."""
         made, given, origin = self._made, self._given, self._given.origin
         return {
             "points": self._points,
@@ -425,16 +425,16 @@ class ConstrainedDelaunay(Segmented):
 
     @classmethod
     def _loaded(cls, arrays: dict[str, NDArray[Any]]) -> Self:
-        boundary, crossing, labelled, conforming, most = arrays.pop("options").tolist()
+        boundary, crossing, labeled, conforming, max_points = arrays.pop("options").tolist()
         crs = arrays.pop("crs", None)
         options = Options(
             boundary=_BOUNDARIES[boundary],
             crossing=_CROSSINGS[crossing],
             conforming=bool(conforming),
-            max_points=most,
+            max_points=max_points,
             method="auto",
             workers=None,
-            labelled=bool(labelled),
+            labeled=bool(labeled),
             crs=None if crs is None else str(crs),
         )
         points = arrays.pop("points")
@@ -459,7 +459,7 @@ def _given(
     holes: ArrayLike | None,
     regions: ArrayLike | None,
 ) -> Given:
-    """Return what the caller gave besides points."""
+    """Return the caller's input other than points."""
     seeds = as_seeds(regions, name="regions", columns=3)
     return Given(
         segments=segments,
@@ -491,7 +491,7 @@ def _labels(seeds: Floats) -> Indices:
     if wrong.size:
         rows = ", ".join(map(str, wrong[:10].tolist()))
         raise InputError(
-            f"regions: {len(wrong)} of {len(seeds)} labels are no integers from 0 to 2**31 - 1; "
+            f"regions: {len(wrong)} of {len(seeds)} labels are not integers from 0 to 2**31 - 1; "
             f"rows {rows}"
         )
     return given.astype(np.int32)

@@ -1,8 +1,8 @@
-"""Changes to a constrained triangulation: collected in a block, applied together at its end.
+"""Changes to a constrained triangulation, collected in a block and applied together at its end.
 
-A triangulation is immutable and canonical, so a changed one is the triangulation of the changed
-input. To change the triangles in place would not pay: the new object needs arrays of its own, and
-to copy them costs time in proportion to the whole, as triangulating does.
+A triangulation is immutable and canonical, so a changed copy is the triangulation of the changed
+input. Changing the triangles in place would not pay: the new object needs its own arrays, and
+copying them takes time in proportion to the whole, as triangulating does.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ M = TypeVar("M", bound=Segmented)
 
 
 class EditRows(NamedTuple):
-    """Where the rows of an edit went.
+    """The new rows of all points and segments after an edit.
 
     Parameters
     ----------
     points : ndarray of int32, shape (n,)
-        For each row of points that the edit knew its row in the result; -1 where it was removed,
-        and for vertices that the triangulation had added.
+        For each row of points in the edit, its row in the result; -1 for removed points, and for
+        vertices that the triangulation had added.
     segments : ndarray of int32, shape (s,)
-        For each row of segments that the edit knew its row among the result's `input_segments`; -1
-        where it was removed.
+        For each row of segments in the edit, its row in `input_segments` of the result; -1 for
+        removed segments.
     """
 
     points: Indices
@@ -50,32 +50,32 @@ class EditRows(NamedTuple):
 
 
 class Editing(Generic[M]):
-    """Changes to a `ConstrainedDelaunay`, which `edit` makes; used by ``with``.
+    """Changes to a `ConstrainedDelaunay`: the context manager that ``edit()`` returns.
 
     Parameters
     ----------
     mesh : ConstrainedDelaunay
-        What to start from. It stays as it is.
+        The triangulation to start from. It does not change.
 
     Raises
     ------
     DeloneError
-        At the end of the block, whatever the constructor of `ConstrainedDelaunay` raises, and
-        `InputError` where a point is removed that a segment still uses.
+        At the end of the block, any error of the constructor of `ConstrainedDelaunay`, and
+        `InputError` if a point is removed that a segment still uses.
 
     Notes
     -----
-    Rows of points are those of the mesh; inserted ones follow behind ``mesh.npoints``. Rows of
-    segments are those of ``mesh.input_segments``; inserted ones follow. Numbers do not change
-    within the block: all changes are applied together at its end, and in what order they came does
-    not matter. `rows` tells where everything went.
+    Rows of points are those of the mesh; inserted points follow, from ``mesh.npoints`` on. Rows of
+    segments are those of ``mesh.input_segments``; inserted segments follow. Row numbers do not
+    change within the block: all changes are applied together at its end, and their order does not
+    matter. `rows` maps old rows to new ones.
 
     The result is the same as that of `ConstrainedDelaunay` for the changed points and segments,
-    with the options and seeds of the mesh; so removing takes back what inserting did. It is
-    triangulated anew, in O(n log n): a new immutable object has to copy all arrays anyway. Many
-    changes in one block cost as much as one.
+    with the options and seeds of the mesh, so removing exactly undoes inserting. The triangulation
+    is recomputed, in O(n log n): a new immutable object has to copy all arrays anyway. Many changes
+    in one block cost as much as one.
 
-    Vertices that the mesh added where segments cross are no input. They cannot be removed, they go
+    Vertices that the mesh added at crossings are not input. They cannot be removed; they disappear
     with their crossings.
 
     Examples
@@ -83,8 +83,8 @@ class Editing(Generic[M]):
     >>> from delone import ConstrainedDelaunay
     >>> mesh = ConstrainedDelaunay([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2)])
     >>> with mesh.edit() as edit:
-    ...     centre, = edit.insert_points([(2, 1)])
-    ...     edit.insert_segment(1, centre)
+    ...     center, = edit.insert_points([(2, 1)])
+    ...     edit.insert_segment(1, center)
     ...     edit.remove_segment(0)
     >>> edit.result
     <ConstrainedDelaunay of 5 points and 1 segment: 4 triangles>
@@ -99,8 +99,8 @@ class Editing(Generic[M]):
         self._segments: list[Indices] = [mesh.input_segments]
         self._npoints = mesh.npoints
         self._nsegments = len(mesh.input_segments)
-        self._gone_points: list[NDArray[np.int64]] = []
-        self._gone_segments: list[NDArray[np.int64]] = []
+        self._removed_points: list[NDArray[np.int64]] = []
+        self._removed_segments: list[NDArray[np.int64]] = []
         self._result: M | None = None
         self._rows: EditRows | None = None
         self._ended = False
@@ -124,14 +124,14 @@ class Editing(Generic[M]):
     def result(self) -> M:
         """The new triangulation, once the block has ended."""
         if self._result is None:
-            raise DeloneError("there is no result: the edit has not ended, or ended by an error")
+            raise DeloneError("there is no result: the edit has not ended, or ended with an error")
         return self._result
 
     @property
     def rows(self) -> EditRows:
-        """Where all rows of points and segments went, once the block has ended."""
+        """The new rows of all points and segments, once the block has ended."""
         if self._rows is None:
-            raise DeloneError("there are no rows: the edit has not ended, or ended by an error")
+            raise DeloneError("there are no rows: the edit has not ended, or ended with an error")
         return self._rows
 
     def insert_points(self, points: ArrayLike) -> NDArray[np.int64]:
@@ -145,7 +145,7 @@ class Editing(Generic[M]):
         Returns
         -------
         ndarray of int64, shape (k,)
-            The rows by which this edit knows them.
+            Their rows in this edit.
 
         Raises
         ------
@@ -168,19 +168,19 @@ class Editing(Generic[M]):
         return np.arange(self._npoints - len(new), self._npoints)
 
     def remove_points(self, rows: ArrayLike) -> None:
-        """Take points away.
+        """Remove points.
 
         Parameters
         ----------
         rows : array_like of int, shape (k,)
-            Rows of points. A row that stays and has the same coordinates keeps the vertex.
+            Rows of points. If another row with the same coordinates remains, so does the vertex.
 
         Raises
         ------
         InputError
-            A row is out of range, or a vertex that was added where segments cross.
+            A row is out of range, or is a vertex that was added at a crossing.
         ShapeError, DtypeError
-            `rows` are no integers in one row.
+            `rows` is not an integer array with one axis.
 
         Examples
         --------
@@ -192,9 +192,9 @@ class Editing(Generic[M]):
         (4, [0, 1, 2, 3, -1])
         """
         self._require_open()
-        gone = _rows(rows, self._npoints, "points")
-        self._require_input(gone)
-        self._gone_points.append(gone)
+        removed = _rows(rows, self._npoints, "points")
+        self._require_input(removed)
+        self._removed_points.append(removed)
 
     def insert_segment(self, a: int, b: int) -> None:
         """Add one segment.
@@ -226,14 +226,14 @@ class Editing(Generic[M]):
         Returns
         -------
         ndarray of int64, shape (k,)
-            The rows by which this edit knows them.
+            Their rows in this edit.
 
         Raises
         ------
         InputError
-            A row is out of range, or a vertex that was added where segments cross.
+            A row is out of range, or is a vertex that was added at a crossing.
         ShapeError, DtypeError
-            `segments` are no pairs of integers.
+            `segments` is not an integer array of shape (k, 2).
 
         Examples
         --------
@@ -251,14 +251,14 @@ class Editing(Generic[M]):
         return np.arange(self._nsegments - len(new), self._nsegments)
 
     def remove_segment(self, row: int, end: int | None = None) -> None:
-        """Take one segment away.
+        """Remove one segment.
 
         Parameters
         ----------
         row : int
-            The row of the segment; or, with `end`, the row of the point where it begins.
+            The row of the segment; or, with `end`, the row of its first point.
         end : int, optional
-            The row of the point where it ends. Every segment that joins the two vertices goes, in
+            The row of its last point. Every segment that joins the two vertices is removed, in
             either direction.
 
         Raises
@@ -274,20 +274,20 @@ class Editing(Generic[M]):
         self.remove_segments([first] if end is None else [(first, _row(end))])
 
     def remove_segments(self, segments: ArrayLike) -> None:
-        """Take segments away.
+        """Remove segments.
 
         Parameters
         ----------
         segments : array_like of int, shape (k,) or (k, 2)
             Rows of segments; or pairs of rows of points: then every segment that joins the two
-            vertices goes, in either direction.
+            vertices is removed, in either direction.
 
         Raises
         ------
         InputError
             A row is out of range, or no segment joins the two vertices.
         ShapeError, DtypeError
-            `segments` are no integers in one or two columns.
+            `segments` is not an integer array of shape (k,) or (k, 2).
 
         Examples
         --------
@@ -300,22 +300,22 @@ class Editing(Generic[M]):
         """
         self._require_open()
         if np.ndim(segments) == 2:
-            gone = self._joining(as_segments(segments, self._npoints))
+            removed = self._joining(as_segments(segments, self._npoints))
         else:
-            gone = _rows(segments, self._nsegments, "segments")
-        self._gone_segments.append(gone)
+            removed = _rows(segments, self._nsegments, "segments")
+        self._removed_segments.append(removed)
 
     def _require_open(self) -> None:
         if self._ended:
-            raise DeloneError("this edit has ended: begin another one")
+            raise DeloneError("this edit has ended: start a new one")
 
     def _require_input(self, rows: NDArray[np.integer]) -> None:
         added = (rows >= self._ninput) & (rows < self._mesh.npoints)
         if added.any():
             first = ", ".join(map(str, np.unique(rows[added])[:10].tolist()))
             raise InputError(
-                f"points {first} were added where segments cross; insert a point with their "
-                "coordinates to have it as input"
+                f"points {first} were added at crossings; insert points with their coordinates to "
+                "make them part of the input"
             )
 
     def _joining(self, ends: Indices) -> NDArray[np.int64]:
@@ -332,9 +332,9 @@ class Editing(Generic[M]):
 
     def _apply(self) -> None:
         points, segments = np.concatenate(self._points), np.concatenate(self._segments)
-        keeps_point = _all_but(len(points), self._gone_points)
+        keeps_point = _all_but(len(points), self._removed_points)
         keeps_point[self._ninput : self._mesh.npoints] = False
-        keeps_segment = _all_but(len(segments), self._gone_segments)
+        keeps_segment = _all_but(len(segments), self._removed_segments)
         self._require_ends(segments, keeps_point, keeps_segment)
         rows = EditRows(_numbers(keeps_point), _numbers(keeps_segment))
         origin = self._origins(len(segments))
@@ -363,7 +363,7 @@ class Editing(Generic[M]):
             )
             raise InputError(
                 f"{counted(len(lost), 'segment')} would lose an end; remove "
-                f"{agreed(len(lost), 'it, too: row', 'them, too: rows')} {shown}"
+                f"{agreed(len(lost), 'it as well: row', 'them as well: rows')} {shown}"
             )
 
 
@@ -387,13 +387,13 @@ def _rows(rows: ArrayLike, count: int, name: str) -> NDArray[np.int64]:
     wrong = (array < 0) | (array >= count)
     if wrong.any():
         first = ", ".join(map(str, array[wrong][:10].tolist()))
-        raise InputError(f"rows of {name} leave the range 0 to {count - 1}: {first}")
+        raise InputError(f"rows of {name} must be from 0 to {count - 1}, got {first}")
     return np.atleast_1d(array).astype(np.int64)
 
 
-def _all_but(count: int, gone: list[NDArray[np.int64]]) -> NDArray[np.bool_]:
+def _all_but(count: int, removed: list[NDArray[np.int64]]) -> NDArray[np.bool_]:
     keeps = np.ones(count, dtype=bool)
-    for rows in gone:
+    for rows in removed:
         keeps[rows] = False
     return keeps
 

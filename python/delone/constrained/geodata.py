@@ -1,9 +1,9 @@
-"""Geometries to arrays.
+"""Conversion of geometries to arrays.
 
-Shapely's geometries are read by shapely in bulk; what only has ``__geo_interface__``, or is such a
-mapping, is read by hand, so that no library is needed for it. Either way a geometry becomes parts:
-runs of coordinates, each a ring (closed without repeating its first point), a line or points. Third
-coordinates are left out; missing and empty geometries have no parts.
+Shapely reads its geometries in bulk. Objects that only have ``__geo_interface__``, and mappings of
+that form, are read here, so that no library is needed for them. Either way a geometry becomes
+parts: runs of coordinates, each a ring (closed without repeating its first point), a line or
+points. Third coordinates are dropped; missing and empty geometries have no parts.
 """
 
 from __future__ import annotations
@@ -36,34 +36,34 @@ __all__ = [
 ]
 
 POINTS, LINE, EXTERIOR, INTERIOR = range(4)
-# Shapely's numbers of types.
+# Shapely's type numbers.
 _POINT, _POLYGON, _COLLECTION = 0, 3, 7
 
 
 class Parts(NamedTuple):
-    """Runs of coordinates, and what each is."""
+    """Runs of coordinates, and the kind of each."""
 
-    # (n, 2), of all parts one after the other.
+    # (n, 2): all parts, one after the other.
     coordinates: Floats
-    # (p + 1,): where the coordinates of each part begin.
+    # (p + 1,): the start of each part in the coordinates.
     starts: NDArray[np.int64]
     # (p,): POINTS, LINE, EXTERIOR or INTERIOR.
     kinds: NDArray[np.int64]
-    # (p,): the geometry of each part, in the order in which they were given.
+    # (p,): the geometry of each part, in input order.
     geometries: NDArray[np.int64]
 
 
 def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
-    """Take geometries apart.
+    """Split geometries into parts.
 
     Parameters
     ----------
     geometries : geometry or iterable of geometries
         Geometries of shapely, tables and series of geopandas, objects with ``__geo_interface__``,
-        mappings of that form, None, and iterables of these. Rows of tables and features of
-        collections are geometries each.
+        mappings of that form, None, and iterables of these. Each row of a table and each feature of
+        a collection is a geometry.
     name : str, optional
-        What the argument is called in error messages.
+        The name of the argument in error messages.
 
     Returns
     -------
@@ -73,9 +73,9 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     Raises
     ------
     InputError
-        Something is no geometry, is curved, or is nested too deeply.
+        An item is not a geometry, is curved, or is nested too deeply.
     ShapeError
-        Coordinates of a mapping are not nested as its type says.
+        Coordinates of a mapping are not nested as its type requires.
 
     Examples
     --------
@@ -92,20 +92,20 @@ def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
     try:
         for batch in _batches(geometries, name):
             if isinstance(batch, np.ndarray):
-                parts, length = _taken_apart(batch), len(batch)
+                parts, length = _split(batch), len(batch)
             else:
                 parts, length = _joined(_of_mapping(batch, name)), 1
             found.append(parts._replace(geometries=parts.geometries + count))
             count += length
     except RecursionError:
-        raise InputError(f"{name} hold collections in collections, too deep to follow") from None
-    except NotImplementedError:  # shapely's for curves
-        raise InputError(f"{name} hold a curve: only straight lines can be taken") from None
+        raise InputError(f"{name}: collections are too deeply nested") from None
+    except NotImplementedError:  # raised by shapely for curves
+        raise InputError(f"{name}: curves are not supported, only straight lines") from None
     return _joined(found)
 
 
 def _batches(given: Any, name: str) -> Iterator[Any]:
-    """Arrays of shapely's geometries, and mappings, in the order given."""
+    """Yield arrays of shapely geometries, and mappings, in input order."""
     if given is None:
         yield np.array([None], dtype=object)
     elif hasattr(given, "geom_type") and is_shapely(given):
@@ -119,44 +119,44 @@ def _batches(given: Any, name: str) -> Iterator[Any]:
     elif hasattr(given, "__geo_interface__"):
         yield from _features(given.__geo_interface__)
     elif isinstance(given, str | bytes | os.PathLike):
-        raise InputError(_no_file(given, name))
+        raise InputError(_string_error(given, name))
     elif not hasattr(given, "__iter__"):
-        raise InputError(f"{name} hold {given!r:.80}, which is no geometry")
+        raise InputError(f"{name}: {given!r:.80} is not a geometry")
     else:
         refuse_masks(given, name)
         yield from _of_iterable(given, name)
 
 
-def _no_file(given: Any, name: str) -> str:
-    """What to do with a text that is the name of a file, or else WKT."""
+def _string_error(given: Any, name: str) -> str:
+    """Return an error message for a string: it is the name of a file, or WKT."""
     text = os.fsdecode(given)
     if not isinstance(given, os.PathLike) and "(" in text:
-        return f"{name} hold {text!r:.80}, which is no geometry: read WKT by shapely.from_wkt"
+        return f"{name}: {text!r:.80} is not a geometry: read WKT with shapely.from_wkt"
     return (
-        f"{name} hold {text!r:.80}, the name of a file and no geometry: read it first, by "
+        f"{name}: {text!r:.80} is the name of a file, not a geometry: read it with "
         f"delone.io.read_geometries({text!r:.80})"
     )
 
 
 def is_shapely(given: Any) -> bool:
-    """Tell a geometry of shapely, without importing that.
+    """Return whether an object is a shapely geometry, without importing shapely.
 
     Parameters
     ----------
     given : object
-        Anything.
+        Any object.
 
     Returns
     -------
     bool
-        Whether it is one.
+        Whether it is a shapely geometry.
     """
     shapely = sys.modules.get("shapely")
     return shapely is not None and isinstance(given, shapely.Geometry)
 
 
 def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
-    """Runs of shapely's geometries become arrays, so that they are read in bulk."""
+    """Yield runs of shapely geometries as arrays, so that they are read in bulk."""
     run: list[Any] = []
     for item in given:
         if item is None or is_shapely(item):
@@ -166,7 +166,7 @@ def _of_iterable(given: Iterable[Any], name: str) -> Iterator[Any]:
             yield _object_array(run)
             run = []
         if isinstance(item, int | float | np.number):
-            raise InputError(f"{name} hold {item!r:.80}, which is no geometry")
+            raise InputError(f"{name}: {item!r:.80} is not a geometry")
         yield from _batches(item, name)
     if run:
         yield _object_array(run)
@@ -188,8 +188,8 @@ def _features(mapping: Mapping[str, Any]) -> Iterator[Any]:
         yield mapping
 
 
-def _taken_apart(geometries: NDArray[Any]) -> Parts:
-    """Take shapely's geometries apart, in bulk."""
+def _split(geometries: NDArray[Any]) -> Parts:
+    """Split shapely geometries into parts, in bulk."""
     if all(item is None for item in geometries.tolist()):
         return _joined([])
     shapely = sys.modules["shapely"]
@@ -201,7 +201,7 @@ def _taken_apart(geometries: NDArray[Any]) -> Parts:
         rows = rows[index]
     rings, index = shapely.get_rings(geometries, return_index=True)
     plain = shapely.get_type_id(geometries) != _POLYGON
-    # Rings of polygons stand where their polygon stood.
+    # The rings of a polygon take its place in the order.
     items = np.concatenate((geometries[plain], rings))
     at = np.concatenate((np.flatnonzero(plain), index))
     kinds = np.concatenate((_plain_kinds(shapely, geometries[plain]), _ring_kinds(index)))
@@ -212,7 +212,7 @@ def _taken_apart(geometries: NDArray[Any]) -> Parts:
 
 def _plain_kinds(shapely: Any, geometries: NDArray[Any]) -> NDArray[np.int64]:
     types = shapely.get_type_id(geometries)
-    # A ring that is no polygon's is a line that comes back.
+    # A ring that does not belong to a polygon is a closed line.
     return np.where(types == _POINT, POINTS, LINE)
 
 
@@ -228,7 +228,7 @@ def _closed(
     kinds: NDArray[np.int64],
     geometries: NDArray[np.int64],
 ) -> Parts:
-    """Leave out the last points of rings that repeat their first ones, and empty parts."""
+    """Drop empty parts, and the last point of each ring that repeats its first one."""
     counts = np.bincount(part, minlength=len(kinds))
     starts = np.concatenate(([0], np.cumsum(counts)))
     ring = np.flatnonzero((kinds >= EXTERIOR) & (counts > 1))
@@ -247,7 +247,7 @@ def _closed(
 
 
 def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
-    """Take a mapping of the form of GeoJSON apart."""
+    """Split a mapping in GeoJSON form into parts."""
     kind = mapping.get("type")
     if kind == "GeometryCollection":
         for geometry in mapping["geometries"]:
@@ -256,7 +256,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
         return
     coordinates: Any = mapping.get("coordinates")
     if coordinates is None or not isinstance(kind, str):
-        raise InputError(f"{name} hold {dict(mapping)!r:.80}, which is no geometry")
+        raise InputError(f"{name}: {dict(mapping)!r:.80} is not a geometry")
     if kind in ("Point", "MultiPoint"):
         for point in [coordinates] if kind == "Point" else coordinates:
             yield _run([point], POINTS, kind)
@@ -268,7 +268,7 @@ def _of_mapping(mapping: Mapping[str, Any], name: str) -> Iterator[Parts]:
             for i, ring in enumerate(polygon):
                 yield _run(ring, INTERIOR if i else EXTERIOR, kind)
     else:
-        raise InputError(f"{name} hold a geometry of type {kind!r}, which delone does not know")
+        raise InputError(f"{name}: unknown geometry type {kind!r}")
 
 
 def _run(coordinates: Any, kind: int, what: str) -> Parts:
@@ -281,13 +281,17 @@ def _run(coordinates: Any, kind: int, what: str) -> Parts:
     except DtypeError:
         raise
     except (TypeError, ValueError) as error:
-        raise ShapeError(f"the coordinates of a {what} are no pairs of numbers: {error}") from error
+        raise ShapeError(
+            f"the coordinates of a {what} are not pairs of numbers: {error}"
+        ) from error
     except OverflowError as error:
-        raise InputError(f"a {what} has a coordinate that no double holds: {error}") from error
+        raise InputError(
+            f"a {what} has a coordinate beyond the range of doubles: {error}"
+        ) from error
     if rows.size == 0:
         return _joined([])
     if rows.ndim != 2 or rows.shape[1] != 2:
-        raise ShapeError(f"the coordinates of a {what} are no pairs of numbers")
+        raise ShapeError(f"the coordinates of a {what} are not pairs of numbers")
     part = np.zeros(len(rows), dtype=np.int64)
     return _closed(rows, part, np.array([kind]), np.array([0]))
 

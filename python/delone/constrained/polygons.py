@@ -1,8 +1,8 @@
-"""Polygons and other geometries: constrained triangulations of them, and the triangles inside.
+"""Constrained triangulations of polygons and other geometries, and the triangles inside a polygon.
 
-`from_geometry` makes points and segments of whatever has coordinates and hands them to
-`ConstrainedDelaunay`. `triangulate_polygon` goes to the core directly, because programs that draw
-call it once for each of very many small rings.
+`from_geometry` converts geometries to points and segments and passes them to `ConstrainedDelaunay`.
+`triangulate_polygon` calls the core directly, because drawing programs call it for each of very
+many small rings.
 """
 
 from __future__ import annotations
@@ -48,42 +48,41 @@ def from_geometry(
     crs: Any = None,
     planar: bool = False,
 ) -> ConstrainedDelaunay:
-    """Triangulate polygons, lines and points at once.
+    """Triangulate polygons, lines and points together.
 
     Parameters
     ----------
     geometries : geometry or iterable of geometries
-        Geometries of shapely, tables and series of geopandas, a `delone.io.GeometrySet`, objects
-        with ``__geo_interface__``, mappings of that form (GeoJSON), and iterables of these, in any
-        mixture. Rows of tables and features of collections are geometries each.
+        Shapely geometries, geopandas tables and series, a `delone.io.GeometrySet`, objects with
+        ``__geo_interface__``, mappings of that form (GeoJSON), and iterables of these, in any
+        mixture. Each row of a table and each feature of a collection is a geometry.
     holes, regions, conforming, max_points, method, workers : optional
         As for `ConstrainedDelaunay`.
     boundary : {"hull", "outline", "polygons"}, optional
-        What is triangulated: as for `ConstrainedDelaunay`; or only what is inside of polygons,
-        without their holes.
+        What is triangulated: as for `ConstrainedDelaunay`; or only the inside of polygons, without
+        their holes.
     crossing : {"split", "raise"}, optional
-        As for `ConstrainedDelaunay`, but by default crossings are split: the boundaries of real
+        As for `ConstrainedDelaunay`, but by default crossings are split, because borders in real
         data do cross.
     crs : str, int or pyproj.CRS, optional
-        The reference system of the coordinates, by default that of the geometries where they have
-        one. It is kept in ``mesh.crs`` and written by ``mesh.to_geopandas()``. Nothing is
+        The coordinate reference system, by default that of the geometries if they have one. It is
+        stored in ``mesh.crs`` and passed on by ``mesh.to_geopandas()``. Coordinates are not
         transformed.
     planar : bool, optional
-        Whether longitudes and latitudes are meant as coordinates of a plane; otherwise geometries
-        in a geographic reference system are warned of.
+        Treat longitudes and latitudes as coordinates of a plane; otherwise geometries in a
+        geographic reference system cause a warning.
 
     Returns
     -------
     ConstrainedDelaunay
-        The triangulation. Its points are the distinct coordinates in the order in which they come.
-        Its segments are the lines and the sides of all rings, holes included, in this order; its
-        ``geometry_of_segment`` has the geometry of each, and its ``part_of_segment`` the ring or
-        line.
+        The triangulation. Its points are the distinct coordinates in order of appearance. Its
+        segments are the lines and the sides of all rings, including holes, in the same order;
+        ``geometry_of_segment`` has the geometry of each, and ``part_of_segment`` the ring or line.
 
     Raises
     ------
     InputError
-        Something is no geometry, or parts are in different reference systems.
+        An item is not a geometry, or the geometries are in different reference systems.
     NonFiniteError
         A coordinate is NaN or infinite; the rows of the error are geometries.
     DegenerateInputError, CrossingSegmentsError, BudgetExceededError
@@ -96,11 +95,11 @@ def from_geometry(
 
     Notes
     -----
-    Rings are closed where they are not. Missing and empty geometries are passed over, third
-    coordinates left out. Points with equal coordinates are one, so that neighbours share vertices.
-    Polygons need not be valid: inside is what the rings of a geometry wind around an odd number of
-    times, and ``mesh.polygon`` has for each triangle the first geometry that has it inside. With
-    ``boundary="outline"`` holes of polygons stay, with ``"polygons"`` they do not.
+    Open rings are closed. Missing and empty geometries are skipped, and third coordinates are
+    dropped. Equal coordinates are one point, so adjacent polygons share vertices. Polygons need not
+    be valid: by the even-odd rule, a point is inside if the rings of a geometry wind around it an
+    odd number of times, and ``mesh.polygon`` has the first geometry that contains each triangle.
+    With ``boundary="outline"`` holes of polygons remain, with ``"polygons"`` they are removed.
 
     Examples
     --------
@@ -153,7 +152,7 @@ def _require_finite(parts: geodata.Parts) -> None:
         bad = np.unique(parts.geometries[part])
         first = ", ".join(map(str, bad[:10].tolist()))
         raise NonFiniteError(
-            f"{len(bad)} {agreed(len(bad), 'geometry holds', 'geometries hold')} NaN or infinity; "
+            f"{len(bad)} {agreed(len(bad), 'geometry has', 'geometries have')} NaN or infinity; "
             f"first: {first}",
             rows=bad[:10],
             count=len(bad),
@@ -161,7 +160,7 @@ def _require_finite(parts: geodata.Parts) -> None:
 
 
 def _merged(coordinates: Floats) -> tuple[Floats, Indices]:
-    """Return the distinct points in the order of their first rows, and which each row is."""
+    """Return the distinct points in the order of their first rows, and the point of each row."""
     first = first_rows(coordinates)
     distinct = first == np.arange(len(first))
     number = np.cumsum(distinct) - 1
@@ -174,7 +173,7 @@ def _steps(parts: geodata.Parts) -> tuple[Rows, Rows]:
     part = np.repeat(np.arange(len(counts)), counts)
     tail = np.arange(len(part))
     head = tail + 1
-    # The last row of a ring leads to its first, that of a line nowhere.
+    # The last row of a ring continues to its first row, the last row of a line does not continue.
     head[parts.starts[1:] - 1] = parts.starts[:-1]
     ring = parts.kinds >= geodata.EXTERIOR
     leads = np.repeat(parts.kinds != geodata.POINTS, counts)
@@ -186,12 +185,12 @@ def _steps(parts: geodata.Parts) -> tuple[Rows, Rows]:
 
 
 class PolygonTriangles(NamedTuple):
-    """The triangles inside of a polygon.
+    """The triangles inside a polygon.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        The points of the rings one after the other, then those where sides cross.
+        The points of all rings, one ring after the other, then the points where sides cross.
     simplices : ndarray of int32, shape (m, 3)
         The triangles as rows of `points`, counter-clockwise.
 
@@ -207,7 +206,7 @@ class PolygonTriangles(NamedTuple):
     simplices: Indices
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # NumPy does not pickle whether an array may be written to.
+        # NumPy does not pickle the writeable flag of arrays.
         return _read_only, (self.points, self.simplices)
 
     def to_geopandas(self, *, crs: Any = None) -> Any:
@@ -216,7 +215,7 @@ class PolygonTriangles(NamedTuple):
         Parameters
         ----------
         crs : optional
-            Reference system of the coordinates, anything that geopandas takes.
+            Coordinate reference system, anything that geopandas accepts.
 
         Returns
         -------
@@ -246,33 +245,33 @@ def triangulate_polygon(polygon: Any, *, rule: str = "even-odd") -> PolygonTrian
     Parameters
     ----------
     polygon : array_like of shape (n, 2), sequence of those, or geometry
-        A ring, or the rings of a polygon in any order, closed whether they repeat their first point
-        or not; a Polygon or MultiPolygon of shapely, an object with ``__geo_interface__``, or a
-        mapping of that form.
+        A ring, or the rings of a polygon in any order; rings need not repeat their first point. Or
+        a shapely Polygon or MultiPolygon, an object with ``__geo_interface__``, or a mapping of
+        that form.
     rule : {"even-odd", "nonzero"}, optional
-        What is inside where rings cross or lie in each other: points around which the rings wind an
-        odd number of times in sum, or points around which they wind at all.
+        What is inside where rings cross or are nested: points with an odd winding number, or points
+        with a nonzero winding number, summed over the rings.
 
     Returns
     -------
     PolygonTriangles
-        Points and triangles. There are none for a polygon without inside.
+        Points and triangles. A polygon without an inside has no triangles.
 
     Raises
     ------
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError, InputError
-        `polygon` has no rings, or no points in the plane.
+        `polygon` has no rings, or its points are not 2-D.
 
     Notes
     -----
-    The polygon need not be valid: rings may cross themselves and each other, overlap and touch, run
-    back and forth. Where sides cross, a point is added, as in `ConstrainedDelaunay`. Triangles are
-    those of the constrained Delaunay triangulation, exact and canonical.
+    The polygon need not be valid: rings may cross themselves and each other, overlap, touch, or run
+    back and forth. Where sides cross, a point is added, as in `ConstrainedDelaunay`. The triangles
+    are those of the constrained Delaunay triangulation, exact and canonical.
 
-    Rings of geometries are turned before they are counted, outer ones counter-clockwise and holes
-    clockwise, because geometries do not say which way they run; arrays are taken as they are.
+    Rings of geometries are first oriented, outer rings counter-clockwise and holes clockwise,
+    because the orientation of rings in geometries has no meaning; arrays are used as they are.
 
     Examples
     --------
@@ -302,8 +301,8 @@ def _read_only(points: Floats, simplices: Indices) -> PolygonTriangles:
 
 
 def _rings(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
-    """Return the points of all rings, and where each ring begins."""
-    # Asked of the instance, `__geo_interface__` would take a whole geometry of shapely apart.
+    """Return the points of all rings, and the start of each ring."""
+    # With shapely geometries, `hasattr` would evaluate `__geo_interface__`, a full conversion.
     if (
         isinstance(polygon, dict)
         or geodata.is_shapely(polygon)
@@ -317,11 +316,11 @@ def _rings(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
 
 
 def _listed(polygon: Any) -> list[Any]:
-    """Tell a ring from a sequence of rings by how deep its numbers are."""
+    """Return the rings of a ring or a sequence of rings, distinguished by nesting depth."""
     if isinstance(polygon, np.ndarray) and polygon.dtype != object:
         return [polygon] if polygon.ndim == 2 else list(polygon)
     if not hasattr(polygon, "__iter__") or isinstance(polygon, str | bytes):
-        raise InputError(f"polygon is {polygon!r:.80}, neither rings nor a geometry")
+        raise InputError(f"polygon must be rings or a geometry, got {polygon!r:.80}")
     items = list(polygon)
     if not items:
         return []
@@ -332,7 +331,7 @@ def _listed(polygon: Any) -> list[Any]:
 def _rings_of_geometry(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
     parts = geodata.parts_of(polygon, name="polygon")
     if (parts.kinds < geodata.EXTERIOR).any():
-        raise InputError("polygon holds lines or points, which have no inside")
+        raise InputError("polygon contains lines or points, which have no inside")
     points = parts.coordinates
     require_finite(points, name="polygon")
     if nonzero:
@@ -344,8 +343,8 @@ def _rings_of_geometry(polygon: Any, nonzero: bool) -> tuple[Floats, Indices]:
 
 
 def _turns_left(ring: Floats) -> bool:
-    """Tell which way a ring runs by its signed area; where that is nearly 0, any answer will do."""
-    # Halves, and then shares of the longest side, so that nothing exceeds the range of doubles.
+    """Return whether the signed area of a ring is positive; arbitrary if it is nearly 0."""
+    # Halved, then divided by the longest coordinate difference, so that nothing overflows.
     edges = ring / 2 - ring[0] / 2
     x, y = (edges / (np.abs(edges).max() or 1.0)).T
     return bool(np.dot(x, np.roll(y, -1)) > np.dot(y, np.roll(x, -1)))

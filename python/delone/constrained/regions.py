@@ -1,8 +1,8 @@
-"""Areas between segments: which are outside, which are holes, how they are numbered and labelled.
+"""Regions between segments: which are outside, which are holes, and their numbers and labels.
 
-An area is a connected component of triangles that share edges which are no segments; the core finds
+A region is a connected component of triangles that share edges other than segments; the core finds
 these components. Everything here is arithmetic on their numbers. `Tiling` holds all triangles of
-the convex hull. Whether a seed lies on a segment is asked of the exact predicates.
+the convex hull. Exact predicates decide whether a seed lies on a segment.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ __all__ = [
 
 
 class Tiling(NamedTuple):
-    """All triangles of the convex hull, whether they are kept or not."""
+    """All triangles of the convex hull, including removed ones."""
 
     points: Floats
     simplices: Indices
@@ -42,7 +42,7 @@ class Tiling(NamedTuple):
 
 
 def outside(tiling: Tiling, component: Indices) -> Bools:
-    """Tell which components are reached from outside of the hull without crossing a segment.
+    """Return which components can be reached from outside of the hull without crossing a segment.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def outside(tiling: Tiling, component: Indices) -> Bools:
 def located(
     tiling: Tiling, seeds: Floats, segments: Indices, workers: int
 ) -> tuple[Indices, Bools]:
-    """Tell in which triangles seeds lie, and which of them lie on a segment.
+    """Return the triangles that contain seeds, and which seeds lie on a segment.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def located(
     triangle : ndarray of int32, shape (k,)
         Triangles of the tiling; -1 outside.
     on_segment : ndarray of bool, shape (k,)
-        Whether the seed is a point of a segment, its ends included.
+        Whether the seed lies on a segment, including its ends.
     """
     points, simplices, neighbors, constrained = tiling
     triangle = _core.find_simplex2(points, simplices, neighbors, seeds, workers)
@@ -98,7 +98,7 @@ def located(
 
 
 def on_edges(tiling: Tiling, triangle: Indices, queries: Floats) -> Bools:
-    """Tell on which edges of their triangles points lie, (k, 3); any answer for triangle -1."""
+    """Return on which edges of their triangles points lie, (k, 3); arbitrary for triangle -1."""
     points, simplices = tiling.points, tiling.simplices
     found = np.empty((len(queries), 3), dtype=bool)
     for k in range(3):
@@ -108,13 +108,13 @@ def on_edges(tiling: Tiling, triangle: Indices, queries: Floats) -> Bools:
 
 
 def corners(on_edge: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the rows that lie on two edges, and the corner where these meet."""
+    """Return the rows that lie on two edges, and the common corner of these."""
     rows = np.flatnonzero(on_edge.sum(axis=1) == 2)
     return rows, np.argmin(on_edge[rows], axis=1)
 
 
 def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
-    """Number components in an order that hangs on coordinates alone.
+    """Number components in an order that depends on coordinates only.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
     Returns
     -------
     ndarray of int32, shape (m,)
-        Components from 0 on, in the order of their smallest triangles. Triangles are compared by
-        their smallest corners, then their middle ones, then their largest; corners by x, then y.
+        Components numbered from 0, in the order of their smallest triangles. Triangles are compared
+        by their smallest corners, then their middle ones, then their largest; corners by x, then y.
 
     Notes
     -----
@@ -159,23 +159,23 @@ def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
 
 
 def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indices, Indices]:
-    """Give components the labels of the seeds in them.
+    """Label components with the labels of their seeds.
 
     Parameters
     ----------
     component : ndarray of int32, shape (m,)
         Component of each triangle.
     of_seed : ndarray of int32, shape (k,)
-        Component of each seed, -1 where it lies in none.
+        Component of each seed, -1 if it lies in none.
     given : ndarray of int32, shape (k,)
         Label of each seed.
 
     Returns
     -------
     label : ndarray of int32, shape (m,)
-        Label of each triangle, that of the first seed of its component; -1 without one.
+        Label of each triangle: that of the first seed in its component, -1 without one.
     repeated : ndarray of int32, shape (r, 2)
-        Seeds whose component has a label, and the seed that gave it.
+        Seeds whose component already has a label, and the seed that it is from.
 
     Examples
     --------
@@ -187,7 +187,7 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
     """
     seeds = np.flatnonzero(of_seed >= 0).astype(np.int32)
     first = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
-    # Where an index is repeated, the last value is the one that stays.
+    # If an index is repeated, the last value assigned remains.
     first[of_seed[seeds[::-1]]] = seeds[::-1]
     label = np.full(len(first), -1, dtype=np.int32)
     label[first >= 0] = given[first[first >= 0]]
@@ -196,16 +196,16 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
 
 
 def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:
-    """Return the edges of segments that a straight way crosses, in order.
+    """Return the subsegments that a straight line crosses, in order.
 
     Parameters
     ----------
     tiling : Tiling
         The triangles.
     along : ndarray of int32, shape (k,)
-        The triangles that the way meets, in order.
+        The triangles that the line meets, in order.
     a, b : ndarray of float64, shape (2,)
-        The ends of the way.
+        The ends of the line.
 
     Returns
     -------
@@ -220,8 +220,8 @@ def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:
     of_a, of_b = _core.orient2d(u, v, start), _core.orient2d(u, v, end)
     sides = _core.orient2d(start, end, u) * _core.orient2d(start, end, v)
     proper = (sides < 0) & (of_a * of_b < 0) & tiling.constrained[triangle, corner]
-    # The way leaves a triangle by an edge that has its end outside. What it enters by it has left
-    # before, except where it enters the hull.
+    # The line leaves a triangle through an edge that has the end of the line beyond it. It enters
+    # through edges by which it has left the triangle before, except where it enters the hull.
     leaves = proper & (of_b < 0)
     enters = proper & (of_a < 0) & (tiling.neighbors[triangle, corner] < 0)
     rows = np.concatenate((np.flatnonzero(enters), np.flatnonzero(leaves)))

@@ -1,8 +1,8 @@
-"""The state of a constrained triangulation, and what follows from segments and seeds.
+"""The state of a constrained triangulation, and attributes derived from segments and seeds.
 
-`_given` holds what was given besides points, `_made` what the core made of it: the triangles of the
-whole convex hull, and subsegments with their rows. `simplices` and its like are the part of the
-triangles that is kept; `_number` leads from the whole to that part.
+`_given` holds the input other than points, and `_made` the result of the core: the triangles of the
+whole convex hull, and subsegments with their rows. `simplices` and similar arrays have only the
+triangles that are kept; `_number` maps all triangles to these.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ __all__ = ["Given", "Options", "Origin", "Segmented"]
 
 
 class Options(NamedTuple):
-    """What a constrained triangulation was asked for, besides its arrays."""
+    """The options of a constrained triangulation."""
 
     boundary: str
     crossing: str
@@ -39,30 +39,30 @@ class Options(NamedTuple):
     max_points: int
     method: str
     workers: int | None
-    labelled: bool
-    # That of the geometries, if they said.
+    labeled: bool
+    # That of the geometries, if they have one.
     crs: str | None = None
 
 
 class Origin(NamedTuple):
     """Where each input segment came from."""
 
-    # (s,): the number of its geometry, -1 without one.
+    # (s,): its geometry, -1 without one.
     geometries: Indices
     # (s,): whether it is the side of a ring.
     rings: Bools
-    # (s,): the number of its ring or line among those of all geometries, -1 without one.
+    # (s,): its ring or line, numbered over all geometries, -1 without one.
     parts: Indices
 
     @classmethod
     def of_arrays(cls, count: int) -> Origin:
-        """Return the origin of segments that came from no geometry."""
+        """Return the origin of segments that did not come from geometries."""
         none = np.full(count, -1, dtype=np.int32)
         return cls(none, np.zeros(count, dtype=bool), none.copy())
 
 
 class Given(NamedTuple):
-    """What a constrained triangulation was given besides points and options."""
+    """The input of a constrained triangulation other than points and options."""
 
     # (s, 2): the segments.
     segments: Indices
@@ -71,11 +71,11 @@ class Given(NamedTuple):
     holes: Floats
     # (r, 2): seeds of regions.
     regions: Floats
-    # (r,): the label of each of these.
+    # (r,): their labels.
     labels: Indices
 
     def sealed(self) -> Given:
-        """Return the same with arrays that cannot be written to."""
+        """Return a copy with read-only arrays."""
         return Given(
             segments=sealed(self.segments),
             origin=Origin(
@@ -90,7 +90,7 @@ class Given(NamedTuple):
 
 
 class Segmented(PointTriangulation):
-    """A triangulation whose edges segments are, with areas between them."""
+    """A triangulation whose edges include segments, with regions between them."""
 
     __slots__ = ("_constrained", "_given", "_made", "_number", "_options")
 
@@ -124,7 +124,7 @@ class Segmented(PointTriangulation):
         number = None
         if removed is not None:
             rows = np.flatnonzero(~removed)
-            # The last entry is what -1 stands for.
+            # The last entry is for the index -1.
             number = np.full(len(removed) + 1, -1, dtype=np.int32)
             number[rows] = np.arange(len(rows), dtype=np.int32)
             triangles = {name: array[rows] for name, array in triangles.items()}
@@ -133,20 +133,20 @@ class Segmented(PointTriangulation):
         self._fill(arrays | triangles, stages, options.workers)
 
     def _removed(self) -> Bools | None:
-        """Tell which triangles of the hull are in holes or outside; None where all are kept."""
+        """Return which triangles of the hull are in holes or outside; None if all are kept."""
         holes, boundary = self._given.holes, self._options.boundary
         if boundary == "hull" and not len(holes):
             return None
         tiling, component = self._tiles(), self._component()
-        gone = np.zeros(int(component.max()) + 1, dtype=bool)
+        removed = np.zeros(int(component.max()) + 1, dtype=bool)
         if boundary == "outline":
-            gone |= regions.outside(tiling, component)
+            removed |= regions.outside(tiling, component)
         elif boundary == "polygons":
-            gone |= self._polygons(component) < 0
+            removed |= self._polygons(component) < 0
         if len(holes):
             triangle, on_segment = self._located(holes)
-            gone[component[triangle[(triangle >= 0) & ~on_segment]]] = True
-        return gone[component] if gone.any() else None
+            removed[component[triangle[(triangle >= 0) & ~on_segment]]] = True
+        return removed[component] if removed.any() else None
 
     def _polygons(self, component: Indices) -> Indices:
         """Return the first polygon of each component."""
@@ -163,7 +163,7 @@ class Segmented(PointTriangulation):
         return _core.components2(self._made.neighbors, self._made.constrained)
 
     def _located(self, seeds: Floats) -> tuple[Indices, Bools]:
-        """Tell in which triangles of the hull seeds lie, and which lie on segments."""
+        """Return the triangles of the hull that contain seeds, and which seeds lie on segments."""
         workers = as_workers(self._options.workers)
         return regions.located(self._tiles(), seeds, self._made.segments, workers)
 
@@ -177,19 +177,20 @@ class Segmented(PointTriangulation):
 
     @property
     def nadded(self) -> int:
-        """Number of vertices that were added; they are the last rows of `points`."""
+        """Number of added vertices; they are the last rows of `points`."""
         return len(self._made.added)
 
     @property
     def input_segments(self) -> Indices:
-        """The segments that were given, (s, 2)."""
+        """The input segments, (s, 2)."""
         return self._given.segments
 
     @property
     def segments(self) -> Indices:
-        """The subsegments, (q, 2), in the order of the first row that covers them and along it.
+        """The subsegments, (q, 2), in the order of the first row that covers them, and along it.
 
-        Each once, in the direction of that row, those in holes and outside of the outline included.
+        Each once, in the direction of that row, including those in holes and outside of the
+        outline.
         """
         return self._made.segments
 
@@ -198,22 +199,22 @@ class Segmented(PointTriangulation):
         """The rows that cover subsegments as compressed rows (indptr, indices).
 
         Subsegment i is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of `input_segments`,
-        ascending. There are several where rows repeat or overlap.
+        ascending. There is more than one if rows repeat or overlap.
         """
         return self._made.source_start, self._made.source
 
     @property
     def segment_forward(self) -> Bools:
-        """Beside the indices of `segment_source`: whether the row runs as the subsegment does.
+        """For each index of `segment_source`, whether the row has the direction of the subsegment.
 
-        It does where it meets ``segments[i, 0]`` before ``segments[i, 1]``; the first row of each
-        subsegment always does.
+        True if the row reaches ``segments[i, 0]`` before ``segments[i, 1]``; always true for the
+        first row of each subsegment.
         """
         return self._made.forward
 
     @property
     def geometry_of_segment(self) -> Indices:
-        """The geometry that each of `input_segments` came from, (s,); -1 for those from arrays."""
+        """The geometry that each of `input_segments` came from, (s,); -1 for arrays."""
         return self._given.origin.geometries
 
     @property
@@ -228,11 +229,11 @@ class Segmented(PointTriangulation):
     @property
     @kept
     def polygon(self) -> Indices:
-        """The first polygon that has each triangle inside, (m,), as a number of a geometry.
+        """The first polygon that contains each triangle, (m,), as the number of its geometry.
 
-        -1 where there is none, and in triangulations of arrays. Inside is what an odd number of the
-        rings of the geometry winds around. A geometry from whose rings an edit took a side has no
-        inside.
+        -1 if there is none, and in triangulations of arrays. A point is inside if the rings of the
+        geometry wind around it an odd number of times. If an edit has removed a side of its rings,
+        a geometry has no inside.
         """
         component = self._component()
         return sealed(self._only_kept(self._polygons(component)[component]))
@@ -240,45 +241,45 @@ class Segmented(PointTriangulation):
     @property
     @kept
     def region(self) -> Indices:
-        """The area of each triangle, (m,): triangles that no segment separates have one number.
+        """The region of each triangle, (m,): the same where no segment separates triangles.
 
-        With seeds of regions it is the label of the first seed in the area, -1 without one. Without
-        seeds, areas are numbered from 0 in the order of their smallest triangles. Triangles are
+        With region seeds it is the label of the first seed in the region, -1 without one. Without
+        seeds, regions are numbered from 0 in the order of their smallest triangles. Triangles are
         compared by their smallest corners, then their middle ones, then their largest; corners by
-        x, then y. So the numbers do not hang on the order of rows.
+        x, then y. So the numbers do not depend on the order of rows.
         """
         component = self._component()
-        if self._options.labelled:
-            label, _ = self._labelled(component)
+        if self._options.labeled:
+            label, _ = self._labeled(component)
             return sealed(self._only_kept(label))
         return sealed(regions.numbered(self._points, self._simplices, self._only_kept(component)))
 
     def _only_kept(self, values: Indices) -> Indices:
         return values if self._number is None else values[self._number[:-1] >= 0]
 
-    def _labelled(self, component: Indices) -> tuple[Indices, Indices]:
+    def _labeled(self, component: Indices) -> tuple[Indices, Indices]:
         triangle, on_segment = self._located(self._given.regions)
-        valid = (triangle >= 0) & ~on_segment & ~self._is_gone(triangle)
+        valid = (triangle >= 0) & ~on_segment & ~self._is_removed(triangle)
         of_seed = np.where(valid, component[triangle], -1)
         return regions.labels(component, of_seed, self._given.labels)
 
-    def _is_gone(self, triangle: Indices) -> Bools:
+    def _is_removed(self, triangle: Indices) -> Bools:
         if self._number is None:
             return np.zeros(len(triangle), dtype=bool)
-        gone: Bools = (triangle >= 0) & (self._number[triangle] < 0)
-        return gone
+        removed: Bools = (triangle >= 0) & (self._number[triangle] < 0)
+        return removed
 
     @property
     @kept
     def report(self) -> SegmentReport:
-        """What the input held besides plain segments, row by row; truthy when nothing."""
+        """The input report: duplicates, overlaps, crossings and more, row by row."""
         made, ends = self._made, self.duplicate_of[self._given.segments]
         crossings = made.crossings
         known = np.concatenate((crossings[:, [0, 2]], crossings[:, [1, 2]], made.through))
         repeated = segments.repeated_rows(ends)
         hole, hole_on_segment = self._located(self._given.holes)
         triangle, on_segment = self._located(self._given.regions)
-        outside = (triangle < 0) | (self._is_gone(triangle) & ~on_segment)
+        outside = (triangle < 0) | (self._is_removed(triangle) & ~on_segment)
         report = segments.SegmentReport(
             duplicates=made.duplicates,
             zero=made.zero,
@@ -296,10 +297,10 @@ class Segmented(PointTriangulation):
         )
         if not len(self._given.regions):
             return report
-        return replace(report, regions_repeated=self._labelled(self._component())[1])
+        return replace(report, regions_repeated=self._labeled(self._component())[1])
 
     def _arguments(self) -> dict[str, Any]:
-        """Return what the constructor was given besides points and segments."""
+        """Return the arguments of the constructor other than points and segments."""
         raise NotImplementedError
 
     @classmethod
@@ -313,7 +314,7 @@ class Segmented(PointTriangulation):
         regions: ArrayLike | None = None,
         **choices: Any,
     ) -> Self:
-        """Triangulate arrays of our own, with the origin of each segment."""
+        """Triangulate private arrays, with the origin of each segment."""
         raise NotImplementedError
 
     @classmethod

@@ -1,8 +1,8 @@
-"""What became of the segments and seeds that a constrained triangulation was given.
+"""The input report of constrained triangulations: segments and seeds.
 
-Nothing that can be handled is an error: rows that repeat, overlap, have no length or run through
-vertices are taken for what they are, and named here. The core finds most of it; repetition and
-overlap follow from its arrays.
+Nothing that can be handled is an error: rows that repeat, overlap, have zero length or pass through
+vertices are accepted and reported here. The core finds most of this; repeated and overlapping rows
+follow from its arrays.
 """
 
 from __future__ import annotations
@@ -39,43 +39,44 @@ def _no_triples() -> Indices:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SegmentReport(ReadOnly):
-    """What the input of a constrained triangulation held besides plain segments.
+    """Input report of a constrained triangulation: duplicates, overlaps, crossings.
 
-    Truthy when there is nothing to report: each row of `segments` is one subsegment, no two
-    points coincide, and each seed lies in an area of its own. Every field is an array of culprits,
-    empty when there is none. "Row" is a row of the array that was given.
+    Truthy if there is nothing to report: each row of `segments` is one subsegment, no two points
+    coincide, and each seed lies in a region of its own. Every field is an array of findings, which
+    is empty if there are none. A "row" is a row of the input array.
 
     Parameters
     ----------
     duplicates : ndarray of int32, shape (k, 2)
-        Rows of points and the first row with the same coordinates, which is the vertex.
+        Rows of points, and the first row with the same coordinates, which is the vertex.
     zero : ndarray of int32, shape (k,)
-        Rows of segments without length: both ends have the same coordinates.
+        Rows of segments of zero length: both ends have the same coordinates.
     repeated : ndarray of int32, shape (k, 2)
-        Rows of segments and the first row with the same two ends, in either direction.
+        Rows of segments, and the first row with the same two ends, in either direction.
     overlaps : ndarray of int32, shape (k, 2)
-        Rows of segments and the first row with which they share a subsegment without having the
+        Rows of segments, and the first row with which they share a subsegment without having the
         same two ends. A row may be in several pairs.
     through : ndarray of int32, shape (k, 2)
-        Rows of segments and vertices, rows of points, that lie on them between their ends.
+        Rows of segments, and vertices (rows of points) that lie on them between their ends.
     crossings : ndarray of int32, shape (k, 3)
-        Two rows of segments that cross, and the vertex where they meet now.
+        Two rows of segments that cross, and the vertex at the crossing.
     steiner : ndarray of int32, shape (k, 2)
-        Rows of segments and vertices on their way that are neither their own crossings nor points
-        exactly on them: vertices that make the triangulation conforming, and those to which a row
-        that was rounded is led because it comes nearer to them than it can be told from them.
+        Rows of segments, and vertices on their paths that are neither their own crossings nor
+        points exactly on them: vertices that make the triangulation conforming, and vertices
+        through which a rounded row passes because it is too close to them to be distinguished from
+        them.
     holes_outside, regions_outside : ndarray of int32, shape (k,)
-        Rows of seeds that lie in no triangle; those of regions also where the triangle has been
-        removed. They have no effect.
+        Rows of seeds that lie in no triangle, for regions also in a removed triangle. They have no
+        effect.
     holes_on_segment, regions_on_segment : ndarray of int32, shape (k,)
-        Rows of seeds that lie on a segment, and so in no area. They have no effect.
+        Rows of seeds that lie on a segment, and therefore in no region. They have no effect.
     regions_repeated : ndarray of int32, shape (k, 2)
-        Rows of seeds and the earlier row that has labelled their area.
+        Rows of seeds, and the earlier row that has labeled their region.
 
     Attributes
     ----------
     ok : bool
-        True when there is nothing to report.
+        True if there is nothing to report.
 
     Examples
     --------
@@ -85,10 +86,10 @@ class SegmentReport(ReadOnly):
     >>> bool(mesh.report)
     False
     >>> print(mesh.report)
-    1 row of segments has no length: 2
+    1 row of segments has zero length: 2
     1 row of segments overlaps another: 1-0
     1 vertex lies on a segment (row-vertex): 0-4
-    1 seed of holes lies outside: 0
+    1 hole seed lies outside: 0
     """
 
     duplicates: Indices = field(default_factory=_no_pairs)
@@ -112,7 +113,7 @@ class SegmentReport(ReadOnly):
 
     @property
     def ok(self) -> bool:
-        """True when there is nothing to report."""
+        """True if there is nothing to report."""
         return all(len(getattr(self, each.name)) == 0 for each in fields(self))
 
     def __bool__(self) -> bool:
@@ -121,16 +122,16 @@ class SegmentReport(ReadOnly):
     def __str__(self) -> str:
         lines = []
         for name, (one, many) in _SENTENCES.items():
-            culprits = getattr(self, name)
-            if len(culprits):
-                sentence = one if len(culprits) == 1 else many
-                lines.append(f"{len(culprits)} {sentence}: {_list(culprits)}")
+            found = getattr(self, name)
+            if len(found):
+                sentence = one if len(found) == 1 else many
+                lines.append(f"{len(found)} {sentence}: {_list(found)}")
         return "\n".join(lines) or "nothing to report"
 
 
 _SENTENCES = {
     "duplicates": ("point repeats an earlier row", "points repeat earlier rows"),
-    "zero": ("row of segments has no length", "rows of segments have no length"),
+    "zero": ("row of segments has zero length", "rows of segments have zero length"),
     "repeated": ("row of segments repeats another", "rows of segments repeat others"),
     "overlaps": ("row of segments overlaps another", "pairs of rows of segments overlap"),
     "through": (
@@ -142,29 +143,29 @@ _SENTENCES = {
         "crossings were split (row-row-vertex)",
     ),
     "steiner": (
-        "vertex was put on the way of a segment (row-vertex)",
-        "vertices were put on the way of segments (row-vertex)",
+        "vertex was added to the path of a segment (row-vertex)",
+        "vertices were added to the paths of segments (row-vertex)",
     ),
-    "holes_outside": ("seed of holes lies outside", "seeds of holes lie outside"),
-    "holes_on_segment": ("seed of holes lies on a segment", "seeds of holes lie on segments"),
-    "regions_outside": ("seed of regions lies outside", "seeds of regions lie outside"),
+    "holes_outside": ("hole seed lies outside", "hole seeds lie outside"),
+    "holes_on_segment": ("hole seed lies on a segment", "hole seeds lie on segments"),
+    "regions_outside": ("region seed lies outside", "region seeds lie outside"),
     "regions_on_segment": (
-        "seed of regions lies on a segment",
-        "seeds of regions lie on segments",
+        "region seed lies on a segment",
+        "region seeds lie on segments",
     ),
     "regions_repeated": (
-        "seed of regions lies in an area that has a label",
-        "seeds of regions lie in areas that have labels",
+        "region seed lies in a region that already has a label",
+        "region seeds lie in regions that already have labels",
     ),
 }
 
 
-def _list(culprits: Indices) -> str:
+def _list(found: Indices) -> str:
     shown = [
-        "-".join(map(str, culprit)) if isinstance(culprit, list) else str(culprit)
-        for culprit in culprits[:_SHOWN].tolist()
+        "-".join(map(str, each)) if isinstance(each, list) else str(each)
+        for each in found[:_SHOWN].tolist()
     ]
-    return ", ".join(shown) + (", ..." if len(culprits) > _SHOWN else "")
+    return ", ".join(shown) + (", ..." if len(found) > _SHOWN else "")
 
 
 def repeated_rows(ends: Indices) -> Indices:
@@ -173,12 +174,12 @@ def repeated_rows(ends: Indices) -> Indices:
     Parameters
     ----------
     ends : ndarray of int32, shape (s, 2)
-        Vertices of the segments, of equal points always the same one.
+        Vertices of the segments; equal points have the same vertex.
 
     Returns
     -------
     ndarray of int32, shape (k, 2)
-        Row and first row with these ends, ascending. Rows without length are not among them.
+        Row, and first row with these ends, ascending. Rows of zero length are not included.
 
     Examples
     --------
@@ -192,7 +193,7 @@ def repeated_rows(ends: Indices) -> Indices:
     low, high = low[order], high[order]
     new = np.ones(len(order), dtype=bool)
     new[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
-    # The sort is stable, so that the first of equal rows comes first.
+    # The sort is stable, so the first of equal rows comes first.
     first = order[np.flatnonzero(new)][np.cumsum(new) - 1]
     later = ~new & (low != high)
     pairs = np.column_stack((order[later], first[later]))
@@ -200,21 +201,21 @@ def repeated_rows(ends: Indices) -> Indices:
 
 
 def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indices) -> Indices:
-    """Return the rows that share a subsegment with an earlier row of other ends.
+    """Return the rows that share a subsegment with an earlier row with other ends.
 
     Parameters
     ----------
     start : ndarray of int64, shape (q + 1,)
-        Where the sources of each subsegment begin.
+        Start of the sources of each subsegment, and the end.
     source : ndarray of int32
         Rows that cover the subsegments, ascending for each.
     repeated : ndarray of int32, shape (k, 2)
-        What `repeated_rows` returns.
+        The result of `repeated_rows`.
 
     Returns
     -------
     ndarray of int32, shape (k, 2)
-        Row and the first row that covers a common subsegment, ascending, every pair once.
+        Row, and the first row that covers a common subsegment, ascending, each pair once.
 
     Examples
     --------
@@ -241,25 +242,25 @@ def steiner_rows(
     known: Indices,
     ends: Indices,
 ) -> Indices:
-    """Return the vertices on the way of rows that nothing else explains.
+    """Return the vertices on the paths of rows that are neither crossings nor points on them.
 
     Parameters
     ----------
     segments : ndarray of int32, shape (q, 2)
         The subsegments.
     start : ndarray of int64, shape (q + 1,)
-        Where the sources of each subsegment begin.
+        Start of the sources of each subsegment, and the end.
     source : ndarray of int32
         Rows that cover the subsegments.
     known : ndarray of int32, shape (c, 2)
         Row and vertex: crossings of the row, and points that lie on it.
     ends : ndarray of int32, shape (s, 2)
-        The vertices where each row ends.
+        The two vertices at the ends of each row.
 
     Returns
     -------
     ndarray of int32, shape (k, 2)
-        Row and vertex, ascending, every pair once.
+        Row and vertex, ascending, each pair once.
 
     Examples
     --------

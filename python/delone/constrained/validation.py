@@ -1,9 +1,9 @@
-"""Whether a triangulation is the canonical constrained one: nothing, or the culprits by number.
+"""Validation of constrained triangulations, with the numbers of the elements that are wrong.
 
-The core checks the triangles as it checks those of `Delaunay`; of what it finds not locally
-Delaunay, edges that are subsegments are let off. What remains is whether subsegments, the flags of
-edges and the rows that were given fit each other, which are comparisons of integers and signs of
-exact predicates.
+The core checks the triangles as it checks those of `Delaunay`; pairs of triangles with a subsegment
+between them are then exempt from being locally Delaunay. What remains is whether subsegments, flags
+of edges and input rows are consistent, which takes comparisons of integers and signs of exact
+predicates.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ def _no_pairs() -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ConstrainedReport(ValidationReport):
-    """The answer of ``ConstrainedDelaunay.validate()``: truthy when the triangulation is right.
+    """The result of ``ConstrainedDelaunay.validate()``: truthy if it is correct.
 
-    Every field is an array of culprits and empty when there is none. Triangles are those of the
-    whole convex hull: where some are removed, their numbers are not those of `simplices`. The
-    fields of `ValidationReport` mean what they mean there, but `delaunay` and `ties` leave out
+    Every field is an array of faulty elements, which is empty if there are none. Triangles are
+    those of the whole convex hull: if some were removed, the numbers are not those of `simplices`.
+    The fields of `ValidationReport` mean the same as there, but `delaunay` and `ties` leave out
     pairs of triangles with a subsegment between them.
 
     Parameters
@@ -51,20 +51,20 @@ class ConstrainedReport(ValidationReport):
     orientation, edges, neighbors, hull, missing, repeats, delaunay, ties, count : ndarray of int
         As in `ValidationReport`.
     flags : ndarray of int, shape (k,)
-        Triangles of which an edge is flagged as part of a segment and is none, or the reverse.
+        Triangles with an edge that is flagged as part of a segment but is not, or the reverse.
     absent : ndarray of int, shape (k, 2)
-        Subsegments that are no edges of triangles.
+        Subsegments that are not edges of triangles.
     uncovered : ndarray of int, shape (k,)
-        Rows of segments whose subsegments are no way from the one end to the other.
+        Rows of segments whose subsegments do not form a path from one end to the other.
     bent : ndarray of int, shape (k, 2)
-        Rows of segments and vertices on their way that are not exactly on the row. Rows that run
-        through crossings or added vertices may bend, because those are rounded; so may rows where
-        such a one has bent across them, and all rows of a conforming triangulation.
+        Rows of segments, and vertices on their paths that are not exactly on the row. Rows that
+        pass through crossings or added vertices may bend, because these are rounded; so may rows
+        that a bent row crosses, and all rows of a conforming triangulation.
 
     Attributes
     ----------
     ok : bool
-        True when there is no culprit.
+        True if there are no faults.
 
     Examples
     --------
@@ -83,7 +83,7 @@ class ConstrainedReport(ValidationReport):
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
         **SENTENCES,
         "flags": ("triangle has wrong flags", "triangles have wrong flags"),
-        "absent": ("subsegment is no edge", "subsegments are no edges"),
+        "absent": ("subsegment is not an edge", "subsegments are not edges"),
         "uncovered": ("row of segments is not covered", "rows of segments are not covered"),
         "bent": ("vertex bends a row of segments", "vertices bend rows of segments"),
     }
@@ -101,18 +101,19 @@ def validate(
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        Coordinates of all points, added ones included.
+        Coordinates of all points, including added ones.
     made : ConstrainedTriangulation
         Triangles of the whole hull, and subsegments.
     ends : ndarray of int32, shape (s, 2)
-        The vertices of the segments that were given.
+        The vertices of the input segments.
     conforming : bool, optional
-        Whether rows were cut to be conforming: a cut may be rounded to a vertex beside the row.
+        Whether rows were split to make the triangulation conforming: rounding may move such a
+        vertex off the row.
 
     Returns
     -------
     ConstrainedReport
-        The culprits.
+        The faults.
     """
     simplices, neighbors = made.simplices, made.neighbors
     faults = _core.validate2(points, simplices, neighbors)
@@ -153,10 +154,11 @@ def _directed(made: _core.ConstrainedTriangulation) -> tuple[Indices, Indices, I
 
 
 def _uncovered(made: _core.ConstrainedTriangulation, ends: Indices, npoints: int) -> Indices:
-    """Rows whose subsegments are no simple way from end to end.
+    """Return the rows whose subsegments do not form a simple path from end to end.
 
-    Each vertex but the first must be the head of exactly one subsegment, each but the last the tail
-    of one. Then the subsegments are one way and perhaps cycles; cycles would be bent.
+    Each vertex except the first must be the head of exactly one subsegment, and each except the
+    last the tail of exactly one. Then the subsegments are one path and possibly cycles; cycles
+    would be bent.
     """
     row, tail, head = _directed(made)
     rows = np.arange(len(ends))
@@ -176,10 +178,10 @@ def _pair(row: NDArray[np.integer], vertex: Indices, npoints: int) -> NDArray[np
 
 
 def _bent(points: Floats, made: _core.ConstrainedTriangulation, ends: Indices) -> Indices:
-    """Vertices off their row, of rows that have no reason to bend.
+    """Return vertices off their row, for rows that have no reason to bend.
 
-    Reasons are a crossing, an added vertex, and a row that has one and bends at the same vertex:
-    bent pieces may cross rows which their segments do not meet.
+    Reasons are a crossing, an added vertex, and a row with one of these that bends at the same
+    vertex: bent pieces may cross rows that their segments do not meet.
     """
     row, tail, head = _directed(made)
     first, last = ends[row, 0], ends[row, 1]
@@ -189,7 +191,7 @@ def _bent(points: Floats, made: _core.ConstrainedTriangulation, ends: Indices) -
     high = np.maximum(points[first], points[last])
     off |= ((points[head] < low) | (points[head] > high)).any(axis=1)
     may_bend = np.zeros(len(ends), dtype=bool)
-    # A crossing may have been rounded to a vertex that was there.
+    # A crossing may have been rounded to an existing vertex.
     may_bend[made.crossings[:, :2]] = True
     may_bend[row[np.maximum(tail, head) >= len(points) - len(made.added)]] = True
     count = -1

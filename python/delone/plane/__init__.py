@@ -1,5 +1,5 @@
 """2-D triangulations: topology, geometry and quality of triangles.
 
-`topology` needs no coordinates, `geometry` measures, `quality` judges, `location` locates points,
-and `dimension` is the table of these functions.
+`topology` needs no coordinates, `geometry` computes measures, `quality` assesses shapes, `location`
+locates points, and `dimension` is the table of these functions.
 """

@@ -20,7 +20,7 @@ __all__ = ["PLANE"]
 
 
 def _hull(points: Floats, boundary: Indices) -> NDArray[np.int64]:
-    """Return the vertices of a boundary that is one cycle, from the smallest point on."""
+    """Return the vertices of a boundary that is one cycle, starting at the smallest point."""
     rows = boundary[:, 0]
     x, y = points[rows].T
     return topology.boundary_next(boundary, int(rows[np.lexsort((y, x))[0]]))

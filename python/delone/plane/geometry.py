@@ -1,7 +1,7 @@
-"""What is measured on triangles: areas, circumcenters, barycentric transforms.
+"""Measures of triangles: areas, circumcenters, barycentric transforms.
 
-The core computes it, in stages: what cancels in a thin triangle is computed again with more digits.
-Assumed are finite points and triangles that are exactly counter-clockwise.
+The core computes them in stages: values that suffer cancellation in thin triangles are computed
+again with more digits. Points must be finite, and triangles exactly counter-clockwise.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ def areas(points: Floats, simplices: Indices, workers: int | None = None) -> Flo
     Returns
     -------
     ndarray of float64, shape (m,)
-        With a relative error below 1e-13, unless the area itself is beyond the range of doubles
-        (then inf, or rounded among the subnormal ones).
+        With a relative error below 1e-13, unless the area is beyond the range of doubles (then inf,
+        or rounded to a subnormal number).
 
     Examples
     --------
@@ -53,7 +53,7 @@ def areas(points: Floats, simplices: Indices, workers: int | None = None) -> Flo
 
 
 def transform(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the affine maps from the plane to barycentric coordinates.
+    """Return the affine maps from coordinates to barycentric coordinates.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def transform(points: Floats, simplices: Indices, workers: int | None = None) ->
     Returns
     -------
     ndarray of float64, shape (m, 3, 2)
-        For each triangle the inverse of the matrix whose columns lead from the last corner to the
-        first two, and below it the last corner. Entries have a relative error below 1e-13, unless
-        they are beyond the range of doubles.
+        For each triangle, the inverse of the matrix whose columns are the vectors from the last
+        corner to the first two, and below it the last corner. Entries have a relative error below
+        1e-13, unless they are beyond the range of doubles.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def circumcenters(points: Floats, simplices: Indices, workers: int | None = None
     Returns
     -------
     ndarray of float64, shape (m, 2)
-        Each coordinate within 4 units in the last place; infinite where it is beyond the range of
+        Each coordinate within 4 units in the last place; infinite if it is beyond the range of
         doubles.
 
     Examples
@@ -114,14 +114,14 @@ def circumcenters(points: Floats, simplices: Indices, workers: int | None = None
 
 
 def edge_normals(points: Floats, edges: Indices) -> Floats:
-    """Return the unit normals of edges in the plane, to their right.
+    """Return the unit normals of edges, to their right.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
         Coordinates.
     edges : ndarray of int32, shape (k, 2)
-        Tails and heads, at different places.
+        Tails and heads, with different coordinates.
 
     Returns
     -------
@@ -136,7 +136,8 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
     array([[ 1.,  0.],
            [-1.,  0.]])
     """
-    # Halves where a difference overflows; a power of two, so that small ones keep their bits.
+    # Halve the coordinates if their difference overflows, and scale by a power of two, so that
+    # small differences keep their bits.
     ends = points[edges]
     with np.errstate(over="ignore"):
         along = ends[:, 1] - ends[:, 0]
@@ -146,7 +147,7 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
     along = np.ldexp(along, -exponent[:, None])
     normals = np.column_stack((along[:, 1], -along[:, 0]))
     normals /= np.hypot(normals[:, 0], normals[:, 1])[:, None]
-    # Adding 0 makes -0 the 0 that it is.
+    # Adding 0 turns -0 into 0.
     return normals + 0.0
 
 
@@ -156,12 +157,12 @@ def total(sizes: Floats) -> float:
     Parameters
     ----------
     sizes : ndarray of float64, shape (m,)
-        Lengths, areas or volumes: none below zero.
+        Lengths, areas or volumes; not negative.
 
     Returns
     -------
     float
-        Inf where the sum is beyond the range of doubles.
+        Infinite if the sum is beyond the range of doubles.
 
     Examples
     --------

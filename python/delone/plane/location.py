@@ -42,7 +42,7 @@ def located(
 
 
 def on_edges(points: Floats, edge: Indices, weights: Floats) -> Floats:
-    """Return points of edges, exactly the ends where one weight is 1.
+    """Return points on edges; if a weight is 1, exactly that end.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def on_edges(points: Floats, edge: Indices, weights: Floats) -> Floats:
     edge : ndarray of int32, shape (k, 2)
         Ends of the edges.
     weights : ndarray of float64, shape (k, 2)
-        Weights of the ends, of sum 1.
+        Weights of the ends; their sum is 1.
 
     Returns
     -------
@@ -83,12 +83,12 @@ def along(
     index : Locator2
         The index over all triangles of the convex hull.
     tiling : tuple
-        Their points, simplices and neighbours.
+        Their points, simplices and neighbors.
     number : ndarray of int32, shape (m + 1,), or None
-        What each triangle is among those that count, -1 where it is none; the last entry is -1.
-        None where all count.
+        The row of each triangle among those that are kept, -1 if it is removed; the last entry is
+        -1. None if all are kept.
     a, b : ndarray of float64, shape (2,)
-        Ends of the segment, finite; they differ where there are numbers.
+        Ends of the segment, finite; they must differ if `number` is given.
 
     Returns
     -------
@@ -99,8 +99,8 @@ def along(
     if number is None:
         return met
     found = number[met]
-    gone = found < 0
-    found[gone] = number[across_line(*tiling, met[gone], a, b)]
+    removed = found < 0
+    found[removed] = number[across_line(*tiling, met[removed], a, b)]
     kept: Indices = found[found >= 0]
     return kept
 
@@ -108,7 +108,7 @@ def along(
 def across_line(  # noqa: PLR0917 (a tiling is three arrays)
     points: Floats, simplices: Indices, neighbors: Indices, triangle: Indices, a: Floats, b: Floats
 ) -> Indices:
-    """Return the neighbours of triangles across their edges on the line through two points.
+    """Return the neighbors of triangles across their edges on the line through two points.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def across_line(  # noqa: PLR0917 (a tiling is three arrays)
     Returns
     -------
     ndarray of int32, shape (k,)
-        Triangles, -1 where there is no such edge or nothing beyond it.
+        Triangles, -1 if there is no such edge, or no triangle beyond it.
     """
     corners = points[simplices[triangle]].reshape(-1, 2)
     start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()

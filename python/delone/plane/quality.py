@@ -1,7 +1,7 @@
-"""How good triangles are: angles, areas, ratios, and the exact comparison with a bound of angles.
+"""Quality of triangles: angles, areas, ratios, and exact comparison with a bound on angles.
 
-The core computes the measures, in stages: what cancels in a thin triangle is computed again with
-more digits. `below` compares squares of cosines, exactly.
+The core computes the measures in stages: values that suffer cancellation in thin triangles are
+computed again with more digits. `below` compares squares of cosines exactly.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Quality", "below", "measured", "smallest_corners", "squared_cosine"]
 
-# Squared cosines that are simple fractions, and whose double is another number.
+# Squared cosines that are simple fractions, for which rounding would give a different double.
 _SIMPLE = {30.0: 0.75, 45.0: 0.5}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Quality(Measures):
-    """Measures of the triangles of a mesh, one entry for each.
+    """Quality measures of triangles, one entry per triangle.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ class Quality(Measures):
     area : ndarray of float64, shape (m,)
         In the square of the unit of the points.
     radius_ratio : ndarray of float64, shape (m,)
-        Twice the radius of the inscribed circle, as a share of that of the circumscribed one: 1 for
-        an equilateral triangle, towards 0 for thin ones.
+        Twice the inradius divided by the circumradius: 1 for equilateral triangles, near 0 for thin
+        ones.
     edge_ratio : ndarray of float64, shape (m,)
-        The longest edge in lengths of the shortest: at least 1.
+        The longest edge divided by the shortest: at least 1.
 
     Examples
     --------
@@ -69,19 +69,19 @@ class Quality(Measures):
     _noun = "triangle"
 
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
-        """Draw the histogram of the smallest and the largest angles (extra ``plot``).
+        """Draw a histogram of the smallest and the largest angles (extra ``plot``).
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
             Where to draw; by default on new axes.
         bound : float, optional
-            An angle to be marked, in degrees.
+            An angle to mark, in degrees.
 
         Returns
         -------
         matplotlib Axes
-            What was drawn on.
+            The axes.
 
         Raises
         ------
@@ -125,7 +125,7 @@ def measured(points: Floats, simplices: Indices, workers: int | None = None) -> 
 
 
 def smallest_corners(points: Floats, simplices: Indices) -> Indices:
-    """Return the corner of each triangle where its smallest angle is.
+    """Return the corner of each triangle that has its smallest angle.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def smallest_corners(points: Floats, simplices: Indices) -> Indices:
         0, 1 or 2.
     """
     corners = points[simplices]
-    # Halves, so that no difference exceeds the range of doubles.
+    # Halve the coordinates, so that no difference overflows.
     sides = 0.5 * corners[:, [2, 0, 1]] - 0.5 * corners[:, [1, 2, 0]]
     lengths = np.hypot(sides[..., 0], sides[..., 1])
     found: Indices = lengths.argmin(axis=1).astype(np.int32)
@@ -158,7 +158,7 @@ def squared_cosine(degrees: float) -> float:
     Returns
     -------
     float
-        Of 30 and 45 degrees exactly the square; of others a double next to it.
+        Exact for 30 and 45 degrees; otherwise rounded.
 
     Examples
     --------
@@ -192,8 +192,8 @@ def below(
 
     Notes
     -----
-    Exact for the double `squared_cosine`: an angle is smaller where the square of its cosine is
-    larger.
+    Exact for the double that `squared_cosine` returns: an angle is smaller if the square of its
+    cosine is larger.
 
     Examples
     --------

@@ -1,8 +1,9 @@
-"""What follows from the arrays of triangles alone: edges, boundary, incidences.
+"""Topology of triangles: edges, boundary, incidences.
 
-No coordinate and no predicate is needed here. Assumed is a triangulation as the core exports it:
-triangles counter-clockwise, `neighbors[t, k]` across the edge opposite vertex k, -1 outside, and a
-boundary that is one cycle. All functions are linear in the number of triangles, apart from sorting.
+Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
+triangles are counter-clockwise, `neighbors[t, k]` is across the edge opposite vertex k, -1 outside,
+and the boundary is one cycle. All functions are linear in the number of triangles, apart from
+sorting.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
     Returns
     -------
     ndarray of int32, shape (h, 2)
-        Directed, the triangle to the left, in the order of the triangles.
+        Directed edges, with the triangle to the left, in the order of the triangles.
 
     Examples
     --------
@@ -104,19 +105,19 @@ def boundary_edges(simplices: Indices, neighbors: Indices) -> Indices:
 
 
 def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
-    """Follow boundary edges from a vertex until they come back to it.
+    """Follow boundary edges from a vertex until they return to it.
 
     Parameters
     ----------
     boundary : ndarray of int32, shape (h, 2)
-        Directed edges; no vertex begins two of them.
+        Directed edges, of which no two start at the same vertex.
     start : int
         A vertex of the boundary.
 
     Returns
     -------
     ndarray of int64, shape (k,)
-        The vertices from `start` on. k is h exactly where the edges form one cycle.
+        The vertices from `start` on. k equals h if and only if the edges form one cycle.
 
     Examples
     --------
@@ -127,7 +128,7 @@ def boundary_next(boundary: Indices, start: int) -> NDArray[np.int64]:
     """
     after = dict(boundary.tolist())
     cycle = [start]
-    # Each step leaves a fresh vertex or comes to one seen before; h steps are enough for both.
+    # Terminates: at most h steps.
     for _ in range(len(boundary) - 1):
         vertex = after.get(cycle[-1], start)
         if vertex == start:
@@ -149,7 +150,7 @@ def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
     Returns
     -------
     ndarray of int32, shape (npoints,)
-        The first triangle that has the vertex; -1 where there is none.
+        The first triangle that has the vertex; -1 if there is none.
 
     Examples
     --------
@@ -159,26 +160,26 @@ def vertex_to_simplex(simplices: Indices, npoints: int) -> Indices:
     [0, 0, -1, 0, 1]
     """
     found = np.full(npoints, -1, dtype=np.int32)
-    # Where an index is repeated, the last value is the one that stays.
+    # If an index is repeated, the last value assigned remains.
     triangles = np.arange(len(simplices) - 1, -1, -1, dtype=np.int32)
     found[simplices[::-1]] = triangles[:, None]
     return found
 
 
 def rows_among(triangles: Indices, some: Indices) -> Indices:
-    """Return which of some triangles each triangle is.
+    """Return the row of each triangle in a subset.
 
     Parameters
     ----------
     triangles : ndarray of int32, shape (m, 3)
-        Triangles, each but once.
+        Distinct triangles.
     some : ndarray of int32, shape (k, 3)
-        Some of them, each but once; their corners may begin elsewhere.
+        A subset of them, whose corners may be rotated.
 
     Returns
     -------
     ndarray of int32, shape (m + 1,)
-        Rows of `some`, -1 for triangles that are not among them; the last entry is -1.
+        Rows of `some`, -1 for triangles that are not in it; the last entry is -1.
 
     Examples
     --------
@@ -188,16 +189,16 @@ def rows_among(triangles: Indices, some: Indices) -> Indices:
     array([-1,  0, -1], dtype=int32)
     """
     corners = np.sort(np.concatenate((triangles, some)), axis=1)
-    # A stable sort puts a triangle of the first array before its twin of the second.
+    # A stable sort puts a triangle of the first array before the same triangle of the second.
     order = np.lexsort(corners.T)
-    twin = (corners[order[1:]] == corners[order[:-1]]).all(axis=1)
+    same = (corners[order[1:]] == corners[order[:-1]]).all(axis=1)
     found = np.full(len(triangles) + 1, -1, dtype=np.int32)
-    found[order[:-1][twin]] = order[1:][twin] - len(triangles)
+    found[order[:-1][same]] = order[1:][same] - len(triangles)
     return found
 
 
 def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Indices]:
-    """Return the neighbours of all vertices as compressed rows.
+    """Return the neighbors of all vertices as compressed rows.
 
     Parameters
     ----------
@@ -209,9 +210,9 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
     Returns
     -------
     indptr : ndarray of int32, shape (npoints + 1,)
-        Where the neighbours of each vertex begin.
+        The start of the neighbors of each vertex.
     indices : ndarray of int32, shape (2 k,)
-        The neighbours of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, ascending.
+        The neighbors of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, ascending.
 
     Notes
     -----
@@ -220,7 +221,7 @@ def vertex_neighbor_vertices(edges: Indices, npoints: int) -> tuple[Indices, Ind
     Raises
     ------
     ShapeError
-        The edges are in another order.
+        The edges are in a different order.
 
     Examples
     --------
@@ -239,14 +240,14 @@ def neighbors(simplices: Indices, npoints: int) -> Indices:
     Parameters
     ----------
     simplices : ndarray of int32, shape (m, 3)
-        Triangles, all of one orientation; no directed edge is used twice.
+        Triangles, all with the same orientation; no directed edge is used twice.
     npoints : int
         Number of points.
 
     Returns
     -------
     ndarray of int32, shape (m, 3)
-        Triangles, -1 where there is none.
+        Triangles, -1 if there is none.
 
     Notes
     -----
@@ -270,7 +271,7 @@ def neighbors(simplices: Indices, npoints: int) -> Indices:
 
 
 def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> NDArray[np.int64]:
-    """Return a number for each edge, the same in both directions.
+    """Return a key for each edge, the same in both directions.
 
     Parameters
     ----------
@@ -282,7 +283,7 @@ def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> N
     Returns
     -------
     ndarray of int64
-        In the shape of the ends, ascending with the smaller end, then with the larger one.
+        Keys in the shape of the ends; they ascend with the smaller end, then with the larger one.
 
     Examples
     --------
@@ -296,7 +297,7 @@ def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> N
 
 
 def among(keys: NDArray[np.int64], others: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Tell which numbers are among others.
+    """Return which numbers are among others.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Quality meshes: domains filled with triangles of bounded angles and sizes.
+"""Quality mesh generation: domains filled with triangles of bounded angles and sizes.
 
-`refine` has the function `mesh`, `meshed` the class Mesh, `domains` what is filled, `sizing` sizes
-of all kinds, `adaptivity` and `smoothing` later changes, `report` what was reached.
+`refine` has the function `mesh`, `meshed` the class Mesh, `domains` the input of the core, `sizing`
+size functions, `adaptivity` and `smoothing` change meshes, `report` describes the result.
 """
 
 from delone.refine.meshed import Mesh

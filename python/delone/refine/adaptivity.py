@@ -1,8 +1,8 @@
-"""Meshes that become finer or coarser where a caller says so.
+"""Adaptive refinement and coarsening of meshes.
 
-Finer is what the core does, with a cap for the triangles that are marked. Coarser is the removal of
-points that were added inside: those of marked triangles go, no two of them neighbours, and what
-would leave an angle below the bound comes back.
+To refine, the core gets a maximum area for each marked triangle. To coarsen, points that were added
+inside are removed: points of marked triangles, no two of them neighbors. Points whose removal would
+leave an angle below the bound are inserted again.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ def finer(
     if not 0 < ratio <= 1:
         raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
-    most = MOST_ADDED if max_points is None else as_count(max_points, name="max_points")
-    limits = Limits(bound, most, False, progress, mesh._workers)
+    budget = MOST_ADDED if max_points is None else as_count(max_points, name="max_points")
+    limits = Limits(bound, budget, False, progress, mesh._workers)
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:
-        wanted = _by_place(mesh, _chosen(marked, mesh.nsimplex), ratio)
-        domain, more = rounds(domain, (None, wanted), limits)
+        size_at = _size_function(mesh, _chosen(marked, mesh.nsimplex), ratio)
+        domain, more = rounds(domain, (None, size_at), limits)
         counts = counts.plus(more)
-        limits = limits._replace(max_points=most - more.total)
+        limits = limits._replace(max_points=budget - more.total)
     if (marked is None or max_area is not None or size is not None) and not counts.exhausted:
         domain, more = rounds(domain, (max_area, size), limits)
         counts = counts.plus(more)
@@ -67,7 +67,7 @@ def finer(
 
 
 def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
-    """Return triangles from a mask or from their numbers."""
+    """Return the numbers of triangles that are given as a mask or as numbers."""
     array = np.asarray(marked)
     if array.dtype.kind == "b":
         if array.shape != (count,):
@@ -76,27 +76,27 @@ def _chosen(marked: ArrayLike, count: int) -> NDArray[np.intp]:
     if array.size == 0:
         return np.empty(0, dtype=np.intp)
     if array.ndim != 1:
-        raise ShapeError(f"marked must have one axis, got shape {array.shape}")
+        raise ShapeError(f"marked must be 1-D, got shape {array.shape}")
     if array.dtype.kind not in "iu":
-        raise DtypeError(f"marked must be booleans or triangles, got dtype {array.dtype}")
+        raise DtypeError(f"marked must be a mask or numbers of triangles, got dtype {array.dtype}")
     if int(array.min()) < 0 or int(array.max()) >= count:
-        raise InputError(f"marked leaves the range 0 to {count - 1} of triangles")
+        raise InputError(f"marked must be numbers of triangles, from 0 to {count - 1}")
     return np.unique(array).astype(np.intp)
 
 
-def _by_place(
+def _size_function(
     mesh: MeshState, chosen: NDArray[np.intp], ratio: float
 ) -> Callable[[Floats], Floats]:
-    """Return the sizes that make chosen triangles smaller, by the triangle that has a place."""
+    """Return a size function that makes chosen triangles smaller."""
     sizes = np.full(mesh.nsimplex, math.inf)
     unit = domains.unit_of(mesh.points)
     areas = geometry.areas(mesh.points / unit, mesh.simplices[chosen])
     sizes[chosen] = np.sqrt(ratio * areas / EQUILATERAL) * unit
 
-    def size(places: Floats) -> Floats:
-        found = mesh.locate(places)
-        home = np.where(found.simplex >= 0, found.simplex, found.beside)
-        return np.asarray(sizes[home])
+    def size(positions: Floats) -> Floats:
+        found = mesh.locate(positions)
+        triangle = np.where(found.simplex >= 0, found.simplex, found.beside)
+        return np.asarray(sizes[triangle])
 
     return size
 
@@ -108,62 +108,61 @@ def coarsened(mesh: M, marked: ArrayLike | None) -> M:
     free[mesh.simplices[chosen]] = True
     free &= mesh._inner
     free[mesh.simplices[mesh._below]] = False
-    gone = _independent(mesh, free)
-    while gone.any():
-        domain, kept = _without(mesh, gone)
+    removed = _independent(mesh, free)
+    while removed.any():
+        domain, kept = _without(mesh, removed)
         bound = float(mesh._bound[0])
         counts = Counts._make(mesh._counts.tolist())
         caps = np.full(len(domain.simplices), math.inf)
-        # Where an angle has become too small, points come back, at other places or fewer.
-        most = int(np.count_nonzero(gone))
-        again, more = domains.refined(domain, caps, bound, most)
-        # At corners that are sharper than 60 degrees the core may leave angles below the bound that
-        # there were none before.
-        spoiled = worse(mesh, again, np.append(kept, np.full(more.total, -1)))
-        if not more.exhausted and more.total < most and not len(spoiled):
-            return type(mesh)._of(again, counts, bound, mesh.stages, mesh._workers)
-        lost = worse(mesh, domain, kept)
-        if not len(lost):
+        # Where an angle has become too small, the core adds points, fewer or at other positions.
+        limit = int(np.count_nonzero(removed))
+        refined, more = domains.refined(domain, caps, bound, limit)
+        # At corners sharper than 60 degrees the core may leave new angles below the bound.
+        bad = worse(mesh, refined, np.append(kept, np.full(more.total, -1)))
+        if not more.exhausted and more.total < limit and not len(bad):
+            return type(mesh)._of(refined, counts, bound, mesh.stages, mesh._workers)
+        bad = worse(mesh, domain, kept)
+        if not len(bad):
             return type(mesh)._of(domain, counts, bound, mesh.stages, mesh._workers)
-        gone &= ~_beside(mesh, kept[lost], gone)
+        removed &= ~_neighborhood(mesh, kept[bad], removed)
     return mesh
 
 
-def _without(mesh: MeshState, gone: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
-    """Triangulate without some points; what is left, and which points these are."""
-    kept = np.flatnonzero(~gone)
+def _without(mesh: MeshState, removed: Bools) -> tuple[domains.Domain, NDArray[np.intp]]:
+    """Triangulate without some points; return the domain and the rows of its points."""
+    kept = np.flatnonzero(~removed)
     row = np.full(mesh.npoints, -1, dtype=np.int32)
     row[kept] = np.arange(len(kept), dtype=np.int32)
     domain, _ = rebuilt(mesh, mesh.points[kept], row)
     if domain is None:
-        raise InternalError("points of a mesh have met each other")
+        raise InternalError("points of a mesh coincide")
     return domain, kept
 
 
-def _beside(mesh: MeshState, points: NDArray[np.intp], gone: Bools) -> Bools:
-    """Return the points beside others, or all where none of those that are gone is there."""
+def _neighborhood(mesh: MeshState, points: NDArray[np.intp], removed: Bools) -> Bools:
+    """Return points and their neighbors; all points if no removed point is among these."""
     near = np.zeros(mesh.npoints, dtype=bool)
     near[points] = True
     back = np.zeros(mesh.npoints, dtype=bool)
     back[mesh.edges[near[mesh.edges].any(axis=1)]] = True
-    return back if (back & gone).any() else np.ones(mesh.npoints, dtype=bool)
+    return back if (back & removed).any() else np.ones(mesh.npoints, dtype=bool)
 
 
 def _independent(mesh: MeshState, free: Bools) -> Bools:
-    """Choose free points, no two of them neighbours, as many as fit: the lower row goes first."""
+    """Choose a maximal set of free points, no two of which are neighbors."""
     indptr, indices = topology.vertex_neighbor_vertices(mesh.edges, mesh.npoints)
-    chosen, barred = np.zeros_like(free), ~free
-    # A fixed scattering of the rows, so that few rounds do.
+    chosen, excluded = np.zeros_like(free), ~free
+    # A fixed pseudorandom order of the rows, so that few rounds are enough.
     rank = (np.arange(mesh.npoints, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(
         11
     )
     owner = np.repeat(np.arange(mesh.npoints), np.diff(indptr))
-    while not barred.all():
-        open_rank = np.where(barred, np.uint64(2**63), rank)
+    while not excluded.all():
+        open_rank = np.where(excluded, np.uint64(2**63), rank)
         least = np.full(mesh.npoints, 2**63, dtype=np.uint64)
         np.minimum.at(least, owner, open_rank[indices])
-        take = ~barred & (rank < least)
+        take = ~excluded & (rank < least)
         chosen |= take
-        barred |= take
-        barred[indices[take[owner]]] = True
+        excluded |= take
+        excluded[indices[take[owner]]] = True
     return chosen

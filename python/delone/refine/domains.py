@@ -1,9 +1,9 @@
-"""What is meshed: a triangulated hull, of which labelled parts are the domain, between lines.
+"""Domains to be meshed: a triangulated convex hull with labeled regions and constraint lines.
 
-A `Domain` is what the core refines and what it makes of it, so one can go round many times. A line
-is a piece of a segment of the input between two of its vertices; the subsegments into which it is
-cut are known by its row. A mesh becomes a domain again when it is triangulated anew: the triangles
-to the left of a subsegment keep their region.
+A `Domain` is both the input and the output of the core, so refinement can be repeated. A line is
+the part of an input segment between two consecutive input vertices; the subsegments into which it
+is split refer to it by its row. A mesh is converted back to a domain by triangulating it again: the
+triangles to the left of a subsegment keep their region.
 """
 
 from __future__ import annotations
@@ -45,16 +45,18 @@ __all__ = [
 # Tail and head of the half-edge opposite vertex k, counter-clockwise.
 _TAIL = [1, 2, 0]
 _HEAD = [2, 0, 1]
-# Largest coordinates between which products of four differences are doubles, as in the core.
+# Products of four coordinate differences are doubles if the largest coordinate is in this range, as
+# in the core.
 _USUAL = 1e-60, 1e60
 
 
 class Lines(NamedTuple):
-    """The straight lines between vertices of the input, and what is known of each."""
+    """The straight lines between input vertices, and their attributes."""
 
     # (l, 2): vertices.
     ends: Indices
-    # (l + 1,) and (.,): the rows of segments that cover each line, and whether they run along it.
+    # (l + 1,) and (.,): the rows of segments that cover each line, and whether they have its
+    # direction.
     start: NDArray[np.int64]
     source: Indices
     forward: Bools
@@ -66,13 +68,13 @@ class Lines(NamedTuple):
 
 
 class Domain(NamedTuple):
-    """Triangles of a convex hull, and which of them are to be meshed."""
+    """Triangles of a convex hull, some of which are the domain."""
 
     points: Floats
-    # (n,): the row of the input that each point is; -1 where it was added.
+    # (n,): the input row of each point; -1 for added points.
     point_source: Indices
     point_markers: Indices
-    # (n,): the line that each point was put on, or -1.
+    # (n,): the line that each point was added on, or -1.
     on: Indices
     simplices: Indices
     neighbors: Indices
@@ -85,7 +87,7 @@ class Domain(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """How many points were added for what, and whether the limit ended it."""
+    """Numbers of added points by cause, and whether the limit was reached."""
 
     segment: int = 0
     angle: int = 0
@@ -93,7 +95,7 @@ class Counts(NamedTuple):
     exhausted: bool = False
 
     def plus(self, other: Counts) -> Counts:
-        """Return the sums, exhausted as the later one says."""
+        """Return the sums; `exhausted` is that of the later counts."""
         return Counts(
             self.segment + other.segment,
             self.angle + other.angle,
@@ -103,7 +105,7 @@ class Counts(NamedTuple):
 
     @property
     def total(self) -> int:
-        """All points added."""
+        """Number of all added points."""
         return self.segment + self.angle + self.size
 
 
@@ -115,7 +117,7 @@ def of_constrained(
     point_markers: Indices,
     frozen: Bools,
 ) -> Domain:
-    """Return the domain that a constrained triangulation keeps.
+    """Return the domain of a constrained triangulation: the triangles that it keeps.
 
     Parameters
     ----------
@@ -124,16 +126,16 @@ def of_constrained(
     region : ndarray of int32, shape (m,)
         The region of each of its triangles.
     segment_markers : ndarray of int32, shape (s,)
-        A number for each of its input segments.
+        A marker for each of its input segments.
     point_markers : ndarray of int32, shape (n,)
-        A number for each of its points that were given.
+        A marker for each of its input points.
     frozen : ndarray of bool, shape (s,)
-        Which of its input segments may not be split.
+        Which of its input segments must not be split.
 
     Returns
     -------
     Domain
-        Edges of the hull that bound the domain are lines without a source.
+        Hull edges that bound the domain without a segment are lines without a source.
     """
     made, points = base._made, base.points
     simplices = made.simplices
@@ -152,7 +154,7 @@ def of_constrained(
     fixed = np.zeros(len(ends), dtype=bool)
     fixed[owner[frozen[rows]]] = True
     markers = np.zeros(len(ends), dtype=np.int32)
-    # The first row that has a marker gives it: the last value assigned stays.
+    # The marker is that of the first row that has one: the last value assigned remains.
     marked = np.flatnonzero(segment_markers[rows])[::-1]
     markers[owner[marked]] = segment_markers[rows[marked]]
     geometries = np.full(len(ends), -1, dtype=np.int32)
@@ -165,7 +167,7 @@ def of_constrained(
     return Domain(
         points=points,
         point_source=source,
-        point_markers=_passed_on(of_points, ends, markers),
+        point_markers=_inherited(of_points, ends, markers),
         on=np.full(len(points), -1, dtype=np.int32),
         simplices=simplices,
         neighbors=made.neighbors,
@@ -176,8 +178,8 @@ def of_constrained(
     )
 
 
-def _passed_on(of_points: Indices, ends: Indices, markers: Indices) -> Indices:
-    """Give points without a marker that of the first line with one that ends there."""
+def _inherited(of_points: Indices, ends: Indices, markers: Indices) -> Indices:
+    """Give each point without a marker that of the first line that ends there and has one."""
     found = of_points.copy()
     marked = np.flatnonzero(markers)[::-1]
     found[ends[marked].ravel()] = np.repeat(markers[marked], 2)
@@ -200,27 +202,27 @@ def refined(
     Parameters
     ----------
     domain : Domain
-        What is refined.
+        The domain to refine.
     caps : ndarray of float64, shape (m,)
-        The largest area that each triangle may keep; those made of it inherit it.
+        The largest allowed area of each triangle; triangles that replace it inherit it.
     min_angle : float
-        In degrees, below 60.
+        The bound in degrees, below 60.
     max_points : int
-        How many points may be added.
+        Maximum number of added points.
     circles : bool, optional
-        Whether the circles over subsegments are emptied, so that all triangles are Delaunay.
+        Whether to empty the diametral circles of subsegments, so that all triangles are Delaunay.
     sizes_yield : bool, optional
-        Whether triangles stay too large where only points close to a frozen line would make them
+        Whether triangles may stay too large if only points close to a frozen line would make them
         smaller.
     progress : callable, optional
-        Called now and then with the number of points added and the smallest angle.
+        Called from time to time with the number of added points and the smallest angle.
 
     Returns
     -------
     domain : Domain
-        The refined one; its first points are those of the given one.
+        The refined domain; its first points are those of the input.
     counts : Counts
-        The points added.
+        The added points.
     """
     lines = domain.lines
     kinds = circles, sizes_yield
@@ -242,24 +244,24 @@ def refined(
 
 
 def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
-    """Find the needles of a domain that would be left as they are.
+    """Find the needles of a domain that refinement leaves as they are.
 
     Parameters
     ----------
     domain : Domain
-        What has been refined.
+        The refined domain.
     min_angle : float
-        In degrees, below 60.
+        The bound in degrees, below 60.
 
     Returns
     -------
     simplices : ndarray of int32, shape (m, 3)
-        The triangles of the domain, perhaps in another order.
+        The triangles of the domain, possibly in another order.
     needle : ndarray of int32, shape (m,)
-        The number of the needle that each is in, or -1.
+        The number of the needle that contains each triangle, or -1.
     """
     caps = np.full(len(domain.simplices), math.inf)
-    # Where no point may be added, nothing is done but to look for them.
+    # If no point may be added, the core only looks for needles.
     made = _made(domain, caps, (min_angle, 0))
     return made.simplices, made.needles
 
@@ -273,8 +275,8 @@ def _made(
 ) -> _core.RefinedMesh:
     """Call the core.
 
-    `bounds` are the smallest angle and the most points to be added, `kinds` whether circles over
-    segments are to be empty, and whether sizes yield to segments.
+    `bounds` are the smallest angle and the maximum number of added points, `kinds` whether
+    diametral circles are emptied, and whether sizes yield to segments.
     """
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
@@ -293,7 +295,7 @@ def _made(
 
 
 def unit_of(points: Floats) -> float:
-    """Return a unit of length in which areas are doubles.
+    """Return a unit of length in which areas do not overflow or underflow.
 
     Parameters
     ----------
@@ -303,8 +305,8 @@ def unit_of(points: Floats) -> float:
     Returns
     -------
     float
-        A power of two; 1 unless all coordinates are very small or some very large, and where others
-        would be rounded in it.
+        A power of two; 1 unless all coordinates are very small or some are very large, and also if
+        scaling would round other coordinates.
 
     Examples
     --------
@@ -316,7 +318,7 @@ def unit_of(points: Floats) -> float:
     largest = float(np.abs(points).max(initial=0.0))
     if largest == 0 or _USUAL[0] <= largest <= _USUAL[1]:
         return 1.0
-    # Both it and its inverse are doubles.
+    # The unit and its inverse are doubles.
     unit = math.ldexp(1.0, min(max(math.frexp(largest)[1], -1022), 1022))
     return unit if np.array_equal(points / unit * unit, points) else 1.0
 
@@ -347,7 +349,7 @@ def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[In
 def triangulated(
     points: Floats, segments: Indices, edges: Indices, labels: Indices, workers: int | None
 ) -> tuple[_core.ConstrainedTriangulation, Indices]:
-    """Triangulate points and subsegments, and find the labels of the triangles again.
+    """Triangulate points and subsegments, and restore the labels of the triangles.
 
     Parameters
     ----------
@@ -356,21 +358,22 @@ def triangulated(
     segments : ndarray of int32, shape (q, 2)
         Subsegments.
     edges : ndarray of int32, shape (e, 2)
-        Directed subsegments with labelled triangles to their left.
+        Directed subsegments with a labeled triangle to their left.
     labels : ndarray of int32, shape (e,)
-        Those labels.
+        The labels of these triangles.
     workers : int or None
-        Threads.
+        Number of threads.
 
     Returns
     -------
     made : ConstrainedTriangulation
-        What the core made.
+        The result of the core.
     label : ndarray of int32, shape (m,)
-        The label of each triangle of the hull; -1 where there is no such edge.
+        The label of each triangle of the hull; -1 in components without such an edge.
     """
     count = as_workers(workers)
-    # The order of the triangles, in which sums are taken, is then that of usual magnitudes.
+    # In this unit, triangles have the same order, in which sums are taken, as with usual
+    # magnitudes.
     points = points / unit_of(points)
     made, _ = _core.constrained2(points, segments, False, False, 0, "auto", count)
     simplices, constrained = made.simplices, made.constrained

@@ -1,4 +1,4 @@
-"""The class Mesh: triangles of bounded angles that fill a domain, with its segments and regions."""
+"""The class Mesh: a quality triangular mesh of a domain, with its segments and regions."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ __all__ = ["Mesh"]
 
 
 class Mesh(MeshState):
-    """A mesh of triangles, as `delone.mesh` makes it.
+    """A triangular mesh, created by `delone.mesh`.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n, 2)
-        The vertices: those of the input that are used, in their order, then those that were added.
+        The vertices: the input points that are used, in their order, then the added points.
     simplices : ndarray of int32, shape (m, 3)
         The triangles as rows of `points`, counter-clockwise.
     neighbors : ndarray of int32, shape (m, 3)
         ``neighbors[t, k]`` is the triangle across the edge opposite vertex k of triangle t; -1
         outside.
     segments : ndarray of int32, shape (q, 2)
-        The edges into which the segments of the input were cut, those on hulls without a segment
-        included.
+        The edges into which the input segments were split, including boundary edges that are not on
+        a segment.
     segment_source : tuple of ndarray
-        The rows of the input that cover each of these, as compressed rows.
+        The input rows that cover each of these, as compressed rows.
     point_source : ndarray of int32, shape (n,)
-        The row of the input that each point is; -1 where it was added.
+        The input row of each point; -1 for added points.
     region : ndarray of int32, shape (m,)
         The region of each triangle.
     report : MeshReport
-        Points by cause, angles, and the triangles that the input spoils.
+        Added points by cause, angles, and triangles below the bound.
 
     Notes
     -----
     All arrays are read-only, and attributes cannot be set. Every point is a vertex of a triangle:
-    what lies outside, or repeats another row, is left out. Each edge that is no segment is locally
-    Delaunay, ties between cocircular points go by coordinates as in `Delaunay`.
+    points outside and duplicates are left out. Each edge that is not a segment is locally Delaunay,
+    and ties between cocircular points are broken by coordinates as in `Delaunay`.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Mesh(MeshState):
     __slots__ = ()
 
     def __init__(self, *given: Any, **options: Any) -> None:
-        raise DtypeError("a Mesh is made by delone.mesh(domain), not by its class")
+        raise DtypeError("create a Mesh with delone.mesh(domain), not with its class")
 
     def refine(
         self,
@@ -75,38 +75,38 @@ class Mesh(MeshState):
         max_points: int | None = None,
         progress: Callable[[int, float], object] | None = None,
     ) -> Mesh:
-        """Make a mesh that is finer, where triangles are marked or everywhere.
+        """Return a finer mesh, in marked triangles or everywhere.
 
         Parameters
         ----------
         marked : array_like of bool, shape (m,), or of int, optional
-            Triangles that are too large: a mask, or their numbers.
+            Triangles to refine: a mask, or their numbers.
         ratio : float, optional
-            A triangle of the finer mesh whose centre lies in a marked one has at most this share of
-            its area. Those that reach into it from outside may be larger.
+            A triangle of the finer mesh whose center lies in a marked triangle has at most this
+            fraction of its area. Triangles that reach into it from outside may be larger.
         min_angle : float, optional
-            By default what the mesh was made with.
+            The bound on angles; by default that of the mesh.
         max_area, size, max_points, progress : optional
             As for `delone.mesh`.
 
         Returns
         -------
         Mesh
-            The finer mesh; its first points are those of this one. Without `marked` and sizes only
-            angles are improved, where there is room to.
+            The finer mesh; its first points are those of this mesh. Without `marked` and sizes,
+            only angles are improved, where possible.
 
         Raises
         ------
         InputError, ShapeError, DtypeError
-            `marked` names no triangles of the mesh, or `ratio` is not in (0, 1]; otherwise as for
-            `delone.mesh`.
+            `marked` is not a mask or array of triangles of the mesh, or `ratio` is not in (0, 1];
+            otherwise as for `delone.mesh`.
         BudgetExceededError
             As for `delone.mesh`.
 
         Notes
         -----
-        Points, segments, markers and regions are inherited; the report counts all points added.
-        Neighbours of marked triangles change as far as the bound of angles asks for it.
+        Points, segments, markers and regions are inherited; the report counts all added points.
+        Triangles near marked ones change as far as the bound on angles requires.
 
         Examples
         --------
@@ -129,28 +129,28 @@ class Mesh(MeshState):
         )
 
     def coarsen(self, marked: ArrayLike | None = None) -> Mesh:
-        """Make a mesh that is coarser, where that is safe.
+        """Return a coarser mesh, where the bound on angles allows it.
 
         Parameters
         ----------
         marked : array_like of bool, shape (m,), or of int, optional
-            Triangles that may become larger; by default all.
+            Triangles that may become larger: a mask, or their numbers; by default all.
 
         Returns
         -------
         Mesh
-            A mesh without some of the points of these triangles. Points of the input and points on
-            segments stay, and so does what is needed for the bound of angles. The mesh itself where
-            no point can go.
+            A mesh without some of the points of these triangles. Input points, points on segments,
+            and points that the bound on angles requires remain. If no point can be removed, the
+            mesh itself.
 
         Raises
         ------
         InputError, ShapeError, DtypeError
-            `marked` names no triangles of the mesh.
+            `marked` is not a mask or array of triangles of the mesh.
 
         Notes
         -----
-        In one call no two neighbouring points go; call it again for more.
+        One call never removes two neighboring points; call it again to remove more.
 
         Examples
         --------
@@ -164,32 +164,32 @@ class Mesh(MeshState):
         return coarsened(self, marked)
 
     def smooth(self, max_iter: int = 1, method: str = "lloyd") -> Mesh:
-        """Make a mesh whose free points are at better places.
+        """Return a mesh whose free points are at better positions.
 
         Parameters
         ----------
         max_iter : int, optional
-            How many rounds.
+            Number of iterations.
         method : {"lloyd", "odt", "laplace"}, optional
-            Towards what a point moves: the centre of its Voronoi cell, as far as its triangles
-            make it up; the mean of the circumcentres of its triangles, weighted by area, which is
-            that of an optimal Delaunay triangulation; or the mean of its neighbours.
+            The target of each point: the centroid of its Voronoi cell, as far as the point's
+            triangles cover it; the mean of the circumcenters of its triangles, weighted by area, as
+            in an optimal Delaunay triangulation (ODT); or the mean of its neighbors.
 
         Returns
         -------
         Mesh
-            The mesh with moved points. Those of the input and on segments stay, and so do all of
-            triangles that the input spoils.
+            The mesh with moved points. Input points, points on segments, and vertices of triangles
+            below the bound stay.
 
         Raises
         ------
         InputError
-            `max_iter` is negative, or `method` none of the three.
+            `max_iter` is negative, or `method` is not one of its choices.
 
         Notes
         -----
-        The points are triangulated anew in each round, so the mesh is Delaunay. Where an angle
-        would fall below the bound, points go back. Caps of areas are not looked at.
+        Each iteration triangulates the points again, so the mesh stays Delaunay. Where an angle
+        would fall below the bound, points move back. Bounds on areas are not enforced.
 
         Examples
         --------
@@ -203,7 +203,7 @@ class Mesh(MeshState):
         return smoothed(self, max_iter, method)
 
     def plot_quality(self, ax: Any = None) -> Any:
-        """Draw the histogram of the angles, with the bound (extra ``plot``).
+        """Draw a histogram of the angles, with the bound (extra ``plot``).
 
         Parameters
         ----------
@@ -213,7 +213,7 @@ class Mesh(MeshState):
         Returns
         -------
         matplotlib Axes
-            What was drawn on.
+            The axes.
 
         Raises
         ------
@@ -229,14 +229,14 @@ class Mesh(MeshState):
         return self.quality().plot(ax, bound=float(self._bound[0]))
 
     def validate(self) -> MeshValidation:
-        """Prove that the triangles fit each other and are Delaunay, or name what is wrong.
+        """Prove that the triangles fit each other and are Delaunay, or list the faults.
 
         Returns
         -------
         MeshValidation
-            Truthy if all is right: triangles are counter-clockwise, neighbors are mutual, the
-            boundary consists of segments, each other edge is locally Delaunay, ties are broken
-            canonically, and each point is a vertex. `report` judges the angles.
+            Truthy if there are no faults: triangles are counter-clockwise, neighbors are mutual,
+            the boundary consists of segments, each other edge is locally Delaunay, ties are broken
+            canonically, and each point is a vertex. `report` assesses the angles.
 
         Notes
         -----

@@ -1,7 +1,7 @@
-"""Meshes of domains: what is given becomes a constrained triangulation, and that is refined.
+"""The function `mesh`: the input becomes a constrained triangulation, which is then refined.
 
-The core inserts the vertices (its head names the papers); here are the domains that it is given,
-the markers that go along, and the rounds in which sizes that vary are asked for.
+The core inserts the vertices (its module comment names the papers). This module converts the input
+to domains, assigns markers, and starts the rounds that evaluate varying sizes.
 """
 
 from __future__ import annotations
@@ -62,71 +62,73 @@ def mesh(
     workers: int | None = None,
     planar: bool = False,
 ) -> Mesh:
-    """Fill a domain with triangles that have no small angle.
+    """Fill a domain with triangles that have no small angles.
 
     Parameters
     ----------
     domain : ConstrainedDelaunay, tuple of two arrays, or geometry
-        What is meshed: the triangles that a constrained triangulation keeps; the area that segments
-        enclose, as ``(points, segments)``; or the inside of polygons, whatever `from_geometry`
-        takes, with lines and points in them as further edges and vertices.
+        What is meshed: the triangles of a constrained triangulation; the area that segments
+        enclose, as ``(points, segments)``; or the inside of polygons, in any form that
+        `from_geometry` accepts, with lines and points in them as further edges and vertices.
     min_angle : float, optional
-        No angle is smaller, in degrees, except where the angles of the input force it: at least 0
-        and below 60. Up to 26 the end is proven, up to 33 it comes in practice, and above often not
-        before the limit on points.
+        Lower bound on angles in degrees, from 0 to below 60. Smaller angles remain only where the
+        angles of the input force them. Termination is proven up to 26 degrees and observed in
+        practice up to 33; above that, the limit on points is often reached first.
     max_area : float or mapping, optional
-        No triangle is larger, but for the rounding of its area, in the square of the unit of the
-        points; a mapping has areas by region.
+        Largest area of a triangle, up to rounding of its area, in the square of the unit of the
+        points; or a mapping from regions to areas.
     size : float, mapping, callable, tuple or DataArray, optional
-        The length of edges that is wanted: no triangle is larger than the equilateral one with that
-        edge. A number; a mapping of regions to numbers; a function that takes places (k, 2) and
-        returns k lengths; ``(triangulation, values)`` with a length for each of its points, linear
-        in between; or a DataArray of xarray with dimensions y and x, linear between cells.
+        Target edge length: no triangle is larger than the equilateral one with that edge. A number;
+        a mapping from regions to numbers; a function that takes positions (k, 2) and returns k
+        lengths; ``(triangulation, values)`` with a length for each of its points, linear in
+        between; or an xarray DataArray with dimensions y and x, linear between cells.
     max_points : int, optional
-        How many points may be added; by default 5,000,000. Sizes that cannot do with so few are
-        refused before the work starts. Where angles need more, the work ends there, and the report
-        of the mesh says so. Needles between lines that nearly touch may take 1/64 of it together;
-        those that need more are left, and the report says where.
+        Maximum number of added points; by default 5,000,000. Sizes that need more raise an error
+        before refinement starts. If angles need more, refinement stops at the limit, and the report
+        of the mesh says so. Needles between lines that nearly touch may take 1/64 of it in total;
+        needles that need more are left as they are, and the report lists them.
     conforming : bool, optional
-        Segments are edges of the mesh or chains of edges: always so, the only choice is True.
+        Segments are edges of the mesh or chains of edges. This is always the case; the only valid
+        value is True.
     delaunay : bool, optional
-        Make every triangle Delaunay, also across segments, at the price of more points: the circles
-        over the pieces of segments are emptied, not only lenses in them.
+        Make every triangle Delaunay, also across segments, at the cost of more points: the
+        diametral circles of subsegments are emptied, not only lenses in them.
     smooth : int, optional
-        How many rounds of ``Mesh.smooth`` follow.
+        Number of iterations of ``Mesh.smooth`` at the end.
     holes, regions : array_like, optional
-        Seeds, as for `ConstrainedDelaunay`; for ``(points, segments)`` alone.
+        Seeds, as for `ConstrainedDelaunay`; only with ``(points, segments)``.
     fixed : bool, "boundary" or array_like of bool, shape (s,), optional
-        Segments that may not be split: all, those on the boundary, or those named. Angles next to
-        them may stay small.
+        Segments that must not be split: all of them, those on the boundary, or those in a mask.
+        Angles next to them may stay small.
     segment_markers : array_like of int, shape (s,), optional
-        A number for each segment, which its pieces and the points on them inherit; 0 is none. By
-        default the segments of geometries are numbered by ring or line: 1 for the first ring, 2 for
-        the next, in the order of the coordinates. Those of arrays have 0.
+        A number for each segment, which its subsegments and the points on them inherit; 0 means
+        none. By default the segments of geometries are numbered by ring or line: 1 for the first
+        ring, 2 for the next, in the order of the coordinates. Segments from arrays have 0.
     point_markers : array_like of int, shape (n,), optional
-        A number for each point. Where it is 0 the marker of a segment that ends there counts.
+        A number for each point. Where it is 0, the marker of a segment that ends there is used.
     crossing : {"split", "raise"}, optional
-        Whether segments that cross get a vertex there: by default geometries do and arrays do not.
+        Whether crossing segments are split or raise an error: by default geometries are split, and
+        arrays raise an error.
     progress : callable, optional
-        Called now and then with the number of points added and the smallest angle in degrees.
+        Called from time to time with the number of added points and the smallest angle in degrees.
     workers : int, optional
-        Number of threads; by default one for each core. The result is the same.
+        Number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
-        As for `from_geometry`: longitudes and latitudes are meant as coordinates of a plane.
+        As for `from_geometry`: treat longitudes and latitudes as coordinates of a plane.
 
     Returns
     -------
     Mesh
-        The mesh, immutable. Where a limit ended the work, or angles of the input do not allow the
-        bound, its ``report`` says so and names the triangles.
+        The mesh, immutable. If a limit was reached, or angles of the input do not allow the bound,
+        its ``report`` says so and lists the triangles.
 
     Raises
     ------
     InputError
-        `min_angle` is not in [0, 60); a size is NaN, zero or negative, then the message names the
-        place; the segments enclose nothing; an argument does not fit the domain.
+        `min_angle` is not in [0, 60); a size is NaN, zero or negative (the message gives the
+        position); the segments do not enclose anything; an argument does not fit the domain.
     BudgetExceededError
-        The sizes ask for more than `max_points`.
+        The sizes require more points than `max_points`.
     CrossingSegmentsError, DegenerateInputError, NonFiniteError, ShapeError, DtypeError
         As for `ConstrainedDelaunay`.
     KeyboardInterrupt
@@ -140,18 +142,19 @@ def mesh(
     Notes
     -----
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
-    off-centres (A. Üngör 2004), cuts at powers of two around sharp corners, and the rule of Miller,
-    Pav and Walkington (2005) for triangles there, so that it ends for angles up to 26 degrees, in
-    practice up to 33, unless `max_points` ends it before. A needle between lines, like a triangle
-    of height h over a side of length 1, takes about 0.5 / h points at 25 degrees and 0.1 / h at 5,
-    unless its sides happen to be cut alike, as two of equal length are: then one may do. All else
-    is refined before needles are. Time is about a microsecond a triangle, memory linear.
+    off-centers (A. Üngör 2004), splits at powers of two around sharp corners, and the rule of
+    Miller, Pav and Walkington (2005) for triangles there. It terminates for angles up to 26
+    degrees, in practice up to 33, unless `max_points` stops it earlier. A needle between lines,
+    such as a triangle of height h over a side of length 1, takes about 0.5 / h points at 25 degrees
+    and 0.1 / h at 5, unless its sides happen to be split alike, as two sides of equal length are:
+    then one point may be enough. Needles are refined last. Refinement takes about a microsecond per
+    triangle, and memory is linear.
 
-    Next to fixed segments no bound holds, and with sizes angles there may become far smaller than
-    those of the input: points come as near to the segment as the size asks for, and it may not be
-    split. Sizes of the length of the fixed segments keep what there was.
+    Next to fixed segments no bound holds, and with sizes, angles there may become far smaller than
+    those of the input: points are added as close to the segment as the size requires, but the
+    segment must not be split. Sizes equal to the lengths of the fixed segments avoid this.
 
-    Points on segments are rounded to doubles, so that pieces of a segment may bend by that much.
+    Points on segments are rounded to doubles, so a segment may bend there by the rounding error.
 
     Examples
     --------
@@ -203,7 +206,7 @@ def filled(
     markers: tuple[ArrayLike | None, ArrayLike | None],
     stages: dict[str, float],
 ) -> Mesh:
-    """Mesh what a constrained triangulation keeps.
+    """Mesh the triangles of a constrained triangulation.
 
     Parameters
     ----------
@@ -212,7 +215,7 @@ def filled(
     region : ndarray of int32, shape (m,)
         The region of each of its triangles.
     limits : Limits
-        How far.
+        The bound on angles, the limit on points and other limits.
     sizes : tuple
         `max_area` and `size` of `mesh`.
     fixed : bool, "boundary" or array_like of bool
@@ -220,7 +223,7 @@ def filled(
     markers : tuple
         `segment_markers` and `point_markers` of `mesh`.
     stages : dict
-        Seconds so far, by stage; those of the refinement are added.
+        Seconds by stage so far; those of the refinement are added.
 
     Returns
     -------
@@ -234,7 +237,7 @@ def filled(
     """
     clock = time.perf_counter()
     if not base.nsimplex:
-        raise InputError(f"the domain has no inside: {_why_empty(base)}")
+        raise InputError(f"the domain is empty: {_why_empty(base)}")
     count = len(base.input_segments)
     start = domains.of_constrained(
         base,
@@ -251,16 +254,16 @@ def filled(
 
 
 def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
-    """Return a number for each row; 0 where nothing is given.
+    """Return one number per row; zeros if no numbers are given.
 
     Parameters
     ----------
     values : array_like of int, shape (count,) or (count, 1), or None
         The numbers.
     count : int
-        How many there must be.
+        The number of rows.
     name : str
-        What the argument is called in error messages.
+        The name of the argument in error messages.
 
     Returns
     -------
@@ -270,7 +273,7 @@ def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
     Raises
     ------
     ShapeError, DtypeError, InputError
-        There are more or fewer, or they are no integers of 32 bits.
+        The shape is wrong, or the numbers are not 32-bit integers.
 
     Examples
     --------
@@ -287,12 +290,12 @@ def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
         raise DtypeError(f"{name} must be integers, got dtype {array.dtype}")
     limit = np.iinfo(np.int32)
     if array.size and (int(array.min()) < limit.min or int(array.max()) > limit.max):
-        raise InputError(f"{name} must be integers of 32 bits")
+        raise InputError(f"{name} must be 32-bit integers")
     return array.reshape(count).astype(np.int32)
 
 
 def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indices:
-    """Return the markers given, or one for each ring and line of geometries."""
+    """Return the given markers; by default one for each ring and line of geometries."""
     if given is None:
         return base.part_of_segment + np.int32(1)
     return as_rows(given, len(base.input_segments), "segment_markers")
@@ -304,14 +307,14 @@ def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
         return np.zeros(count, dtype=bool)
     array = as_plain_array(fixed, "fixed")
     if array.dtype.kind != "b":
-        raise DtypeError(f"fixed must be booleans or 'boundary', got dtype {array.dtype}")
+        raise DtypeError(f"fixed must be a mask or 'boundary', got dtype {array.dtype}")
     if array.shape not in ((), (count,)):
         raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
     return np.broadcast_to(array, (count,)).copy()
 
 
 def _on_boundary(domain: Domain) -> Bools:
-    """Tell which lines have the domain on one side only."""
+    """Return which lines have the domain on one side only."""
     t, k = np.nonzero((domain.sides >= 0) & (domain.labels[:, None] >= 0))
     sides = np.bincount(domain.sides[t, k], minlength=len(domain.lines.ends))
     found: Bools = sides == 1
@@ -330,10 +333,10 @@ def _base(
     """Return a constrained triangulation of the domain, and the region of each triangle."""
     pair = isinstance(domain, tuple) and len(domain) == 2 and not _is_geometry(domain[0])
     if not pair and (holes is not None or regions is not None):
-        raise InputError("holes and regions go with (points, segments) only")
+        raise InputError("holes and regions are only supported with (points, segments)")
     if isinstance(domain, ConstrainedDelaunay):
         if crossing is not None:
-            raise InputError("crossing is settled where a ConstrainedDelaunay is given")
+            raise InputError("crossing cannot be set for a ConstrainedDelaunay")
         base, region = domain, domain.region
     elif pair:
         base = ConstrainedDelaunay(
@@ -362,16 +365,16 @@ def _base(
 
 
 def _refuse_points(domain: Any) -> None:
-    """Refuse points alone, and say of what they may be the corners."""
+    """Reject points without segments, and suggest what to pass instead."""
     refuse_masks(domain, "domain")
     first = domain[0] if isinstance(domain, list | tuple | np.ndarray) and len(domain) else ()
     if isinstance(first, list | tuple | np.ndarray) and len(first) in (2, 3):
         numbers = all(isinstance(each, int | float | np.number) for each in first)
         if numbers:
             raise InputError(
-                "the domain is points alone, which enclose nothing: give (points, segments), "
-                'or the ring as {"type": "Polygon", "coordinates": [points]}; of the convex hull '
-                "give delone.ConstrainedDelaunay(points, [])"
+                "the domain is points without segments, which do not enclose anything: pass "
+                '(points, segments), or a ring as {"type": "Polygon", "coordinates": [points]}; '
+                "for the convex hull, pass delone.ConstrainedDelaunay(points, [])"
             )
 
 
@@ -382,13 +385,13 @@ def _is_geometry(thing: Any) -> bool:
 
 
 def _why_empty(base: ConstrainedDelaunay) -> str:
-    """Say why no triangle is left; where an outline is open, at which vertices with one segment."""
+    """Return why no triangle is left; for an open outline, with its loose ends."""
     if base._options.boundary == "hull":
-        return "holes took all triangles of the triangulation"
+        return "the holes removed all triangles"
     degree = np.bincount(base.segments.ravel(), minlength=base.npoints)
     loose = np.flatnonzero(degree == 1)
     if not loose.size:
-        return "no ring of segments encloses anything that is no hole"
+        return "no ring of segments encloses anything except holes"
     rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
-    places = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
-    return f"the outline is open; only one segment ends at points {rows}, the first at {places}"
+    positions = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
+    return f"the outline is open: only one segment ends at points {rows}, the first at {positions}"

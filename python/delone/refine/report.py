@@ -1,9 +1,10 @@
-"""What a refinement did: points by cause, angles reached, and triangles that the input spoils.
+"""The report of a mesh: added points by cause, angles reached, and triangles below the bound.
 
-A triangle keeps a small angle where two lines of the input meet at one: between them, and next to
-the circles about the corner on which both are cut, which is what the rule of Miller, Pav and
-Walkington leaves alone. Needles between lines, which would take more points than the budget has for
-them, are left as they are. Lines that may not be split, and a limit on points, leave others.
+Small angles remain where two input lines meet at a small angle: between the lines, and next to the
+circles around the corner on which both are split (triangles that the rule of Miller, Pav and
+Walkington leaves unrefined). Needles between lines that would take more points than the budget
+allows are also left as they are. Lines that must not be split and a limit on points leave other
+small angles.
 
 G. L. Miller, S. E. Pav and N. J. Walkington (2005), "When and why Delaunay refinement algorithms
 work", International Journal of Computational Geometry & Applications 15.
@@ -35,47 +36,47 @@ __all__ = ["CAUSES", "MeshReport", "judged", "reported"]
 
 CAUSES = ("corner", "needle", "frozen", "budget", "other")
 _CORNER, _NEEDLE, _FROZEN, _BUDGET, _OTHER = range(5)
-# Lengths from a corner are one if they differ by a smaller part, as in the core.
+# Distances from a corner count as equal if their relative difference is smaller, as in the core.
 _SAME_SHELL = 1e-3
 _SHOWN = 5
-# In degrees; needles are far thinner, unless they have been cut from outside.
+# In degrees; needles are far thinner, unless they were split from outside.
 _THIN = 0.1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MeshReport(ReadOnly):
-    """What a mesh has become; truthy when it is as good as it was to be.
+    """The quality of a mesh; truthy if the bound on angles is met everywhere.
 
     Parameters
     ----------
     min_angle : float
-        The bound that was asked for, in degrees.
+        The requested bound, in degrees.
     smallest_angle, largest_angle : float
-        What was reached, in degrees.
+        The extreme angles of the mesh, in degrees.
     below : ndarray of int64, shape (k,)
-        The triangles with an angle below the bound, judged exactly, ascending.
+        The triangles with an angle below the bound, compared exactly, ascending.
     corner : ndarray of int64, shape (k,)
-        For each of these the corner of the input that is responsible, a row of points; -1 where it
-        is none.
+        For each of these, the corner of the input that is responsible, a row of points; -1 if none
+        is.
     cause : ndarray of str, shape (k,)
-        For each of these ``"corner"``, ``"needle"`` (in one of `needles`, or beside it),
-        ``"frozen"`` (a line that may not be split), ``"budget"`` (the limit on points) or
-        ``"other"`` (lines that come too near to each other for doubles, or points that were removed
-        or moved later on).
+        For each of these, ``"corner"``, ``"needle"`` (in or next to one of `needles`), ``"frozen"``
+        (a line that must not be split), ``"budget"`` (the limit on points) or ``"other"`` (lines
+        that are too close to each other for doubles, or points that were removed or moved later).
     needles : ndarray of float64, shape (q, 2)
-        A place in each needle that was left as it is, ascending: between lines so near to each
-        other, over such a length, that its angles would take more than their share of `max_points`.
+        A position in each needle that was left as it is, ascending. In a needle, lines are so close
+        to each other, over such a length, that good angles would take more than the share of
+        `max_points` for needles.
     on_segments, for_angles, for_sizes : int
-        How many points were added on segments, and inside for the sake of angles and sizes.
+        Numbers of points that were added on segments, inside for angles, and inside for sizes.
     exhausted : bool
-        Whether the limit on points ended the work.
+        Whether the limit on points was reached.
 
     Attributes
     ----------
     ok : bool
-        True when no triangle has an angle below the bound and the work came to its end.
+        True if no triangle has an angle below the bound and the limit was not reached.
     added : int
-        How many points were added in all.
+        Total number of added points.
 
     Examples
     --------
@@ -100,12 +101,12 @@ class MeshReport(ReadOnly):
 
     @property
     def ok(self) -> bool:
-        """True when there is no triangle below the bound and the work came to its end."""
+        """True if no triangle has an angle below the bound and the limit was not reached."""
         return not len(self.below) and not self.exhausted
 
     @property
     def added(self) -> int:
-        """How many points were added in all."""
+        """Total number of added points."""
         return self.on_segments + self.for_angles + self.for_sizes
 
     def __bool__(self) -> bool:
@@ -114,7 +115,7 @@ class MeshReport(ReadOnly):
     def __str__(self) -> str:
         reached = f"{self.smallest_angle:.4g} to {self.largest_angle:.4g}"
         lines = [
-            f"angles from {reached} degrees, {self.min_angle:.4g} asked for",
+            f"angles from {reached} degrees, requested at least {self.min_angle:.4g}",
             f"{counted(self.added, 'point')} added: {self.on_segments} on segments, "
             f"{self.for_angles} for angles, {self.for_sizes} for sizes",
         ]
@@ -129,24 +130,22 @@ class MeshReport(ReadOnly):
         if len(corners):
             shown = ", ".join(map(str, corners[:_SHOWN].tolist()))
             more = ", ..." if len(corners) > _SHOWN else ""
-            lines.append(f"{counted(len(corners), 'corner')} responsible: {shown}{more}")
+            lines.append(f"{counted(len(corners), 'responsible corner')}: {shown}{more}")
         if len(self.needles):
             shown = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in self.needles[:_SHOWN].tolist())
             more = ", ..." if len(self.needles) > _SHOWN else ""
             noun = counted(len(self.needles), "needle")
-            lines.append(
-                f"{noun} left for the number of points that would be needed: {shown}{more}"
-            )
+            lines.append(f"{noun} left unrefined (too many points needed): {shown}{more}")
         if self.exhausted:
-            lines.append("the limit on points ended the work")
+            lines.append("stopped at the limit on points")
         return "\n".join(lines)
 
 
 _SENTENCES = {
     "corner": "at sharp corners",
-    "needle": "in needles or beside them",
-    "frozen": "at frozen segments",
-    "budget": "for want of points",
+    "needle": "in or next to needles",
+    "frozen": "at fixed segments",
+    "budget": "because of the limit on points",
     "other": "for other reasons",
 }
 
@@ -162,7 +161,7 @@ def reported(
     counts: NDArray[np.int64],
     needles: Callable[[], Indices],
 ) -> MeshReport:
-    """Judge a mesh.
+    """Create the report of a mesh.
 
     Parameters
     ----------
@@ -173,39 +172,39 @@ def reported(
     sides : ndarray of int32, shape (m, 3)
         The line under the edge opposite each vertex, or -1.
     on : ndarray of int32, shape (n,)
-        The line that each point was put on, or -1.
+        The line that each point was added on, or -1.
     lines : Lines
         The lines.
     min_angle : float
         The bound in degrees.
     counts : ndarray of int64, shape (4,)
-        Points added on segments, for angles, for sizes; whether the limit ended it.
+        Points added on segments, for angles, for sizes; whether the limit was reached.
     needles : callable
-        Returns the number of the needle that each triangle is in, (m,), or -1. Called only where
-        there may be one.
+        Returns the number of the needle that contains each triangle, (m,), or -1. Called only if
+        there may be needles.
 
     Returns
     -------
     MeshReport
-        The judgement.
+        The report.
     """
     rows, angles = judged(points, simplices, min_angle)
     corner = _responsible(points, simplices[rows], sides[rows], on, lines)
-    # What may not be split keeps vertices away also from triangles that do not touch it.
+    # Lines that must not be split also keep vertices away from triangles that do not touch them.
     rest = _BUDGET if counts[3] else _FROZEN if lines.frozen.any() else _OTHER
     cause = np.where(corner >= 0, _CORNER, rest)
-    places = np.empty((0, 2))
+    positions = np.empty((0, 2))
     if (cause != _CORNER).any() or angles[0] < _THIN:
         needle = needles()
         inside = needle[rows] >= 0
         cause[inside], corner[inside] = _NEEDLE, -1
-        beside = np.zeros(len(points), dtype=bool)
-        beside[simplices[needle >= 0]] = True
-        # From one spoilt triangle to the next; few are not in needles.
-        while (more := (cause >= _FROZEN) & beside[simplices[rows]].any(axis=1)).any():
+        near = np.zeros(len(points), dtype=bool)
+        near[simplices[needle >= 0]] = True
+        # From one bad triangle to the next; few are outside of needles.
+        while (more := (cause >= _FROZEN) & near[simplices[rows]].any(axis=1)).any():
             cause[more] = _NEEDLE
-            beside[simplices[rows[more]]] = True
-        places = _places(points, simplices, needle)
+            near[simplices[rows[more]]] = True
+        positions = _positions(points, simplices, needle)
     return MeshReport(
         min_angle=min_angle,
         smallest_angle=angles[0],
@@ -213,7 +212,7 @@ def reported(
         below=rows,
         corner=corner,
         cause=np.array(CAUSES)[cause],
-        needles=places,
+        needles=positions,
         on_segments=int(counts[0]),
         for_angles=int(counts[1]),
         for_sizes=int(counts[2]),
@@ -238,14 +237,15 @@ def judged(
     Returns
     -------
     below : ndarray of int64, shape (k,)
-        Triangles with a smaller angle, judged exactly, ascending.
+        Triangles with a smaller angle, compared exactly, ascending.
     angles : tuple of float
-        The smallest and the largest angle, in degrees; 180 and 0 where there is no triangle.
+        The smallest and the largest angle, in degrees; 180 and 0 if there are no triangles.
 
     Notes
     -----
-    One pass of the core, in linear time: it measures none but the few triangles that may have the
-    extreme angles, and leaves those whose squares leave the range of doubles to `quality`.
+    One pass of the core, in linear time. Angles are computed only for the few triangles that may
+    have the extreme angles; triangles whose squares are beyond the range of doubles are compared by
+    `quality`.
 
     Examples
     --------
@@ -265,23 +265,23 @@ def judged(
     return rows, (smallest, float(measures.largest_angle.max(initial=0.0)))
 
 
-def _places(points: Floats, simplices: Indices, needle: Indices) -> Floats:
-    """Return the centre of the largest triangle of each needle, by their coordinates."""
+def _positions(points: Floats, simplices: Indices, needle: Indices) -> Floats:
+    """Return the center of the largest triangle of each needle, sorted by coordinates."""
     rows = np.flatnonzero(needle >= 0)
     corners = points[simplices[rows]]
     areas = geometry.areas(points, simplices[rows])
-    centres = (corners / 3).sum(axis=1)
-    rank = np.lexsort((centres[:, 1], centres[:, 0], areas, needle[rows]))
+    centers = (corners / 3).sum(axis=1)
+    rank = np.lexsort((centers[:, 1], centers[:, 0], areas, needle[rows]))
     last = np.flatnonzero(np.diff(needle[rows][rank], append=-1))
-    places = centres[rank[last]]
-    found: Floats = places[np.lexsort((places[:, 1], places[:, 0]))]
+    positions = centers[rank[last]]
+    found: Floats = positions[np.lexsort((positions[:, 1], positions[:, 0]))]
     return found
 
 
 def _responsible(
     points: Floats, simplices: Indices, sides: Indices, on: Indices, lines: Lines
 ) -> NDArray[np.int64]:
-    """Return the corner of the input that spoils each triangle, or -1."""
+    """Return the corner of the input that is responsible for each triangle, or -1."""
     found = np.full(len(simplices), -1, dtype=np.int64)
     if not len(simplices):
         return found
@@ -301,7 +301,7 @@ def _responsible(
 
 
 def _shared_end(s: Indices, r: Indices, ends: Indices) -> NDArray[np.int64]:
-    """Return the vertex in which two lines meet, or -1."""
+    """Return the common vertex of two lines, or -1."""
     shared = np.full(len(s), -1, dtype=np.int64)
     if not len(ends):
         return shared

@@ -1,7 +1,7 @@
-"""Rounds of refinement: triangles are refined until none is too large for its place.
+"""Rounds of refinement, until no triangle is too large for its position.
 
-Sizes that vary are sampled, given to the core as caps of areas, and sampled again where the new
-triangles are.
+Varying sizes are sampled, passed to the core as maximum areas, and sampled again at the new
+triangles.
 """
 
 from __future__ import annotations
@@ -26,48 +26,48 @@ __all__ = ["MOST_ADDED", "Limits", "as_min_angle", "rounds"]
 
 # Ten million triangles, in about 4 GB.
 MOST_ADDED = 5_000_000
-# Above this refinement is not known to end on most inputs.
-_DARING = 33.0
-# Each round that asks for sizes makes triangles smaller by up to four; 80 span the doubles.
+# Above this angle, refinement is not known to terminate on most inputs.
+_LARGEST_USUAL = 33.0
+# Each round makes triangles smaller by a factor of up to four; 80 rounds span the doubles.
 _MOST_ROUNDS = 80
 
 
 class Limits(NamedTuple):
-    """How far a refinement goes."""
+    """The limits of a refinement."""
 
     min_angle: float
     max_points: int
     circles: bool
     progress: Callable[[int, float], object] | None
     workers: int | None
-    # Whether sizes that need more points are an error before the work starts.
+    # Whether sizes that need more points raise an error before refinement starts.
     refuse: bool = True
-    # Whether sizes yield to lines that may not be split.
+    # Whether sizes yield to lines that must not be split.
     sizes_yield: bool = False
 
 
 def rounds(domain: Domain, sizes: tuple[Any, Any], limits: Limits) -> tuple[Domain, Counts]:
-    """Refine a domain until no triangle is too large for where it is.
+    """Refine a domain until no triangle is too large for its position.
 
     Parameters
     ----------
     domain : Domain
-        What is refined.
+        The domain to refine.
     sizes : tuple
-        How large triangles may be: `max_area` and `size` of `mesh`.
+        `max_area` and `size` of `mesh`.
     limits : Limits
-        The bound of angles and the limit on points.
+        The bound on angles, the limit on points and other limits.
 
     Returns
     -------
     domain : Domain
-        The refined one.
+        The refined domain.
     counts : Counts
-        The points added.
+        The added points.
     """
     unit = domains.unit_of(domain.points)
     if unit != 1:
-        # Areas are compared where they are doubles, whatever the lengths are.
+        # Compare areas in a unit in which they are doubles, whatever the lengths.
         scaled = domain._replace(points=domain.points / unit)
         found, counts = _rounds(scaled, Sizing(*sizes, domain.regions, unit), limits)
         points = found.points * unit
@@ -86,7 +86,7 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
         if turn and done:
             break
         before = counts.total
-        tell = limits.progress
+        progress = limits.progress
         domain, more = domains.refined(
             domain,
             caps,
@@ -94,7 +94,7 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
             limits.max_points - before,
             circles=limits.circles,
             sizes_yield=limits.sizes_yield,
-            progress=None if tell is None else _after(before, tell),
+            progress=None if progress is None else _continued(progress, before),
         )
         counts = counts.plus(more)
         if counts.exhausted or not sizing.varies:
@@ -103,7 +103,7 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
 
 
 def as_min_angle(min_angle: float) -> float:
-    """Return an angle that meshes can be asked for.
+    """Return a valid bound on angles.
 
     Parameters
     ----------
@@ -134,20 +134,20 @@ def as_min_angle(min_angle: float) -> float:
     angle = as_number(min_angle, name="min_angle")
     if not 0 <= angle < 60:
         raise InputError(f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r}")
-    if angle > _DARING:
+    if angle > _LARGEST_USUAL:
         warnings.warn(
-            f"refinement to {angle:g} degrees is not proven to end: above {_DARING:g} degrees "
-            "max_points may end it",
+            f"min_angle={angle:g} is above {_LARGEST_USUAL:g} degrees: refinement is not proven to "
+            "terminate, and may stop at max_points",
             UserWarning,
             stacklevel=3,
         )
     return angle
 
 
-def _after(before: int, tell: Progress) -> Progress:
-    """Return a progress that counts from what was added before."""
+def _continued(progress: Progress, before: int) -> Progress:
+    """Return a progress function that includes the points that were added before."""
 
-    def told(added: int, angle: float) -> None:
-        tell(before + added, angle)
+    def report(added: int, angle: float) -> None:
+        progress(before + added, angle)
 
-    return told
+    return report

@@ -1,10 +1,11 @@
-"""How large triangles may be: numbers, regions, functions, backgrounds and rasters become areas.
+"""Size functions: numbers, regions, callables, background meshes and rasters become areas.
 
-A size is the length of an edge; the cap is the area of the equilateral triangle with that edge. A
-size that varies is asked at the centres of triangles, round by round: no triangle is told to become
-smaller than a quarter of itself at once, so that a small size at one place does not spread over a
-large triangle. What lies between the centres of the first, large triangles is found by a lattice of
-samples over the domain, which also tells beforehand about how many triangles there will be.
+A size is an edge length; the cap (largest area) is that of the equilateral triangle with that edge.
+Varying sizes are evaluated at the centers of triangles, in rounds: in one round no triangle is
+required to become smaller than a quarter of its area, so that a small size at one position does not
+spread over a large triangle. Small sizes between the centers of the first, large triangles are
+found by a lattice of samples over the domain, which also gives an estimate of the number of
+triangles before the start.
 """
 
 from __future__ import annotations
@@ -33,35 +34,35 @@ if TYPE_CHECKING:
 __all__ = ["EQUILATERAL", "Sizing"]
 
 EQUILATERAL = math.sqrt(3) / 4
-# Samples along the longer side of the box of the domain.
+# Number of samples along the longer side of the domain's bounding box.
 _LATTICE = 128
-# In one round a triangle is made smaller by this factor at most.
+# Largest factor by which a triangle is made smaller in one round.
 _STEP = 4.0
-# Triangles have about this share of the cap on average.
+# Average area of triangles, as a fraction of the cap.
 _SHARE = 0.77
 
 
 class Sizing:
-    """The largest area that a triangle may have, by its place and its region.
+    """The largest allowed area of a triangle, by position and region.
 
     Parameters
     ----------
     max_area : float, mapping or None
-        Areas; a mapping has them by region.
+        Largest area, or a mapping from regions to areas.
     size : float, mapping, callable, tuple, DataArray or None
-        Lengths of edges; see `delone.mesh`.
+        Target edge length; see `delone.mesh`.
     regions : ndarray of int32
-        The regions that there are.
+        The regions of the domain.
     unit : float, optional
-        The power of two by which the coordinates of domains are divided; areas and places are in
-        this unit, what callers give and are asked for is not.
+        The power of two by which the coordinates of domains are divided. Areas and positions are in
+        this unit, except in what callers pass and in calls of their functions.
 
     Raises
     ------
     LimitError
-        A size is so small that its square is no double in that unit, or so large without one.
+        The square of a size underflows in this unit, or overflows without one.
     InputError
-        A number is NaN, zero or negative, or `size` is nothing of the kind.
+        A number is NaN, zero or negative, or `size` has a wrong type.
     """
 
     def __init__(self, max_area: Any, size: Any, regions: Indices, unit: float = 1.0) -> None:
@@ -83,7 +84,7 @@ class Sizing:
         unknown = sorted(set(given) - set(regions.tolist()))
         if unknown:
             known = ", ".join(map(str, regions[:10].tolist()))
-            raise InputError(f"{name}: there is no region {unknown[0]!r}; there are {known}")
+            raise InputError(f"{name}: there is no region {unknown[0]!r}; the regions are {known}")
         for region, value in given.items():
             at = np.flatnonzero(regions == region)
             cap = self._cap(value, f"{name} of region {region}", area)
@@ -98,35 +99,37 @@ class Sizing:
 
     @property
     def varies(self) -> bool:
-        """Whether it differs from place to place within a region."""
+        """Whether sizes vary within a region."""
         return self._evaluate is not None
 
-    def _at(self, places: Floats, labels: Indices) -> Floats:
-        """Areas allowed at places in parts of the domain."""
+    def _at(self, positions: Floats, labels: Indices) -> Floats:
+        """Return the areas allowed at positions with given labels."""
         caps = self._by_region[labels]
-        if self._evaluate is None or not len(places):
+        if self._evaluate is None or not len(positions):
             return caps
-        asked = places * self._unit
-        sizes = _checked(self._evaluate(asked), asked)
+        scaled = positions * self._unit
+        sizes = _checked(self._evaluate(scaled), scaled)
         with np.errstate(over="ignore", under="ignore"):
             areas = _equilateral(sizes / self._unit)
-        # In a unit of their own all areas are below any that is infinite.
+        # With a unit, no triangle is as large as an area that overflows, so it may be infinite.
         large = np.isinf(areas) & np.isfinite(sizes) & (self._unit == 1)
         lost = np.flatnonzero((areas == 0) | large)
         if lost.size:
-            raise LimitError(_out_of_range(f"size {sizes[lost[0]]} at {_place(asked[lost[0]])}"))
+            raise LimitError(
+                _out_of_range(f"size {sizes[lost[0]]} at {_formatted(scaled[lost[0]])}")
+            )
         found: Floats = np.minimum(caps, areas)
         return found
 
     def caps(self, domain: Domain, samples: Samples | None = None) -> tuple[Floats, bool]:
-        """Return what each triangle of a domain may become in the next round.
+        """Return the largest area of each triangle in the next round.
 
         Parameters
         ----------
         domain : Domain
             The triangles.
         samples : Samples, optional
-            Where else to look than at the centres of triangles.
+            Further positions besides the centers of triangles.
 
         Returns
         -------
@@ -142,7 +145,7 @@ class Sizing:
             caps[inside] = self._by_region[labels]
             return caps, False
         areas = geometry.areas(domain.points, domain.simplices[inside])
-        wanted = self._at(_centres(domain, inside), labels)
+        wanted = self._at(_centers(domain, inside), labels)
         if samples is not None:
             wanted = np.minimum(wanted, samples.least(domain)[inside])
         large = areas > wanted
@@ -150,76 +153,75 @@ class Sizing:
         return caps, not large.any()
 
     def samples(self, domain: Domain, workers: int | None) -> Samples | None:
-        """Ask for sizes on a lattice over a domain; None where sizes do not vary."""
+        """Evaluate sizes on a lattice over a domain; None if sizes do not vary."""
         return Samples(self, domain, workers) if self.varies else None
 
     def estimate(self, domain: Domain, samples: Samples | None) -> float:
-        """Return about how many triangles the sizes ask for, without those for angles.
+        """Return an estimate of the number of triangles that the sizes alone require.
 
         Parameters
         ----------
         domain : Domain
-            The triangles as they are.
+            The current triangles.
         samples : Samples, optional
-            Where else to look than at the centres of triangles.
+            Further positions besides the centers of triangles.
 
         Returns
         -------
         float
-            A number of triangles.
+            The estimated number of triangles.
         """
         inside = np.flatnonzero(domain.labels >= 0)
         areas = geometry.areas(domain.points, domain.simplices[inside])
-        caps = self._at(_centres(domain, inside), domain.labels[inside])
+        caps = self._at(_centers(domain, inside), domain.labels[inside])
         if not np.isfinite(areas[np.isfinite(caps)]).all():
             raise LimitError(_out_of_range("the area of the domain"))
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             inverse = 1 / caps
             if samples is not None:
                 inverse = samples.mean_inverse(domain, inside, inverse)
-            # An area without a cap counts nothing, be it infinite.
+            # Regions without a cap do not count, even if their area is infinite.
             return float(np.where(inverse > 0, areas * inverse, 0).sum()) / _SHARE
 
     def require_within(self, domain: Domain, samples: Samples | None, max_points: int) -> None:
-        """Refuse sizes that no mesh with so few points can have.
+        """Raise an error if sizes clearly need more points than the limit.
 
         Parameters
         ----------
         domain : Domain
-            The triangles as they are.
+            The current triangles.
         samples : Samples or None
-            Further places.
+            Further positions.
         max_points : int
-            How many points may be added.
+            Maximum number of added points.
 
         Raises
         ------
         BudgetExceededError
-            Even if each triangle were as large as it may be, there would be too many.
+            Even if each triangle were as large as allowed, there would be too many.
         """
         triangles = self.estimate(domain, samples)
         least = triangles * _SHARE / 2 - len(domain.points)
         if least > max_points:
             about = max(triangles / 2 - len(domain.points), 0)
             raise BudgetExceededError(
-                f"the sizes ask for about {_rounded(triangles)} triangles, so for about "
-                f"{_rounded(about)} points to be added, more than the {max_points:,} of max_points",
+                f"the sizes require about {_rounded(triangles)} triangles, that is about "
+                f"{_rounded(about)} added points, more than max_points={max_points:,}",
                 limit=max_points,
                 found=int(min(least, 2**62)),
             )
 
 
 class Samples:
-    """Areas allowed at places of a lattice over a domain.
+    """The allowed areas on a lattice over a domain.
 
     Parameters
     ----------
     sizing : Sizing
-        What is asked.
+        The sizes to evaluate.
     domain : Domain
-        Where.
-    workers : int or None
-        Threads.
+        The domain.
+    workers : int or None Number of threads.
     """
 
     def __init__(self, sizing: Sizing, domain: Domain, workers: int | None) -> None:
@@ -232,28 +234,28 @@ class Samples:
             for a, b in zip(low.tolist(), high.tolist(), strict=True)
         ]
         x, y = (grid.ravel() for grid in np.meshgrid(*axes))
-        self._places = np.column_stack((x, y))
+        self._positions = np.column_stack((x, y))
         triangle = self._triangles(domain)
         kept = (triangle >= 0) & (domain.labels[triangle] >= 0)
-        self._places = np.ascontiguousarray(self._places[kept])
-        self._areas = sizing._at(self._places, domain.labels[triangle[kept]])
+        self._positions = np.ascontiguousarray(self._positions[kept])
+        self._areas = sizing._at(self._positions, domain.labels[triangle[kept]])
 
     def _triangles(self, domain: Domain) -> Indices:
         return _core.find_simplex2(
-            domain.points, domain.simplices, domain.neighbors, self._places, self._workers
+            domain.points, domain.simplices, domain.neighbors, self._positions, self._workers
         )
 
     def least(self, domain: Domain) -> Floats:
-        """Return the least area allowed in each triangle, infinite where there is no sample."""
+        """Return the smallest area allowed in each triangle, infinite where there is no sample."""
         found = np.full(len(domain.simplices), math.inf)
-        if len(self._places):
+        if len(self._positions):
             np.minimum.at(found, self._triangles(domain), self._areas)
         return found
 
     def mean_inverse(self, domain: Domain, inside: NDArray[np.intp], own: Floats) -> Floats:
-        """Return the mean of the inverse areas in triangles, their own among them."""
+        """Return the mean inverse area in triangles, including the value at their centers."""
         total, count = np.zeros(len(domain.simplices)), np.zeros(len(domain.simplices))
-        if len(self._places):
+        if len(self._positions):
             triangle = self._triangles(domain)
             np.add.at(total, triangle, 1 / self._areas)
             np.add.at(count, triangle, 1)
@@ -261,7 +263,7 @@ class Samples:
         return mean
 
 
-def _centres(domain: Domain, inside: NDArray[np.intp]) -> Floats:
+def _centers(domain: Domain, inside: NDArray[np.intp]) -> Floats:
     corners = domain.points[domain.simplices[inside]]
     return np.ascontiguousarray((corners / 3).sum(axis=1))
 
@@ -282,36 +284,37 @@ def _positive(value: Any, name: str) -> float:
 
 
 def _out_of_range(what: str) -> str:
-    return f"{what}: its square leaves the range of doubles; scale the coordinates"
+    return f"{what}: its square is beyond the range of doubles; scale the coordinates"
 
 
-def _place(place: Floats) -> str:
-    x, y = place.tolist()
+def _formatted(position: Floats) -> str:
+    x, y = position.tolist()
     return f"({x!r}, {y!r})"
 
 
-def _checked(sizes: Any, places: Floats) -> Floats:
+def _checked(sizes: Any, positions: Floats) -> Floats:
     given = np.asarray(sizes)
     if given.dtype.kind not in "iuf":
         raise DtypeError(f"size must return real numbers, got dtype {given.dtype}")
     found = given.astype(np.float64)
     if found.ndim == 0:
-        found = np.full(len(places), float(found))
-    if found.shape != (len(places),):
+        found = np.full(len(positions), float(found))
+    if found.shape != (len(positions),):
         raise InputError(
-            f"size must return one length for each of {len(places)} places, got shape {found.shape}"
+            f"size must return one length for each of {len(positions)} positions, got shape "
+            f"{found.shape}"
         )
     wrong = np.flatnonzero(~(found > 0))
     if wrong.size:
         raise InputError(
-            f"size is {found[wrong[0]]} at {_place(places[wrong[0]])}, it must be above 0; so are "
-            f"{len(wrong)} of {len(places)} places asked for"
+            f"size is {found[wrong[0]]} at {_formatted(positions[wrong[0]])}, but must be above 0; "
+            f"{len(wrong)} of {len(positions)} values are wrong"
         )
     return found
 
 
 def _evaluator(size: Any) -> Callable[[Floats], Floats]:
-    """Return what gives the lengths at places."""
+    """Return a function from positions to lengths."""
     if hasattr(size, "dims") and hasattr(size, "coords"):
         return _of_raster(size)
     if isinstance(size, tuple) and len(size) == 2 and isinstance(size[0], Triangulation):
@@ -320,24 +323,24 @@ def _evaluator(size: Any) -> Callable[[Floats], Floats]:
         function: Callable[[Floats], Floats] = size
         return function
     raise InputError(
-        "size must be a number, a mapping of regions, a function of places, a pair of a "
+        "size must be a number, a mapping from regions, a function of positions, a pair of a "
         f"triangulation and its values, or a DataArray, got {size!r:.60}"
     )
 
 
 def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Floats]:
-    """Linear between the vertices of a triangulation; outside as at the nearest point of it."""
+    """Interpolate linearly on a triangulation; outside, use its nearest point."""
     lengths = np.array(values, dtype=np.float64)
     if lengths.shape != (mesh.npoints,):
         raise InputError(
-            f"size has values of shape {lengths.shape} for {mesh.npoints} points of its mesh"
+            f"size has values of shape {lengths.shape} for the {mesh.npoints} points of its mesh"
         )
     if not mesh.nsimplex:
-        raise InputError("size is on a triangulation without a triangle")
+        raise InputError("size is given on a triangulation without triangles")
     _checked(lengths, mesh.points)
 
-    def at(places: Floats) -> Floats:
-        place = mesh.locate(places)
+    def at(positions: Floats) -> Floats:
+        place = mesh.locate(positions)
         corners = mesh.simplices[place.simplex]
         found: Floats = (lengths[corners] * place.barycentric).sum(axis=-1)
         outside = np.flatnonzero(place.simplex < 0)
@@ -351,7 +354,7 @@ def _of_background(mesh: Triangulation, values: Any) -> Callable[[Floats], Float
 
 
 def _of_raster(raster: Any) -> Callable[[Floats], Floats]:
-    """Linear between the centres of cells; outside as at the nearest cell."""
+    """Interpolate linearly between the centers of cells; outside, use the nearest cell."""
     if len(raster.dims) != 2:
         raise InputError(f"size must have the dimensions y and x, got {raster.dims}")
     axes = [np.asarray(raster[name].values, dtype=np.float64) for name in raster.dims]
@@ -360,18 +363,18 @@ def _of_raster(raster: Any) -> Callable[[Floats], Floats]:
         if len(axes[axis]) > 1 and axes[axis][0] > axes[axis][-1]:
             axes[axis], values = axes[axis][::-1], np.flip(values, axis)
         if not (np.diff(axes[axis]) > 0).all():
-            raise InputError(f"the coordinates {raster.dims[axis]} of size are not in order")
+            raise InputError(f"the coordinates {raster.dims[axis]} of size are not monotonic")
 
-    def at(places: Floats) -> Floats:
+    def at(positions: Floats) -> Floats:
         # The last dimension is x, as rasters have it.
-        (i, s), (j, t) = (_between(axes[k], places[:, 1 - k]) for k in (0, 1))
+        (i, s), (j, t) = (_between(axes[k], positions[:, 1 - k]) for k in (0, 1))
         k, m = np.minimum(i + 1, len(axes[0]) - 1), np.minimum(j + 1, len(axes[1]) - 1)
         upper = values[i, j] * (1 - t) + values[i, m] * t
         lower = values[k, j] * (1 - t) + values[k, m] * t
         found: Floats = upper * (1 - s) + lower * s
         gap = np.flatnonzero(np.isnan(found))
         if gap.size:
-            # Beside a cell without value the nearest one counts.
+            # Next to a cell without a value, use the nearest cell.
             found[gap] = values[np.where(s < 0.5, i, k), np.where(t < 0.5, j, m)][gap]
         return found
 
@@ -379,7 +382,7 @@ def _of_raster(raster: Any) -> Callable[[Floats], Floats]:
 
 
 def _between(axis: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return the coordinate below, and the share of the way to the next."""
+    """Return the index of the coordinate below, and the fraction of the interval to the next."""
     if len(axis) == 1:
         return np.zeros(len(at), dtype=np.intp), np.zeros(len(at))
     i = np.clip(np.searchsorted(axis, at, side="right") - 1, 0, len(axis) - 2)
@@ -388,7 +391,7 @@ def _between(axis: Floats, at: Floats) -> tuple[NDArray[np.intp], Floats]:
 
 
 def _rounded(number: float) -> str:
-    """Two digits of a large number: more would claim what an estimate does not know."""
+    """Return a large number with two digits: more would overstate the accuracy of an estimate."""
     if number < 1000:
         return f"{number:.0f}"
     scale = 10 ** (int(math.log10(number)) - 1) if number < 1e15 else 1

@@ -1,9 +1,10 @@
-"""Free points of a mesh move to better places: Lloyd's rule, its Delaunay dual, or the mean.
+"""Smoothing: free points of a mesh move by Lloyd's method, its Delaunay dual, or to the mean.
 
-After each round the moved points are triangulated anew with the same subsegments, so that the mesh
-stays Delaunay. What has become worse takes its points back: half way first, then wholly, until no
-angle is below the bound that was not before, each point is in its region, and none has met another
-or a segment. In the end all have gone back, so this ends.
+After each round the moved points are triangulated again with the same subsegments, so the mesh
+stays Delaunay. The points of triangles that became worse move back, first by half of the step,
+finally all the way, until there are no new angles below the bound, each point is in its region, and
+no point coincides with another point or lies on a segment. This terminates, because in the end all
+points would be back.
 
 S. P. Lloyd (1982), "Least squares quantization in PCM"; L. Chen and M. Holst (2011), "Efficient
 mesh optimization schemes based on optimal Delaunay triangulations".
@@ -35,7 +36,7 @@ __all__ = ["METHODS", "rebuilt", "smoothed", "worse"]
 M = TypeVar("M", bound=MeshState)
 
 METHODS = ("lloyd", "odt", "laplace")
-# How often a step is halved before it is given up.
+# How often a step is halved before the point does not move at all.
 _HALVINGS = 3
 
 
@@ -46,22 +47,22 @@ def smoothed(mesh: M, max_iter: int, method: str) -> M:
         free = _free(mesh)
         if not free.any():
             break
-        moved = _tried(mesh, free, method)
-        if moved is None:
+        changed = _moved(mesh, free, method)
+        if changed is None:
             break
-        mesh = moved
+        mesh = changed
     return mesh
 
 
 def _free(mesh: MeshState) -> Bools:
-    """Points that were added and lie on no segment, except those of triangles that are spoilt."""
+    """Return the added points that lie on no segment and belong to no triangle below the bound."""
     free = mesh._inner.copy()
     free[mesh.simplices[mesh._below]] = False
     return free
 
 
 def _targets(mesh: MeshState, points: Floats, method: str) -> Floats:
-    """Return where each point would be best, for its triangles as they are."""
+    """Return the target position of each point, for the current triangles."""
     simplices, n = mesh.simplices, mesh.npoints
     if method == "laplace":
         pairs = mesh.edges
@@ -72,19 +73,20 @@ def _targets(mesh: MeshState, points: Floats, method: str) -> Floats:
     if method == "odt":
         at = geometry.circumcenters(points, simplices)
         return _means(simplices.ravel(), np.repeat(at, 3, axis=0), np.repeat(weight, 3), n)
-    # The share of each corner is the quadrilateral of it, two middles of edges and the circle's
-    # centre, with a sign: two triangles, of which each knows its area and its centre.
-    centre = geometry.circumcenters(points, simplices)
+    # The part of a triangle in the Voronoi cell of a corner is a signed quadrilateral: the corner,
+    # two edge midpoints and the circumcenter. It is the sum of two triangles with signed areas and
+    # centroids.
+    center = geometry.circumcenters(points, simplices)
     owners, places, weights = [], [], []
     for k in range(3):
         a = corners[:, k]
         for other, sign in ((corners[:, k - 2], 1.0), (corners[:, k - 1], -1.0)):
             middle = (a + other) / 2
-            u, v = middle - a, centre - a
-            # The centre of a needle may be beyond the range; then its corners stay.
+            u, v = middle - a, center - a
+            # The circumcenter of a needle may overflow; then its corners stay.
             with np.errstate(all="ignore"):
                 weights.append(sign * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-            places.append((a + middle + centre) / 3)
+            places.append((a + middle + center) / 3)
             owners.append(simplices[:, k])
     return _means(np.concatenate(owners), np.concatenate(places), np.concatenate(weights), n)
 
@@ -97,9 +99,9 @@ def _means(owner: Indices, places: Floats, weight: Floats, count: int) -> Floats
     return mean
 
 
-def _tried(mesh: M, free: Bools, method: str) -> M | None:
-    """Move free points as far as nothing becomes worse; None where nothing moves."""
-    # In a unit in which areas and squares of lengths are doubles.
+def _moved(mesh: M, free: Bools, method: str) -> M | None:
+    """Move free points as far as no triangle becomes worse; None if no point moves."""
+    # In this unit, areas and squared lengths are doubles.
     unit = domains.unit_of(mesh.points)
     points = mesh.points / unit
     target = _targets(mesh, points, method)
@@ -121,7 +123,7 @@ def _tried(mesh: M, free: Bools, method: str) -> M | None:
         back = np.zeros(mesh.npoints, dtype=bool)
         back[lost] = True
         if not (back & moves).any():
-            # What moved is beside what is worse.
+            # No vertex of a worse triangle moved, but some of their neighbors did.
             ends = mesh.edges
             back[ends[back[ends].any(axis=1)]] = True
         if not (back & moves).any():
@@ -133,23 +135,24 @@ def _tried(mesh: M, free: Bools, method: str) -> M | None:
 def rebuilt(
     mesh: MeshState, points: Floats, row: Indices
 ) -> tuple[Domain | None, NDArray[np.intp]]:
-    """Triangulate points of a mesh anew, with its subsegments and regions.
+    """Triangulate the points of a mesh again, with its subsegments and regions.
 
     Parameters
     ----------
     mesh : MeshState
         The mesh.
     points : ndarray of float64, shape (k, 2)
-        Where points are now.
+        The new positions of points.
     row : ndarray of int32, shape (n,)
-        Which of these each point of the mesh is; -1 where it is gone. Ends of subsegments stay.
+        The row of each point of the mesh in `points`; -1 for removed points. Ends of subsegments
+        stay.
 
     Returns
     -------
     domain : Domain or None
-        The triangulation; None where points have met each other or a subsegment.
+        The triangulation; None if points coincide, lie on a subsegment, or left their region.
     lost : ndarray of int
-        Rows of `points` that are where they may not be.
+        Rows of `points` at invalid positions.
     """
     edges, label = mesh._directed
     segments = row[mesh.segments]
@@ -180,7 +183,7 @@ def rebuilt(
 def _astray(
     mesh: MeshState, simplices: Indices, labels: Indices, row: Indices, kept: NDArray[np.intp]
 ) -> NDArray[np.intp]:
-    """Return the free points that a triangle outside of their region has for a corner."""
+    """Return the free points that are vertices of a triangle outside of their region."""
     own = np.full(len(kept), -2, dtype=np.int32)
     inner = mesh._inner
     first = mesh.vertex_to_simplex
@@ -191,16 +194,16 @@ def _astray(
 
 
 def worse(mesh: MeshState, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return the points of triangles below the bound that a mesh did not have.
+    """Return the vertices of triangles below the bound that the mesh did not have.
 
     Parameters
     ----------
     mesh : MeshState
-        What there was.
+        The mesh before the change.
     domain : Domain
-        What has become of it.
+        The domain after the change.
     number : ndarray of int, shape (k,)
-        The point of the mesh that each point of the domain was; -1 where it is a new one.
+        The point of the mesh that each point of the domain corresponds to; -1 for new points.
 
     Returns
     -------
@@ -212,7 +215,7 @@ def worse(mesh: MeshState, domain: Domain, number: NDArray[np.intp]) -> NDArray[
     new = np.sort(number[inside[rows]], axis=1)
     old = np.sort(mesh.simplices[mesh._below], axis=1).astype(np.int64)
     n = mesh.npoints
-    # A triangle with a new point, which comes first now, is none of the old ones.
+    # A triangle with a new point (-1, so first in the sorted row) is not an old one.
     same = (new[:, 0] >= 0) & np.isin((new[:, 0] * n + new[:, 1]) * n + new[:, 2],
                    (old[:, 0] * n + old[:, 1]) * n + old[:, 2])  # fmt: skip
     return np.unique(inside[rows[~same]]).astype(np.intp)

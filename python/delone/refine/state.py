@@ -1,7 +1,7 @@
 """The arrays of a mesh: triangles of a domain, and the lines under their segments.
 
-A mesh holds its own triangles only. To change it, the whole convex hull is triangulated again as a
-`Domain`, in which the triangles outside come back, and the core refines that.
+A mesh holds only its own triangles. To change it, the whole convex hull is triangulated again as a
+`Domain`, which includes the triangles outside, and the core refines that.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = ["MeshState"]
 
 
 class MeshState(HullTiling):
-    """The state of a `delone.Mesh`, and what follows from its segments."""
+    """The state of a `delone.Mesh`, and attributes derived from its segments."""
 
     __slots__ = (
         "_bound",
@@ -77,7 +77,7 @@ class MeshState(HullTiling):
         stages: dict[str, float],
         workers: int | None,
     ) -> Self:
-        """Leave out what is outside, and the points that no triangle uses."""
+        """Create a mesh from a domain, without triangles outside and unused points."""
         inside = np.flatnonzero(domain.labels >= 0)
         number = np.full(len(domain.labels) + 1, -1, dtype=np.int32)
         number[inside] = np.arange(len(inside), dtype=np.int32)
@@ -129,7 +129,7 @@ class MeshState(HullTiling):
     @property
     @kept
     def _whole(self) -> tuple[Indices, Indices, Indices, Indices]:
-        """Triangles of the whole hull: vertices, neighbours, regions by rows, lines."""
+        """Triangles of the whole hull: vertices, neighbors, rows of regions, lines."""
         edges, label = self._directed
         made, labels = domains.triangulated(
             self._points, self.segments, edges, label, self._workers
@@ -141,7 +141,7 @@ class MeshState(HullTiling):
 
     @property
     def _directed(self) -> tuple[Indices, Indices]:
-        """The subsegments with a triangle to the left, and the rows of `_regions` there."""
+        """The directed subsegments with a triangle to the left, and the row of its region."""
         t, k = np.nonzero(self._sides >= 0)
         ends = self._simplices[t, (k + 1) % 3], self._simplices[t, (k + 2) % 3]
         label = np.searchsorted(self._regions, self._region[t]).astype(np.int32)
@@ -153,7 +153,7 @@ class MeshState(HullTiling):
         return sealed(np.unique(self._region))
 
     def _domain(self) -> Domain:
-        """Return the mesh as what the core takes."""
+        """Return the mesh as a domain, the input of the core."""
         simplices, neighbors, labels, sides = self._whole
         return Domain(
             points=self._points,
@@ -172,14 +172,14 @@ class MeshState(HullTiling):
     def region(self) -> Indices:
         """The region of each triangle, (m,).
 
-        For seeds of regions their label, -1 without one; for geometries the number of the geometry;
+        With region seeds their label, -1 without one; with geometries the number of the geometry;
         otherwise as in `ConstrainedDelaunay.region`.
         """
         return self._region
 
     @property
     def point_source(self) -> Indices:
-        """The row of the input that each point is, (n,); -1 where it was added."""
+        """The input row of each point, (n,); -1 for added points."""
         return self._point_source
 
     @property
@@ -189,7 +189,7 @@ class MeshState(HullTiling):
 
     @property
     def nadded(self) -> int:
-        """Number of points that were added."""
+        """Number of added points."""
         return int(np.count_nonzero(self._point_source < 0))
 
     @property
@@ -200,7 +200,7 @@ class MeshState(HullTiling):
     @property
     @kept
     def _ordered(self) -> tuple[Indices, Indices]:
-        """The subsegments in order of their lines and along them, and their lines."""
+        """The subsegments in the order of their lines and along them, and their lines."""
         segments, line = domains.sides_of(self._simplices, self._neighbors, self._sides)
         first, last = (self._points[self._ends[line, i]] for i in (0, 1))
         step = last - first
@@ -228,10 +228,10 @@ class MeshState(HullTiling):
     @property
     @kept
     def segment_source(self) -> tuple[NDArray[np.int64], Indices]:
-        """The rows of the input that cover `segments` as compressed rows (indptr, indices).
+        """The input rows that cover `segments`, as compressed rows (indptr, indices).
 
-        ``segments[i]`` is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of the segments
-        that were given; of none where it is an edge of a hull that no segment runs along.
+        ``segments[i]`` is part of the rows ``indices[indptr[i]:indptr[i + 1]]`` of the input
+        segments, or of none if it is a boundary edge that is not on a segment.
         """
         line = self._segment_line
         counts = np.diff(self._start)[line]
@@ -243,24 +243,24 @@ class MeshState(HullTiling):
     def segment_markers(self) -> Indices:
         """The marker of each of `segments`, (q,): that of its row, 0 without one.
 
-        Where geometries are meshed and no markers are given, each ring and line has its own: 1 for
-        the first, 2 for the second, and so on.
+        If geometries are meshed and no markers are given, each ring and line has its own: 1 for the
+        first, 2 for the second, and so on.
         """
         return self._line_markers[self._segment_line]
 
     @property
     def geometry_of_segment(self) -> Indices:
-        """The geometry that each of `segments` came from, (q,); -1 for those from arrays.
+        """The geometry that each of `segments` came from, (q,); -1 for arrays.
 
-        Of a segment that several geometries share, the first one. `segment_markers` tells the rings
-        of one geometry apart.
+        For a segment that several geometries share, the first one. `segment_markers` distinguishes
+        the rings of one geometry.
         """
         return self._line_geometries[self._segment_line]
 
     @property
     @kept
     def report(self) -> MeshReport:
-        """Points by cause, angles reached, and the triangles that the input spoils."""
+        """Added points by cause, angles reached, and triangles below the bound."""
         return reported(
             self._points,
             self._simplices,
@@ -273,14 +273,14 @@ class MeshState(HullTiling):
         )
 
     def _needles(self) -> Indices:
-        """Return the needle that each triangle is in, or -1."""
+        """Return the needle that contains each triangle, or -1."""
         simplices, needle = domains.needles_in(self._domain(), float(self._bound[0]))
         return needle[topology.rows_among(self._simplices, simplices)[:-1]]
 
     @property
     @kept
     def _inner(self) -> Bools:
-        """Points that were added inside: neither on a line nor, as crossings are, its end."""
+        """Points that were added inside: neither on a line nor, like crossings, at its end."""
         found = (self._point_source < 0) & (self._on < 0)
         found[self._ends] = False
         return sealed(found)
@@ -316,7 +316,7 @@ class MeshState(HullTiling):
 
 
 def _only_used(lines: Lines, sides: Indices, row: Indices) -> tuple[Lines, Indices]:
-    """Keep the lines under edges, and say what each line is among them; the last entry is -1."""
+    """Keep the lines under edges, and return the new row of each line; the last entry is -1."""
     used = np.zeros(len(lines.ends) + 1, dtype=bool)
     used[sides] = True
     used = used[:-1]

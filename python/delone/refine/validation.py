@@ -25,11 +25,11 @@ __all__ = ["MeshValidation", "validate"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MeshValidation(ValidationReport):
-    """The result of ``Mesh.validate()``: truthy if the mesh is right.
+    """The result of ``Mesh.validate()``: truthy if the mesh is correct.
 
-    The fields are those of `ValidationReport`, but `hull` has the edges of the boundary that are no
-    part of a segment, `delaunay` and `ties` leave out pairs of triangles with a segment between
-    them, and `count` is always empty.
+    The fields are those of `ValidationReport`, but `hull` has the boundary edges that are not part
+    of a segment, `delaunay` and `ties` leave out pairs of triangles with a segment between them,
+    and `count` is always empty.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def validate(
     Returns
     -------
     MeshValidation
-        What is wrong.
+        The faults.
     """
     found = _core.validate2(points, simplices, neighbors)
     used = np.zeros(len(points), dtype=bool)

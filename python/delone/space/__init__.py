@@ -1,7 +1,8 @@
 """3-D triangulations: topology, geometry and quality of tetrahedra.
 
-`topology` needs no coordinates, `geometry` measures, `quality` judges, `location` locates points,
-and `dimension` is the table of these functions. `plane` triangulates 3-D points of one plane.
+`topology` needs no coordinates, `geometry` computes measures, `quality` assesses shapes, `location`
+locates points, and `dimension` is the table of these functions. `plane` triangulates coplanar 3-D
+points.
 """
 
 from delone.space.plane import PlaneTriangulation

@@ -1,7 +1,7 @@
-"""What is measured on tetrahedra: volumes, circumcenters, barycentric transforms.
+"""Measures of tetrahedra: volumes, circumcenters, barycentric transforms.
 
-The core computes it, in stages: what cancels in a sliver is computed again with more digits.
-Assumed are finite points and tetrahedra that are exactly positively oriented.
+The core computes them in stages: values that suffer cancellation in slivers are computed again with
+more digits. Points must be finite, and tetrahedra exactly positively oriented.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def volumes(points: Floats, simplices: Indices, workers: int | None = None) -> F
     Returns
     -------
     ndarray of float64, shape (m,)
-        With a relative error below 1e-13, unless the volume itself is beyond the range of doubles
-        (then inf, or rounded among the subnormal ones).
+        With a relative error below 1e-13, unless the volume is beyond the range of doubles (then
+        inf, or rounded to a subnormal number).
 
     Examples
     --------
@@ -52,7 +52,7 @@ def volumes(points: Floats, simplices: Indices, workers: int | None = None) -> F
 
 
 def transform(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the affine maps from space to barycentric coordinates.
+    """Return the affine maps from coordinates to barycentric coordinates.
 
     Parameters
     ----------
@@ -67,9 +67,9 @@ def transform(points: Floats, simplices: Indices, workers: int | None = None) ->
     Returns
     -------
     ndarray of float64, shape (m, 4, 3)
-        For each tetrahedron the inverse of the matrix whose columns lead from the last corner to
-        the first three, and below it the last corner. Each row has an error below 1e-13 of its
-        length, unless it is beyond the range of doubles.
+        For each tetrahedron, the inverse of the matrix whose columns are the vectors from the last
+        corner to the first three, and below it the last corner. Each row has an error below 1e-13
+        of its length, unless it is beyond the range of doubles.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def circumcenters(points: Floats, simplices: Indices, workers: int | None = None
     Returns
     -------
     ndarray of float64, shape (m, 3)
-        Each coordinate within 4 units in the last place; infinite where it is beyond the range of
+        Each coordinate within 4 units in the last place; infinite if it is beyond the range of
         doubles.
 
     Examples
@@ -116,14 +116,14 @@ def circumcenters(points: Floats, simplices: Indices, workers: int | None = None
 
 
 def face_normals(points: Floats, faces: Indices, workers: int | None = None) -> Floats:
-    """Return the unit normals of triangles in space.
+    """Return the unit normals of triangles in 3-D.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 3)
         Coordinates.
     faces : ndarray of int32, shape (m, 3)
-        Triangles, none of which is flat.
+        Triangles, none of them degenerate.
 
     workers : int or None, optional
         Number of threads; by default all cores.
@@ -131,7 +131,8 @@ def face_normals(points: Floats, faces: Indices, workers: int | None = None) -> 
     Returns
     -------
     ndarray of float64, shape (m, 3)
-        From where the triangle is counter-clockwise, with an error below 1e-14.
+        Pointing to the side from which the triangle is counter-clockwise, with an error below
+        1e-14.
 
     Examples
     --------
@@ -145,14 +146,14 @@ def face_normals(points: Floats, faces: Indices, workers: int | None = None) -> 
 
 
 def face_areas(points: Floats, faces: Indices, workers: int | None = None) -> Floats:
-    """Return the areas of triangles in space.
+    """Return the areas of triangles in 3-D.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 3)
         Coordinates.
     faces : ndarray of int32, shape (m, 3)
-        Triangles, none of which is flat.
+        Triangles, none of them degenerate.
 
     workers : int or None, optional
         Number of threads; by default all cores.

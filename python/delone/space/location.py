@@ -41,7 +41,7 @@ def located(
 
 
 def on_faces(points: Floats, face: Indices, weights: Floats) -> Floats:
-    """Return points of triangles: within their boxes, and exactly the corners where one counts.
+    """Return points on triangles, inside their boxes; exactly the corner if one weight is 1.
 
     Parameters
     ----------

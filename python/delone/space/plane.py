@@ -1,10 +1,10 @@
-"""The Delaunay triangulation of points that all lie in one plane of space.
+"""Delaunay triangulation of coplanar 3-D points.
 
-In-circle tests in a tilted plane have no exact coordinates of the plane to work with. So the points
-are joined with one more off the plane and triangulated in space: spheres cut the plane in circles,
-hence the tetrahedra are cones over the Delaunay triangles, and ties go by the same rule. Weights
-change nothing in that: in the plane, lifted heights differ from those of coordinates of its own by
-a linear function, and the apex, a corner of the hull, is never hidden.
+In a tilted plane there are no exact 2-D coordinates for in-circle tests. So a point off the plane,
+the apex, is added, and all points are triangulated in 3-D: spheres intersect the plane in circles,
+so the tetrahedra are cones over the Delaunay triangles, and ties are broken by the same rule. This
+is also true with weights: in the plane, lifted heights differ from those in 2-D coordinates by a
+linear function, and the apex, a corner of the hull, is never hidden.
 """
 
 from __future__ import annotations
@@ -28,25 +28,26 @@ if TYPE_CHECKING:
 
 __all__ = ["PlaneTriangulation", "plane_of"]
 
-# Axes of the projections to coordinate planes: that along z first, then along y, then along x.
+# Axes of the projections to coordinate planes: first along z, then along y, then along x.
 _PROJECTIONS = ((2, (0, 1)), (1, (2, 0)), (0, (1, 2)))
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneTriangulation(ReadOnly):
-    """The Delaunay triangulation of points of one plane in space; the regular one, with weights.
+    """The Delaunay triangulation of coplanar 3-D points, or with weights the regular triangulation.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 3)
         The coordinates.
     simplices : ndarray of int32, shape (m, 3)
-        The triangles as rows of `points`: counter-clockwise seen from where z grows; in a vertical
-        plane from where y grows, and in one of constant x from where x grows.
+        The triangles as rows of `points`: counter-clockwise as seen from the positive z direction;
+        in vertical planes from the positive y direction, and in planes of constant x from the
+        positive x direction.
     neighbors : ndarray of int32, shape (m, 3)
         The triangle opposite each vertex, -1 outside.
     duplicates : ndarray of int32, shape (k, 2)
-        Rows that repeat earlier ones, and these.
+        Rows that repeat earlier rows, and the earlier rows.
     weights : ndarray of float64, shape (n,), optional
         The weights of the points.
 
@@ -82,47 +83,47 @@ class PlaneTriangulation(ReadOnly):
 
     @cached_property
     def circumcenters(self) -> Floats:
-        """Centres of the circles of triangles, (m, 3): the vertices of the plane's Voronoi diagram.
+        """Circumcenters of the triangles, (m, 3): the vertices of the planar Voronoi diagram.
 
-        With weights, where the three vertices have equal power. In the plane up to rounding; those
-        of thin triangles are far away, and infinite beyond the range of doubles.
+        With weights, the points where the three vertices have equal power. In the plane up to
+        rounding; those of thin triangles are far away, and infinite beyond the range of doubles.
         """
         a, b, c = (self.points[self.simplices[:, k]] for k in range(3))
         with np.errstate(all="ignore"):
-            # Halves in a unit of each triangle, so that no difference or square overflows.
+            # Halved and scaled for each triangle, so that no difference or square overflows.
             u, v = b / 2 - a / 2, c / 2 - a / 2
             unit = np.abs(np.stack((u, v))).max(axis=(0, 2), initial=0.0)[:, None]
             u, v = u / unit, v / unit
             normal = np.cross(u, v)
             uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
             if self.weights is not None:
-                heavy = self.weights[self.simplices] / 2
-                lift = (heavy[:, :1] - heavy[:, 1:]) / unit / unit / 2
+                weights = self.weights[self.simplices] / 2
+                lift = (weights[:, :1] - weights[:, 1:]) / unit / unit / 2
                 uu, vv = uu + lift[:, 0], vv + lift[:, 1]
             across = np.cross(uu[:, None] * v - vv[:, None] * u, normal)
-            way = across / (2 * (normal * normal).sum(axis=1))[:, None]
-            found: Floats = a + 2 * unit * way
+            offset = across / (2 * (normal * normal).sum(axis=1))[:, None]
+            found: Floats = a + 2 * unit * offset
         return found
 
 
 def plane_of(
     points: Floats, workers: int = 1, weights: Floats | None = None
 ) -> PlaneTriangulation | None:
-    """Triangulate points of one plane.
+    """Triangulate coplanar points.
 
     Parameters
     ----------
     points : ndarray of float64, shape (n, 3)
-        Finite points, all in one plane.
+        Finite coplanar points.
     workers : int, optional
-        How many threads may work; with weights there is one.
+        Number of threads; with weights, one thread is used.
     weights : ndarray of float64, shape (n,), optional
         Finite weights of the points.
 
     Returns
     -------
     PlaneTriangulation or None
-        None where all points lie on one line.
+        None if all points are collinear.
     """
     corners = _corners(points)
     if corners is None:
@@ -133,12 +134,13 @@ def plane_of(
         made = _core.triangulate3(extended, workers)
         simplices, neighbors, duplicates = made.simplices, made.neighbors, made.duplicates
     else:
-        # The weight of the apex is of no account; one of the others' keeps exponents together.
+        # The weight of the apex has no effect; one like the others avoids a large range of
+        # exponents.
         own = np.append(weights, weights[first[0]])
-        heavy = _core.regular3(extended, own)
-        simplices, neighbors = heavy.simplices, heavy.neighbors
-        duplicates = twins(heavy.stands_for, own)
-    # Three columns of each row: those of the base, which is opposite the apex.
+        regular = _core.regular3(extended, own)
+        simplices, neighbors = regular.simplices, regular.neighbors
+        duplicates = repeated_rows(regular.stands_for, own)
+    # Keep three columns of each row: those of the base, opposite the apex.
     rows, corner = np.nonzero(simplices == len(points))
     order = np.array(FACES)[corner]
     triangles = np.take_along_axis(simplices[rows], order, axis=1)
@@ -154,20 +156,20 @@ def plane_of(
     )
 
 
-def twins(stands_for: Indices, weights: Floats) -> Indices:
-    """List rows that repeat others, weights included.
+def repeated_rows(stands_for: Indices, weights: Floats) -> Indices:
+    """Return the rows that repeat others, including weights.
 
     Parameters
     ----------
     stands_for : ndarray of int32, shape (n,)
-        For each row the first of the heaviest ones with its coordinates.
+        For each row, the first row with the same coordinates that has the largest weight.
     weights : ndarray of float64, shape (n,)
         The weights.
 
     Returns
     -------
     ndarray of int32, shape (k, 2)
-        The rows, and those that they repeat.
+        The rows, and the rows that they repeat.
     """
     other = stands_for != np.arange(len(weights))
     rows = np.flatnonzero(other & (weights == weights[stands_for]))
@@ -175,7 +177,7 @@ def twins(stands_for: Indices, weights: Floats) -> Indices:
 
 
 def _corners(points: Floats) -> tuple[int, list[int], tuple[int, int, int]] | None:
-    """An axis that is not parallel to the plane, the other two, and three points off a line."""
+    """Return an axis not parallel to the plane, the other two, and three non-collinear points."""
     if len(points) < 3:
         return None
     other = np.flatnonzero((points != points[0]).any(axis=1))
@@ -191,7 +193,7 @@ def _corners(points: Floats) -> tuple[int, list[int], tuple[int, int, int]] | No
 
 
 def _apex(points: Floats, row: int, axis: int) -> Floats:
-    """A point off the plane, as far from one of its points as the points are from each other."""
+    """Return a point off the plane, at a distance like that of the points from each other."""
     apex = points[[row]]
     with np.errstate(over="ignore"):
         size = float((points.max(axis=0) - points.min(axis=0)).max())

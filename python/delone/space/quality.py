@@ -1,7 +1,7 @@
-"""How good tetrahedra are: dihedral angles, volumes, ratios of radii and of edges.
+"""Quality of tetrahedra: dihedral angles, volumes, ratios of radii and of edges.
 
-The core computes the measures, in stages: what cancels in a sliver is computed again with more
-digits, and angles near 0 and 180 degrees are as accurate as others.
+The core computes the measures in stages: values that suffer cancellation in slivers are computed
+again with more digits, and angles near 0 and 180 degrees are as accurate as others.
 """
 
 from __future__ import annotations
@@ -28,32 +28,32 @@ __all__ = ["EDGES", "FACES", "TetQuality", "dihedral_angles", "measured"]
 FACES = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
 # The edges of a tetrahedron as corners.
 EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-# Classes of a histogram in degrees: narrower ones are a mistake, and would fill the memory.
+# Smallest bin width of a histogram in degrees: narrower bins are a mistake, and would fill memory.
 _NARROWEST = 0.001
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TetQuality(Measures):
-    """Measures of the tetrahedra of a mesh, one entry for each.
+    """Quality measures of tetrahedra, one entry per tetrahedron.
 
     Parameters
     ----------
     smallest_dihedral, largest_dihedral : ndarray of float64, shape (m,)
-        Dihedral angles in degrees: those between two faces, at an edge. The smallest one of a
-        tetrahedron is at most acos(1/3), about 70.53 degrees, that of the regular one; near 0 it
-        is a sliver, or worse.
+        Dihedral angles in degrees, between two faces at an edge. The smallest angle of a
+        tetrahedron is at most acos(1/3), about 70.53 degrees, that of the regular tetrahedron; if
+        it is near 0, the tetrahedron is a sliver, or worse.
     volume : ndarray of float64, shape (m,)
         In the cube of the unit of the points.
     radius_ratio : ndarray of float64, shape (m,)
-        Three times the radius of the inscribed sphere, as a share of that of the circumscribed one:
-        1 for a regular tetrahedron, towards 0 for flat and thin ones.
+        Three times the inradius divided by the circumradius: 1 for regular tetrahedra, near 0 for
+        flat and thin ones.
     edge_ratio : ndarray of float64, shape (m,)
-        The longest edge in lengths of the shortest: at least 1.
+        The longest edge divided by the shortest: at least 1.
 
     Notes
     -----
-    The relative error of each number is below 1e-13, also that of slivers and of needles, unless
-    it is beyond the range of doubles (then inf, or rounded among the subnormal ones).
+    The relative error of each value is below 1e-13, also for slivers and needles, unless it is
+    beyond the range of doubles (then inf, or rounded to a subnormal number).
 
     Examples
     --------
@@ -78,24 +78,24 @@ class TetQuality(Measures):
     _noun = "tetrahedron"
 
     def histogram(self, width: float = 5.0) -> tuple[NDArray[np.int64], Floats]:
-        """Count tetrahedra by their smallest dihedral angle.
+        """Count tetrahedra by smallest dihedral angle.
 
         Parameters
         ----------
         width : float, optional
-            The width of a class in degrees, from 0.001 to 180.
+            Bin width in degrees, from 0.001 to 180.
 
         Returns
         -------
         counts : ndarray of int64, shape (k,)
-            How many there are in each class.
+            Number of tetrahedra in each bin.
         bounds : ndarray of float64, shape (k + 1,)
-            The bounds of the classes, from 0 to above 70.53 degrees.
+            The bin edges, from 0 to above 70.53 degrees.
 
         Raises
         ------
         InputError
-            `width` is no number, or not within these bounds.
+            `width` is not a number in this range.
 
         Examples
         --------
@@ -109,24 +109,24 @@ class TetQuality(Measures):
             raise InputError(f"width must be from {_NARROWEST} to 180 degrees, got {width!r}")
         most = np.degrees(np.arccos(1 / 3))
         bounds: Floats = step * np.arange(int(np.ceil(most / step)) + 1, dtype=np.float64)
-        # That of the regular one may be rounded to above the last bound.
+        # The angle of the regular tetrahedron may be rounded to above the last edge.
         counts, _ = np.histogram(np.minimum(self.smallest_dihedral, bounds[-1]), bounds)
         return counts.astype(np.int64), bounds
 
     def plot(self, ax: Any = None, *, bound: float | None = None) -> Any:
-        """Draw the histogram of the smallest and the largest dihedral angles (extra ``plot``).
+        """Draw a histogram of the smallest and the largest dihedral angles (extra ``plot``).
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
             Where to draw; by default on new axes.
         bound : float, optional
-            An angle to be marked, in degrees.
+            An angle to mark, in degrees.
 
         Returns
         -------
         matplotlib Axes
-            What was drawn on.
+            The axes.
 
         Raises
         ------

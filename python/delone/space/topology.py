@@ -1,7 +1,8 @@
-"""What follows from the arrays of tetrahedra alone: edges, faces, boundary, neighbours.
+"""Topology of tetrahedra: edges, faces, boundary, neighbors.
 
-No coordinate and no predicate is needed here. Assumed is a triangulation as the core exports it:
-tetrahedra positively oriented, `neighbors[t, k]` across the face opposite vertex k, -1 outside.
+Needs neither coordinates nor predicates. The input must be a triangulation as the core exports it:
+tetrahedra are positively oriented, `neighbors[t, k]` is across the face opposite vertex k, -1
+outside.
 """
 
 from __future__ import annotations
@@ -123,12 +124,12 @@ def neighbors(simplices: Indices) -> Indices:
     Parameters
     ----------
     simplices : ndarray of int32, shape (m, 4)
-        Tetrahedra, all of one orientation; no face is used more than twice.
+        Tetrahedra, all with the same orientation; no face is used more than twice.
 
     Returns
     -------
     ndarray of int32, shape (m, 4)
-        Tetrahedra, -1 where there is none.
+        Tetrahedra, -1 if there is none.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Improvement of tetrahedral meshes: vertices move and tetrahedra are replaced.
+"""Improvement of tetrahedral meshes, by moving vertices and replacing tetrahedra.
 
 `improvement` has the function `improve`, `tetmesh` the class TetMesh, `report` its result.
 """

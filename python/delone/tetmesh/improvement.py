@@ -1,7 +1,6 @@
-"""Improvement of tetrahedra: what is given goes through the core, and comes back with a report.
+"""The function `improve`: checks the input, calls the core and creates the mesh with its report.
 
-The core makes the changes (its head names the papers); here are the inputs and what is wrong with
-them.
+The core makes the changes (its module comment names the papers); this module validates the input.
 """
 
 from __future__ import annotations
@@ -39,8 +38,8 @@ if TYPE_CHECKING:
 __all__ = ["BOUNDARIES", "improve"]
 
 BOUNDARIES = ("faces", "surface")
-# The smallest angle of the regular tetrahedron, acos(1/3).
-_MOST = 70.528
+# The dihedral angle of the regular tetrahedron, acos(1/3).
+_LARGEST_GOAL = 70.528
 _INDEX_MAX = int(np.iinfo(np.int32).max)
 
 
@@ -57,81 +56,82 @@ def improve(
     max_iter: int = 30,
     progress: Callable[[int, int], object] | None = None,
 ) -> TetMesh:
-    """Make the tetrahedra of a mesh better: remove slivers.
+    """Improve the tetrahedra of a mesh: remove slivers.
 
     Parameters
     ----------
     mesh : Delaunay, TetMesh or tuple of two arrays
-        What is improved: a triangulation of points in space, or ``(points, simplices)`` with shapes
-        (n, 3) and (m, 4), positively oriented tetrahedra that do not overlap.
+        A 3-D triangulation, or ``(points, simplices)`` with shapes (n, 3) and (m, 4): positively
+        oriented tetrahedra that do not overlap.
     min_angle : float, optional
         The goal for the smallest dihedral angle of each tetrahedron, in degrees, from 0 to 70.528.
-        Tetrahedra below it are worked on, and those with a dihedral angle half as far from 180.
+        Tetrahedra below the goal are processed, and those with a dihedral angle that differs from
+        180 degrees by less than half of it.
     flips : bool, optional
-        Whether edges and faces are removed.
+        Whether to remove edges and faces (flips).
     smooth : bool, optional
-        Whether vertices inside move.
+        Whether to move interior vertices.
     exude : bool, optional
-        Whether, before all else, vertices inside get weights with which the tetrahedra around them
-        in the regular triangulation are better: sliver exudation.
+        Whether to start with sliver exudation: interior vertices get weights for which the
+        tetrahedra around them in the regular triangulation are better.
     boundary : {"faces", "surface"}, optional
-        What of the boundary stays: its triangles; or the surface, so that triangles in exactly one
-        plane may be flipped. Its vertices never move.
+        What is preserved of the boundary: its triangles; or only the surface, so that exactly
+        coplanar triangles may be flipped. Boundary vertices never move.
     region : array_like of int, shape (m,), optional
-        A number for each tetrahedron. Faces between different numbers stay, as the boundary does.
-        By default that of a TetMesh.
+        A number for each tetrahedron. Faces between different numbers are preserved like the
+        boundary. By default that of a TetMesh.
     fixed : array_like of bool, shape (n,), or of int, optional
-        Points that do not move: a mask, or rows.
+        Points that must not move: a mask, or rows.
     max_iter : int, optional
-        How many passes over the tetrahedra below the goal there are at most.
+        Maximum number of passes over the tetrahedra below the goal.
     progress : callable, optional
-        Called after each pass with its number and how many tetrahedra are below the goal.
+        Called after each pass with its number and the number of tetrahedra below the goal.
 
     Returns
     -------
     TetMesh
-        The better mesh, immutable: the same rows of points, some of them moved, and other
+        The improved mesh, immutable: the same rows of points, some of them moved, and different
         tetrahedra that fill the same space. Its ``report`` has the angles before and after, the
-        changes by kind, and what is left and why.
+        changes by kind, and the remaining tetrahedra below the goal, with causes.
 
     Raises
     ------
     InputError
-        A tetrahedron is flat or negatively oriented; three have one face; some overlap at a vertex
-        inside; two used rows are one point; or an argument is not what it is to be.
+        A tetrahedron is flat or negatively oriented; three tetrahedra share a face; tetrahedra
+        overlap at an interior vertex; two used rows have the same coordinates; or an argument is
+        invalid.
     ShapeError, DtypeError, NonFiniteError
-        The arrays are no points in space and tetrahedra.
+        The arrays are not 3-D points and tetrahedra.
     KeyboardInterrupt
         Ctrl-C was pressed.
 
     Notes
     -----
-    Three kinds of changes: the removal of an edge, with the best triangulation of the ring around
-    it (G. T. Klincsek 1980; J. R. Shewchuk 2002), of which the flips 3-2, 4-4 and 2-2 are special
-    cases; its inverse, the removal of faces between two vertices, as in the flip 2-3; and the move
-    of a vertex to where the worst tetrahedron around it is best (L. A. Freitag and C. Ollivier-
-    Gooch 1997). Exudation (S.-W. Cheng et al. 2000) lets the star of a vertex grow as its weight
-    does, up to a fifth of the squared distance to the nearest vertex; on a Delaunay triangulation,
-    and without the other kinds, the result is the regular triangulation with the weights of the
-    report. The quality is the smallest sine of the dihedral angles, where obtuse ones count
-    twice, so that large angles become smaller too.
+    There are three kinds of changes: removing an edge, with the best triangulation of the ring
+    around it (G. T. Klincsek 1980; J. R. Shewchuk 2002), with the 3-2, 4-4 and 2-2 flips as special
+    cases; the inverse, removing the faces between two vertices, as in the 2-3 flip; and moving a
+    vertex to the position where the worst tetrahedron around it is best (L. A. Freitag and C.
+    Ollivier-Gooch 1997). Exudation (S.-W. Cheng et al. 2000) lets the star of a vertex grow with
+    its weight, up to a fifth of the squared distance to the nearest vertex; on a Delaunay
+    triangulation, and without the other kinds of changes, the result is the regular triangulation
+    with the weights of the report. The quality is the smallest sine of the dihedral angles, doubled
+    for obtuse angles, so that large angles become smaller too.
 
-    Each change raises the worst quality of the tetrahedra that it touches, and does not lower the
-    smallest angle among them; this is proven by bounds of the rounding errors, and new tetrahedra
-    are positively oriented by the exact predicate. So the smallest dihedral angle of a mesh never
-    becomes smaller, and the work ends: no state comes back. Vertices on the boundary stay, also
-    those inside its sides.
+    Each change raises the worst quality of the tetrahedra that it affects, and does not lower the
+    smallest angle among them; bounds on rounding errors prove this, and new tetrahedra are
+    positively oriented by the exact predicate. So the smallest dihedral angle of a mesh never
+    becomes smaller, and the iteration terminates: no state repeats. Boundary vertices stay,
+    including those inside its sides.
 
-    The result does not hang on the order of rows, and the work is done on one thread. Where the
-    goal is reached time is some 10 microseconds a tetrahedron, and up to ten times that where
-    points crowd against large triangles of the boundary. Memory is linear.
+    The result is independent of the order of rows. One thread is used. If the goal is reached, the
+    time is about 10 microseconds per tetrahedron, and up to ten times that if points are dense next
+    to large boundary triangles. Memory is linear.
 
-    Neighbours are made anew. That tetrahedra overlap is found out only where it shows at one
-    vertex.
+    Neighbors are recomputed. Overlaps are detected only among the tetrahedra around a vertex.
 
     Examples
     --------
-    Six points of which four make a sliver, nearly a square:
+    Six points, four of which form a sliver, nearly a square:
 
     >>> import delone
     >>> points = [(0, 0, 0), (1, 0, 0.01), (1, 1, 0), (0, 1, 0.01), (0.5, 0.5, 1), (0.5, 0.5, -1)]
@@ -149,13 +149,15 @@ def improve(
         as_flag(smooth, name="smooth"),
         as_flag(exude, name="exude"),
     )
-    turn = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
-    # More than the core counts are as many as it likes.
+    flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
+    # The core counts passes in 32 bits; more than that means no limit.
     passes = min(as_count(max_iter, name="max_iter"), _INDEX_MAX)
     if progress is not None and not callable(progress):
         raise DtypeError(f"progress must be callable, got {progress!r}")
     try:
-        made = _core.improve3(points, simplices, labels, held, goal, *kinds, turn, passes, progress)
+        made = _core.improve3(
+            points, simplices, labels, held, goal, *kinds, flips_boundary, passes, progress
+        )
     except ShapeError as error:
         raise InputError(*error.args) from None
     before = quality.measured(points, simplices)
@@ -174,22 +176,22 @@ def improve(
 
 
 def _given(mesh: Any) -> tuple[Floats, Indices, Indices | None]:
-    """Points, tetrahedra and regions."""
+    """Return points, tetrahedra and regions."""
     if isinstance(mesh, tuple | list):
         if len(mesh) != 2:
-            raise ShapeError(f"mesh must be (points, simplices), got {len(mesh)} things")
+            raise ShapeError(f"mesh must be (points, simplices), got {len(mesh)} items")
         points = as_points(mesh[0], ndim=3)
         simplices = as_simplices(mesh[1], len(points), 3)
     else:
         corners = np.shape(getattr(mesh, "simplices", ()))[1:]
         if getattr(mesh, "ndim", None) != 3 or corners != (4,):
             raise DtypeError(
-                "mesh must be a Delaunay of points in space, a TetMesh, or (points, simplices), "
+                "mesh must be a 3-D Delaunay, a TetMesh, or (points, simplices), "
                 f"got {type(mesh).__name__}"
             )
         points, simplices = mesh.points, mesh.simplices
     if not len(simplices):
-        raise InputError("there are no tetrahedra")
+        raise InputError("mesh has no tetrahedra")
     require_finite(points)
     _require_positive(points, simplices)
     return points, simplices, mesh.region if isinstance(mesh, TetMesh) else None
@@ -211,11 +213,11 @@ def _labels(region: ArrayLike | None, own: Indices | None, count: int) -> Indice
         return np.empty(0, dtype=np.int32) if own is None else own
     array = as_plain_array(region, "region")
     if array.dtype.kind not in "iu":
-        raise DtypeError(f"region must be integers, got {array.dtype}")
+        raise DtypeError(f"region must be integers, got dtype {array.dtype}")
     if array.shape != (count,):
         raise ShapeError(f"region must have shape ({count},), got {array.shape}")
     if array.size and (array.min() < -_INDEX_MAX or array.max() > _INDEX_MAX):
-        raise InputError("region must have numbers of 32 bits")
+        raise InputError("region must be 32-bit integers")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
@@ -231,9 +233,9 @@ def _mask(fixed: ArrayLike | None, count: int) -> Bools:
     if array.shape == (0,):
         return held
     if array.dtype.kind not in "iu":
-        raise DtypeError(f"fixed must be booleans or rows, got {array.dtype}")
+        raise DtypeError(f"fixed must be a mask or rows of points, got dtype {array.dtype}")
     if array.ndim != 1:
-        raise ShapeError(f"fixed must have one axis, got shape {array.shape}")
+        raise ShapeError(f"fixed must be 1-D, got shape {array.shape}")
     if array.min() < 0 or array.max() >= count:
         raise InputError(f"fixed must be rows of points, from 0 to {count - 1}")
     held[array] = True
@@ -242,6 +244,6 @@ def _mask(fixed: ArrayLike | None, count: int) -> Bools:
 
 def _angle(value: float) -> float:
     goal = as_number(value, name="min_angle")
-    if not 0 <= goal <= _MOST:
-        raise InputError(f"min_angle must be from 0 to {_MOST}, got {value!r}")
+    if not 0 <= goal <= _LARGEST_GOAL:
+        raise InputError(f"min_angle must be from 0 to {_LARGEST_GOAL}, got {value!r}")
     return goal

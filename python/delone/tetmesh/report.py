@@ -1,4 +1,4 @@
-"""What an improvement did: changes by kind, angles before and after, and what is left and why."""
+"""The report of an improvement: changes by kind, angles before and after, and what is left."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["CAUSES", "COUNTS", "ImproveReport", "report"]
 
 CAUSES = ("angle", "boundary", "budget", "other")
 _ANGLE, _BOUNDARY, _BUDGET, _OTHER = range(4)
-# The fields of a report that count.
+# The fields of a report that are counts.
 COUNTS = (
     "edge_removals",
     "boundary_flips",
@@ -41,7 +41,7 @@ _BAR = 40
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ImproveReport(ReadOnly):
-    """What an improvement did; truthy when no dihedral angle is below the goal.
+    """The result of an improvement; truthy if no dihedral angle is below the goal.
 
     Parameters
     ----------
@@ -50,34 +50,34 @@ class ImproveReport(ReadOnly):
     smallest_before, smallest_after, largest_before, largest_after : float
         The smallest and the largest dihedral angle, in degrees.
     bounds : ndarray of float64, shape (k + 1,)
-        Bounds of classes of smallest dihedral angles, in degrees.
+        Bin edges of the histograms of smallest dihedral angles, in degrees.
     before, after : ndarray of int64, shape (k,)
-        How many tetrahedra there were and are in each class.
+        Number of tetrahedra in each bin, before and after.
     edge_removals, boundary_flips, face_removals, moves : int
-        How often an edge inside was removed (3-2, 4-4 and so on), an edge of the boundary (2-2 and
-        so on), faces between two vertices (2-3 and so on), and how often a vertex was moved.
+        Numbers of removals of interior edges (3-2, 4-4 and so on), of boundary edges (2-2 and so
+        on), of the faces between two vertices (2-3 and so on), and of moves of vertices.
     exudations : int
-        How many vertices were given a weight.
+        Number of vertices that got a weight.
     weights : ndarray of float64, shape (n,)
-        These weights, in the square of the unit of the points, and nought elsewhere.
+        These weights, in the square of the unit of the points; 0 for other points.
     refused : int
-        How many changes were refused although the worst quality would have risen: a smallest angle
-        would have fallen, or rounding did not allow to tell.
+        Number of changes that would have raised the worst quality but were rejected: a smallest
+        angle would have become smaller, or rounding left it undecided.
     passes : int
-        How many passes there were.
+        Number of passes.
     exhausted : bool
-        Whether the limit on passes ended the work while it still gained.
+        Whether the limit on passes was reached while passes still made progress.
     below : ndarray of int64, shape (j,)
-        The tetrahedra that are below the goal, ascending.
+        The tetrahedra below the goal, ascending.
     cause : ndarray of str, shape (j,)
-        For each of these ``"angle"`` (the boundary has this angle there), ``"boundary"`` (all four
+        For each of these, ``"angle"`` (the boundary has this angle), ``"boundary"`` (all four
         vertices are on the boundary, or fixed), ``"budget"`` (the limit on passes) or ``"other"``
-        (no single removal or move is better).
+        (no single removal or move is an improvement).
 
     Attributes
     ----------
     ok : bool
-        True when no tetrahedron is below the goal.
+        True if no tetrahedron is below the goal.
 
     Examples
     --------
@@ -110,7 +110,7 @@ class ImproveReport(ReadOnly):
 
     @property
     def ok(self) -> bool:
-        """True when no tetrahedron is below the goal."""
+        """True if no tetrahedron is below the goal."""
         return not len(self.below)
 
     def __bool__(self) -> bool:
@@ -122,10 +122,10 @@ class ImproveReport(ReadOnly):
             f"before, {self.smallest_after:.4g} to {self.largest_after:.4g} after",
             f"{counted(self.edge_removals + self.boundary_flips, 'edge')} and "
             f"{counted(self.face_removals, 'set')} of faces removed, "
-            f"{counted(self.moves, 'move')} of vertices in {counted(self.passes, 'pass')}",
+            f"{counted(self.moves, 'vertex move')} in {counted(self.passes, 'pass')}",
         ]
         if self.exudations:
-            lines.append(f"{counted(self.exudations, 'weight')} given to vertices")
+            lines.append(f"{counted(self.exudations, 'weight')} assigned to vertices")
         lines += self._histogram()
         for cause, what in _SENTENCES.items():
             rows = self.below[self.cause == cause]
@@ -135,21 +135,21 @@ class ImproveReport(ReadOnly):
                 noun = counted(len(rows), "tetrahedron")
                 lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}{more}")
         if self.exhausted:
-            lines.append("the limit on passes ended the work")
+            lines.append("stopped at the limit on passes")
         return "\n".join(lines)
 
     def _histogram(self) -> list[str]:
-        most = max(int(self.before.max(initial=0)), int(self.after.max(initial=0)), 1)
+        largest = max(int(self.before.max(initial=0)), int(self.after.max(initial=0)), 1)
         lines = ["smallest dihedral angle    before     after"]
-        for low, high, was, now in zip(
+        for low, high, before, after in zip(
             self.bounds[:-1], self.bounds[1:], self.before, self.after, strict=True
         ):
-            bar = "#" * int(np.ceil(_BAR * now / most))
-            lines.append(f"{low:10.4g} to {high:<10.4g}{was:>10}{now:>10}  {bar}".rstrip())
+            bar = "#" * int(np.ceil(_BAR * after / largest))
+            lines.append(f"{low:10.4g} to {high:<10.4g}{before:>10}{after:>10}  {bar}".rstrip())
         return lines
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the histograms of the smallest dihedral angles (extra ``plot``).
+        """Draw histograms of the smallest dihedral angles (extra ``plot``).
 
         Parameters
         ----------
@@ -159,7 +159,7 @@ class ImproveReport(ReadOnly):
         Returns
         -------
         matplotlib Axes
-            What was drawn on.
+            The axes.
 
         Raises
         ------
@@ -181,41 +181,41 @@ class ImproveReport(ReadOnly):
 
 
 _SENTENCES = {
-    "angle": "by the angle of the boundary there",
-    "boundary": "with all vertices on the boundary",
-    "budget": "for want of passes",
-    "other": "that no single change makes better",
+    "angle": "because of the angle of the boundary",
+    "boundary": "with all vertices fixed or on the boundary",
+    "budget": "because of the limit on passes",
+    "other": "that no single change improves",
 }
 
 
 def report(
     before: quality.TetQuality, made: ImprovedMesh, fixed: NDArray[np.bool_], min_angle: float
 ) -> tuple[ImproveReport, quality.TetQuality]:
-    """Judge improved tetrahedra.
+    """Create the report of an improvement.
 
     Parameters
     ----------
     before : TetQuality
-        The measures of what there was.
+        The measures of the input.
     made : ImprovedMesh
-        What the core has made of it.
+        The result of the core.
     fixed : ndarray of bool, shape (n,)
-        Points that may not move.
+        Points that must not move.
     min_angle : float
         The goal in degrees.
 
     Returns
     -------
     report : ImproveReport
-        The judgement.
+        The report.
     after : TetQuality
-        The measures now.
+        The measures of the result.
     """
     points, simplices, counts = made.points, made.simplices, made.counts
     exhausted = made.exhausted
     after = quality.measured(points, simplices)
-    was, bounds = before.histogram()
-    now, _ = after.histogram()
+    histogram_before, bounds = before.histogram()
+    histogram_after, _ = after.histogram()
     below = np.flatnonzero(after.smallest_dihedral < min_angle)
     walls = _walls(made.neighbors, made.labels)
     cause = np.full(len(below), _BUDGET if exhausted else _OTHER)
@@ -229,8 +229,8 @@ def report(
         largest_before=float(before.largest_dihedral.max(initial=0.0)),
         largest_after=float(after.largest_dihedral.max(initial=0.0)),
         bounds=bounds,
-        before=was,
-        after=now,
+        before=histogram_before,
+        after=histogram_after,
         edge_removals=counts.edges - counts.boundary,
         boundary_flips=counts.boundary,
         face_removals=counts.faces,
@@ -247,10 +247,10 @@ def report(
 
 
 def _walls(neighbors: Indices, region: Indices) -> NDArray[np.bool_]:
-    """Tell of each face whether nothing is behind it, or another region."""
+    """Return which faces are on the boundary or between two regions."""
     outside = neighbors < 0
-    other: NDArray[np.bool_] = region[neighbors] != region[:, None]
-    return outside | other
+    between: NDArray[np.bool_] = region[neighbors] != region[:, None]
+    return outside | between
 
 
 def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDArray[np.bool_]:
@@ -263,7 +263,7 @@ def _on_walls(simplices: Indices, walls: NDArray[np.bool_], npoints: int) -> NDA
 def _forced(
     points: Floats, simplices: Indices, walls: NDArray[np.bool_], min_angle: float
 ) -> NDArray[np.bool_]:
-    """Tell which tetrahedra have a small dihedral angle between two walls."""
+    """Return which tetrahedra have a small dihedral angle between two walls."""
     angles = quality.dihedral_angles(points, simplices)
     forced = np.zeros(len(simplices), dtype=bool)
     for e, (i, j) in enumerate(EDGES):

@@ -27,18 +27,18 @@ _HISTOGRAMS = ("bounds", "before", "after", "weights", "below")
 
 
 class TetMeshReport(SpaceReport):
-    """The result of ``TetMesh.validate()``: truthy if the mesh is right."""
+    """The result of ``TetMesh.validate()``: truthy if the mesh is correct."""
 
     _SUBJECT: ClassVar[str] = "a mesh of tetrahedra"
 
 
 class TetMesh(Triangulation):
-    """A mesh of tetrahedra, as `delone.improve` makes it.
+    """A tetrahedral mesh, created by `delone.improve`.
 
     Attributes
     ----------
     points : ndarray of float64, shape (n, 3)
-        The coordinates, row for row those that were given, some of them moved.
+        The input points, row by row, some of them moved.
     simplices : ndarray of int32, shape (m, 4)
         The tetrahedra as rows of `points`, positively oriented.
     neighbors : ndarray of int32, shape (m, 4)
@@ -47,12 +47,12 @@ class TetMesh(Triangulation):
     region : ndarray of int32, shape (m,)
         The region of each tetrahedron.
     report : ImproveReport
-        What was changed, angles before and after, and what is left.
+        Changes by kind, angles before and after, and tetrahedra below the goal.
 
     Notes
     -----
     All arrays are read-only, and attributes cannot be set. The order of tetrahedra depends on
-    coordinates alone.
+    coordinates only.
 
     Examples
     --------
@@ -73,7 +73,7 @@ class TetMesh(Triangulation):
     _report: ImproveReport
 
     def __init__(self, *given: Any, **options: Any) -> None:
-        raise DtypeError("a TetMesh is made by delone.improve(mesh), not by its class")
+        raise DtypeError("create a TetMesh with delone.improve(mesh), not with its class")
 
     @classmethod
     def _of(
@@ -110,27 +110,27 @@ class TetMesh(Triangulation):
 
     @property
     def region(self) -> Indices:
-        """The region of each tetrahedron, (m,); 0 where none were given."""
+        """The region of each tetrahedron, (m,); 0 if no regions were given."""
         return self._region
 
     @property
     def report(self) -> ImproveReport:
-        """What was changed, angles before and after, and what is left."""
+        """Changes by kind, angles before and after, and tetrahedra below the goal."""
         return self._report
 
     def validate(self) -> SpaceReport:
-        """Prove that the tetrahedra fit each other, or name what is wrong.
+        """Prove that the tetrahedra fit each other, or list the faults.
 
         Returns
         -------
         SpaceReport
-            Truthy if all is right: tetrahedra are positively oriented, and no oriented face is used
-            twice, so that two tetrahedra with a common face lie on its two sides, and neighbors
-            are mutual. Its other fields are empty: the tetrahedra need not be Delaunay.
+            Truthy if there are no faults: tetrahedra are positively oriented, no oriented face is
+            used twice, so that two tetrahedra with a common face lie on its two sides, and
+            neighbors are mutual. Its other fields are empty: the tetrahedra need not be Delaunay.
 
         Notes
         -----
-        Exact and linear. Parts of a mesh that overlap without a common face are not found.
+        Exact and linear. Overlaps between parts of a mesh without a common face are not detected.
 
         Examples
         --------
@@ -150,14 +150,14 @@ class TetMesh(Triangulation):
         Parameters
         ----------
         ax : pyvista.Plotter, optional
-            Where to draw; by default on a new one.
+            Where to draw; by default a new plotter.
         **options
             As for `delone.plot.plot`; ``below`` is by default the goal of the report.
 
         Returns
         -------
         pyvista.Plotter
-            Where it is drawn; ``show()`` shows it.
+            The plotter; ``show()`` displays it.
 
         Raises
         ------
