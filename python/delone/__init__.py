@@ -18,11 +18,6 @@ from typing import TYPE_CHECKING, Any
 
 from delone import predicates
 from delone._core import __version__
-from delone.constrained.delaunay import ConstrainedDelaunay
-from delone.constrained.editing import Editing
-from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
-from delone.constrained.segments import SegmentReport
-from delone.constrained.validation import ConstrainedReport
 from delone.delaunay import Delaunay
 from delone.errors import (
     BudgetExceededError,
@@ -41,21 +36,10 @@ from delone.errors import (
     OutputError,
     ShapeError,
 )
-from delone.flips import LawsonResult, lawson
 from delone.georeference import CRSWarning, GeographicWarning
-from delone.hull import ConvexHull
-from delone.periodic import PeriodicDelaunay
 from delone.plane.quality import Quality
-from delone.refine.meshed import Mesh
-from delone.refine.refine import mesh
-from delone.refine.report import MeshReport
-from delone.regular import RegularTriangulation
 from delone.space.quality import TetQuality
-from delone.tetmesh import improve
-from delone.tetmesh.report import ImproveReport
-from delone.tetmesh.tetmesh import TetMesh
 from delone.validation import ValidationReport
-from delone.voronoi import LloydResult, Voronoi, lloyd
 
 if TYPE_CHECKING:
     from delone import (
@@ -68,6 +52,23 @@ if TYPE_CHECKING:
         reference,
         testing,
     )
+    from delone.constrained.delaunay import ConstrainedDelaunay
+    from delone.constrained.editing import Editing
+    from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
+    from delone.constrained.segments import SegmentReport
+    from delone.constrained.validation import ConstrainedReport
+    from delone.flips import LawsonResult, lawson
+    from delone.hull import ConvexHull
+    from delone.periodic import PeriodicDelaunay
+    from delone.refine.meshed import Mesh
+    from delone.refine.refine import mesh
+    from delone.refine.report import MeshReport
+    from delone.regular import RegularTriangulation
+    from delone.tetmesh.improvement import improve
+    from delone.tetmesh.report import ImproveReport
+    from delone.tetmesh.tetmesh import TetMesh
+    from delone.voronoi.centroidal import LloydResult, lloyd
+    from delone.voronoi.diagram import Voronoi
 
 __all__ = [
     "BudgetExceededError",
@@ -124,26 +125,61 @@ __all__ = [
     "triangulate_polygon",
 ]
 
-# Modules that not every program needs; they are imported on first access.
-_LAZY = frozenset(
-    {
-        "compat",
-        "datasets",
-        "distributed",
-        "interpolate",
-        "io",
-        "plot",
-        "reference",
-        "testing",
-    }
-)
+# What not every program needs is imported on first access, which keeps `import delone` short:
+# modules, and classes and functions by their modules.
+_MODULES = {
+    "compat",
+    "constrained",
+    "datasets",
+    "distributed",
+    "exchange",
+    "flips",
+    "hull",
+    "interpolate",
+    "io",
+    "periodic",
+    "plot",
+    "reference",
+    "refine",
+    "regular",
+    "testing",
+    "tetmesh",
+    "voronoi",
+}
+_HOMES = {
+    "ConstrainedDelaunay": "constrained.delaunay",
+    "ConstrainedReport": "constrained.validation",
+    "ConvexHull": "hull",
+    "Editing": "constrained.editing",
+    "ImproveReport": "tetmesh.report",
+    "LawsonResult": "flips",
+    "LloydResult": "voronoi.centroidal",
+    "Mesh": "refine.meshed",
+    "MeshReport": "refine.report",
+    "PeriodicDelaunay": "periodic",
+    "PolygonTriangles": "constrained.polygons",
+    "RegularTriangulation": "regular",
+    "SegmentReport": "constrained.segments",
+    "TetMesh": "tetmesh.tetmesh",
+    "Voronoi": "voronoi.diagram",
+    "from_geometry": "constrained.polygons",
+    "improve": "tetmesh.improvement",
+    "lawson": "flips",
+    "lloyd": "voronoi.centroidal",
+    "mesh": "refine.refine",
+    "triangulate_polygon": "constrained.polygons",
+}
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LAZY:
+    if name in _HOMES:
+        found = getattr(importlib.import_module(f"delone.{_HOMES[name]}"), name)
+        globals()[name] = found
+        return found
+    if name in _MODULES:
         return importlib.import_module(f"delone.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LAZY})
+    return sorted({*globals(), *_MODULES, *_HOMES})
