@@ -16,8 +16,14 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+try:
+    from delone._core import __version__
+except ImportError as error:
+    raise ImportError(
+        f"the compiled module of delone cannot be loaded ({error}). Install delone for this Python "
+        "and platform with pip; it cannot be imported from a zip archive"
+    ) from error
 from delone import predicates
-from delone._core import __version__
 from delone.delaunay import Delaunay
 from delone.errors import (
     BudgetExceededError,
