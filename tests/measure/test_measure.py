@@ -15,6 +15,8 @@ from delone.plane.quality import below, squared_cosine
 from rational import area, cross, dot, exact, minus, ulps
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 SCALES = [1.0, 3.0, 2.0**-1000, 2.0**-350, 2.0**-41, 2.0**61, 2.0**340, 2.0**1000]
@@ -159,6 +161,11 @@ def test_below_at_the_bound() -> None:
     assert below(*flat(np.ascontiguousarray(at)), 45).tolist() == [0]
 
 
+def _columns(measure: Callable[..., list[NDArray[np.float64]]]) -> Callable[..., Any]:
+    """Measures that come in columns, as the columns of one table."""
+    return lambda *arguments: np.column_stack(measure(*arguments))
+
+
 @pytest.mark.parametrize("workers", [1, 2, 5])
 def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
     # More than one task of every function, and of the buckets of edges.
@@ -169,7 +176,7 @@ def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
     for measure in (
         _core.areas2,
         _core.circumcenters2,
-        _core.qualities2,
+        _columns(_core.qualities2),
         _core.transforms2,
     ):
         whole = measure(plane.points, plane.simplices, workers)
@@ -179,7 +186,7 @@ def test_many_simplices_are_measured_row_by_row(workers: int) -> None:
     for measure in (
         _core.volumes3,
         _core.circumcenters3,
-        _core.qualities3,
+        _columns(_core.qualities3),
         _core.transforms3,
         _core.dihedral_angles3,
     ):

@@ -81,12 +81,12 @@ pub fn around(
 }
 
 /// Calls a measure of the core on simplices.
-fn measured<T: Send, const D: usize, const N: usize>(
+fn measured<R: Send, const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
     simplices: &PyReadonlyArray2<'_, i32>,
-    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<Vec<T>> + Send,
-) -> PyResult<Vec<T>> {
+    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R> + Send,
+) -> PyResult<R> {
     let (points, simplices) = attached(py, || {
         let points: &[[f64; D]] = rows(points, "points")?;
         Ok((points, simplices_of(simplices, points.len())?))
@@ -185,11 +185,11 @@ pub fn qualities2(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> PyResult<Vec<Column<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities2(points, simplices, workers, watch)
     })?;
-    table(py, found)
+    Ok(found.into_iter().map(|values| column(py, values)).collect())
 }
 
 /// Smallest and largest dihedral angle, volume, ratio of radii and of edges of tetrahedra.
@@ -199,11 +199,11 @@ pub fn qualities3(
     points: PyReadonlyArray2<'_, f64>,
     simplices: PyReadonlyArray2<'_, i32>,
     workers: usize,
-) -> PyResult<Table<f64>> {
+) -> PyResult<Vec<Column<f64>>> {
     let found = measured(py, &points, &simplices, |points, simplices, watch| {
         measure::qualities3(points, simplices, workers, watch)
     })?;
-    table(py, found)
+    Ok(found.into_iter().map(|values| column(py, values)).collect())
 }
 
 /// The dihedral angles of tetrahedra at the edges 01, 02, 03, 12, 13 and 23.

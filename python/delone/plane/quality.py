@@ -118,9 +118,9 @@ def measured(points: Floats, simplices: Indices, workers: int | None = None) -> 
     Quality
         The measures.
     """
-    found = _core.qualities2(*as_mesh(points, simplices), as_workers(workers)).T
+    found = _core.qualities2(*as_mesh(points, simplices), as_workers(workers))
     return Quality(
-        **{each.name: row.copy() for each, row in zip(fields(Quality), found, strict=True)}
+        **{each.name: column for each, column in zip(fields(Quality), found, strict=True)}
     )
 
 

@@ -175,9 +175,9 @@ def measured(points: Floats, simplices: Indices, workers: int | None = None) -> 
     >>> quality.radius_ratio.round(12), quality.smallest_dihedral.round(2)
     (array([1.]), array([70.53]))
     """
-    found = _core.qualities3(*as_mesh(points, simplices), as_workers(workers)).T
+    found = _core.qualities3(*as_mesh(points, simplices), as_workers(workers))
     return TetQuality(
-        **{each.name: row.copy() for each, row in zip(fields(TetQuality), found, strict=True)}
+        **{each.name: column for each, column in zip(fields(TetQuality), found, strict=True)}
     )
 
 

@@ -37,3 +37,39 @@ pub fn each<R: Zero + Send, const D: usize, const N: usize>(
     done.into_iter().collect::<Result<()>>()?;
     Ok(found)
 }
+
+/// The same for several numbers for each simplex, each in a column of its own.
+pub fn columns<const C: usize, const D: usize, const N: usize>(
+    points: &[[f64; D]],
+    simplices: &[[i32; N]],
+    workers: usize,
+    watch: &Watch,
+    measure: impl Fn([[f64; D]; N]) -> [f64; C] + Sync,
+) -> Result<[Vec<f64>; C]> {
+    let mut found = [const { Vec::new() }; C];
+    for column in &mut found {
+        *column = zeroed(simplices.len())?;
+    }
+    let mut parts = found.each_mut().map(|column| column.chunks_mut(SHARE));
+    let tasks = simplices.chunks(SHARE).map(|simplices| {
+        let parts = parts.each_mut().map(|part| part.next().unwrap_or_default());
+        (parts, simplices)
+    });
+    let done = parallel::map(workers, tasks.collect(), |(mut parts, simplices)| {
+        watch.check()?;
+        let mut corners = [[[0.0; D]; N]; BATCH];
+        for (lot, simplices) in simplices.chunks(BATCH).enumerate() {
+            for (corners, simplex) in corners.iter_mut().zip(simplices) {
+                *corners = simplex.map(|v| points[v as usize]);
+            }
+            for (k, corners) in corners.iter().enumerate().take(simplices.len()) {
+                for (part, value) in parts.iter_mut().zip(measure(*corners)) {
+                    part[lot * BATCH + k] = value;
+                }
+            }
+        }
+        Ok(())
+    });
+    done.into_iter().collect::<Result<()>>()?;
+    Ok(found)
+}

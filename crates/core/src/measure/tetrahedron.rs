@@ -7,7 +7,7 @@
 
 use num_bigint::BigInt;
 
-use super::batch::each;
+use super::batch::{columns, each};
 use super::corners::{
     Corners, Integers, Measure, Number, Vectors, cross, determinant3, dot, in_units,
 };
@@ -26,9 +26,9 @@ pub fn qualities3(
     simplices: &[[i32; 4]],
     workers: usize,
     watch: &Watch,
-) -> Result<Vec<[f64; 5]>> {
+) -> Result<[Vec<f64>; 5]> {
     let quality = |corners| Corners::new(corners).measure(&Quality);
-    each(points, simplices, workers, watch, quality)
+    columns(points, simplices, workers, watch, quality)
 }
 
 /// The dihedral angles of tetrahedra in degrees, at the edges 01, 02, 03, 12, 13 and 23.

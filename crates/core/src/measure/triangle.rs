@@ -2,7 +2,7 @@
 
 use num_bigint::{BigInt, Sign};
 
-use super::batch::each;
+use super::batch::{columns, each};
 use super::corners::{Corners, Integers, Measure, Number, Vectors, determinant2, in_units};
 use crate::error::Result;
 use crate::watch::Watch;
@@ -18,9 +18,9 @@ pub fn qualities2(
     simplices: &[[i32; 3]],
     workers: usize,
     watch: &Watch,
-) -> Result<Vec<[f64; 5]>> {
+) -> Result<[Vec<f64>; 5]> {
     let quality = |corners| Corners::new(corners).measure(&Quality);
-    each(points, simplices, workers, watch, quality)
+    columns(points, simplices, workers, watch, quality)
 }
 
 struct Quality;
