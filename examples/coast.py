@@ -1,7 +1,7 @@
 """An island, its lake and a road as a mesh for finite elements: segments, holes, conforming.
 
 The coast is a fractal ring of some thousand segments, rough enough to cross itself. Its crossings
-are split, what lies outside and the lake are left out, and vertices are added until every segment
+are split, the outside and the lake are removed, and vertices are added until every segment
 is a Delaunay edge. Run it: ``python examples/coast.py``.
 """
 

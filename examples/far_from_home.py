@@ -1,6 +1,6 @@
 """Why exactness matters: a survey in map coordinates, triangulated by SciPy and by delone.
 
-A square kilometre in UTM coordinates, rounded to millimetres. Needs SciPy. Run it:
+A square kilometer in UTM coordinates, rounded to millimeters. Needs SciPy. Run it:
 ``python examples/far_from_home.py``.
 """
 

@@ -1,7 +1,7 @@
 """Heights between lidar points: linear interpolation on the Delaunay triangles.
 
 A regular raster over the lidar tile of the package; each raster point gets the height of the
-triangle that holds it. Run it: ``python examples/heights.py``.
+triangle that contains it. Run it: ``python examples/heights.py``.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from delone.interpolate import Linear
 
 
 def main() -> None:
-    """Interpolate a raster of half a metre and say what it looks like."""
+    """Interpolate a raster of half a meter and print a summary."""
     survey = ahn3()
     mesh = Delaunay(survey.points)
     low, high = survey.points.min(axis=0), survey.points.max(axis=0)

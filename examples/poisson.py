@@ -16,13 +16,13 @@ from skfem.models.poisson import laplace
 import delone
 
 COAST = Path(__file__).parent / "data" / "gotland.geojson"
-# Waves of the solution, in radians a kilometre.
+# Waves of the solution, in radians per kilometer.
 KX, KY = 0.05, 0.04
 SIZES = (2.0, 1.0, 0.5, 0.25)
 
 
 def outline() -> dict:
-    """Return the island in kilometres from its middle, on a cylinder that touches there."""
+    """Return the island in kilometers from its middle, on a cylinder that touches there."""
     ring = np.array(json.loads(COAST.read_text())["geometry"]["coordinates"][0])
     middle = ring.mean(axis=0)
     east, north = ((ring - middle) * 111.2 * (np.cos(np.radians(middle[1])), 1)).T

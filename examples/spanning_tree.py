@@ -1,6 +1,6 @@
 """The Euclidean minimum spanning tree of a million points: it lies in the Delaunay edges.
 
-Of all pairs of points only the Delaunay edges, fewer than three a point, have to be looked at.
+Of all pairs of points, only the Delaunay edges need to be considered: fewer than three per point.
 Needs SciPy. Run it: ``python examples/spanning_tree.py``.
 """
 

@@ -1,7 +1,7 @@
-"""A thousand time steps between stations: the geometry once, a product for each step.
+"""A thousand time steps between stations: weights computed once, a matrix product for each step.
 
-Water levels at scattered gauges are brought to a raster for every hour of six weeks, by natural
-neighbours. Run it: ``python examples/tides.py``.
+Water levels at scattered gauges are interpolated to a raster for every hour of six weeks, by
+natural neighbors. Run it: ``python examples/tides.py``.
 """
 
 import numpy as np

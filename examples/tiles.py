@@ -1,4 +1,4 @@
-"""More points than memory holds: a lidar tile cut into smaller ones, proved, and made a raster.
+"""More points than fit in memory: a lidar tile split into smaller ones, validated, and rasterized.
 
 The same lines work for a thousand files, and with a Dask client as ``executor``. It needs the extra
 ``dask``, and ``raster`` for the GeoTIFF. Run it: ``python examples/tiles.py``.

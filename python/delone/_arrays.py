@@ -269,7 +269,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
     >>> as_segments([(0, 1), (1, 3), (2, -1)], 3)
     Traceback (most recent call last):
     ...
-    delone.errors.InputError: segments: 2 of 3 rows have indices outside 0 to 2; first: 1, 2
+    delone.errors.InputError: segments: 2 of 3 rows have indices outside 0 to 2; first: rows 1, 2
     """
     array = as_plain_array(segments, name)
     if array.shape in ((0,), (0, 2)):
@@ -284,7 +284,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
         raise InputError(
             f"{name}: {len(rows)} of {counted(len(array), 'row')} "
             f"{agreed(len(rows), 'has', 'have')} indices outside 0 to {npoints - 1}; "
-            f"first: {first}"
+            f"first: {agreed(min(len(rows), 10), 'row', 'rows')} {first}"
         )
     return np.require(array, dtype=np.int32, requirements=["C", "A"])
 
@@ -688,6 +688,8 @@ def _refuse_kind(array: NDArray[Any], name: str) -> None:
         return
     what = _REFUSED_KINDS.get(kind, f"dtype {array.dtype}")
     hint = "convert them to numbers that float64 can represent exactly"
+    if kind == "U" and not array.ndim:
+        hint = "read a file with delone.io.read_points(path)"
     if kind == "V" and array.dtype.names:
         hint = "for example np.column_stack((a['x'], a['y']))"
     elif kind == "c":

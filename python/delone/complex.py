@@ -39,7 +39,7 @@ class Stored(Immutable):
 
     @property
     def workers(self) -> int | None:
-        """How many threads may work; None for one per core. Results do not depend on it."""
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
         return self._workers
 
     def _saved(self) -> dict[str, NDArray[Any]]:

@@ -37,6 +37,8 @@ _INSTEAD = {
     "qhull_options": "leave it out, or use delone.compat.scipy.Delaunay",
     "periodic": "use delone.PeriodicDelaunay(points, periods)",
     "periods": "use delone.PeriodicDelaunay(points, periods)",
+    "segments": "use delone.ConstrainedDelaunay(points, segments)",
+    "weights": "use delone.RegularTriangulation(points, weights)",
 }
 # Fewer points are never shared among threads.
 _FEW = 1000
@@ -48,6 +50,8 @@ class _Elsewhere(TypedDict, total=False):
     qhull_options: Never
     periodic: Never
     periods: Never
+    segments: Never
+    weights: Never
 
 
 class Delaunay(PointTriangulation):
@@ -57,19 +61,19 @@ class Delaunay(PointTriangulation):
     ----------
     points : array_like, shape (n, 2) or (n, 3), or PointSet
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
-        copied, and results are exact for them. Three columns are 3-D points: of a surface with
-        heights, give the first two.
+        copied, and results are exact for them. Three columns are 3-D points: for a surface with
+        heights, pass only the first two columns.
     method : str, optional
-        How to compute it: ``"auto"`` (what is fastest), ``"bowyer-watson"`` (cavities, along a
-        space-filling curve), ``"divide-and-conquer"`` (halves, merged), ``"incremental"``
+        The algorithm: ``"auto"`` (the fastest, the default), ``"bowyer-watson"`` (cavity insertion
+        along a space-filling curve), ``"divide-and-conquer"`` (merging halves), ``"incremental"``
         (randomized insertion and flips), ``"sweep"`` (a sweep line) or ``"lifting"`` (the convex
-        hull of points lifted to a paraboloid). The triangles are the same. In 3-D the choices are
-        ``"auto"`` and ``"bowyer-watson"``.
+        hull of the points lifted to a paraboloid). The triangles do not depend on it. In 3-D the
+        choices are ``"auto"`` and ``"bowyer-watson"``.
     workers : int, optional
-        How many threads may work; by default one per core. Results do not depend on it.
+        Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
-        Treat longitudes and latitudes as coordinates of a plane, without a warning. Points are
-        known to be in degrees by a reference system or by names of columns.
+        Treat longitudes and latitudes as coordinates of a plane; otherwise points known to be in
+        degrees (from a reference system or column names) cause a warning.
 
     Attributes
     ----------
@@ -87,7 +91,7 @@ class Delaunay(PointTriangulation):
     npoints, nsimplex : int
         Numbers of points (rows, duplicates included) and of simplices.
     min_bound, max_bound : ndarray of float64, shape (d,)
-        The least and the greatest coordinates.
+        The smallest and the largest coordinate along each axis.
 
     Raises
     ------
@@ -95,7 +99,7 @@ class Delaunay(PointTriangulation):
         Fewer than d + 1 points are distinct, or all lie on one line; ``error.chain`` has them in
         order. Or 3-D points all lie in one plane; ``error.plane`` is its triangulation.
     NonFiniteError
-        A coordinate is NaN or infinite; ``error.rows`` tells where.
+        A coordinate is NaN or infinite; ``error.rows`` has the first such rows.
     ShapeError, DtypeError
         `points` is not a real array of shape (n, 2) or (n, 3).
     InputError
@@ -111,16 +115,16 @@ class Delaunay(PointTriangulation):
     Warns
     -----
     GeographicWarning
-        The points say that they are longitudes and latitudes; see `planar`.
+        The points are known to be longitudes and latitudes; see `planar`.
 
     Notes
     -----
     The result is exact for the given doubles, whatever their range. Each distinct point is a
-    vertex, those in the middle of a side of the convex hull included; of rows with the same
-    coordinates (-0.0 and 0.0 are the same) the first is the vertex. Where more than three points
-    lie on one empty circle, their polygon is fanned from its lexicographically smallest vertex, so
-    that a set of points has one triangulation, independent of the order of its rows. In 3-D the
-    same perturbation decides about points on one sphere, and no tetrahedron is flat.
+    vertex, including those in the middle of a side of the convex hull; of rows with the same
+    coordinates (-0.0 and 0.0 are the same) the first is the vertex. If more than three points lie
+    on one empty circle, their polygon is fanned from its lexicographically smallest vertex, so a
+    set of points has one triangulation, independent of the order of its rows. In 3-D, points on
+    one sphere are decided by the same perturbation, and no tetrahedron is flat.
 
     Names, dtypes and meanings are those of ``scipy.spatial.Delaunay``. All arrays are read-only,
     attributes cannot be set, and ``copy.copy`` and ``copy.deepcopy`` return the object itself.
@@ -128,8 +132,8 @@ class Delaunay(PointTriangulation):
 
     Time is O(n log n) with a small constant, most of it linear. ``"auto"`` picks cavity insertion
     along a Hilbert curve, in blocks of a k-d tree that are merged: on scattered points it was the
-    fastest method measured. Blocks of lattices go to divide and conquer, which is faster there, and
-    so does a block whose triangles are so thin that insertion exceeds its budget of work, as on two
+    fastest method measured. Blocks of lattices use divide and conquer, which is faster there, and
+    so do blocks whose triangles are so thin that insertion exceeds its budget of work, as on two
     lines that nearly coincide.
 
     ========================  =========================================  =======================
@@ -145,7 +149,7 @@ class Delaunay(PointTriangulation):
                                                                          degrees are high
     ========================  =========================================  =======================
 
-    The first two work with all `workers`; the others find their triangles on one thread.
+    The first two use all `workers`; the others find the triangles on one thread.
 
     Examples
     --------
@@ -207,14 +211,14 @@ class Delaunay(PointTriangulation):
         return self._locator, None
 
     def validate(self) -> ValidationReport:
-        """Prove that this is the canonical Delaunay triangulation, or name what is wrong.
+        """Prove that this is the canonical Delaunay triangulation, or list the faults.
 
         Returns
         -------
         ValidationReport
-            Truthy if all is right: simplices are positively oriented and tile the exact hull,
-            neighbors are mutual, each distinct point is a vertex, each edge or face is locally
-            Delaunay, and ties are broken canonically.
+            Truthy if there are no faults: simplices are positively oriented and tile the exact
+            hull, neighbors are mutual, each distinct point is a vertex, each edge or face is
+            locally Delaunay, and ties are broken canonically.
 
         Notes
         -----
@@ -240,10 +244,10 @@ class Delaunay(PointTriangulation):
 
 
 def _refuse_options(unknown: Mapping[str, Any]) -> None:
-    """Refuse unknown arguments, and say which class takes those of SciPy."""
+    """Reject unknown arguments; for those of SciPy and of other classes, name the class."""
     for name in unknown:
         if name in _INSTEAD:
-            raise DtypeError(f"delone.Delaunay does not take {name}: {_INSTEAD[name]}")
+            raise DtypeError(f"delone.Delaunay does not accept {name}: {_INSTEAD[name]}")
         raise TypeError(f"Delaunay() got an unexpected keyword argument {name!r}")
 
 

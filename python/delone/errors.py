@@ -52,7 +52,7 @@ class DeloneError(Exception):
     ...     delone.Delaunay([(0, 0), (1, 1)])
     ... except delone.DeloneError as error:
     ...     print(error)
-    2 distinct points are too few for a triangle: three that are not in line are needed
+    2 distinct points are too few for a triangle: at least three that are not collinear are needed
     """
 
     def __setstate__(self, state: dict[str, Any] | None) -> None:
@@ -141,7 +141,7 @@ class NonFiniteError(InputError):
 
     def __init__(
         self,
-        message: str = "points hold NaN or infinity",
+        message: str = "points contain NaN or infinity",
         *,
         rows: Iterable[int] | NDArray[np.integer] = (),
         count: int | None = None,

@@ -72,8 +72,8 @@ class ConvexHull(Complex):
         Finite coordinates, in any unit: floats of up to 64 bits, integers up to 2**53. They are
         copied, and results are exact for them.
     workers : int, optional
-        How many threads may work on measures; by default one per core. The hull itself is made on
-        one thread.
+        Maximum number of threads for measures; by default one per core. The hull itself uses one
+        thread.
 
     Attributes
     ----------
@@ -86,11 +86,11 @@ class ConvexHull(Complex):
     neighbors : ndarray of int32, shape (h, d)
         ``neighbors[i, k]`` is the simplex that shares all vertices of simplex i but vertex k.
     vertices : ndarray of int32, shape (v,)
-        The extreme points: in 2-D counter-clockwise from the lexicographically smallest on,
-        ascending in 3-D.
+        The extreme points: in 2-D counter-clockwise, starting with the lexicographically smallest;
+        in 3-D ascending.
     facets : tuple of ndarray of int32
         The sides of the hull: in 2-D its edges, in 3-D polygons of their extreme points,
-        counter-clockwise as seen from outside, from the lexicographically smallest on.
+        counter-clockwise as seen from outside, starting with the lexicographically smallest.
     facet_of : ndarray of int32, shape (h,)
         The facet of each simplex.
 
@@ -115,12 +115,12 @@ class ConvexHull(Complex):
     -----
     The result is exact. A vertex is an extreme point, so points in the middle of an edge or a facet
     are not vertices; of rows with the same coordinates the first is the vertex. A facet with more
-    than three vertices is triangulated by the Delaunay rule in its plane, and ties by coordinates,
-    so that a set of points has one hull, in one order of its arrays, independent of the order of
-    its rows; it is the boundary of ``Delaunay(points[hull.vertices])``.
+    than three vertices is triangulated by the Delaunay rule in its plane, with ties broken by
+    coordinates. A set of points therefore has one hull, with one order of its arrays, independent
+    of the order of its rows; it is the boundary of ``Delaunay(points[hull.vertices])``.
 
     In 2-D O(n log n) time (A. M. Andrew, 1979), in 3-D O(n log n) expected (K. L. Clarkson and
-    P. W. Shor, 1989); points that are well inside cost a few comparisons. Names, dtypes and
+    P. W. Shor, 1989); points far inside cost only a few comparisons. Names, dtypes and
     meanings are those of ``scipy.spatial.ConvexHull``. All arrays are read-only; attributes that
     are not listed above are computed on first use and kept.
 
@@ -169,17 +169,17 @@ class ConvexHull(Complex):
         self._fill(arrays | {"points": own}, {}, workers)
 
     def validate(self) -> HullReport:
-        """Prove that this is the convex hull of the points, or name what is wrong.
+        """Prove that this is the convex hull of the points, or list the faults.
 
         Returns
         -------
         HullReport
-            Truthy if all is right: neighbors are mutual, adjacent simplices meet at a convex angle
-            or lie in one facet, and no point is outside.
+            Truthy if there are no faults: neighbors are mutual, adjacent simplices meet at a convex
+            angle or lie in one facet, and no point is outside.
 
         Notes
         -----
-        Exact, in the time of a point location of all points.
+        Exact; it takes as long as locating all points.
 
         Examples
         --------

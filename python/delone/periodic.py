@@ -59,8 +59,8 @@ class PeriodicDelaunay(Complex):
         Weights, in the square of the unit of the points, as for `RegularTriangulation`. All copies
         of a point have its weight.
     workers : int, optional
-        How many threads may work on measures; by default one per core. The triangulation itself is
-        made on one thread.
+        Maximum number of threads for measures; by default one per core. The triangulation itself
+        uses one thread.
 
     Attributes
     ----------
@@ -71,10 +71,10 @@ class PeriodicDelaunay(Complex):
     weights : ndarray of float64, shape (n,), or None
         The weights.
     simplices : ndarray of int32, shape (m, 3)
-        One triangle of each class of translates, as rows of `points`, counter-clockwise. A row may
-        occur two or three times in one triangle, where points are few.
+        One triangle of each class of translates, as rows of `points`, counter-clockwise. If there
+        are few points, a row may occur two or three times in one triangle.
     offsets : ndarray of int32, shape (m, 3, 2)
-        By how many periods each corner is moved in x and y; the first corner is not.
+        The number of periods by which each corner is translated in x and y; 0 for the first corner.
     neighbors : ndarray of int32, shape (m, 3)
         The triangle opposite each corner (a translate of it); -1 outside, in a direction without a
         period.
@@ -84,7 +84,8 @@ class PeriodicDelaunay(Complex):
     InputError
         There is no period, one is not positive and finite, or points lie a period or more apart.
     DegenerateInputError
-        There is no triangle: no point at all, or one period and all points on one line along it.
+        There is no triangle: there are no points, or there is one period and all points lie on one
+        line along it.
     NonFiniteError
         A coordinate or weight is NaN or infinite.
     ShapeError
@@ -92,14 +93,14 @@ class PeriodicDelaunay(Complex):
 
     Notes
     -----
-    Exact, as `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general is
-    not a double, and nothing is rounded before a decision. Ties are broken in the same way, so that
-    the set of triangles is unique, and the same in all periods. With two periods there are 2 n
+    Exact, like `Delaunay`: a copy is the exact sum of a coordinate and a period, which in general
+    is not a double, and nothing is rounded before a decision. Ties are broken in the same way, so
+    that the set of triangles is unique, and the same in all periods. With two periods there are 2 n
     triangles and 3 n edges for n distinct points (with weights, for n that are not hidden).
 
-    Copies one period away on all sides are enough, however the points lie. Of many points only the
-    copies nearby are used at first; circles tell if these were too few. Time is that of an
-    insertion of all of them, O(n log n) on usual inputs.
+    Copies one period away on all sides are sufficient for any points. If there are many points,
+    only nearby copies are used at first; the circumcircles show whether these were too few. Time is
+    that of inserting all of them, O(n log n) on typical inputs.
 
     References
     ----------
@@ -155,7 +156,7 @@ class PeriodicDelaunay(Complex):
 
     @property
     def periods(self) -> tuple[float | None, float | None]:
-        """The periods in x and y; None for none."""
+        """The periods in x and y; None in a direction without a period."""
         x, y = (None if np.isnan(length) else length for length in self._lengths.tolist())
         return x, y
 
@@ -166,12 +167,12 @@ class PeriodicDelaunay(Complex):
 
     @property
     def offsets(self) -> Indices:
-        """By how many periods each corner is moved, (m, 3, 2)."""
+        """The periods by which each corner is translated, (m, 3, 2)."""
         return self._offsets
 
     @property
     def partners(self) -> Indices:
-        """The same edge across it, (m, 3): 3 t + k for that opposite corner k of triangle t."""
+        """The other side of each edge, (m, 3): 3 t + k for that opposite corner k of triangle t."""
         return self._partners
 
     @property
@@ -208,7 +209,7 @@ class PeriodicDelaunay(Complex):
 
     @property
     def edge_offsets(self) -> Indices:
-        """By how many periods the second vertex of each edge is moved, (k, 2)."""
+        """The periods by which the second vertex of each edge is translated, (k, 2)."""
         return self._edges[1]
 
     @property
@@ -254,15 +255,15 @@ class PeriodicDelaunay(Complex):
         return found  # type: ignore[no-any-return]
 
     def validate(self) -> PeriodicReport:
-        """Prove that this is the canonical periodic triangulation, or name what is wrong.
+        """Prove that this is the canonical periodic triangulation, or list the faults.
 
         Returns
         -------
         PeriodicReport
-            Truthy if all is right: triangles are counter-clockwise and cover the plane, or the
-            strip, exactly once, neighbors and partners are mutual and fit the offsets, each edge
-            is locally Delaunay (with weights, locally regular), ties are broken canonically, and
-            each distinct point is a vertex or, with weights, above the triangle that holds it.
+            Truthy if there are no faults: triangles are counter-clockwise and cover the plane, or
+            the strip, exactly once, neighbors and partners are mutual and fit the offsets, each
+            edge is locally Delaunay (with weights, locally regular), ties are broken canonically,
+            and each distinct point is a vertex or, with weights, above the triangle that holds it.
 
         Notes
         -----
@@ -315,10 +316,12 @@ def as_periods(periods: Any) -> tuple[float | None, float | None]:
     try:
         x, y = (None if length is None else as_number(length, name="periods") for length in periods)
     except (TypeError, ValueError):
-        raise InputError(f"periods must be two numbers or None, got {periods!r}") from None
+        raise InputError(
+            f"periods must be two values, each a number or None, got {periods!r}"
+        ) from None
     given = [length for length in (x, y) if length is not None]
     if not given:
-        raise InputError("periods must hold a number in x or in y; without, use Delaunay")
+        raise InputError("periods has no number: pass a period in x or y, or use delone.Delaunay")
     if not all(0 < length < np.inf for length in given):
         raise InputError(f"periods must be positive and finite, got {periods!r}")
     return x, y
@@ -329,7 +332,7 @@ def _lengths(periods: tuple[float | None, float | None]) -> Floats:
 
 
 def _require_one_period(points: Floats, periods: tuple[float | None, float | None]) -> None:
-    """Refuse points that lie a period apart, decided exactly."""
+    """Reject points that lie a period or more apart, decided exactly."""
     for k, length in enumerate(periods):
         if length is None or not len(points):
             continue
@@ -338,8 +341,9 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
         if spread >= Fraction(length):
             shown = repr(float(spread)) if spread <= _LARGEST else f"more than {_LARGEST!r}"
             raise InputError(
-                f"rows {low} and {high} lie {shown} apart in {'xy'[k]}, which is not "
-                f"less than the period {length!r}: move the points into one period first"
+                f"rows {low} and {high} lie {shown} apart in {'xy'[k]}, not less "
+                f"than the period {length!r}: first move all points into one period, for example "
+                "with numpy.mod"
             )
 
 
@@ -384,7 +388,9 @@ def _triangulated(
     rows = np.unique(_standing(points, weights)).astype(np.int32)
     lengths = _lengths(periods)
     if not len(rows):
-        raise DegenerateInputError("there is no point", reason="too few points")
+        raise DegenerateInputError(
+            "there are no points; at least one is needed", reason="too few points"
+        )
     found = None
     if None not in periods and len(rows) > _FEW:
         found = _with_halo(points, weights, rows, lengths)
@@ -393,8 +399,8 @@ def _triangulated(
     simplices, offsets, chain = found
     if not len(simplices):
         raise DegenerateInputError(
-            "all points lie on one line along the period: there is no triangle; `chain` has those "
-            "that are not hidden, in order",
+            "all points lie on one line along the period, so there is no triangle; `error.chain` "
+            "has the rows of those that are not hidden, in order",
             reason="collinear",
             chain=chain,
         )

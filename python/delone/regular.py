@@ -39,11 +39,11 @@ class RegularTriangulation(PointTriangulation):
     points : array_like, shape (n, 2) or (n, 3)
         Finite coordinates; results are exact for the given doubles.
     weights : array_like, shape (n,)
-        Finite weights, in the square of the unit of the points: the square of a radius, if points
-        stand for circles or spheres. Adding one number to all of them changes nothing.
+        Finite weights, in the square of the unit of the points: the squares of radii, if points
+        represent circles or spheres. Adding a constant to all of them changes nothing.
     workers : int, optional
-        How many threads may work on queries and measures; by default one per core. The
-        triangulation itself is made on one thread.
+        Maximum number of threads for queries and measures; by default one per core. The
+        triangulation itself uses one thread.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
@@ -65,7 +65,7 @@ class RegularTriangulation(PointTriangulation):
         order, in 2-D without the hidden ones. Or 3-D points lie in one plane; ``error.plane`` is
         its regular triangulation.
     NonFiniteError
-        A coordinate or weight is NaN or infinite; ``error.rows`` tells where.
+        A coordinate or weight is NaN or infinite; ``error.rows`` has the first such rows.
     ShapeError
         There are not as many weights as points.
     InputError
@@ -79,7 +79,7 @@ class RegularTriangulation(PointTriangulation):
     -----
     The simplices are the lower side of the convex hull of the points lifted to
     ``x**2 + y**2 - w``, in 3-D to ``x**2 + y**2 + z**2 - w``. A point whose lift lies above it is
-    *hidden*: no place has its least power there, and it is not a vertex. With equal weights this is
+    *hidden*: nowhere is its power the least, so it is not a vertex. With equal weights this is
     the Delaunay triangulation.
 
     The result is exact and unique: ties are broken as in `delone.Delaunay`, so that a point whose
@@ -87,8 +87,8 @@ class RegularTriangulation(PointTriangulation):
     coordinates the one with the greatest weight counts, and the others are hidden; of equal weights
     the first row is the vertex, and the others are its duplicates.
 
-    The method is insertion by cavities along a Hilbert curve (Bowyer; Watson, both 1981), in
-    O(n log n) on usual inputs.
+    The method is cavity insertion along a Hilbert curve (Bowyer; Watson, both 1981), in
+    O(n log n) on typical inputs.
 
     References
     ----------
@@ -146,13 +146,13 @@ class RegularTriangulation(PointTriangulation):
         return sealed(np.flatnonzero(~seen[self.duplicate_of]).astype(np.int32))
 
     def validate(self) -> RegularReport | RegularSpaceReport:
-        """Prove that this is the canonical regular triangulation, or name what is wrong.
+        """Prove that this is the canonical regular triangulation, or list the faults.
 
         Returns
         -------
         RegularReport, in 3-D RegularSpaceReport
-            Truthy if all is right: simplices are positively oriented and tile the exact hull,
-            neighbors are mutual, each edge or face is locally regular, ties are broken
+            Truthy if there are no faults: simplices are positively oriented and tile the exact
+            hull, neighbors are mutual, each edge or face is locally regular, ties are broken
             canonically, each vertex is the first of the heaviest rows with its coordinates,
             duplicates are listed, and each hidden point is above the simplex that holds it.
 
@@ -220,7 +220,7 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
     if len(bad):
         raise NonFiniteError(
             f"{len(bad)} {agreed(len(bad), 'weight is', 'weights are')} NaN or infinite; "
-            f"first: {bad[0]}",
+            f"first: row {bad[0]}",
             rows=bad[:10],
             count=len(bad),
         )
@@ -247,7 +247,7 @@ def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any
     Raises
     ------
     DegenerateInputError
-        Points in space lie in one plane; ``error.plane`` has its triangulation.
+        3-D points lie in one plane; ``error.plane`` has its triangulation.
     """
     try:
         regular = _core.regular3 if points.shape[1] == _SPACE else _core.regular2

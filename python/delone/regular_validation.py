@@ -58,7 +58,7 @@ def _none() -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RegularReport(ValidationReport):
-    """The result of ``RegularTriangulation.validate()``: truthy if the triangulation is right.
+    """The result of ``RegularTriangulation.validate()``: truthy if the triangulation is correct.
 
     The fields are those of `ValidationReport`, with these changes: `missing` has points outside all
     triangles, `repeats` has vertices that are not the first of the heaviest rows with their
@@ -67,10 +67,10 @@ class RegularReport(ValidationReport):
     Parameters
     ----------
     hidden : ndarray of int, shape (k,)
-        Rows that should be vertices, though triangles cover them. These and `missing` are looked
-        for only if the triangles are otherwise right.
+        Rows that should be vertices, though triangles cover them. These and `missing` are checked
+        only if there are no other faults.
     duplicates : ndarray of int, shape (k,)
-        Rows that should be listed as duplicates and are not, or the other way around.
+        Rows that should be listed as duplicates and are not, or the reverse.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class RegularSpaceReport(SpaceReport):
     hidden : ndarray of int, shape (k,)
         Rows that should be vertices, though tetrahedra cover them.
     duplicates : ndarray of int, shape (k,)
-        Rows that should be listed as duplicates and are not, or the other way around.
+        Rows that should be listed as duplicates and are not, or the reverse.
 
     Examples
     --------
@@ -117,7 +117,7 @@ class RegularSpaceReport(SpaceReport):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PeriodicReport(ValidationReport):
-    """The result of ``PeriodicDelaunay.validate()``: truthy if the triangulation is right.
+    """The result of ``PeriodicDelaunay.validate()``: truthy if the triangulation is correct.
 
     The fields are those of `ValidationReport`, with these changes: `neighbors` has triangles whose
     `neighbors` or `partners` are wrong, `hull` has edges without a partner that are not on the
@@ -132,11 +132,11 @@ class PeriodicReport(ValidationReport):
         than one period, or in a direction without a period. If there are any, nothing else is
         checked.
     hidden : ndarray of int, shape (k,)
-        Rows that should be vertices, though triangles cover them; looked for only if all else is
-        right.
+        Rows that should be vertices, though triangles cover them; checked only if there are
+        no other faults.
     layers : ndarray of int, shape (1,) or (0,)
-        How often the triangles cover the plane, if this is not once. Found only if orientations,
-        neighbors and boundary are right.
+        How many times the triangles cover the plane, if not exactly once. Checked only if
+        orientations, neighbors and boundary are correct.
 
     Examples
     --------

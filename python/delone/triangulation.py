@@ -220,22 +220,22 @@ class Triangulation(Complex):
     def find_simplex(
         self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None
     ) -> Indices:
-        """Find the simplices that hold points.
+        """Find the simplices that contain points.
 
         Parameters
         ----------
         xi : array_like, shape (..., d)
             Points to locate. NaN and infinity are outside.
         bruteforce : bool, optional
-            Accepted as in SciPy, without effect: the walk cannot fail.
+            Accepted as in SciPy, but has no effect: the walk cannot fail.
         tol : float, optional
-            Accepted as in SciPy, without effect: the answer is exact.
+            Accepted as in SciPy, but has no effect: the result is exact.
 
         Returns
         -------
         ndarray of int32, shape (...)
-            The simplex that has the point inside or on its boundary, the first one where there are
-            several, or -1 where there is none: outside, or in a hole. The shape is () for a single
+            The simplex with the point inside or on its boundary, the first one if there are
+            several; -1 if there is none, that is outside or in a hole. The shape is () for a single
             point.
 
         Raises
@@ -246,10 +246,10 @@ class Triangulation(Complex):
         Notes
         -----
         Points are taken along a space-filling curve, and each is reached by a visibility walk from
-        the one before; for k points that takes O(k log k + walks) time, whatever their order. A
-        visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On sorting
-        triangles in a Delaunay tessellation", 1991); a straight walk helps where triangles are
-        constrained, and a tree of boxes where there are holes.
+        the previous one; for k points this takes O(k log k) time plus that of the walks, in any
+        order. A visibility walk ends in every Delaunay triangulation (L. De Floriani et al., "On
+        sorting triangles in a Delaunay tessellation", 1991); a straight walk helps where triangles
+        are constrained, and a tree of boxes where there are holes.
 
         Examples
         --------
@@ -275,8 +275,8 @@ class Triangulation(Complex):
         Returns
         -------
         ndarray of int32, shape (...)
-            The nearest vertex of a simplex, the one of the smallest row where there are several; -1
-            where a coordinate is NaN or infinite.
+            The nearest vertex of a simplex, the one with the smallest row if there are several; -1
+            if a coordinate is NaN or infinite.
 
         Raises
         ------
@@ -319,10 +319,10 @@ class Triangulation(Complex):
         Notes
         -----
         Which simplex, and inside or outside, is exact. Weights are rounded, but none is negative,
-        and at a vertex they are exactly 1 and 0. The first call makes an index, in a small part of
-        the time of the triangulation itself; points are taken along a space-filling curve, each
-        from the simplex of the one before. Where the boundary is not convex, a tree of boxes
-        finds what a walk cannot reach, and the nearest facet.
+        and at a vertex they are exactly 1 and 0. The first call builds an index, which takes a
+        fraction of the time of the triangulation; points are taken along a space-filling curve,
+        each starting from the simplex of the previous one. Where the boundary is not convex, a tree
+        of boxes finds what a walk cannot reach, and the nearest facet.
 
         Examples
         --------
@@ -412,7 +412,7 @@ class Triangulation(Complex):
 
         return to_geopandas(self._parts(), crs)
 
-    @only(2, "matplotlib draws triangles of the plane")
+    @only(2, "matplotlib has no tetrahedral meshes")
     def to_matplotlib(self) -> Any:
         """Convert to a triangulation of matplotlib (extra ``plot``); 2-D only.
 

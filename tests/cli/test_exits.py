@@ -51,7 +51,7 @@ def test_every_code_is_documented(command):
         (["triangulate", "nan.csv"], 4, "row 1"),
         (["triangulate", "S", "-o", "a.doc"], 5, "known suffixes are .vtu"),
         (["triangulate", "S", "-o", "nowhere/a.vtu"], 5, "does not exist"),
-        (["triangulate", "S", "-o", "a.vtu", "-o", "a.stl", "--edges"], 5, "not edges"),
+        (["triangulate", "S", "-o", "a.vtu", "-o", "a.stl", "--edges"], 5, "cannot store edges"),
     ],
 )
 def test_one_line_and_a_code(survey, command, tmp_path, monkeypatch, case):

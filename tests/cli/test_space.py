@@ -106,7 +106,7 @@ def test_files_without_points_are_files(form, tmp_path, command):
             True,
         )
     code, _, err = command("check", path)
-    assert (code, err) == (3, f"delone: {path} holds no points\n")
+    assert (code, err) == (3, f"delone: {path} contains no points\n")
 
 
 def test_pictures_need_no_screen(tmp_path, monkeypatch, capfd):

@@ -28,7 +28,7 @@ def test_switches_that_are_no_string(opts: Any) -> None:
 
 
 def test_without_segments_nothing_is_enclosed() -> None:
-    with pytest.raises(InputError, match="no ring of segments encloses anything"):
+    with pytest.raises(InputError, match="the segments form no closed ring"):
         triangulate(SQUARE, "p")
     assert len(triangulate(SQUARE, "pc")["triangles"]) == 2
 

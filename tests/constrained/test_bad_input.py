@@ -23,7 +23,9 @@ class TestSegments:
         assert mesh.report
 
     def test_rows_out_of_range_are_named(self) -> None:
-        with pytest.raises(errors.InputError, match=r"3 of 4 rows.*outside 0 to 3.*first: 0, 2, 3"):
+        with pytest.raises(
+            errors.InputError, match=r"3 of 4 rows.*outside 0 to 3.*first: rows 0, 2, 3"
+        ):
             ConstrainedDelaunay(SQUARE, [(0, 4), (0, 1), (-1, 2), (2**40, 0)])
 
     def test_only_ten_rows_are_named(self) -> None:
@@ -127,7 +129,7 @@ class TestSeeds:
 
     @pytest.mark.parametrize("label", [-1, 0.5, 2**31])
     def test_labels_are_integers_of_at_least_0(self, label: float) -> None:
-        with pytest.raises(errors.InputError, match="rows 1"):
+        with pytest.raises(errors.InputError, match=r"1 of 2 labels.*row 1$"):
             ConstrainedDelaunay(SQUARE, [], regions=[(1, 1, 2), (2, 1, label)])
 
     def test_outside_or_on_a_segment_is_reported(self) -> None:

@@ -195,7 +195,7 @@ def test_a_bug_of_the_core_hands_its_points_over(monkeypatch: pytest.MonkeyPatch
 
 @pytest.mark.parametrize("name", ["qhull_options", "incremental", "furthest_site"])
 def test_arguments_of_scipy_are_sent_to_the_drop_in(name: str) -> None:
-    with pytest.raises(TypeError, match=rf"take {name}.*delone\.compat\.scipy\.Delaunay"):
+    with pytest.raises(TypeError, match=rf"accept {name}.*delone\.compat\.scipy\.Delaunay"):
         Delaunay([(0, 0), (1, 0), (0, 1)], **{name: "Qz"})  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="unexpected keyword argument 'metod'"):
         Delaunay([(0, 0), (1, 0), (0, 1)], metod="sweep")  # type: ignore[call-overload]

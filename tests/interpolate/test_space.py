@@ -96,7 +96,7 @@ def test_laplace_weights_are_areas_over_distances_of_the_cell_of_the_query() -> 
     for i, query in enumerate(queries):
         cell = Voronoi(np.vstack((points, query))).cell(len(points))
         distance = np.linalg.norm(points[cell.neighbors] - query, axis=1)
-        expected = cell.areas / distance
+        expected = cell.sizes / distance
         row = slice(table.indptr[i], table.indptr[i + 1])
         order = np.argsort(table.indices[row])
         assert table.indices[row][order].tolist() == cell.neighbors.tolist()

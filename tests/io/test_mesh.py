@@ -53,7 +53,7 @@ def test_attributes(tmp_path, mesh):
     assert np.array_equal(
         read_points(tmp_path / "a.vtu", attributes=["weight"]).attributes["weight"], Z
     )
-    with pytest.raises(FileFormatError, match="no attributes"):
+    with pytest.raises(FileFormatError, match="cannot store attributes"):
         write_mesh(tmp_path / "a.stl", mesh, attributes=area)
     with pytest.raises(ShapeError, match="matches neither"):
         write_mesh(tmp_path / "b.vtu", mesh, attributes={"a": np.zeros(7)})
@@ -69,7 +69,7 @@ def test_edges(tmp_path, mesh):
         assert np.array_equal(data.get_cells_type("line"), mesh.edges)
         with pytest.raises(FileFormatError, match="no triangles"):
             read_mesh(tmp_path / f"a{suffix}")
-    with pytest.raises(FileFormatError, match="not edges"):
+    with pytest.raises(FileFormatError, match="cannot store edges"):
         write_mesh(tmp_path / "a.ply", mesh, edges=True)
 
 

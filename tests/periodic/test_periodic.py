@@ -176,11 +176,11 @@ def test_nothing_can_be_changed_and_it_pickles() -> None:
     [
         ([(0, 0), (1, 0)], (1, 1), "rows 0 and 1 lie 1.0 apart in x"),
         ([(0, 0), (0.5, 3)], (1, 2), "apart in y"),
-        ([(0, 0)], (None, None), "without, use Delaunay"),
+        ([(0, 0)], (None, None), "no number.*use delone.Delaunay"),
         ([(0, 0)], (0, 1), "positive"),
         ([(0, 0)], (1, np.inf), "finite"),
-        ([(0, 0)], 3, "two numbers"),
-        ([(0, 0)], (True, 1), "two numbers"),
+        ([(0, 0)], 3, "two values, each a number or None"),
+        ([(0, 0)], (True, 1), "two values, each a number or None"),
     ],
 )
 def test_bad_periods_are_refused(points: Any, periods: Any, message: str) -> None:

@@ -17,7 +17,7 @@ BOX = (0, 0, 1, 1)
 def test_energy_falls_with_each_step() -> None:
     steps: list[tuple[int, float, float]] = []
     result = lloyd(
-        uniform(100, seed=1), BOX, iterations=30, progress=lambda *step: steps.append(step)
+        uniform(100, seed=1), BOX, max_iter=30, progress=lambda *step: steps.append(step)
     )
     assert result.iterations == 30 and not result.converged
     assert (np.diff(result.energies) < 0).all()
@@ -77,7 +77,7 @@ def test_domains_of_any_size(scale: float, method: str) -> None:
         scaled = lloyd(
             sites * scale,
             (0, 0, scale, scale),
-            iterations=5,
+            max_iter=5,
             method=method,
             density=lambda p: 1 + p[:, 0] / scale,
             progress=lambda *step: told.append(step),
@@ -122,9 +122,7 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
     shapely = pytest.importorskip("shapely")
     outline = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 2, 2) - shapely.box(3, 3, 5, 5)
     sites = np.vstack((uniform(60, seed=7) * 4, [(9.0, 9.0), (0.5, 0.5), (0.5, 0.5)]))
-    result = lloyd(
-        sites, outline, iterations=40, method="l-bfgs", density=lambda p: np.exp(-p[:, 0])
-    )
+    result = lloyd(sites, outline, max_iter=40, method="l-bfgs", density=lambda p: np.exp(-p[:, 0]))
     assert (np.diff(result.energies) <= 1e-13 * result.energies[0]).all()
     assert result.points[-1].tolist() == result.points[-2].tolist()
     assert 60 in result.empty and result.points[60].tolist() == [9.0, 9.0]
@@ -136,7 +134,7 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
     ("options", "message"),
     [
         ({"clip": None}, "needs a clip"),
-        ({"iterations": -1}, "iterations"),
+        ({"max_iter": -1}, "max_iter"),
         ({"tol": -1.0}, "tol"),
         ({"method": "newton"}, "'lloyd', 'l-bfgs'"),
         ({"tol": float("nan")}, "tol"),
@@ -146,9 +144,9 @@ def test_quasi_newton_steps_with_densities_outlines_and_doubled_sites() -> None:
         ({"density": lambda p: ["a"] * len(p)}, "density must return real numbers"),
         ({"density": 5}, "density must be a function"),
         ({"progress": 5}, "progress must be a function"),
-        ({"iterations": None}, "iterations must be an integer"),
-        ({"iterations": 1.5}, "iterations must be an integer"),
-        ({"iterations": True}, "iterations must be an integer"),
+        ({"max_iter": None}, "max_iter must be an integer"),
+        ({"max_iter": 1.5}, "max_iter must be an integer"),
+        ({"max_iter": True}, "max_iter must be an integer"),
         ({"tol": "a"}, "tol must be a real number"),
         ({"tol": True}, "tol must be a real number"),
         ({"clip": {}}, "clip {} is not a geometry: it has no type"),

@@ -57,32 +57,42 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::TooFew { chain } => {
             details.set_item("reason", "too few points")?;
             details.set_item("chain", chain)?;
-            let message = format!("{error} for a triangle: three that are not in line are needed");
+            let message =
+                format!("{error} for a triangle: at least three that are not collinear are needed");
             ("DegenerateInputError", message)
         }
         Error::Collinear { chain } => {
             details.set_item("reason", "collinear")?;
             details.set_item("chain", chain)?;
-            let message = format!("{error}: there is no triangle; `chain` has them in order");
+            let message = format!(
+                "{error}, so there is no triangle; `error.chain` has their rows in order along it"
+            );
             ("DegenerateInputError", message)
         }
         Error::TooFewInSpace { chain } => {
             details.set_item("reason", "too few points")?;
             details.set_item("chain", chain)?;
-            let message =
-                format!("{error} for a tetrahedron: four that are not in one plane are needed");
+            let message = format!(
+                "{error} for a tetrahedron: at least four that are not coplanar are needed"
+            );
             ("DegenerateInputError", message)
         }
         Error::Coplanar { chain } => {
             details.set_item("reason", "coplanar")?;
             details.set_item("chain", chain)?;
-            let message = format!("{error}: there is no tetrahedron");
+            let message = format!(
+                "{error}, so there is no tetrahedron; triangulate them in 2-D, in that plane"
+            );
             ("DegenerateInputError", message)
         }
+        // The tiles of delone.distributed are 2-D.
         Error::TooManyTetrahedra { .. } => {
-            ("LimitError", format!("{error}: triangulate it in tiles"))
+            ("LimitError", format!("{error}: triangulate fewer points"))
         }
-        Error::TooMany { .. } => ("LimitError", format!("{error}: triangulate it in tiles")),
+        Error::TooMany { .. } => {
+            let message = format!("{error}: use delone.distributed in 2-D, or fewer points");
+            ("LimitError", message)
+        }
         Error::Crossing { pairs, points } => {
             // As arrays, because there may be millions.
             details.set_item("pairs", table(py, pairs.clone())?)?;

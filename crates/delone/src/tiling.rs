@@ -218,8 +218,9 @@ impl Tiling<'_, 2, 3> {
     /// [`Error::Memory`].
     pub fn min_angles(&self) -> Result<Vec<f64>> {
         let given = self.given();
-        let found = measure::qualities2(given.points, given.simplices, self.threads, NEVER)?;
-        Ok(found.iter().map(|[smallest, ..]| *smallest).collect())
+        let [smallest, ..] =
+            measure::qualities2(given.points, given.simplices, self.threads, NEVER)?;
+        Ok(smallest)
     }
 
     /// Where a point lies; see [`Location`]. Exact: no tolerance decides. The first call prepares a

@@ -137,7 +137,9 @@ def refusal(path: str | os.PathLike[str], why: Exception) -> FileFormatError:
     FileFormatError
         To be raised.
     """
-    return FileFormatError(f"{path}: not a file of this class, or truncated: {why}")
+    return FileFormatError(
+        f"{path}: not a file that `save` wrote for this class, or truncated: {why}"
+    )
 
 
 def _kind(archive: zipfile.ZipFile, kinds: tuple[Kind, ...]) -> Kind:

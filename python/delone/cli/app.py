@@ -141,7 +141,9 @@ def triangulate(
     ] = False,
     crossing: Annotated[
         str | None,
-        typer.Option(help="Where lines cross: split (add a vertex, the default) or error."),
+        typer.Option(
+            help="Where lines cross: split (add a vertex, the default) or raise (an error)."
+        ),
     ] = None,
     outline: Annotated[
         bool,

@@ -41,10 +41,12 @@ Classes = Annotated[
 Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
 Duplicates = Annotated[
     str,
-    typer.Option(help="Duplicates with different values: error, mean, first, last, min, max."),
+    typer.Option(
+        help="Duplicates with different values: raise (an error), mean, first, last, min, max."
+    ),
 ]
 Nan = Annotated[
-    str, typer.Option(help="Values that are NaN: error, drop or (no raster) propagate.")
+    str, typer.Option(help="Values that are NaN: raise (an error), drop or (no raster) propagate.")
 ]
 Gradients = Annotated[
     str | None, typer.Option(help="Gradients of the smooth methods: global, local or plane.")

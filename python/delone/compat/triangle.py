@@ -126,7 +126,7 @@ def triangulate(tri: Mapping[str, Any], opts: str = "") -> dict[str, Any]:
     Traceback (most recent call last):
     ...
     delone.errors.InputError: switch u is not supported: a test of triangles in C that is compiled \
-into Triangle; give delone.mesh a size
+into Triangle; use size= of delone.mesh
     """
     if not isinstance(tri, abc.Mapping):
         raise DtypeError(f"tri must be a mapping of names to arrays, got {tri!r:.60}")
@@ -155,7 +155,7 @@ def _parsed(opts: str) -> Switches:
     for match in _SWITCH.finditer(opts):
         letter, number = match[1] or match[3], match[2]
         if letter in _REFUSED or letter not in _KNOWN + _WITHOUT_EFFECT:
-            reason = _REFUSED.get(letter, "not a known switch of Triangle")
+            reason = _REFUSED.get(letter, "Triangle has no such switch")
             raise InputError(f"switch {letter} is not supported: {reason}")
         on.append(letter)
         if letter == "q":

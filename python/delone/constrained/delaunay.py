@@ -26,7 +26,7 @@ from delone.constrained import regions
 from delone.constrained.editing import Editing
 from delone.constrained.segmented import Given, Options, Origin, Segmented
 from delone.constrained.validation import ConstrainedReport, validate
-from delone.counting import counted
+from delone.counting import agreed, counted
 from delone.errors import InputError, InternalError
 from delone.georeference import warn_of_degrees
 from delone.immutable import kept, own_copy
@@ -491,7 +491,8 @@ def _labels(seeds: Floats) -> Indices:
     if wrong.size:
         rows = ", ".join(map(str, wrong[:10].tolist()))
         raise InputError(
-            f"regions: {len(wrong)} of {len(seeds)} labels are not integers from 0 to 2**31 - 1; "
-            f"rows {rows}"
+            f"regions: {len(wrong)} of {counted(len(seeds), 'label')} (the third column) "
+            f"{agreed(len(wrong), 'is not an integer', 'are not integers')} from 0 to 2**31 - 1; "
+            f"{agreed(len(wrong), 'row', 'rows')} {rows}"
         )
     return given.astype(np.int32)

@@ -185,7 +185,10 @@ def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
     corners, coordinates = parts.simplices.shape[1], parts.points.shape[1]
     kind = _KINDS.get((corners, coordinates))
     if kind is None:
-        raise InputError(f"simplices of {corners} corners in {coordinates}-D are no mesh")
+        raise InputError(
+            f"simplices with {corners} vertices in {coordinates}-D are not a mesh: triangles and "
+            "tetrahedra can be converted"
+        )
     if kinds and kind not in kinds:
         shown = {"surface": "a surface in 3-D", "edges": "edges"}.get(kind, kind)
         raise InputError(f"{what} cannot be made of {shown}, only of {' or '.join(kinds)}")

@@ -52,13 +52,13 @@ def write_mesh(
     """Write triangles or tetrahedra, and of a mesh its segments."""
     suffix = path.suffix.lower()
     if edges:
-        raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
+        raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
     if attributes and suffix != ".xdmf":
-        raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .xdmf")
+        raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .xdmf")
     found = content(triangulation, z=z, attributes=attributes)
     if suffix == ".su2":
         if found.heights is not None:
-            raise FileFormatError(".su2 files of 2-D meshes hold no heights")
+            raise FileFormatError(".su2 files of 2-D meshes cannot store heights; use .vtu")
         path.write_text(_su2(found.own), encoding="utf-8")
         return
     made = to_meshio(found.whole())

@@ -69,9 +69,11 @@ def read_mesh(path: Path) -> MeshFile:
     points, z = _coordinates(mesh, path)
     others = {block.type for block in mesh.cells} - {"triangle", "vertex", "line"}
     if others:
-        raise FileFormatError(f"{path} holds {', '.join(sorted(others))} cells, not only triangles")
+        raise FileFormatError(
+            f"{path} contains {', '.join(sorted(others))} cells, not only triangles"
+        )
     if not any(block.type == "triangle" for block in mesh.cells):
-        raise FileFormatError(f"{path} holds no triangles")
+        raise FileFormatError(f"{path} contains no triangles")
     simplices = _simplices(mesh, "triangle", len(points), path)
     return MeshFile(points=points, simplices=simplices, z=z, source=str(path))
 
@@ -91,12 +93,12 @@ def _simplices(mesh: Any, kind: str, npoints: int, path: Path) -> NDArray[np.int
 
 
 def _tetrahedra(mesh: Any, path: Path) -> MeshFile:
-    """The tetrahedra of a mesh in space; faces and edges beside them are left out."""
+    """The tetrahedra of a 3-D mesh; faces and edges are left out."""
     plane, z = _coordinates(mesh, path)
     others = {block.type for block in mesh.cells} - {"tetra", "triangle", "vertex", "line"}
     if others or z is None:
         found = ", ".join(sorted(others)) or "flat points"
-        raise FileFormatError(f"{path} holds {found} beside its tetrahedra")
+        raise FileFormatError(f"{path} contains {found} beside its tetrahedra")
     simplices = _simplices(mesh, "tetra", len(plane), path)
     points = np.ascontiguousarray(np.column_stack((plane, z)))
     return MeshFile(points=points, simplices=simplices, source=str(path))
@@ -107,7 +109,7 @@ def _coordinates(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     points = np.asarray(mesh.points)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) < least:
-        raise FileFormatError(f"{path} holds no points")
+        raise FileFormatError(f"{path} contains no points")
     try:
         plane = as_points(np.ascontiguousarray(points[:, :2]))
         z = as_values(points[:, 2], len(points)) if points.shape[1] == 3 else None
@@ -304,10 +306,10 @@ def write_mesh(
     """Write simplices and segments, or edges as lines, with heights as the third coordinate."""
     suffix = path.suffix.lower()
     if edges and suffix in _PLAIN:
-        raise FileFormatError(f"{suffix} files hold triangles, not edges; use .vtu, .msh or .gpkg")
+        raise FileFormatError(f"{suffix} files cannot store edges; use .vtu, .msh or .gpkg")
     found = content(triangulation, z=z, edges=edges, attributes=attributes)
     if found.given and suffix in (".obj", ".stl"):
-        raise FileFormatError(f"{suffix} files hold no attributes; use .vtu or .ply")
+        raise FileFormatError(f"{suffix} files cannot store attributes; use .vtu or .ply")
     made = to_meshio(found.bare() if suffix in _PLAIN else found.whole())
     if suffix == ".msh" and TAGS[0] in made.cell_data:
         _write_tagged(path, made, found)
@@ -326,7 +328,7 @@ def _write_tagged(path: Path, mesh: Any, found: Content) -> None:
     values of several kinds of cells back.
     """
     if found.of_simplices:
-        raise FileFormatError(".msh files of meshes hold no attributes of triangles; use .vtu")
+        raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")
     mesh.cell_data = {tag: mesh.cell_data[tag] for tag in TAGS}
     mesh.point_data = dict(found.of_points)
     module = importlib.import_module("meshio.gmsh")

@@ -180,8 +180,8 @@ def _require_raster(raster: Any) -> None:
     if not all(hasattr(raster, each) for each in ("values", "x", "y")):
         kind = type(raster).__name__
         raise InputError(
-            f"a {kind} is not a raster, because it has no nodes: pass the result of "
-            "delone.interpolate.grid, or delone.interpolate.Grid(values, x, y) with the "
+            f"an object of type {kind} is not a raster, because it has no nodes: pass the "
+            "result of delone.interpolate.grid, or delone.interpolate.Grid(values, x, y) with the "
             "nodes x and y, both ascending"
         )
 

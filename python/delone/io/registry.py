@@ -463,7 +463,8 @@ def write_mesh(
     ----------
     path : str or path-like
         VTU, PLY, OBJ, STL, MSH, XDMF, INP, SU2, Triangle's NODE, ELE and POLY, GeoPackage,
-        GeoJSON, npz, PNG or SVG. A file that is there is replaced when the new one is whole.
+        GeoJSON, npz, PNG or SVG. An existing file is
+        replaced only once the new one is complete.
     triangulation : Delaunay, ConstrainedDelaunay, Mesh, TetMesh or another mesh
         What to write: also a `RegularTriangulation`, a `PeriodicDelaunay` or a `ConvexHull` in 3-D.
         Tetrahedra go to VTU, MSH, XDMF, INP, SU2 and PNG, those of a `Delaunay` to npz as well. The
@@ -551,7 +552,7 @@ def _kind(triangulation: Any) -> str:
         if coordinates == 3 and corners in (3, 4):
             return "surface" if corners == 3 else "tetrahedra"
     name = type(triangulation).__name__
-    raise InputError(f"a {name} is not a triangulation; it cannot be written")
+    raise InputError(f"cannot write an object of type {name}: pass a triangulation or a mesh")
 
 
 def _require_place(path: str | os.PathLike[str], mesh: Any, kind: str, *, edges: bool) -> None:

@@ -100,8 +100,8 @@ def plot(
     ``box``, the outline of a period.
 
     2-D Voronoi diagrams: ``values``, array_like of shape (n,), ``cmap``, ``colorbar``; ``points``,
-    the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn as far as the box
-    of the sites and a tenth more. 3-D Voronoi diagrams: ``off_screen``, and the options of
+    the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn in the bounding
+    box of the sites, enlarged by a tenth. 3-D Voronoi diagrams: ``off_screen``, and the options of
     ``pyvista.Plotter.add_mesh``; bounded cells are drawn.
 
     Examples
@@ -120,7 +120,7 @@ def plot(
     if drawer is None:
         name = f"{type(mesh).__module__}.{type(mesh).__name__}"
         hint = "use its own plot()" if hasattr(mesh, "plot") else "draw delone.Delaunay(points)"
-        raise InputError(f"a {name} cannot be drawn: {hint}")
+        raise InputError(f"an object of type {name} cannot be drawn: {hint}")
     _require_options(drawer, mesh, options)
     return drawer(mesh, ax, **options)
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import (
-    as_choice,
     as_count,
     as_flag,
     as_plain_array,
@@ -303,11 +302,12 @@ def _segment_markers(base: ConstrainedDelaunay, given: ArrayLike | None) -> Indi
 
 def _fixed(fixed: bool | str | ArrayLike, count: int) -> Bools:
     if isinstance(fixed, str):
-        as_choice(fixed, ("boundary",), name="fixed")
+        if fixed != "boundary":
+            raise InputError(f"fixed must be a bool, 'boundary' or a mask, got {fixed!r}")
         return np.zeros(count, dtype=bool)
     array = as_plain_array(fixed, "fixed")
     if array.dtype.kind != "b":
-        raise DtypeError(f"fixed must be a mask or 'boundary', got dtype {array.dtype}")
+        raise DtypeError(f"fixed must be a bool, 'boundary' or a mask, got dtype {array.dtype}")
     if array.shape not in ((), (count,)):
         raise ShapeError(f"fixed must have shape ({count},), got {array.shape}")
     return np.broadcast_to(array, (count,)).copy()
@@ -391,7 +391,7 @@ def _why_empty(base: ConstrainedDelaunay) -> str:
     degree = np.bincount(base.segments.ravel(), minlength=base.npoints)
     loose = np.flatnonzero(degree == 1)
     if not loose.size:
-        return "no ring of segments encloses anything except holes"
+        return "the segments form no closed ring, or only rings around holes"
     rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
     positions = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
     return f"the outline is open: only one segment ends at points {rows}, the first at {positions}"

@@ -200,7 +200,7 @@ def _given(mesh: Any) -> tuple[Floats, Indices, Indices | None]:
 def _require_positive(points: Floats, simplices: Indices) -> None:
     corners = (np.ascontiguousarray(points[simplices[:, k]]) for k in range(4))
     signs = _core.orient3d(*corners)
-    for sign, what in ((-1, "negatively oriented: swap two of their vertices"), (0, "flat")):
+    for sign, what in ((-1, "negatively oriented: swap two vertices of each"), (0, "flat")):
         rows = np.flatnonzero(signs == sign)
         if len(rows):
             noun = counted(len(rows), "tetrahedron")

@@ -61,7 +61,7 @@ class LloydResult(ReadOnly):
     Parameters
     ----------
     points : ndarray of float64, shape (n, 2)
-        The sites at their new places.
+        The sites at their final positions.
     diagram : Voronoi
         Their diagram, clipped.
     iterations : int
@@ -128,24 +128,24 @@ def lloyd(
         sites will be denser where it is larger. It may be called for locations outside an outline
         that is not convex, but within its bounding box. By default it is 1 everywhere.
     method : {"lloyd", "l-bfgs"}, optional
-        How to compute steps: to the centroids, or by a quasi-Newton method, which needs fewer steps
-        to converge.
+        How to compute steps: move each site to its centroid, or use a quasi-Newton method, which
+        needs fewer steps to converge.
     progress : callable, optional
         Called after each step with its number (from 1), the greatest distance of a site from the
         centroid of its cell before it, and the energy.
     workers : int, optional
-        How many threads may work; by default one per core.
+        Maximum number of threads; by default one per core.
 
     Returns
     -------
     LloydResult
-        Sites, their diagram, and the course of the iteration.
+        Sites, their diagram, and the history of the iteration.
 
     Raises
     ------
     InputError
-        `clip` is None or not what `Voronoi` takes; `max_iter` or `tol` is negative; `method` is
-        unknown; or `density` returns another number of values, values that are negative or not
+        `clip` is None or not accepted by `Voronoi`; `max_iter` or `tol` is negative; `method` is
+        unknown; or `density` returns the wrong number of values, values that are negative or not
         finite, or only zeros.
     DtypeError
         `max_iter` is not an integer, `tol` not a number, `density` or `progress` not a function,
@@ -153,10 +153,10 @@ def lloyd(
 
     Notes
     -----
-    The energy decreases with each step, and sites converge to places where each is the centroid of
-    its cell: usually a local minimum. Convergence of Lloyd's method is linear and slows down with
-    the number of sites. L-BFGS converges in several times fewer steps, usually to another minimum
-    that is slightly lower; if it finds no descent it makes a step of Lloyd's method.
+    The energy decreases with each step, and sites converge to positions where each is the centroid
+    of its cell: usually a local minimum. Convergence of Lloyd's method is linear and slows down
+    with the number of sites. L-BFGS converges in several times fewer steps, usually to another
+    minimum that is slightly lower; if it finds no descent it makes a step of Lloyd's method.
 
     Integrals are exact up to rounding without `density`; with it they use its values at seven
     locations in each triangle between a cell's centroid and an edge. A site whose cell is empty

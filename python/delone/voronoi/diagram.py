@@ -53,26 +53,26 @@ class Voronoi(Stored):
         Where cells end: ``"box"`` is the bounding box of the sites. Sites may lie outside.
 
         In 2-D a box ``(xmin, ymin, xmax, ymax)``; or a polygon or multipolygon of shapely, with or
-        without holes, also as a GeoJSON-like mapping; or the polygons of a table or series of
-        geopandas together.
+        without holes, also as a GeoJSON-like mapping; or the union of the polygons in a table or
+        series of geopandas.
 
         In 3-D a convex region: a box ``((xmin, ymin, zmin), (xmax, ymax, zmax))`` of shape (2, 3);
-        half-spaces of shape (k, 4), each ``(a, b, c, d)`` for ``a x + b y + c z + d <= 0``, that
-        bound a region together; or points of shape (k, 3), or an object with points and simplices
-        such as a `ConvexHull`, for the convex hull of these.
+        half-spaces of shape (k, 4), each ``(a, b, c, d)`` for ``a x + b y + c z + d <= 0``, whose
+        intersection is bounded; or points of shape (k, 3), or an object with points and simplices
+        such as a `ConvexHull`, for their convex hull.
     fix : bool, optional
         Whether to repair an invalid geometry (as ``shapely.make_valid`` does) instead of rejecting
         it. A polyhedron is never invalid.
     weights : array_like, shape (n,), optional
         Weights of the sites, in the square of the unit of the points. The diagram is then the power
-        diagram, in which a location belongs to the site with the least ``|x - p|**2 - w``.
+        diagram, in which a location x belongs to the site p with the smallest ``|x - p|**2 - w``.
     periods : tuple of two floats or None, optional
-        2-D only. ``(Lx, Ly)``: the sites repeat after these distances in x and in y, as for
-        `PeriodicDelaunay`; None for a direction without a period. With two periods there is
-        nothing to clip. With one, `clip` is ``"box"`` or a box that is infinite in the direction of
+        2-D only. ``(Lx, Ly)``: the sites repeat at these distances in x and in y, as for
+        `PeriodicDelaunay`; None for a direction without a period. With two periods, `clip` must
+        be None. With one, `clip` is ``"box"`` or a box that is infinite in the direction of
         the period, such as ``(-inf, ymin, inf, ymax)``.
     workers : int, optional
-        How many threads may work; by default one per core. Results do not depend on it.
+        Maximum number of threads; by default one per core. The result does not depend on it.
     planar : bool, optional
         Treat longitudes and latitudes as coordinates of a plane, without a warning.
 
@@ -94,7 +94,7 @@ class Voronoi(Stored):
         ascending.
     point_region : ndarray of int32, shape (n,)
         The cell of each point, as an index of `regions`. Points with the same coordinates share
-        their cell. -1 for a site that weights leave without a cell.
+        their cell. -1 for a site that has no cell because of its weight.
     furthest_site : bool
         False.
     npoints, ndim : int
@@ -112,7 +112,7 @@ class Voronoi(Stored):
         `points` is not a real array of shape (n, 2) or (n, 3), or there are not as many weights.
     InputError
         `clip` has no area or volume, is unbounded, is none of the above, or is invalid; the message
-        says where. Or `periods` do not go with the points or the clip.
+        says where. Or `periods` do not fit the points or the clip.
     LimitError
         There are periods, and a vertex lies beyond the range of doubles; or, with one period, the
         next copy of a site does.
@@ -123,18 +123,18 @@ class Voronoi(Stored):
     -----
     ThinCellWarning
         When measures or polygons are computed: cells are only a few units in the last place wide,
-        so that rounding leaves nothing of their areas or volumes; ``warning.rows`` has their rows.
+        so that their areas or volumes are lost to rounding; ``warning.rows`` has their rows.
 
     Notes
     -----
     The diagram is the dual of the exact Delaunay triangulation (with weights, of the regular one),
-    and its combinatorics are exact: sites on one circle or sphere share one vertex, however many
-    they are, and no ridge has length or area 0. Only the coordinates of vertices are rounded: each
-    is within 4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex
-    beyond the range of doubles is not listed; ridges that lead to it have -1 in its place.
+    and its combinatorics are exact: any number of sites on one circle or sphere share one vertex,
+    and no ridge has length or area 0. Only the coordinates of vertices are rounded: each is within
+    4 units in the last place of the true one (:doc:`/mathematics/voronoi`). A vertex beyond the
+    range of doubles is not listed; ridges that lead to it have -1 in its place.
 
-    Names and meanings are those of ``scipy.spatial.Voronoi``. Input that SciPy rejects is allowed
-    in 2-D: the cell of a single site is the whole plane, two have half-planes, and sites on one
+    Names and meanings are those of ``scipy.spatial.Voronoi``. In 2-D, input that SciPy rejects is
+    accepted: the cell of a single site is the whole plane, two have half-planes, and sites on one
     line have strips between two half-planes.
 
     With weights a cell need not contain its site, and a site may have no cell: it is *hidden*.
@@ -169,7 +169,7 @@ class Voronoi(Stored):
     --------
     delone.Delaunay : The dual.
     delone.RegularTriangulation : The dual of power diagrams.
-    delone.compat.scipy.Voronoi : SciPy's interface to the letter.
+    delone.compat.scipy.Voronoi : The same diagram with SciPy's interface.
 
     References
     ----------
@@ -341,9 +341,9 @@ class Voronoi(Stored):
     @only(2, "3-D diagrams have no periods")
     @kept
     def ridge_offsets(self) -> Indices:
-        """By how many periods the second site of each ridge is moved, (r, 2); 2-D only.
+        """The periods by which the second site of each ridge is translated, (r, 2); 2-D only.
 
-        As seen from the first site, where the vertices of the ridge are. Zeros without periods.
+        Relative to the first site, next to which the vertices of the ridge are. 0 without periods.
         """
         cells: Any = self._cells
         return sealed(cells.ridge_offsets())
@@ -536,7 +536,7 @@ class Voronoi(Stored):
         Returns
         -------
         ndarray of int32, shape (...)
-            The site whose whole cell contains the point, the one of the smallest row if it lies
+            The site whose whole cell contains the point, the one with the smallest row if it lies
             between cells; -1 if a coordinate is NaN or infinite.
 
         Raises
@@ -617,22 +617,22 @@ class Voronoi(Stored):
         Parameters
         ----------
         data : DataFrame or mapping, optional
-            Columns to carry, a row for each point. The cells replace the geometry of a
+            Columns to include, with one row for each point. The cells replace the geometry of a
             GeoDataFrame, and its reference system is kept.
         crs : any, optional
-            Reference system, as geopandas takes it.
+            Coordinate reference system, anything that geopandas accepts.
 
         Returns
         -------
         GeoDataFrame
-            A row for each point, in the order of the points and with the index of `data`.
+            One row for each point, in the order of the points and with the index of `data`.
 
         Raises
         ------
         MissingExtraError
             geopandas is not installed.
         InputError
-            `data` has another number of rows.
+            `data` does not have one row for each point.
 
         Examples
         --------
@@ -652,7 +652,7 @@ class Voronoi(Stored):
         Returns
         -------
         pyvista.PolyData or pyvista.UnstructuredGrid
-            In 2-D polygons at z = 0, cells with holes in triangles; in 3-D polyhedra. Cell data
+            In 2-D polygons at z = 0, cells with holes as triangles; in 3-D polyhedra. Cell data
             ``"site"`` is the row of the site, ``"area"`` or ``"volume"`` the measure of its cell.
 
         Raises
@@ -677,7 +677,7 @@ class Voronoi(Stored):
         Returns
         -------
         meshio.Mesh
-            In 2-D polygons at z = 0, cells with holes in triangles; in 3-D polyhedra. There is a
+            In 2-D polygons at z = 0, cells with holes as triangles; in 3-D polyhedra. There is one
             block for each number of corners, with the values of `to_pyvista`.
 
         Raises
@@ -724,8 +724,8 @@ class Voronoi(Stored):
 
         Notes
         -----
-        Without a clip a 2-D diagram is drawn as far as the box of the sites and a tenth more. In
-        3-D bounded and clipped cells are drawn.
+        Without a clip, a 2-D diagram is drawn in the bounding box of the sites, enlarged by a
+        tenth. In 3-D, bounded and clipped cells are drawn.
 
         Examples
         --------
