@@ -79,12 +79,21 @@ impl Boundary {
             let along = project(given, self.sides[i], q);
             let ahead = along > 1.0;
             if (0.0..=1.0).contains(&along) || along.is_nan() || forward == Some(!ahead) {
-                return (self.sides[i], clamp(along));
+                return self.place(i, clamp(along));
             }
             forward = Some(ahead);
             i = (i + if ahead { 1 } else { count - 1 }) % count;
         }
-        (self.sides[i], clamp(project(given, self.sides[i], q)))
+        self.place(i, clamp(project(given, self.sides[i], q)))
+    }
+
+    /// A place on the cycle, at a vertex on the edge that starts there: which of the two edges is
+    /// reached depends on where the search began.
+    fn place(&self, i: usize, along: f64) -> (Side, f64) {
+        if along < 1.0 {
+            return (self.sides[i], along);
+        }
+        (self.sides[(i + 1) % self.sides.len()], 0.0)
     }
 }
 
