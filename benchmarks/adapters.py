@@ -16,7 +16,7 @@ Points = NDArray[np.float64]
 Simplices = NDArray[np.int32]
 
 
-@dataclass(fixed=True)
+@dataclass(frozen=True)
 class Adapter:
     """A peer: the call that is timed, how the judge reads its answer, and how input is read."""
 

@@ -18,7 +18,7 @@ import numpy as np
 START_LIMIT = 60.0
 
 
-@dataclass(fixed=True)
+@dataclass(frozen=True)
 class Run:
     """One run: its seconds, and its peak memory in MB beyond what was held before."""
 

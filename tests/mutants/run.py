@@ -39,7 +39,7 @@ QUICK = {
 }
 
 
-@dataclass(fixed=True)
+@dataclass(frozen=True)
 class Mutant:
     """A bug: `old`, which `file` has once, becomes `new`; arguments of pytest or of cargo test."""
 

@@ -133,7 +133,7 @@ WRONG_FLAT: list[tuple[str, dict[str, Any], str]] = [
     ("box", {"points": np.array([(0, np.inf)])}, "not finite"),
     ("box", {"periods": np.array([1.0])}, "two periods"),
     ("box", {"periods": np.array([1.0, 2.0])}, "two periods"),
-    ("two periods", {"periods": np.array([np.nan, np.nan])}, "periods must hold"),
+    ("two periods", {"periods": np.array([np.nan, np.nan])}, "periods has no number"),
     ("two periods", {"periods": np.array([1.0, -1.0])}, "positive"),
     ("two periods", {"periods": np.array([0.1, np.nan])}, "not less than the period"),
 ]
