@@ -71,11 +71,11 @@ pub fn validate_regular2(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<RegularFaults2> {
-    let (given, heavy) = attached(py, || {
+    let (given, point_weights) = attached(py, || {
         let given = checked::<2, 3>(&points, &simplices, &neighbors)?;
         Ok((given, finite_weights(Some(&weights), given.points.len())?))
     })?;
-    let found = watched(py, |watch| regular::validate(given, heavy, watch))?;
+    let found = watched(py, |watch| regular::validate(given, point_weights, watch))?;
     Ok(RegularFaults2 {
         faults: Py::new(py, faults2(py, found.faults)?)?,
         hidden: numbers(py, found.hidden),
@@ -92,11 +92,11 @@ pub fn validate_regular3(
     simplices: PyReadonlyArray2<'_, i32>,
     neighbors: PyReadonlyArray2<'_, i32>,
 ) -> PyResult<RegularFaults3> {
-    let (given, heavy) = attached(py, || {
+    let (given, point_weights) = attached(py, || {
         let given = checked::<3, 4>(&points, &simplices, &neighbors)?;
         Ok((given, finite_weights(Some(&weights), given.points.len())?))
     })?;
-    let found = watched(py, |watch| space::validate(given, heavy, watch))?;
+    let found = watched(py, |watch| space::validate(given, point_weights, watch))?;
     Ok(RegularFaults3 {
         faults: Py::new(py, faults3(py, found.faults)?)?,
         hidden: numbers(py, found.hidden),

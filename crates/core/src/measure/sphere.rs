@@ -181,13 +181,13 @@ impl Corners {
     fn quotients(&self) -> ([BigInt; 3], BigInt, i64) {
         let low = lowest(&self.points, &self.weights);
         let at = self.points.map(|p| p.map(|x| scaled(x, low)));
-        let heavy = self.weights.map(|w| scaled(w, 2 * low));
+        let scaled_weights = self.weights.map(|w| scaled(w, 2 * low));
         let seen: [[BigInt; 3]; 3] =
             std::array::from_fn(|i| [0, 1, 2].map(|k| &at[i + 1][k] - &at[0][k]));
         let [d, e, f] = &seen;
         let lengths: [BigInt; 3] = std::array::from_fn(|i| {
             let [x, y, z] = &seen[i];
-            x * x + y * y + z * z + &heavy[0] - &heavy[i + 1]
+            x * x + y * y + z * z + &scaled_weights[0] - &scaled_weights[i + 1]
         });
         let half = determinant([d, e, f]);
         let den = half.magnitude().clone() * 2_u32;

@@ -80,11 +80,11 @@ fn filter([a, b, c, d, e]: [Point3; 5], w: [f64; 5]) -> Option<Sign> {
 fn exact(points: [Point3; 5], weights: [f64; 5]) -> Sign {
     let low = lowest(&points, &weights);
     let at = points.map(|p| p.map(|x| scaled(x, low)));
-    let heavy = weights.map(|w| scaled(w, 2 * low));
+    let scaled_weights = weights.map(|w| scaled(w, 2 * low));
     let seen: [[BigInt; 3]; 4] = std::array::from_fn(|i| [0, 1, 2].map(|k| &at[i][k] - &at[4][k]));
     let height = |i: usize| {
         let [x, y, z] = &seen[i];
-        x * x + y * y + z * z + &heavy[4] - &heavy[i]
+        x * x + y * y + z * z + &scaled_weights[4] - &scaled_weights[i]
     };
     let det = |i: usize, j: usize, k: usize| determinant([&seen[i], &seen[j], &seen[k]]);
     let positive = height(0) * det(1, 2, 3) + height(2) * det(0, 1, 3);

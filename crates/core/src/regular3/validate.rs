@@ -28,12 +28,12 @@ pub fn validate(given: Tetrahedra, weights: &[f64], watch: &Watch) -> Result<Che
         may_hide: true,
     };
     let at = |v: u32| given.points[v as usize];
-    let heavy = |v: u32| weights[v as usize];
+    let weight = |v: u32| weights[v as usize];
     let judge = |sites: [i32; 5]| {
         let sites = sites.map(|v| v as u32);
-        match power_sign(sites.map(at), sites.map(heavy)) {
+        match power_sign(sites.map(at), sites.map(weight)) {
             Sign::Positive => Verdict::Wrong,
-            Sign::Zero if power_canonical(sites.map(at), sites.map(heavy)) == Sign::Positive => {
+            Sign::Zero if power_canonical(sites.map(at), sites.map(weight)) == Sign::Positive => {
                 Verdict::Tie
             }
             _ => Verdict::Right,
@@ -48,7 +48,7 @@ pub fn validate(given: Tetrahedra, weights: &[f64], watch: &Watch) -> Result<Che
         };
         let below = |[a, b, c, d]: [u32; 4], p: u32| {
             let sites = [a, b, c, d, p];
-            power_canonical(sites.map(at), sites.map(heavy)) == Sign::Positive
+            power_canonical(sites.map(at), sites.map(weight)) == Sign::Positive
         };
         (hidden, faults.missing) = unused(given, &left, beyond, below, watch)?;
     }
