@@ -44,7 +44,7 @@ pub fn edges2(
         Ok(())
     };
     let row = |u: i32, v: u32| [u, v as i32];
-    distinct(simplices.len(), n, workers, watch, rows_of, row)
+    distinct::<true, _, _>(simplices.len(), n, workers, watch, rows_of, row)
 }
 
 /// Every edge of tetrahedra on `n` points once: the smaller vertex first, rows ascending.
@@ -65,7 +65,7 @@ pub fn edges3(
         Ok(())
     };
     let row = |u: i32, v: u32| [u, v as i32];
-    distinct(simplices.len(), n, workers, watch, rows_of, row)
+    distinct::<false, _, _>(simplices.len(), n, workers, watch, rows_of, row)
 }
 
 /// Every face of tetrahedra once: vertices and rows ascending. A face between two tetrahedra is
@@ -88,7 +88,7 @@ pub fn faces3(
         Ok(())
     };
     let row = |u: i32, rest: u64| [u, (rest >> 32) as i32, rest as u32 as i32];
-    distinct(simplices.len(), n, workers, watch, rows_of, row)
+    distinct::<true, _, _>(simplices.len(), n, workers, watch, rows_of, row)
 }
 
 /// The neighbors of each of `n` vertices along `edges`, ascending: where they begin in the second
@@ -147,9 +147,9 @@ impl<T> Buckets<T> {
     }
 }
 
-/// The distinct rows of `count` simplices, sorted. A row is its first vertex, below `n`, and the
-/// rest.
-fn distinct<T, R>(
+/// The rows of `count` simplices, sorted. A row is its first vertex, below `n`, and the rest. If
+/// `UNIQUE`, no two rows are equal; otherwise, of equal rows one is kept.
+fn distinct<const UNIQUE: bool, T, R>(
     count: usize,
     n: usize,
     workers: usize,
@@ -173,62 +173,108 @@ where
         Ok(buckets.rows)
     });
     let dealt = dealt.into_iter().collect::<Result<Vec<_>>>()?;
-    // Sort each bucket and remove duplicates.
-    let buckets = (0..(n >> bits) + 1).collect();
-    let sorted = parallel::map(workers, buckets, |b| {
-        watch.check()?;
+    let numbers = 0..(n >> bits) + 1;
+    let bucket = |b: usize| {
         let parts = dealt.iter().map(|rows| rows[b].as_slice());
-        sorted(parts, (b << bits) as i32, 1 << bits, &row)
+        Grouped::of(parts, (b << bits) as i32, 1 << bits)
+    };
+    if UNIQUE {
+        let length = |b: usize| dealt.iter().map(|rows| rows[b].len()).sum();
+        let mut found = zeroed(numbers.clone().map(length).sum())?;
+        let tasks = numbers.clone().zip(split(&mut found, numbers.map(length))?);
+        parallel::map_watched(workers, tasks.collect(), watch, |(b, own)| {
+            let mut grouped = bucket(b)?;
+            let rows = grouped
+                .rows()
+                .flat_map(|(u, rest)| rest.iter().map(move |&r| (u, r)));
+            own.iter_mut()
+                .zip(rows)
+                .for_each(|(own, (u, rest))| *own = row(u, rest));
+            Ok(())
+        })?;
+        return Ok(found);
+    }
+    let sorted = parallel::map(workers, numbers.collect(), |b| {
+        watch.check()?;
+        let mut grouped = bucket(b)?;
+        let mut found = with_room(grouped.rest.len())?;
+        for (u, rest) in grouped.rows() {
+            let fresh = (0..rest.len()).filter(|&i| i == 0 || rest[i] != rest[i - 1]);
+            found.extend(fresh.map(|i| row(u, rest[i])));
+        }
+        Ok(found)
     });
     drop(dealt);
     let sorted = sorted.into_iter().collect::<Result<Vec<_>>>()?;
-    // Copy the buckets to one array, in order.
     let mut found = zeroed(sorted.iter().map(Vec::len).sum())?;
-    let mut tasks = with_room(sorted.len())?;
-    let mut left = found.as_mut_slice();
-    for part in sorted {
-        let (own, later) = left.split_at_mut(part.len());
-        tasks.push((own, part));
-        left = later;
-    }
-    parallel::map_watched(workers, tasks, watch, |(own, part)| {
+    let parts = split(&mut found, sorted.iter().map(Vec::len))?;
+    let tasks = parts.into_iter().zip(sorted).collect();
+    parallel::map_watched(workers, tasks, watch, |(own, part): (&mut [R], Vec<R>)| {
         own.copy_from_slice(&part);
         Ok(())
     })?;
     Ok(found)
 }
 
-/// The distinct rows whose first vertices are the `range` ones from `first` on, sorted.
-fn sorted<'a, T: Copy + Ord + Default + 'a, R>(
-    parts: impl Iterator<Item = &'a [(i32, T)]> + Clone,
+/// Consecutive parts of the given lengths.
+fn split<T>(all: &mut [T], lengths: impl Iterator<Item = usize>) -> Result<Vec<&mut [T]>> {
+    let mut left = all;
+    let mut parts = with_room(lengths.size_hint().0)?;
+    for length in lengths {
+        let (own, later) = left.split_at_mut(length);
+        push(&mut parts, own)?;
+        left = later;
+    }
+    Ok(parts)
+}
+
+/// The rows of a bucket, grouped by their first vertex.
+struct Grouped<T> {
     first: i32,
-    range: usize,
-    row: &impl Fn(i32, T) -> R,
-) -> Result<Vec<R>> {
-    let mut ends = filled(range + 1, 0u32)?;
-    for &(u, _) in parts.clone().flatten() {
-        ends[(u - first) as usize + 1] += 1;
+    /// Where the rows of each vertex end.
+    ends: Vec<u32>,
+    rest: Vec<T>,
+}
+
+impl<T: Copy + Ord + Default> Grouped<T> {
+    /// Rows whose first vertices are the `range` ones from `first` on.
+    fn of<'a>(
+        parts: impl Iterator<Item = &'a [(i32, T)]> + Clone,
+        first: i32,
+        range: usize,
+    ) -> Result<Self>
+    where
+        T: 'a,
+    {
+        let mut ends = filled(range + 1, 0u32)?;
+        for &(u, _) in parts.clone().flatten() {
+            ends[(u - first) as usize + 1] += 1;
+        }
+        for v in 0..range {
+            ends[v + 1] += ends[v];
+        }
+        let mut rest = filled(ends[range] as usize, T::default())?;
+        // This moves each entry from the start of its vertex to its end.
+        for &(u, with) in parts.flatten() {
+            let slot = &mut ends[(u - first) as usize];
+            rest[*slot as usize] = with;
+            *slot += 1;
+        }
+        ends.pop();
+        Ok(Self { first, ends, rest })
     }
-    for v in 0..range {
-        ends[v + 1] += ends[v];
+
+    /// Each vertex and its rows, sorted.
+    fn rows(&mut self) -> impl Iterator<Item = (i32, &[T])> {
+        let mut left = self.rest.as_mut_slice();
+        let mut start = 0;
+        (self.first..).zip(&self.ends).map(move |(u, &end)| {
+            let (here, later) = std::mem::take(&mut left).split_at_mut((end - start) as usize);
+            (start, left) = (end, later);
+            here.sort_unstable();
+            (u, &*here)
+        })
     }
-    let mut rest = filled(ends[range] as usize, T::default())?;
-    // This moves each entry from the start of its vertex to its end.
-    for &(u, with) in parts.flatten() {
-        let slot = &mut ends[(u - first) as usize];
-        rest[*slot as usize] = with;
-        *slot += 1;
-    }
-    let mut found = with_room(rest.len())?;
-    let mut start = 0;
-    for (u, &end) in (first..).zip(&ends[..range]) {
-        let here = &mut rest[start..end as usize];
-        start = end as usize;
-        here.sort_unstable();
-        let fresh = (0..here.len()).filter(|&i| i == 0 || here[i] != here[i - 1]);
-        found.extend(fresh.map(|i| row(u, here[i])));
-    }
-    Ok(found)
 }
 
 #[cfg(test)]
