@@ -30,8 +30,13 @@ def plane(points: Floats) -> Floats:
     return points @ np.arange(1.0, points.shape[1] + 1) + 0.25
 
 
-def check(points: Floats, queries: Floats, scale: int = 0) -> None:
-    """Both interpolators go on as the linear function that they have inside."""
+def check(points: Floats, queries: Floats, scale: int = 0, gap: float = np.inf) -> None:
+    """Both interpolators go on as the linear function that they have inside.
+
+    A site may have twins at the distance `gap` for its only neighbors. If they are farther than
+    CLOSE of the core, its slope is theirs, with the rounding error of the values over the gap.
+    """
+    tolerance = TOLERANCE + (8 * np.finfo(float).eps / gap if gap > 2.0**-34 else 0)
     points = np.unique(points, axis=0)
     values, wanted = plane(points), plane(queries)
     points, queries = np.ldexp(points, scale), np.ldexp(queries, scale)
@@ -41,9 +46,9 @@ def check(points: Floats, queries: Floats, scale: int = 0) -> None:
         Linear(mesh, values, extrapolate="linear"),
         NaturalNeighbor(mesh, values, kind="laplace", extrapolate="linear"),
     ):
-        np.testing.assert_allclose(interpolator(queries), wanted, rtol=0, atol=TOLERANCE * size)
+        np.testing.assert_allclose(interpolator(queries), wanted, rtol=0, atol=tolerance * size)
         table = interpolator.weights(queries)
-        np.testing.assert_allclose(table @ values, wanted, rtol=0, atol=TOLERANCE * size)
+        np.testing.assert_allclose(table @ values, wanted, rtol=0, atol=tolerance * size)
 
 
 def around(rng: np.random.Generator, ndim: int) -> Floats:
@@ -73,18 +78,12 @@ def test_beside_twins_at_any_gap_and_scale(  # noqa: PLR0917 (what is drawn)
     rng = np.random.default_rng(seed)
     base = lattice(ndim) if on_lattice else rng.random((20, ndim)) * 2
     steps = np.ldexp(rng.integers(-2, 3, (count, ndim)), exponent)
-    # In 2-D one twin for each site: a site whose neighbors are all twins has no slope there.
-    chosen = (
-        rng.permutation(len(base))[:count] if ndim == 2 else rng.integers(len(base), size=count)
-    )
-    twins = base[chosen]
-    steps = steps[: len(chosen)]
+    twins = base[rng.integers(len(base), size=count)]
     # Where a step is lost, the next double is taken.
     moved = np.where(twins + steps == twins, np.nextafter(twins, 9), twins + steps)
-    check(np.vstack((base, moved)), around(rng, ndim), scale)
+    check(np.vstack((base, moved)), around(rng, ndim), scale, 2.0**exponent)
 
 
-@pytest.mark.xfail(strict=True, reason="slopes of 2-D sites come from their neighbors alone")
 def test_beside_several_twins_of_a_site_in_2d() -> None:
     """Some site of the hull has only neighbors within a few units in the last place."""
     rng = np.random.default_rng(579)
@@ -99,10 +98,11 @@ def test_beside_clusters_of_sites_that_nearly_coincide() -> None:
     """Vertices in their middle have no other neighbors."""
     rng = np.random.default_rng(1)
     for corner in ((2.0, 2.0, 2.0), (2.0, 1.0, 1.0), (0.0, 2.0, 1.0)):
-        cluster = np.array(corner) + lattice(3) * 2.0**-50
-        check(np.vstack((lattice(3), cluster)), around(rng, 3))
-        scattered = np.array(corner) + rng.normal(size=(60, 3)) * 1e-13
-        check(np.vstack((lattice(3), scattered)), around(rng, 3))
+        for ndim in (2, 3):
+            cluster = np.array(corner[:ndim]) + lattice(ndim) * 2.0**-50
+            check(np.vstack((lattice(ndim), cluster)), around(rng, ndim))
+            scattered = np.array(corner[:ndim]) + rng.normal(size=(60, ndim)) * 1e-13
+            check(np.vstack((lattice(ndim), scattered)), around(rng, ndim))
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(-3, 0), st.integers(-3, 0))

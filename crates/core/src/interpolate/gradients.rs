@@ -249,6 +249,7 @@ pub fn local_gradients(
 ) -> Result<Vec<f64>> {
     let out = Output::filled(2 * points.len() * field.columns, 0.0, watch)?;
     let unit = unit_of(points);
+    let least = CLOSE * longest_side(points, unit);
     let hubs = Hubs::of(points, adjacency, watch)?;
     let tasks = (0..points.len()).step_by(SHARE).collect();
     let ends = parallel::map(workers, tasks, |start: usize| {
@@ -257,18 +258,29 @@ pub fn local_gradients(
         let mut work = 0;
         for v in start..points.len().min(start + SHARE) {
             let near = adjacency.neighbors(v);
-            surroundings(&hubs, v, degree, &mut wide);
+            wide.clear();
+            wide.extend_from_slice(near);
             let of_near = || Fit::of(points, unit, v, near, 1);
-            // Neighbors that do not determine a plane need a wider ring.
-            if degree == 1 && of_near().is_none_or(|plane| plane.is_noisy()) {
-                surroundings(&hubs, v, 2, &mut wide);
+            // Neighbors that do not determine a plane need a wider ring, and a further one if all
+            // of them nearly coincide.
+            if degree > 1 || of_near().is_none_or(|plane| !plane.is_steady(least)) {
+                hubs.widen(v, &mut wide);
+            }
+            let is_far = |u: &i32| {
+                let [x, y] = in_unit(points[v], points[*u as usize], unit);
+                x.hypot(y) >= least
+            };
+            let mut times = 1;
+            while times < WIDER && wide.len() < WIDE && !wide.iter().any(is_far) {
+                hubs.widen(v, &mut wide);
+                times += 1;
             }
             work += wide.len();
             if work > 16 * SHARE {
                 work = 0;
                 watch.check()?;
             }
-            let common = Fit::best(points, unit, v, near, &wide, degree);
+            let common = Fit::best(points, unit, least, v, near, &wide, degree);
             // Columns without missing values share one fit.
             for column in 0..field.columns {
                 let known = |u: &i32| field.value(*u, column).is_finite();
@@ -280,7 +292,7 @@ pub fn local_gradients(
                     let [near, wide] =
                         [near, &wide].map(|ring| ring.iter().copied().filter(known).collect());
                     let (near, wide): (Vec<i32>, Vec<i32>) = (near, wide);
-                    Fit::best(points, unit, v, &near, &wide, degree)
+                    Fit::best(points, unit, least, v, &near, &wide, degree)
                         .and_then(|fit| fit.gradient(&field, v, column))
                 };
                 if let Some(g) = gradient.and_then(|g| finite(g.map(|x| x / unit))) {
@@ -294,21 +306,6 @@ pub fn local_gradients(
     Ok(out.into_vec())
 }
 
-/// The neighbors of a vertex, for degree 2 theirs as well, without the vertex itself.
-fn surroundings(hubs: &Hubs, v: usize, degree: usize, ring: &mut Vec<i32>) {
-    let near = hubs.adjacency.neighbors(v);
-    ring.clear();
-    ring.extend_from_slice(near);
-    if degree > 1 {
-        for &u in near {
-            hubs.extend(u, v as i32, ring);
-        }
-        ring.sort_unstable();
-        ring.dedup();
-        ring.retain(|&u| u as usize != v);
-    }
-}
-
 /// How much more the gradient of a quadric may change with the values than that of the plane. For
 /// scattered and gridded points it changes about half as much inside and up to 2.4 times as much on
 /// the hull, so quadrics are reproduced; between survey tracks it is up to 10^12 times, and the
@@ -318,6 +315,16 @@ const SWING: f64 = 3.0;
 /// How much a gradient may change with the values, over their distances, before the plane of a
 /// wider ring is used: as when the neighbors are collinear except for one that nearly coincides.
 pub const NOISY: f64 = 1e5;
+
+/// Share of the longest side of the bounding box below which a ring is too small for the rounding
+/// of values, which would be more than 1e-6 of their slope.
+pub const CLOSE: f64 = 1e-10;
+
+/// Rings of this many vertices are not widened.
+pub const WIDE: usize = 1 << 10;
+
+/// A ring is widened at most so many times.
+pub const WIDER: usize = 8;
 
 /// The factors that turn differences to surrounding values into a gradient.
 struct Fit<'a> {
@@ -333,14 +340,15 @@ impl<'a> Fit<'a> {
     fn best(
         points: &[Point2],
         unit: f64,
+        least: f64,
         v: usize,
         near: &'a [i32],
         wide: &'a [i32],
         degree: usize,
     ) -> Option<Self> {
         let plane = Self::of(points, unit, v, near, 1);
-        let plane = if plane.as_ref().is_none_or(Self::is_noisy) {
-            let further = Self::of(points, unit, v, wide, 1).filter(|fit| !fit.is_noisy());
+        let plane = if plane.as_ref().is_none_or(|fit| !fit.is_steady(least)) {
+            let further = Self::of(points, unit, v, wide, 1).filter(|fit| fit.is_steady(least));
             further
                 .or(plane)
                 .or_else(|| Self::along(points, unit, v, near))
@@ -428,9 +436,9 @@ impl<'a> Fit<'a> {
         self.norm() <= SWING * plane.norm()
     }
 
-    /// Whether the rounding of values would show in it.
-    fn is_noisy(&self) -> bool {
-        self.norm() * self.size > NOISY
+    /// Whether it is at least as large as `least`, and the rounding of values does not show.
+    fn is_steady(&self, least: f64) -> bool {
+        self.size >= least && self.norm() * self.size <= NOISY
     }
 
     /// The square root of the sum of squares of all factors.

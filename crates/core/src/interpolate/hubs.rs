@@ -60,8 +60,8 @@ impl<'a> Hubs<'a> {
         Ok(Self { adjacency, rings })
     }
 
-    /// Adds the neighbors of `u` that count for its neighbor `v`.
-    pub fn extend(&self, u: i32, v: i32, found: &mut Vec<i32>) {
+    /// Adds the neighbors of `u` that count for `v`, usually its neighbor.
+    fn extend(&self, u: i32, v: i32, found: &mut Vec<i32>) {
         let Some(ring) = self.rings.get(&u) else {
             found.extend_from_slice(self.adjacency.neighbors(u as usize));
             return;
@@ -72,6 +72,16 @@ impl<'a> Hubs<'a> {
         let (first, part) = (place + n - MANY / 4, MANY / 2);
         found.extend((first..=first + part).map(|i| ring.around[i % n]));
         found.extend((1..part).map(|i| ring.around[(place + i * n / part) % n]));
+    }
+
+    /// Extends a ring around `v` by the neighbors of all in it that count for `v`.
+    pub fn widen(&self, v: usize, ring: &mut Vec<i32>) {
+        for i in 0..ring.len() {
+            self.extend(ring[i], v as i32, ring);
+        }
+        ring.sort_unstable();
+        ring.dedup();
+        ring.retain(|&u| u as usize != v);
     }
 }
 

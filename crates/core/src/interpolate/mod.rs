@@ -22,7 +22,7 @@ pub use adjacency::Adjacency;
 pub use cavity::Barrier;
 pub use clough_tocher::{clough_tocher, clough_tocher_weights};
 pub use field::Field;
-pub use gradients::{NEAR, NOISY, global_gradients, local_gradients};
+pub use gradients::{CLOSE, NEAR, NOISY, WIDE, WIDER, global_gradients, local_gradients};
 pub use kind::Kind;
 pub use leave_one_out::{Method, leave_one_out};
 pub use linear::linear;

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use delone_predicates::{Point3, lexicographic};
 
 use crate::error::Result;
-use crate::interpolate::{Adjacency, Field, NEAR, NOISY};
+use crate::interpolate::{Adjacency, CLOSE, Field, NEAR, NOISY, WIDE, WIDER};
 use crate::locate::{Output, in_unit, length, longest_side, unit_of};
 use crate::parallel;
 use crate::watch::{Pace, Watch};
@@ -27,14 +27,6 @@ const MANY: usize = 64;
 
 /// Share of the largest singular value below which a direction is not spanned.
 const DEPENDENT: f64 = 1e-10;
-
-/// Share of the longest side of the bounding box below which a ring is too small for the rounding
-/// of values, which would be more than 1e-6 of their slope.
-const CLOSE: f64 = 1e-10;
-
-/// Rings of this many vertices are not widened, and a ring is widened at most `WIDER` times.
-const WIDE: usize = 1 << 10;
-const WIDER: usize = 8;
 
 /// Gradients at the vertices `rows`, three numbers for each row and column, of the linear functions
 /// through the vertex that best fit the values around it, weighted by the inverse squared distance.
