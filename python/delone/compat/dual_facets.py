@@ -48,18 +48,10 @@ class Facets(NamedTuple):
 class Dual:
     """The simplices of the hull of dual points.
 
-    Parameters
-    ----------
-    rows : ndarray of float64, shape (k, d + 1)
-        Half-spaces ``a @ x + b <= 0``.
-    point : ndarray of float64, shape (d,)
-        The interior point p.
-    slack : ndarray of float64, shape (k,)
-        ``a @ p + b``, with a relative error below 1e-14.
-    simplices : ndarray of int32, shape (m, d)
-        Half-spaces whose dual points are edges, or triangles counter-clockwise from outside.
-    neighbors : ndarray of int32, shape (m, d)
-        The simplex that shares all vertices but one.
+    `rows`, (k, d + 1), are half-spaces ``a @ x + b <= 0``; `slack`, (k,), is ``a @ p + b`` at the
+    interior point p, with a relative error below 1e-14. `simplices`, (m, d), are rows of
+    half-spaces, triangles counter-clockwise from outside; `neighbors`, (m, d), share all vertices
+    but one.
     """
 
     def __init__(
@@ -82,17 +74,9 @@ class Dual:
             self._filter = np.column_stack((normals, offset / self._unit))
 
     def facets(self, *, triangulated: bool) -> Facets:
-        """Merge simplices into facets.
+        """Merge simplices into facets, in the order of their first simplices.
 
-        Parameters
-        ----------
-        triangulated : bool
-            Whether facets of more than three half-spaces are split into triangles again.
-
-        Returns
-        -------
-        Facets
-            The facets, in the order of their first simplices.
+        `triangulated` splits facets of more than three half-spaces into triangles again.
         """
         flat = self._flat()
         label = self._labels(flat)
@@ -188,18 +172,7 @@ class Dual:
         return ring
 
     def corners(self, simplices: Rows) -> Floats:
-        """Return the intersections of the half-spaces of simplices.
-
-        Parameters
-        ----------
-        simplices : ndarray of int64, shape (c,)
-            Simplices that are not flat.
-
-        Returns
-        -------
-        ndarray of float64, shape (c, d)
-            The points; infinite if the intersection is unbounded.
-        """
+        """The intersections, (c, d), of simplices that are not flat; infinite where unbounded."""
         rows = self._simplices[simplices]
         found = np.full(rows.shape, np.inf)
         normals = self._filter[..., :-1]
@@ -222,25 +195,7 @@ def _root(label: Rows, at: int) -> int:
 
 
 def first_of_equal(rows: Floats) -> Rows:
-    """Return the rows that are not positive multiples of earlier rows.
-
-    Parameters
-    ----------
-    rows : ndarray of float64, shape (k, d + 1)
-        Half-spaces, none of them all zero.
-
-    Returns
-    -------
-    ndarray of int64
-        The rows, ascending.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.compat.dual_facets import first_of_equal
-    >>> first_of_equal(np.array([(1.0, 0, -1), (3, 0, -3), (1, 0, -2)])).tolist()
-    [0, 2]
-    """
+    """The rows of half-spaces, none all zero, that are not positive multiples of earlier rows."""
     # Quotients are correctly rounded, so those of multiples are equal; others may be as well.
     quotients = rows / np.abs(rows).max(axis=1, keepdims=True)
     _, group = np.unique(quotients, axis=0, return_inverse=True)
@@ -295,25 +250,7 @@ def _meeting(rows: list[list[Fraction]]) -> list[float]:
 
 
 def rounded(exact: Fraction) -> float:
-    """Return the nearest double, or infinity beyond the range.
-
-    Parameters
-    ----------
-    exact : Fraction
-        A number.
-
-    Returns
-    -------
-    float
-        The nearest double.
-
-    Examples
-    --------
-    >>> from fractions import Fraction
-    >>> from delone.compat.dual_facets import rounded
-    >>> rounded(Fraction(1, 3)), rounded(-(Fraction(10) ** 400))
-    (0.3333333333333333, -inf)
-    """
+    """The nearest double, or infinity beyond the range."""
     try:
         return float(exact)
     except OverflowError:

@@ -25,33 +25,10 @@ __all__ = ["furthest_site"]
 
 
 def furthest_site(points: Floats, hull: Rows) -> NDArray[np.int32]:
-    """Return the triangles whose circles contain all points.
+    """The triangles, (m, 3), whose circles contain all points: ascending, smallest row first.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    hull : ndarray of int64, shape (h,)
-        The convex hull, counter-clockwise; it may include vertices inside sides.
-
-    Returns
-    -------
-    ndarray of int32, shape (m, 3)
-        Counter-clockwise, each starting with its smallest row, in ascending order. m is two less
-        than the number of extreme points.
-
-    Notes
-    -----
-    Expected time O(h), because the order of insertion is random (with a fixed seed; the result does
-    not depend on it).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.compat.furthest import furthest_site
-    >>> points = np.array([(0, 0), (4, 0), (5, 5), (0, 4.0)])
-    >>> furthest_site(points, np.arange(4)).tolist()
-    [[0, 1, 2], [0, 2, 3]]
+    `hull` is counter-clockwise, and may include vertices inside sides. Expected time O(h): the
+    order of insertion is random, with a fixed seed on which the result does not depend.
     """
     corners = points[hull]
     turns = orient2d(np.roll(corners, 1, axis=0), corners, np.roll(corners, -1, axis=0))

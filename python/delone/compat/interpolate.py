@@ -138,12 +138,9 @@ class _Triangulated:
         """
         queries = self._scale(_queries(args, self.points.shape[1]))
         found = self._interpolator(queries)
-        if np.isnan(self.fill_value):
-            # Both parts of complex values, as in SciPy.
-            if self.is_complex:
-                found[self._mesh.find_simplex(queries) < 0] = self.fill_value
-            return found
-        found[self._mesh.find_simplex(queries) < 0] = self.fill_value
+        # A complex NaN fills both parts, as in SciPy.
+        if self.is_complex or not np.isnan(self.fill_value):
+            found[self._mesh.find_simplex(queries) < 0] = self.fill_value
         return found
 
 

@@ -138,23 +138,7 @@ class Incremental:
 
 
 def read_options(options: str | None, *, incremental: bool, what: str) -> QhullOptions:
-    """Parse an option string; errors have SciPy's types.
-
-    Parameters
-    ----------
-    options, incremental, what
-        As for `QhullOptions.parse`.
-
-    Returns
-    -------
-    QhullOptions
-        The parsed options.
-
-    Raises
-    ------
-    QhullError, InputError
-        An option that Qhull or delone rejects.
-    """
+    """Parse an option string; errors have SciPy's types."""
     try:
         return QhullOptions.parse(options, incremental=incremental, what=what)
     except QhullOptionError as error:
@@ -165,17 +149,7 @@ def read_options(options: str | None, *, incremental: bool, what: str) -> QhullO
 def told_as_qhull_does(points: Floats, what: str = DELAUNAY) -> Iterator[None]:
     """Convert errors about points to those that SciPy raises.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        The points being processed.
-    what : str, optional
-        Name of the result that does not exist if they span no area or volume.
-
-    Returns
-    -------
-    context manager
-        Wraps the computation.
+    `what` is the result that does not exist if the points span no area or volume.
     """
     if len(points) == 0:
         raise ShapeError("no points given")
@@ -194,19 +168,7 @@ def told_as_qhull_does(points: Floats, what: str = DELAUNAY) -> Iterator[None]:
 def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delaunay.Delaunay:
     """Triangulate as SciPy does; errors have SciPy's types.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Points.
-    furthest : bool
-        Whether circles contain all points, rather than none.
-    what : str, optional
-        Name of the result.
-
-    Returns
-    -------
-    delone.Delaunay
-        The triangulation.
+    `furthest`: circles contain all points, rather than none.
     """
     with told_as_qhull_does(points, what):
         mesh = delaunay.Delaunay(points)
@@ -223,20 +185,7 @@ def triangulate(points: Floats, furthest: bool, what: str = DELAUNAY) -> delauna
 
 
 def as_low_points(points: ArrayLike, most: int) -> Floats:
-    """Convert as SciPy does if that is exact; errors have SciPy's types.
-
-    Parameters
-    ----------
-    points : array_like, shape (n, 2) or (n, 3)
-        Points.
-    most : {2, 3}
-        The maximum dimension.
-
-    Returns
-    -------
-    ndarray of float64, of the same shape
-        The points.
-    """
+    """Convert as SciPy does if that is exact; errors have SciPy's types. At most `most` axes."""
     ndim = 2 if most == 2 else None
     if isinstance(points, np.ma.MaskedArray):
         return as_points(points, ndim=ndim)  # which names it in its error
@@ -260,34 +209,7 @@ def as_low_points(points: ArrayLike, most: int) -> Floats:
 
 
 def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
-    """Convert booleans and Python objects to numbers, if that is exact.
-
-    Parameters
-    ----------
-    array : ndarray of bool or object
-        Numbers.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of float64, of the same shape
-        The numbers; 1 for True, 0 for False.
-
-    Raises
-    ------
-    TypeError, ValueError
-        An element is not a real number.
-    DtypeError
-        A number is not representable as float64.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.compat.qhull import unboxed
-    >>> unboxed(np.array([True, False]))
-    array([1., 0.])
-    """
+    """Convert booleans and Python objects to numbers; DtypeError if that is not exact."""
     numbers = array.astype(np.float64)
     if array.dtype.kind == "O" and not ((numbers == array) | np.isnan(numbers)).all():
         wrong = array[(numbers != array) & ~np.isnan(numbers)]
@@ -296,25 +218,7 @@ def unboxed(array: NDArray[Any], name: str = "points") -> Floats:
 
 
 def unmasked(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a plain array, with NaN for masked entries.
-
-    Parameters
-    ----------
-    array : ndarray
-        Numbers, masked or not.
-
-    Returns
-    -------
-    ndarray
-        The same array if nothing is masked; otherwise floats, complex numbers or objects.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.compat.qhull import unmasked
-    >>> unmasked(np.ma.masked_equal([1, 2, 3], 2))
-    array([ 1., nan,  3.])
-    """
+    """A plain array, with NaN for masked entries; the same array if nothing is masked."""
     if not isinstance(array, np.ma.MaskedArray):
         return array
     plain = np.asarray(array.data)
@@ -327,27 +231,7 @@ def unmasked(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def as_queries(xi: ArrayLike, ndim: int) -> Floats:
-    """Convert query points as SciPy does if that is exact.
-
-    Parameters
-    ----------
-    xi : array_like, shape (..., ndim)
-        Points.
-    ndim : int
-        The number of coordinates.
-
-    Returns
-    -------
-    ndarray of float64, of the same shape
-        The points.
-
-    Raises
-    ------
-    IndexError
-        `xi` is a scalar.
-    ShapeError, DtypeError
-        `xi` has a wrong number of coordinates, or is not numeric.
-    """
+    """Convert query points, (..., ndim), as SciPy does if that is exact."""
     array = unmasked(np.asanyarray(xi))
     if array.ndim == 0:
         raise IndexError("points to locate need a last axis of coordinates, got a single value")

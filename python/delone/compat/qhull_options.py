@@ -46,59 +46,25 @@ class QhullOptionError(InputError):
 
 @dataclass(frozen=True, kw_only=True)
 class QhullOptions:
-    """The contents of an option string.
+    """The contents of an option string."""
 
-    Parameters
-    ----------
-    scaled : bool
-        ``Qbb``: lifted points are scaled to the size of their coordinates.
-    infinite_point : bool
-        ``Qz``: a point above all others is included in that scaling.
-    coplanar : bool
-        ``Qc``: rows that are not vertices are listed.
-    furthest : bool
-        ``Qu``: the furthest-site triangulation or diagram.
-    triangulated : bool
-        ``Qt``: facets with more vertices than a simplex are triangulated.
-    """
-
+    # Qbb: lifted points are scaled to the size of their coordinates.
     scaled: bool
+    # Qz: a point above all others is included in that scaling.
     infinite_point: bool
+    # Qc: rows that are not vertices are listed.
     coplanar: bool
+    # Qu: the furthest-site triangulation or diagram.
     furthest: bool
+    # Qt: facets with more vertices than a simplex are triangulated.
     triangulated: bool
 
     @classmethod
     def parse(cls, options: str | None, *, incremental: bool, what: str = DELAUNAY) -> QhullOptions:
-        """Parse an option string.
+        """Parse options separated by spaces; None means SciPy's defaults for triangulations.
 
-        Parameters
-        ----------
-        options : str or None
-            Separated by spaces. None means SciPy's defaults for Delaunay triangulations.
-        incremental : bool
-            Whether points can be added later.
-        what : str, optional
-            What is computed: `DELAUNAY`, `VORONOI`, `HULL` or `HALFSPACES`.
-
-        Returns
-        -------
-        QhullOptions
-            The parsed options.
-
-        Raises
-        ------
-        QhullOptionError
-            Qhull has no such option, or not for this computation.
-        InputError
-            An option requires a result other than the exact one, or one that is incompatible with
-            adding points.
-
-        Examples
-        --------
-        >>> from delone.compat.qhull_options import QhullOptions
-        >>> QhullOptions.parse("Qu Pp", incremental=False).furthest
-        True
+        InputError: an option requires a result other than the exact one, or is incompatible with
+        adding points (`incremental`).
         """
         if options is None:
             options = "Qc Q12" if incremental else "Qbb Qc Qz Q12"

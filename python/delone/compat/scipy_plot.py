@@ -9,7 +9,7 @@ import numpy as np
 from delone.errors import ShapeError
 from delone.extras import require
 
-__all__ = ["convex_hull_plot_2d", "delaunay_plot_2d"]
+__all__ = ["convex_hull_plot_2d", "delaunay_plot_2d", "framed", "points_and_axes"]
 
 # Margin on each side, as a fraction of the bounding box of the points.
 _MARGIN = 0.1
@@ -46,10 +46,10 @@ def delaunay_plot_2d(tri: Any, ax: Any = None) -> Any:
     >>> len(figure.axes[0].lines)
     3
     """
-    points, ax = _begun(tri, ax, "Delaunay triangulation")
+    points, ax = points_and_axes(tri, ax, "Delaunay triangulation")
     ax.plot(*points.T, "o")
     ax.triplot(*points.T, np.array(tri.simplices))
-    return _ended(points, ax)
+    return framed(points, ax)
 
 
 def convex_hull_plot_2d(hull: Any, ax: Any = None) -> Any:
@@ -83,15 +83,15 @@ def convex_hull_plot_2d(hull: Any, ax: Any = None) -> Any:
     >>> len(figure.axes[0].collections[0].get_segments())
     4
     """
-    points, ax = _begun(hull, ax, "convex hull")
+    points, ax = points_and_axes(hull, ax, "convex hull")
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     ax.plot(*points.T, "o")
     edges = points[np.asarray(hull.simplices)]
     ax.add_collection(collections.LineCollection(edges, colors="k", linestyle="solid"))
-    return _ended(points, ax)
+    return framed(points, ax)
 
 
-def _begun(thing: Any, ax: Any, what: str) -> tuple[Any, Any]:
+def points_and_axes(thing: Any, ax: Any, what: str) -> tuple[Any, Any]:
     """The points, and axes to draw on."""
     points = np.asarray(thing.points)
     if points.shape[1] != 2:
@@ -101,7 +101,7 @@ def _begun(thing: Any, ax: Any, what: str) -> tuple[Any, Any]:
     return points, ax
 
 
-def _ended(points: Any, ax: Any) -> Any:
+def framed(points: Any, ax: Any) -> Any:
     """The figure, with SciPy's limits."""
     margin = _MARGIN * np.ptp(points, axis=0)
     low, high = points.min(axis=0) - margin, points.max(axis=0) + margin

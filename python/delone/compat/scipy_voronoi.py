@@ -21,8 +21,9 @@ from delone import _core
 from delone._arrays import as_workers
 from delone.compat.qhull import Incremental, triangulate
 from delone.compat.qhull_options import VORONOI
+from delone.compat.scipy_plot import framed, points_and_axes
 from delone.duplicates import first_rows
-from delone.errors import ShapeError
+from delone.extras import require
 from delone.voronoi.rows import as_lists, from_the_gap, one_gap
 
 if TYPE_CHECKING:
@@ -228,14 +229,10 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
     >>> len(figure.axes[0].collections)
     2
     """
-    from delone.extras import require
-
     lines = require("matplotlib.collections", extra="plot", what="drawing")
-    if vor.points.shape[1] != 2:
-        raise ShapeError("the Voronoi diagram is not 2-D")
-    ax = ax or require("matplotlib.pyplot", extra="plot", what="drawing").figure().gca()
+    points, ax = points_and_axes(vor, ax, "Voronoi diagram")
     if kw.get("show_points", True):
-        ax.plot(*vor.points.T, ".", markersize=kw.get("point_size"))
+        ax.plot(*points.T, ".", markersize=kw.get("point_size"))
     if kw.get("show_vertices", True):
         ax.plot(*vor.vertices.T, "o")
     look = {
@@ -249,10 +246,7 @@ def voronoi_plot_2d(vor: Any, ax: Any = None, **kw: Any) -> Any:
     ax.add_collection(lines.LineCollection(inner, linestyle="solid", **look))
     outer = [*_far_segments(vor, pairs)]
     ax.add_collection(lines.LineCollection(outer, linestyle="dashed", **look))
-    margin = 0.1 * np.ptp(vor.points, axis=0)
-    low, high = vor.points.min(axis=0) - margin, vor.points.max(axis=0) + margin
-    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    return ax.figure
+    return framed(points, ax)
 
 
 def _far_segments(vor: Any, pairs: Indices) -> Floats:

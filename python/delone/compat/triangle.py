@@ -202,15 +202,8 @@ def _meshed(
         sizes_yield=True,
     )
     markers = tri.get("segment_markers") if planar else None, tri.get("vertex_markers")
-    found = filled(
-        base,
-        base.region,
-        limits,
-        sizes=(area, None),
-        fixed=switches.fixed,
-        markers=markers,
-        stages={},
-    )
+    sizes, fixed = (area, None), switches.fixed
+    found = filled(base, base.region, limits, sizes=sizes, fixed=fixed, markers=markers, stages={})
     attributes = None
     if "A" in switches.on and len(seeds):
         attributes = np.append(seeds[:, 2], 0.0)[found.region][:, None]
@@ -277,16 +270,15 @@ def _segment_markers(found: Mesh) -> Indices:
     """Markers of subsegments, 1 on the boundary if there is none."""
     marks = found.segment_markers.copy()
     n = found.npoints
-    keys = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
-    rim = topology.among(keys, topology.edge_keys(found.boundary[:, 0], found.boundary[:, 1], n))
+    keys = topology.edge_keys(*found.segments.T, n)
+    rim = topology.among(keys, topology.edge_keys(*found.boundary.T, n))
     marks[rim & (marks == 0)] = 1
     return marks
 
 
 def _of_edges(found: Mesh, marks: Indices) -> Indices:
-    n = found.npoints
-    keys = topology.edge_keys(found.edges[:, 0], found.edges[:, 1], n)
-    wanted = topology.edge_keys(found.segments[:, 0], found.segments[:, 1], n)
+    keys = topology.edge_keys(*found.edges.T, found.npoints)
+    wanted = topology.edge_keys(*found.segments.T, found.npoints)
     order = np.argsort(keys)
     of_edges = np.zeros(len(keys), dtype=np.int32)
     of_edges[order[np.searchsorted(keys, wanted, sorter=order)]] = marks

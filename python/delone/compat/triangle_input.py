@@ -40,35 +40,7 @@ class Switches(NamedTuple):
 
 
 def rows_of(values: Any, columns: int | None, name: str, count: int | None = None) -> Floats:
-    """Convert a table of numbers.
-
-    Parameters
-    ----------
-    values : array_like or None
-        The table; a vector is a column; None has no rows.
-    columns : int or None
-        Number of columns required.
-    name : str
-        Its name in error messages.
-    count : int, optional
-        Number of rows required.
-
-    Returns
-    -------
-    ndarray of float64
-        The table.
-
-    Raises
-    ------
-    ShapeError
-        The shape is wrong.
-
-    Examples
-    --------
-    >>> from delone.compat.triangle_input import rows_of
-    >>> rows_of([1, 2], None, "attributes").tolist()
-    [[1.0], [2.0]]
-    """
+    """Convert a table of `columns` numbers; a vector is a column, and None has no rows."""
     if values is None:
         return np.empty((0, columns or 1))
     array = np.array(values, dtype=np.float64)
@@ -86,23 +58,8 @@ def again(
 ) -> tuple[Mesh, Floats | None, Any]:
     """Refine given triangles.
 
-    Parameters
-    ----------
-    tri : mapping
-        The input.
-    points : ndarray of float64, shape (n, 2)
-        Its vertices.
-    switches : Switches
-        The switches.
-
-    Returns
-    -------
-    mesh : Mesh
-        The refined mesh.
-    attributes : ndarray of float64, shape (m, k), or None
-        Attributes of the given triangles that contain its triangles.
-    base : tuple
-        The given triangles: vertices, neighbors, and their point location index.
+    Returns the mesh, the attributes of the given triangles that contain its triangles, and the
+    given triangles: vertices, neighbors, point location index.
     """
     if "triangles" not in tri:
         raise InputError("switch r needs the key 'triangles'")
@@ -141,20 +98,17 @@ def _domain(
     markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
     n = len(points)
-    bare = ~topology.among(
-        topology.edge_keys(rim[:, 0], rim[:, 1], n), topology.edge_keys(given[:, 0], given[:, 1], n)
-    )
+    rim_keys = topology.edge_keys(*rim.T, n)
+    bare = ~topology.among(rim_keys, topology.edge_keys(*given.T, n))
     ends = np.concatenate((given, rim[bare])).astype(np.int32)
-    _, first = np.unique(topology.edge_keys(ends[:, 0], ends[:, 1], n), return_index=True)
+    _, first = np.unique(topology.edge_keys(*ends.T, n), return_index=True)
     first.sort()
     ends = ends[first]
     made, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
-    on_rim = topology.among(
-        topology.edge_keys(ends[:, 0], ends[:, 1], n), topology.edge_keys(rim[:, 0], rim[:, 1], n)
-    )
+    on_rim = topology.among(topology.edge_keys(*ends.T, n), rim_keys)
     frozen = np.full(len(ends), switches.fixed is True) | (bool(switches.fixed) & on_rim)
     lines = Lines(
         ends,
@@ -195,24 +149,9 @@ def _caps(tri: Mapping[str, Any], domain: Domain, index: Any, switches: Switches
 
 
 def not_reached(tri: Mapping[str, Any], found: Mesh, base: Any, switches: Switches) -> str | None:
-    """Return a warning about triangles that miss bounds because segments were not split.
+    """A warning about triangles that miss bounds because segments were not split; None if none do.
 
-    Parameters
-    ----------
-    tri : mapping
-        The input.
-    found : Mesh
-        The result.
-    base : ConstrainedDelaunay or tuple
-        The triangles before points were added.
-    switches : Switches
-        The switches.
-
-    Returns
-    -------
-    str or None
-        Numbers of triangles that are too large or have too small an angle; None if there are none,
-        or no switch forbids splitting segments.
+    `base` are the triangles before points were added: ConstrainedDelaunay, or a tuple from `again`.
     """
     if not switches.fixed:
         return None
@@ -257,21 +196,9 @@ def _homes(places: Floats, index: Any) -> Indices:
 
 
 def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
-    """Return values at the points of a mesh, linearly interpolated in the input mesh.
+    """Values at the points of a mesh, linearly interpolated in the input mesh `base`.
 
-    Parameters
-    ----------
-    found : Mesh
-        The mesh.
-    values : ndarray of float64, shape (n, k)
-        Values at the given vertices.
-    base : ConstrainedDelaunay or tuple
-        The triangles before points were added.
-
-    Returns
-    -------
-    ndarray of float64, shape (points of the mesh, k)
-        Values; those of the given vertices are unchanged.
+    `values`, (n, k), belong to the given vertices, and are unchanged there.
     """
     out = np.empty((found.npoints, values.shape[1]))
     old = found.point_source >= 0
@@ -279,12 +206,13 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
     places = np.ascontiguousarray(found.points[~old])
     if not len(places):
         return out
-    simplices, index = (base[0], base[2]) if isinstance(base, tuple) else (
-        base.simplices, base._locator
-    )  # fmt: skip
+    if isinstance(base, tuple):
+        simplices, _, index = base
+    else:
+        simplices, index = base.simplices, base._locator
     place = index.locate(places, 1)
     inside = place.simplex >= 0
-    full = _with_crossings(values, base, simplices)
+    full = _with_crossings(values, base)
     new = np.empty((len(places), values.shape[1]))
     corners = full[simplices[place.simplex[inside]]]
     new[inside] = (corners * place.weights[inside][..., None]).sum(axis=1)
@@ -295,7 +223,7 @@ def interpolated(found: Mesh, values: Floats, base: Any) -> Floats:
     return out
 
 
-def _with_crossings(values: Floats, base: Any, simplices: Indices) -> Floats:
+def _with_crossings(values: Floats, base: Any) -> Floats:
     """Values of vertices added at crossings: the mean of those of their neighbors."""
     if isinstance(base, tuple) or not base.nadded:
         return values
