@@ -1,8 +1,9 @@
 """Interpolation of xarray objects (extra ``xarray``): ``import delone.interpolate.accessor``.
 
 The import registers ``.delone`` on DataArray and Dataset. Scattered points are one dimension with
-two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``, ``lat(j,
-The weights of the target points are computed once
+two coordinates (``x(station)``, ``y(station)``), or several (curvilinear ``lon(j, i)``,
+``lat(j, i)``). The weights of the target points are computed once and applied to each field along
+every other dimension (time, level), chunk by chunk if the data are Dask arrays.
 """
 
 from __future__ import annotations

@@ -565,29 +565,7 @@ def _with_only(mesh: Any, kept: Rows) -> Triangulation:
 
 
 def as_max_distance(max_distance: float | None) -> float | None:
-    """Validate `max_distance`, the greatest distance from a site at which there are values.
-
-    Parameters
-    ----------
-    max_distance : float or None
-        A distance; None for no limit.
-
-    Returns
-    -------
-    float or None
-        The distance.
-
-    Raises
-    ------
-    InputError, DtypeError
-        It is negative, NaN or not a number.
-
-    Examples
-    --------
-    >>> from delone.interpolate.base import as_max_distance
-    >>> as_max_distance(3)
-    3.0
-    """
+    """Validate the greatest distance from a site at which there are values; None for no limit."""
     if max_distance is None:
         return None
     limit = as_number(max_distance, name="max_distance")
@@ -601,21 +579,9 @@ def _same(a: Rows | None, b: Rows | None) -> bool:
 
 
 def shaped_derivatives(derivatives: Floats, field: Field, leading: tuple[int, ...]) -> NDArray[Any]:
-    """Return derivatives of real columns in the shape and dtype of the values.
+    """Derivatives of real columns, (k, c, d), in the dtype of the values.
 
-    Parameters
-    ----------
-    derivatives : ndarray of float64, shape (k, c, d)
-        Derivatives of each column.
-    field : Field
-        The values.
-    leading : tuple of int
-        Shape of the queries.
-
-    Returns
-    -------
-    ndarray of float64 or complex128
-        The shape of the queries, then that of one value, then d.
+    The shape is that of the queries, then that of one value, then d.
     """
     found: NDArray[Any] = derivatives
     if field.is_complex:

@@ -136,12 +136,10 @@ class CrossValidation:
         return draw_predictions(self.values, self.predicted, ax=ax, title=title)
 
     def __repr__(self) -> str:
-        return (
-            f"<CrossValidation of {self.method}: {self.count} of {len(self.values)} predicted, "
-            f"rmse {self.rmse:.6g}, mae {self.mae:.6g}>"
-            if np.ndim(self.rmse) == 0
-            else f"<CrossValidation of {self.method}: {self.count} of {len(self.values)} predicted>"
-        )
+        what = f"{self.method}: {self.count} of {len(self.values)} predicted"
+        if np.ndim(self.rmse) == 0:
+            what += f", rmse {self.rmse:.6g}, mae {self.mae:.6g}"
+        return f"<CrossValidation of {what}>"
 
 
 def _mean_of_known(numbers: Floats) -> Any:

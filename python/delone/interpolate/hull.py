@@ -25,52 +25,22 @@ __all__ = ["Terms", "edge_terms", "plane_gradients", "summed"]
 
 
 class Terms(NamedTuple):
-    """Vertices with weights of their values and gradients, the same number for each query.
+    """Vertices with weights of their values and gradients, the same number for each query."""
 
-    Parameters
-    ----------
-    rows : ndarray of int32, shape (k, v)
-        Vertices.
-    weights : ndarray of float64, shape (k, v)
-        Weights of their values.
-    slopes : ndarray of float64, shape (k, v, 2), or None
-        Weights of their gradients.
-    """
-
-    rows: Indices
-    weights: Floats
-    slopes: Floats | None
+    rows: Indices  # (k, v)
+    weights: Floats  # of the values, (k, v)
+    slopes: Floats | None  # weights of the gradients, (k, v, d)
 
 
 def edge_terms(
     points: Floats, place: Location, step: Floats, *, cubic: bool, base: bool = True
 ) -> Terms:
-    """Return the terms of an interpolant on the boundary and of its extrapolation.
+    """The terms of an interpolant on the boundary, and of a `step`, (k, 2), away from it.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    place : Location
-        Queries outside, flat.
-    step : ndarray of float64, shape (k, 2)
-        Steps from the nearest points of the boundary.
-    cubic : bool
-        Whether the interpolant is cubic on the boundary, from values and gradients of the ends;
-        otherwise it is linear.
-    base : bool, optional
-        Include the value at the nearest point; otherwise only the contribution of the step.
-
-    Returns
-    -------
-    Terms
-        For the ends of the boundary edges; without slopes if no gradients are used.
-
-    Notes
-    -----
-    A step uses the gradients of the ends, interpolated linearly along the edge, so that the result
-    is continuous, at corners of the hull as well. The triangle at the boundary is not used: such
-    triangles are often so thin that their planes are meaningless.
+    With `cubic` it is the cubic of values and gradients at the ends, otherwise linear; without
+    `base` only the step counts. Steps use the gradients of the ends, interpolated linearly along
+    the edge, which is continuous at corners of the hull as well. The triangle at the boundary is
+    not used: it is often so thin that its plane is meaningless.
     """
     s = place.weights[:, 1]
     shares = place.weights
@@ -90,43 +60,14 @@ def edge_terms(
 def plane_gradients(
     points: Floats, neighborhood: tuple[Indices, Indices], columns: Floats, workers: int
 ) -> Floats:
-    """Return the gradients of the planes through points that best fit their neighbors.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    neighborhood : tuple of ndarray of int32
-        Neighbors of vertices as compressed rows (indptr, indices).
-    columns : ndarray of float64, shape (n, c)
-        Values at the vertices.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, c, 2)
-        Derivatives by x and y.
-    """
+    """The gradients, (n, c, 2), of the planes through points that best fit their neighbors."""
     return _core.gradients_local2(points, *neighborhood, columns, 1, workers)
 
 
 def summed(terms: Terms, columns: Floats, gradients: Floats | None) -> Floats:
-    """Return the sums of terms.
+    """The sums of terms, (k, c).
 
-    Parameters
-    ----------
-    terms : Terms
-        Vertices and their weights.
-    columns : ndarray of float64, shape (n, c)
-        Values at the vertices.
-    gradients : ndarray of float64, shape (n, c, 2), or None
-        Gradients at the vertices.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, c)
-        The sums. Values with zero weight are not read, so their NaN or sign of zero has no effect.
+    Values with zero weight are not read, so their NaN or sign of zero has no effect.
     """
     found = np.full((len(terms.rows), columns.shape[1]), -0.0)
     for k in range(terms.rows.shape[1]):

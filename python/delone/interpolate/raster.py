@@ -258,7 +258,8 @@ def grid(
     field, columns = made._with(values)[1:]
     nodes_x, nodes_y = _nodes(made, resolution, shape, x, y, bounds)
     require_memory(len(nodes_x), len(nodes_y), columns.shape[1])
-    found = np.empty((len(nodes_y), len(nodes_x), *field.trailing), _dtype(field.is_complex))
+    dtype = np.complex128 if field.is_complex else np.float64
+    found = np.empty((len(nodes_y), len(nodes_x), *field.trailing), dtype)
     rows = max(1, _BLOCK // len(nodes_x))
     for start in range(0, len(nodes_y), rows):
         some = nodes_y[start : start + rows]
@@ -292,26 +293,11 @@ def raster_nodes(
     bounds: Sequence[float] | None = None,
     room: Callable[[int, int], None] | None = None,
 ) -> tuple[Floats, Floats]:
-    """Return the nodes of a raster, the centers of its cells.
+    """The nodes of a raster, x and y: the centers of its cells, ascending.
 
-    Parameters
-    ----------
-    box : tuple of two points
-        Least and greatest coordinates, used if there are no bounds.
-    resolution, shape, bounds
-        As in `grid`.
-    Called with columns and rows before anything is allocated; raises if there is no room for such a
-    raster. By default the raster must fit into memory.
-
-    Returns
-    -------
-    x, y : ndarray of float64, shape (columns,) and (rows,)
-        The nodes, ascending.
-
-    Raises
-    ------
-    InputError, MemoryError
-        As in `grid`.
+    `box` has the least and greatest coordinates, used if there are no `bounds`. `room` is called
+    with columns and rows before anything is allocated, and raises if there is no room for such a
+    raster; by default it must fit into memory.
     """
     if (resolution is None) == (shape is None):
         raise InputError("give one of resolution, shape, or x and y")
@@ -403,20 +389,7 @@ def _ascending(nodes: ArrayLike, name: str) -> Floats:
 
 
 def require_memory(columns: int, rows: int, values: int) -> None:
-    """Raise if a raster would not fit into free memory.
-
-    Parameters
-    ----------
-    columns, rows : int
-        Number of cells in each direction.
-    values : int
-        Number of 8-byte values in each cell.
-
-    Raises
-    ------
-    MemoryError
-        Says how much is needed and how much is free.
-    """
+    """Raise MemoryError if cells with `values` numbers of 8 bytes do not fit into free memory."""
     needed = 8 * columns * rows * max(1, values)
     free = _free_memory()
     if needed > sys.maxsize or (free is not None and needed + _SPARE > free):
@@ -447,7 +420,3 @@ def _step(nodes: Floats) -> float:
     low, high = float(nodes[0]), float(nodes[-1])
     unit = _unit(low, high)
     return _length(low, high, unit) / (len(nodes) - 1) / unit
-
-
-def _dtype(is_complex: bool) -> type[np.generic]:
-    return np.complex128 if is_complex else np.float64

@@ -167,25 +167,14 @@ class DelaunayRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
                     f"{self.n_features_in_} feature(s); choose two with columns="
                 )
             return np.asarray(X)
-        first, second = self._pair()
-        if (
-            not -self.n_features_in_
-            <= min(first, second)
-            <= max(first, second)
-            < self.n_features_in_
-        ):
-            raise ValueError(
-                f"columns={self.columns} are not among {self.n_features_in_} feature(s)"
-            )
-        return np.ascontiguousarray(np.asarray(X)[:, [first, second]])
-
-    def _pair(self) -> tuple[int, int]:
-        columns: Any = self.columns
         try:
-            first, second = map(operator.index, columns)
+            first, second = map(operator.index, self.columns)
         except (TypeError, ValueError):
-            raise DtypeError(f"columns must be two integers, got {columns!r:.60}") from None
-        return first, second
+            raise DtypeError(f"columns must be two integers, got {self.columns!r:.60}") from None
+        count = self.n_features_in_
+        if not all(-count <= column < count for column in (first, second)):
+            raise ValueError(f"columns={self.columns} are not among {count} feature(s)")
+        return np.ascontiguousarray(np.asarray(X)[:, [first, second]])
 
     def __sklearn_tags__(self) -> Any:
         """Return the tags by which scikit-learn chooses its checks."""

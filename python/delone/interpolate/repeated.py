@@ -36,43 +36,15 @@ _RINGS = 36
 
 
 class Repeated(NamedTuple):
-    """A window of one period, and the offsets of the copies around it.
-
-    Parameters
-    ----------
-    periods : tuple of two floats or None
-        The periods in x and y.
-    low : ndarray of float64, shape (2,)
-        The lower corner of the window.
-    moves : ndarray of float64, shape (k, 2)
-        The offset of each copy; that of the first is zero.
-    duplicate_of : ndarray of int32, shape (n,)
-        The first row with the same coordinates, for each site.
-    """
+    """A window of one period, and the offsets of the copies around it."""
 
     periods: tuple[float | None, float | None]
-    low: Floats
-    moves: Floats
-    duplicate_of: NDArray[np.int32]
+    low: Floats  # the lower corner of the window
+    moves: Floats  # the offset of each copy, (k, 2); that of the first is zero
+    duplicate_of: NDArray[np.int32]  # for each site, the first row with the same coordinates
 
     def copies(self, sites: Floats) -> Floats:
-        """Return all copies of the sites; those of one site are adjacent, the site itself first.
-
-        Parameters
-        ----------
-        sites : ndarray of float64, shape (n, 2)
-            The sites.
-
-        Returns
-        -------
-        ndarray of float64, shape (n * k, 2)
-            The copies, rounded.
-
-        Raises
-        ------
-        LimitError
-            A copy lies beyond the range of doubles.
-        """
+        """All k copies of n sites, (n * k, 2); those of a site are adjacent, itself first."""
         # With this order, copies at equal distances are ordered as their sites.
         with np.errstate(over="ignore"):
             found: Floats = (sites[:, None] + self.moves).reshape(-1, 2)
@@ -81,48 +53,18 @@ class Repeated(NamedTuple):
         return found
 
     def sites(self, count: int) -> Rows:
-        """Return the site of each copy.
-
-        Parameters
-        ----------
-        count : int
-            Number of sites.
-
-        Returns
-        -------
-        ndarray of int64, shape (count * k,)
-            Rows of sites.
-        """
+        """The site of each copy of `count` sites."""
         return np.repeat(np.arange(count), len(self.moves))
 
     def unmoved(self, count: int) -> Rows:
-        """Return the copy with offset zero, for each copy.
-
-        Parameters
-        ----------
-        count : int
-            Number of copies.
-
-        Returns
-        -------
-        ndarray of int64, shape (count,)
-            Rows of copies.
-        """
+        """The copy with offset zero, for each of `count` copies."""
         every = len(self.moves)
         return np.arange(count) // every * every
 
     def wrapped(self, queries: Floats) -> Floats:
-        """Return queries moved into the window by whole periods.
+        """Queries moved into the window by whole periods, unless they are not finite.
 
-        Parameters
-        ----------
-        queries : ndarray of float64, shape (k, 2)
-            Queries.
-
-        Returns
-        -------
-        ndarray of float64, shape (k, 2)
-            The same array if nothing is moved. Queries that are not finite are unchanged.
+        The same array if nothing is moved.
         """
         moved = queries
         for axis, length in enumerate(self.periods):
@@ -137,26 +79,10 @@ class Repeated(NamedTuple):
 
 
 def repeated(mesh: PeriodicDelaunay, *, far: bool = False, rings: bool = False) -> Repeated:
-    """Return the copies that the sites of a periodic triangulation need.
+    """The copies that the sites of a periodic triangulation need.
 
-    Parameters
-    ----------
-    mesh : PeriodicDelaunay
-        Without weights.
-    far : bool, optional
-        Whether natural neighbors are needed, which are as far away as empty circles are wide.
-    rings : bool, optional
-        Whether gradients are estimated globally, so that many rings of neighbors are needed.
-
-    Returns
-    -------
-    Repeated
-        The window and the offsets.
-
-    Raises
-    ------
-    InputError
-        The triangulation has weights.
+    `far`: natural neighbors are needed, which are as far away as empty circles are wide. `rings`:
+    gradients are estimated globally, from many rings of neighbors.
     """
     if mesh.weights is not None:
         raise InputError(

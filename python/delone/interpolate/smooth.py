@@ -45,26 +45,14 @@ class GradientWarning(UserWarning):
 
 
 class Sheet(NamedTuple):
-    """Triangles as they are evaluated: cut along constraints if these are respected.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    locator : Locator2 or Locator3
-        Their point location index.
-    barrier : ndarray of bool, shape (m, 3), or None
-        The edges that nothing crosses.
-    source : ndarray of int32, shape (n,), or None
-        The row of the mesh for each row; None if they are the same.
-    """
+    """Triangles as they are evaluated: cut along constraints if these are respected."""
 
     points: Floats
     simplices: Indices
     locator: Any
+    # The edges that nothing crosses, (m, 3).
     barrier: Bools | None
+    # The row of the mesh for each row; None if they are the same.
     source: Indices | None
 
 
@@ -248,38 +236,9 @@ def cut(
 ) -> tuple[Indices, Indices]:
     """Split vertices into one row for each sector between the barriers around them.
 
-    Parameters
-    ----------
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles.
-    barrier : ndarray of bool, shape (m, 3)
-        Edges to cut along, by their opposite corner.
-    npoints : int
-        Number of points.
-
-    Returns
-    -------
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles; rows from `npoints` on are further sectors.
-    source : ndarray of int32, shape (npoints + further,)
-        The vertex of each row.
-
-    Notes
-    -----
-    Corners of triangles that share an edge without a barrier are joined; labels spread along rings
-    of corners with jumps, in O(log degree) rounds.
-
-    Examples
-    --------
-    A square, cut along its diagonal:
-
-    >>> import numpy as np
-    >>> from delone.interpolate.smooth import cut
-    >>> simplices = np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
-    >>> neighbors = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
-    >>> barrier = neighbors >= 0
-    >>> cut(simplices, neighbors, barrier, 4)[1]
-    array([0, 1, 2, 3, 0, 2], dtype=int32)
+    Returns triangles, in which rows from `npoints` on are further sectors, and the vertex of each
+    row. Corners of triangles that share an edge without a barrier are joined; labels spread along
+    rings of corners with jumps, in O(log degree) rounds.
     """
     label = _joined(_corner_pairs(simplices, neighbors, ~barrier), simplices.size)
     first, sector = np.unique(label, return_inverse=True)

@@ -31,39 +31,14 @@ SPACE = 3
 
 
 def refuse(what: str, instead: str) -> None:
-    """Raise for what is only available in 2-D.
-
-    Parameters
-    ----------
-    what : str
-        What the caller asked for.
-    instead : str
-        What to use in 3-D.
-
-    Raises
-    ------
-    InputError
-        Always.
-    """
+    """Raise InputError for what is only available in 2-D; `instead` is what to use in 3-D."""
     raise InputError(f"{what} is only available in 2-D; in 3-D {instead}")
 
 
 def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
-    """Return the terms of a linear interpolant on the hull, and of how it goes on from there.
+    """The terms of a linear interpolant on the hull, and of a `step`, (k, 3), away from it.
 
-    Parameters
-    ----------
-    place : Location
-        Queries outside.
-    step : ndarray of float64, shape (k, 3)
-        Steps from the nearest points of the hull.
-    base : bool, optional
-        Include the value at the nearest point; otherwise only the contribution of the step.
-
-    Returns
-    -------
-    Terms
-        For the corners of the faces; without slopes if no gradients are used.
+    Without `base` only the step counts. There are no slopes if no gradients are used.
     """
     weights = place.weights if base else np.zeros_like(place.weights)
     slopes = place.weights[..., None] * step[:, None]
@@ -71,30 +46,7 @@ def face_terms(place: Location, step: Floats, *, base: bool = True) -> Terms:
 
 
 def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
-    """Return the gradients of the linear functions with given values at corners of tetrahedra.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        Coordinates.
-    corners : ndarray of int32, shape (k, 4)
-        Tetrahedra, none of them flat.
-    columns : ndarray of float64, shape (n, c)
-        Values at the points.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, c, 3)
-        Derivatives by x, y and z.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.interpolate.space import slopes
-    >>> points = np.array([(0.0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2)])
-    >>> slopes(points, np.array([(0, 1, 2, 3)]), np.array([[1.0], [3.0], [5.0], [7.0]]))
-    array([[[1., 2., 3.]]])
-    """
+    """The gradients, (k, c, 3), of the linear functions on tetrahedra, (k, 4); none may be flat."""
     # The rows of these maps are the gradients of the barycentric coordinates.
     maps = geometry.transform(points, corners)[:, :SPACE]
     rise = columns[corners[:, :SPACE]] - columns[corners[:, SPACE:]]
@@ -103,24 +55,8 @@ def slopes(points: Floats, corners: Indices, columns: Floats) -> Floats:
 
 
 def hull_gradients(mesh: Triangulation, columns: Floats, workers: int) -> Floats:
-    """Return the gradients of the best-fitting linear functions at the vertices of the hull.
+    """The gradients, (n, c, 3), of the best-fitting linear functions at the hull; 0 elsewhere.
 
-    Parameters
-    ----------
-    mesh : Triangulation
-        A triangulation of 3-D points.
-    columns : ndarray of float64, shape (n, c)
-        Values at the points.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, c, 3)
-        Derivatives by x, y and z; 0 at other vertices.
-
-    Notes
-    -----
     Neighbors are weighted by the inverse square of their distance, limited by the rounding of the
     values where they nearly coincide. If they do not determine the gradient, or only barely, their
     neighbors are used as well; if these also lie in one plane, the slope across it is 0.

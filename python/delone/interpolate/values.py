@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen"]
+__all__ = ["DUPLICATES", "NAN", "Field", "as_field", "chosen", "require_finite_values"]
 
 DUPLICATES = ("raise", "mean", "first", "last", "min", "max")
 NAN = ("raise", "drop", "propagate")
@@ -32,20 +32,10 @@ _NAMED = 5
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Values of all points as real columns.
+    """Values of all points as real columns."""
 
-    Parameters
-    ----------
-    columns : ndarray of float64, shape (n, c)
-        C-contiguous; real and imaginary parts are adjacent columns.
-    trailing : tuple of int
-        Shape of the values of one point.
-    is_complex : bool
-        Whether pairs of columns are complex numbers.
-    """
-
-    columns: Floats
-    trailing: tuple[int, ...]
+    columns: Floats  # (n, c), C-contiguous; real and imaginary parts are adjacent columns
+    trailing: tuple[int, ...]  # shape of the values of one point
     is_complex: bool
 
     def __len__(self) -> int:
@@ -61,53 +51,25 @@ class Field:
         return np.flatnonzero(~np.isfinite(self.columns).all(axis=1))
 
     def at(self, rows: NDArray[np.integer]) -> Field:
-        """Return the values of some points.
-
-        Parameters
-        ----------
-        rows : ndarray of int
-            Rows of the points.
-
-        Returns
-        -------
-        Field
-            Their values.
-        """
+        """The values of some points."""
         return replace(self, columns=np.ascontiguousarray(self.columns[rows]))
 
     def merged(self, first: NDArray[np.integer], policy: str) -> Field:
-        """Give points that coincide the same value.
+        """Give points that coincide, by the `first` row of each point, the same value.
 
-        Parameters
-        ----------
-        first : ndarray of int, shape (n,)
-            The first row with the same coordinates, for each row.
-        policy : str
-            One of `DUPLICATES`.
-
-        Returns
-        -------
-        Field
-            Equal rows for equal points; the field itself if no values differ.
-
-        Raises
-        ------
-        ConflictingValuesError
-            The policy is ``"raise"`` and values differ.
-        InputError
-            The policy would have to order complex numbers.
+        Raises if the policy is ``"raise"`` and values differ, or would have to order complex
+        numbers.
         """
         again = np.flatnonzero(first != np.arange(len(first)))
         if not again.size:
             return self
-        at_first = self.columns[first[again]]
-        differ = ~((self.columns[again] == at_first) | _both_nan(self.columns[again], at_first))
-        rows = again[differ.any(axis=1)]
-        if not rows.size and policy == "raise":
-            return self
-        if policy == "raise":
+        if policy != "raise":
+            return replace(self, columns=self._merge(again, first, policy))
+        a, b = self.columns[again], self.columns[first[again]]
+        rows = again[~((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)]
+        if rows.size:
             raise self._told_apart(rows, first)
-        return replace(self, columns=self._merge(again, first, policy))
+        return self
 
     def _told_apart(
         self, rows: NDArray[np.int64], first: NDArray[np.integer]
@@ -117,8 +79,7 @@ class Field:
         choices = ", ".join(map(repr, DUPLICATES[1:]))
         return ConflictingValuesError(
             f"{len(rows)} {agreed(len(rows), 'duplicate has', 'duplicates have')} a different "
-            f"value: rows {named}{more}; "
-            f"choose duplicates={choices}",
+            f"value: rows {named}{more}; choose duplicates={choices}",
             rows=np.column_stack((rows, first[rows])),
         )
 
@@ -145,20 +106,7 @@ class Field:
         return columns
 
     def shaped(self, columns: Floats, leading: tuple[int, ...]) -> NDArray[Any]:
-        """Return interpolated columns in the shape and dtype of the values.
-
-        Parameters
-        ----------
-        columns : ndarray of float64, shape (k, c)
-            One row for each query.
-        leading : tuple of int
-            Shape of the queries.
-
-        Returns
-        -------
-        ndarray of float64 or complex128, shape leading + trailing
-            The values.
-        """
+        """Interpolated columns, (k, c), in the dtype of the values, of shape leading + trailing."""
         found = np.ascontiguousarray(columns)
         if self.is_complex:
             found = found.view(np.complex128)
@@ -166,36 +114,7 @@ class Field:
 
 
 def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
-    """Convert values to a field without rounding.
-
-    Parameters
-    ----------
-    values : array_like, shape (count, ...)
-        Real or complex numbers.
-    count : int
-        Number of points.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    Field
-        The values; NaN included.
-
-    Raises
-    ------
-    ShapeError
-        The number of values is not the number of points.
-    DtypeError
-        The values are masked, not numeric, or not representable as doubles.
-
-    Examples
-    --------
-    >>> from delone.interpolate.values import as_field
-    >>> as_field([1 + 2j, 3], 2).columns
-    array([[1., 2.],
-           [3., 0.]])
-    """
+    """Convert values, (count, ...), to a field without rounding; NaN is allowed."""
     if isinstance(values, np.ma.MaskedArray):
         raise DtypeError(f"{name} is a masked array; fill it: {name}.filled(numpy.nan)")
     array = as_plain_array(values, name)
@@ -214,68 +133,24 @@ def as_field(values: ArrayLike, count: int, *, name: str = "values") -> Field:
 
 
 def chosen(what: str, value: str, choices: tuple[str, ...]) -> str:
-    """Validate an argument that must be one of several strings.
-
-    Parameters
-    ----------
-    what : str
-        Name of the argument.
-    value : str
-        The value given.
-    choices : tuple of str
-        The valid values.
-
-    Returns
-    -------
-    str
-        The value.
-
-    Raises
-    ------
-    InputError
-        It is not one of the choices.
-
-    Examples
-    --------
-    >>> from delone.interpolate.values import chosen
-    >>> chosen("nan", "drop", ("raise", "drop"))
-    'drop'
-    """
+    """Validate an argument that must be one of several strings."""
     if not isinstance(value, str) or value not in choices:
         raise InputError(f"{what} must be one of {', '.join(map(repr, choices))}, got {value!r}")
     return value
 
 
-def require_finite_values(field: Field, name: str = "values") -> None:
-    """Raise if a value is NaN or infinite.
-
-    Parameters
-    ----------
-    field : Field
-        The values.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Raises
-    ------
-    NonFiniteError
-        Names the first rows.
-    """
+def require_finite_values(field: Field) -> None:
+    """Raise NonFiniteError, which names the first rows, if a value is NaN or infinite."""
     rows = field.not_finite
     if rows.size:
         first = ", ".join(map(str, rows[:10].tolist()))
         raise NonFiniteError(
-            f"{name}: {len(rows)} of {counted(len(field), 'row')} "
+            f"values: {len(rows)} of {counted(len(field), 'row')} "
             f"{agreed(len(rows), 'holds', 'hold')} NaN or infinity; first: {first}; "
             "choose nan='drop' or nan='propagate'",
             rows=rows[:10],
             count=len(rows),
         )
-
-
-def _both_nan(a: Floats, b: Floats) -> NDArray[np.bool_]:
-    both: NDArray[np.bool_] = np.isnan(a) & np.isnan(b)
-    return both
 
 
 def _refuse_rounded(array: NDArray[Any], plain: NDArray[Any], name: str) -> None:

@@ -216,19 +216,9 @@ class Weights:
 
 
 def rectangular(rows: Indices, weights: Floats) -> Table:
-    """Return a table from a fixed number of sites per query, without zeros and NaN.
+    """A table from a fixed number of sites per query, (k, m), without zeros and NaN.
 
-    Parameters
-    ----------
-    rows : ndarray of int32, shape (k, m)
-        Sites; arbitrary if the weight is NaN.
-    weights : ndarray of float64, shape (k, m)
-        Their weights; all NaN if there is no result.
-
-    Returns
-    -------
-    tuple
-        indptr, rows, weights and None, as in `Weights`.
+    Rows are arbitrary where the weight is NaN; all weights of a query without a result are.
     """
     # NaN is neither.
     keep = (weights > 0) | (weights < 0)
@@ -242,22 +232,7 @@ def rectangular(rows: Indices, weights: Floats) -> Table:
 
 
 def joined(inner: Table, outside: NDArray[np.int64], terms: Terms) -> Table:
-    """Insert the terms of queries outside into the empty rows of a table.
-
-    Parameters
-    ----------
-    inner : tuple
-        indptr, rows, weights and slopes of the queries inside.
-    outside : ndarray of int
-        The queries of the terms, ascending.
-    terms : Terms
-        Their terms.
-
-    Returns
-    -------
-    tuple
-        indptr, rows, weights and slopes of all queries.
-    """
+    """Insert the terms of the queries outside, ascending, into the empty rows of a table."""
     indptr, rows, weights, slopes = inner
     counts = (terms.weights != 0) & ~np.isnan(terms.weights)
     if terms.slopes is not None:
