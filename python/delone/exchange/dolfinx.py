@@ -17,32 +17,10 @@ __all__ = ["to_dolfinx_arrays"]
 
 
 def to_dolfinx_arrays(mesh: Given) -> dict[str, NDArray[Any]]:
-    """Return the arrays of which DOLFINx makes a mesh.
+    """Return ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``, of triangles or tetrahedra.
 
-    Parameters
-    ----------
-    mesh : Parts, mesh of delone, or pair of points and simplices
-        Triangles in 2-D or 3-D, or tetrahedra.
-
-    Returns
-    -------
-    dict of ndarray
-        ``cells`` and ``x`` for ``dolfinx.mesh.create_mesh``; ``cell_tags``, the regions, zero
-        where there are none; ``facets``, the segments that are edges of triangles, and
-        ``facet_tags``, their markers, zero where there are none. Tetrahedra have no segments: their
-        ``facets`` have the shape (0, 3).
-
-    Raises
-    ------
-    InputError
-        The simplices are edges.
-
-    Examples
-    --------
-    >>> from delone.exchange.dolfinx import to_dolfinx_arrays
-    >>> arrays = to_dolfinx_arrays(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]))
-    >>> arrays["cells"].tolist(), arrays["facets"].shape
-    ([[0, 1, 2]], (0, 2))
+    Beside them ``facets``, the segments that are edges of triangles, (0, 3) of tetrahedra; and the
+    regions and markers as ``cell_tags`` and ``facet_tags``, zero where there are none.
     """
     parts = parts_of(mesh)
     kind_of(parts, what="a mesh of DOLFINx", kinds=("triangles", "surface", "tetrahedra"))

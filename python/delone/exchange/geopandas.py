@@ -19,33 +19,9 @@ __all__ = ["by_region", "cells_to_geopandas", "shapely_or_say", "to_geopandas"]
 
 
 def to_geopandas(mesh: Given, crs: Any = None) -> Any:
-    """Return triangles or edges as a table of geometries.
+    """Return a GeoDataFrame of triangles or edges; `crs` is by default that of the mesh.
 
-    Parameters
-    ----------
-    mesh : Parts, mesh of delone, or pair of points and simplices
-        Triangles or edges, in 2-D or 3-D.
-    crs : any, optional
-        Reference system of the coordinates, as geopandas takes it; by default that of the mesh.
-
-    Returns
-    -------
-    geopandas.GeoDataFrame
-        One row for each simplex: its vertices ``v0``, ``v1`` (and ``v2``), its values, and its
-        geometry, a polygon or a line.
-
-    Raises
-    ------
-    InputError
-        The simplices are tetrahedra.
-    MissingExtraError
-        geopandas or shapely is not installed (extra ``geo``).
-
-    Examples
-    --------
-    >>> from delone.exchange.geopandas import to_geopandas
-    >>> to_geopandas(([(0, 0), (4, 0), (4, 3)], [(0, 1, 2)])).area.tolist()
-    [6.0]
+    A row has the vertices ``v0``, ``v1`` (and ``v2``), the values, and a polygon or a line.
     """
     geopandas = require("geopandas", extra="geo", what="a table of geometries")
     shapely = require("shapely", extra="geo", what="a table of geometries")
@@ -69,48 +45,13 @@ def shapely_or_say() -> Any:
 
 
 def by_region(polygons: NDArray[Any], regions: NDArray[np.int32]) -> NDArray[Any]:
-    """Return the geometry of each region number, an empty polygon for -1.
-
-    Parameters
-    ----------
-    polygons : ndarray of object, shape (c,)
-        Geometries.
-    regions : ndarray of int32, shape (n,)
-        Their numbers, or -1.
-
-    Returns
-    -------
-    ndarray of object, shape (n,)
-        Geometries.
-    """
+    """Return the polygon of each region number, (n,); an empty one for -1."""
     found: NDArray[Any] = np.append(polygons, shapely_or_say().Polygon())[regions]
     return found
 
 
 def cells_to_geopandas(polygons: NDArray[Any], data: Any = None, crs: Any = None) -> Any:
-    """Return cells beside the columns of their sites.
-
-    Parameters
-    ----------
-    polygons : ndarray of object, shape (n,)
-        Geometries.
-    data : DataFrame, mapping or None
-        Columns to carry.
-    crs : any
-        Reference system; by default that of `data`.
-
-    Returns
-    -------
-    GeoDataFrame
-        A row for each polygon.
-
-    Raises
-    ------
-    InputError
-        `data` has another number of rows.
-    MissingExtraError
-        geopandas is not installed (extra ``geo``).
-    """
+    """Return a GeoDataFrame of cells beside the columns of their sites, in their `crs` if any."""
     geopandas = require("geopandas", extra="geo", what="a table of cells")
     if data is None:
         return geopandas.GeoDataFrame(geometry=polygons, crs=crs)

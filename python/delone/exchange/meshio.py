@@ -22,33 +22,10 @@ TAGS = ("gmsh:physical", "gmsh:geometrical")
 
 
 def to_meshio(mesh: Given) -> Any:
-    """Return a mesh of meshio.
+    """Return a `meshio.Mesh` in 3-D; segments are a second block of cells, of type ``line``.
 
-    Parameters
-    ----------
-    mesh : Parts, mesh of delone, or pair of points and simplices
-        Triangles in 2-D or 3-D, tetrahedra, or edges in 2-D.
-
-    Returns
-    -------
-    meshio.Mesh
-        With points in 3-D. Segments are a second block of cells, of type ``line``. Where only
-        simplices have a value, segments have -1 (integers) or NaN; where only segments have one,
-        simplices have 0 or NaN. Where segments have a ``marker``, markers and regions are tags of
-        gmsh as well, regions from 1 on.
-
-    Raises
-    ------
-    InputError
-        The arrays are no mesh.
-    MissingExtraError
-        meshio is not installed (extra ``mesh``).
-
-    Examples
-    --------
-    >>> from delone.exchange.meshio import to_meshio
-    >>> to_meshio(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).cells_dict["triangle"]
-    array([[0, 1, 2]], dtype=int32)
+    Where only simplices have a value, segments have -1 (integers) or NaN; where only segments have
+    one, simplices have 0 or NaN. With a ``marker``, it and regions, from 1 on, are tags of gmsh.
     """
     meshio = require("meshio", extra="mesh", what="to_meshio")
     parts = parts_of(mesh)

@@ -45,38 +45,13 @@ _FACETS = {3: ((1, 2), (2, 0), (0, 1)), 4: ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0,
 
 
 class Parts(NamedTuple):
-    """The arrays of a mesh and the values of its points, simplices and segments.
+    """The arrays of a mesh and the values of its points, simplices and segments."""
 
-    Attributes
-    ----------
-    points : ndarray of float64, shape (n, d)
-        Coordinates, with d of 2 or 3.
-    simplices : ndarray of int32, shape (m, k)
-        Edges, triangles or tetrahedra as rows of `points`.
-    of_points : mapping of str to ndarray of length n
-        Values of points.
-    of_simplices : mapping of str to ndarray of length m
-        Values of simplices.
-    segments : ndarray of int32, shape (q, 2), or None
-        Edges that are part of the input, None where the mesh has no such thing.
-    of_segments : mapping of str to ndarray of length q
-        Values of segments.
-    crs : str or None
-        Coordinate reference system.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.exchange.parts import Parts
-    >>> Parts(np.eye(3), np.array([[0, 1, 2]])).segments is None
-    True
-    """
-
-    points: Floats
-    simplices: Indices
-    of_points: Values = _NONE
+    points: Floats  # (n, 2 or 3)
+    simplices: Indices  # (m, k): edges, triangles or tetrahedra
+    of_points: Values = _NONE  # arrays of length n, as of_simplices are of length m
     of_simplices: Values = _NONE
-    segments: Indices | None = None
+    segments: Indices | None = None  # (q, 2): edges of the input; None for a mesh without such
     of_segments: Values = _NONE
     crs: str | None = None
 
@@ -108,31 +83,7 @@ Given: TypeAlias = "Parts | HasParts | tuple[ArrayLike, ArrayLike]"
 
 
 def parts_of(mesh: Any) -> Parts:
-    """Return the parts of a mesh.
-
-    Parameters
-    ----------
-    mesh : Parts, object with ``_parts()``, pair of arrays, or object with points and simplices
-        The mesh. Arrays are checked; parts are taken as they are.
-
-    Returns
-    -------
-    Parts
-        Without values, unless the mesh brings them.
-
-    Raises
-    ------
-    DtypeError
-        `mesh` is none of these, or its arrays do not hold numbers.
-    InputError
-        The arrays do not have the shapes of a mesh, or name points that do not exist.
-
-    Examples
-    --------
-    >>> from delone.exchange.parts import parts_of
-    >>> parts_of(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).simplices
-    array([[0, 1, 2]], dtype=int32)
-    """
+    """Return the parts of a mesh; those of arrays, which are checked, are without values."""
     if isinstance(mesh, Parts):
         return mesh
     if hasattr(mesh, "_parts"):
@@ -154,33 +105,9 @@ def _checked(points: ArrayLike, simplices: ArrayLike) -> Parts:
 
 
 def kind_of(parts: Parts, *, what: str, kinds: tuple[str, ...] = ()) -> str:
-    """Tell what the simplices are.
+    """Tell what the simplices are, "surface" for triangles in 3-D; raise if that is not in `kinds`.
 
-    Parameters
-    ----------
-    parts : Parts
-        The mesh.
-    what : str
-        What is asked for, as the beginning of an error message.
-    kinds : tuple of str, optional
-        The kinds that it can be made of; by default all.
-
-    Returns
-    -------
-    {"edges", "triangles", "surface", "tetrahedra"}
-        A surface is of triangles in 3-D.
-
-    Raises
-    ------
-    InputError
-        The simplices are of another kind.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.exchange.parts import Parts, kind_of
-    >>> kind_of(Parts(np.eye(3), np.array([[0, 1, 2]])), what="a table")
-    'surface'
+    `what` is asked for, as the beginning of the error message.
     """
     corners, coordinates = parts.simplices.shape[1], parts.points.shape[1]
     kind = _KINDS.get((corners, coordinates))
@@ -203,24 +130,9 @@ def with_third(points: Floats) -> Floats:
 
 
 def boundary(simplices: Indices) -> Indices:
-    """Return the facets that belong to one simplex.
+    """Return the facets, (h, k - 1), of one triangle or positively oriented tetrahedron alone.
 
-    Parameters
-    ----------
-    simplices : ndarray of int32, shape (m, k)
-        Triangles or positively oriented tetrahedra.
-
-    Returns
-    -------
-    ndarray of int32, shape (h, k - 1)
-        Edges with the triangle to their left, faces counter-clockwise as seen from outside.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.exchange.parts import boundary
-    >>> boundary(np.array([[0, 1, 2], [0, 2, 3]])).tolist()
-    [[1, 2], [0, 1], [2, 3], [3, 0]]
+    Edges have the triangle to their left; faces are counter-clockwise as seen from outside.
     """
     facets = _facets(simplices)
     _, place, count = np.unique(_keys(facets), return_inverse=True, return_counts=True)
@@ -229,40 +141,16 @@ def boundary(simplices: Indices) -> Indices:
 
 
 def facet_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
-    """Return the segments that are edges of triangles.
+    """Return the segments that are edges of triangles, (s, k - 1), and their rows among all.
 
-    Segments in a hole are edges of no triangle, and finite elements have no place for them.
-
-    Parameters
-    ----------
-    parts : Parts
-        The mesh.
-
-    Returns
-    -------
-    pairs : ndarray of int32, shape (s, k - 1)
-        The segments; none where simplices are not triangles.
-    rows : ndarray of int64, shape (s,)
-        Their rows among the segments of the mesh.
+    Segments in a hole are edges of no triangle, and finite elements have no place for them. There
+    are none where simplices are not triangles.
     """
     return _segments_among(parts, _facets(parts.simplices))
 
 
 def boundary_segments(parts: Parts) -> tuple[Indices, NDArray[np.int64]]:
-    """Return the segments that are edges of one triangle alone.
-
-    Parameters
-    ----------
-    parts : Parts
-        The mesh.
-
-    Returns
-    -------
-    pairs : ndarray of int32, shape (s, k - 1)
-        The segments; none where simplices are not triangles.
-    rows : ndarray of int64, shape (s,)
-        Their rows among the segments of the mesh.
-    """
+    """Return the segments that are edges of one triangle alone, as `facet_segments` does."""
     return _segments_among(parts, boundary(parts.simplices))
 
 

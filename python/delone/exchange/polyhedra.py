@@ -1,4 +1,7 @@
-"""Polyhedra, such as Voronoi cells in 3-D, as meshes of PyVista and meshio."""
+"""Polyhedra, such as Voronoi cells in 3-D, as meshes of PyVista and meshio.
+
+Each of the k polyhedra has points of its own in the mesh, and a value, (k,), of each name.
+"""
 
 from __future__ import annotations
 
@@ -34,40 +37,12 @@ class Polyhedron(Protocol):
 def polyhedra_to_pyvista(
     cells: Iterable[Polyhedron], values: Mapping[str, Any] | None = None
 ) -> Any:
-    """Return polyhedra as a grid of PyVista.
-
-    Parameters
-    ----------
-    cells : iterable of objects with ``vertices`` and ``faces``
-        The polyhedra. Each has points of its own in the grid.
-    values : mapping of str to array_like, shape (k,), optional
-        Values of the polyhedra.
-
-    Returns
-    -------
-    pyvista.UnstructuredGrid
-        A cell for each polyhedron, in order.
-
-    Raises
-    ------
-    MissingExtraError
-        pyvista is not installed (extra ``pyvista``).
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> from delone.exchange.polyhedra import polyhedra_to_pyvista
-    >>> sites = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]
-    >>> cell = Voronoi(sites, clip=((0, 0, 0), (2, 2, 2))).cell(0)
-    >>> grid = polyhedra_to_pyvista([cell])
-    >>> grid.n_cells, grid.n_points
-    (1, 8)
-    """
+    """Return a `pyvista.UnstructuredGrid` with a cell for each polyhedron, in order."""
     pyvista = require("pyvista", extra="pyvista", what="polyhedra of cells")
     points: list[NDArray[np.float64]] = [np.empty((0, 3))]
     # VTK takes all cells in one stream of integers.
     stream: list[int] = []
-    count = kinds = 0
+    count = 0
     for cell in cells:
         faces = [len(cell.faces)]
         for face in cell.faces:
@@ -75,10 +50,9 @@ def polyhedra_to_pyvista(
         stream += [len(faces), *faces]
         points.append(cell.vertices)
         count += len(cell.vertices)
-        kinds += 1
     grid = pyvista.UnstructuredGrid(
         np.array(stream, dtype=np.int64),
-        np.full(kinds, _POLYHEDRON, dtype=np.uint8),
+        np.full(len(points) - 1, _POLYHEDRON, dtype=np.uint8),
         np.concatenate(points),
     )
     for name, each in (values or {}).items():
@@ -89,35 +63,7 @@ def polyhedra_to_pyvista(
 def polyhedra_to_meshio(
     cells: Iterable[Polyhedron], values: Mapping[str, Any] | None = None
 ) -> Any:
-    """Return polyhedra as a mesh of meshio.
-
-    Parameters
-    ----------
-    cells : iterable of objects with ``vertices`` and ``faces``
-        The polyhedra. Each has points of its own in the mesh.
-    values : mapping of str to array_like, shape (k,), optional
-        Values of the polyhedra.
-
-    Returns
-    -------
-    meshio.Mesh
-        There is a block of cells for each number of corners, ascending; polyhedra are in order
-        within a block.
-
-    Raises
-    ------
-    MissingExtraError
-        meshio is not installed (extra ``mesh``).
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> from delone.exchange.polyhedra import polyhedra_to_meshio
-    >>> sites = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)]
-    >>> cell = Voronoi(sites, clip=((0, 0, 0), (2, 2, 2))).cell(0)
-    >>> polyhedra_to_meshio([cell]).cells
-    [<meshio CellBlock, type: polyhedron8, num cells: 1, tags: []>]
-    """
+    """Return a `meshio.Mesh` with a block of cells for each number of corners, ascending."""
     meshio = require("meshio", extra="mesh", what="polyhedra of cells")
     points: list[NDArray[np.float64]] = [np.empty((0, 3))]
     blocks: dict[int, list[list[NDArray[Any]]]] = {}

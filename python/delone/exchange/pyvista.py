@@ -19,31 +19,9 @@ _TETRA = 10
 
 
 def to_pyvista(mesh: Given) -> Any:
-    """Return a surface or a grid of PyVista.
+    """Return a PolyData of triangles (2-D at z = 0) or edges, an UnstructuredGrid of tetrahedra.
 
-    Parameters
-    ----------
-    mesh : Parts, mesh of delone, or pair of points and simplices
-        Triangles in 2-D or 3-D, tetrahedra, or edges in 2-D.
-
-    Returns
-    -------
-    pyvista.PolyData or pyvista.UnstructuredGrid
-        A surface of triangles (2-D in the plane z = 0) or lines; a grid of tetrahedra. With the
-        values of points and simplices; segments are left out.
-
-    Raises
-    ------
-    InputError
-        The arrays are no mesh.
-    MissingExtraError
-        pyvista is not installed (extra ``pyvista``).
-
-    Examples
-    --------
-    >>> from delone.exchange.pyvista import to_pyvista
-    >>> to_pyvista(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).n_cells
-    1
+    They have the values of points and simplices; segments are left out.
     """
     pyvista = require("pyvista", extra="pyvista", what="to_pyvista")
     parts = parts_of(mesh)

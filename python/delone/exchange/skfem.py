@@ -18,31 +18,10 @@ __all__ = ["to_skfem"]
 
 
 def to_skfem(mesh: Given) -> Any:
-    """Return a mesh of scikit-fem.
+    """Return a `skfem.MeshTri` of triangles in 2-D or a `skfem.MeshTet`.
 
-    Parameters
-    ----------
-    mesh : Parts, mesh of delone, or pair of points and simplices
-        Triangles in 2-D, or tetrahedra.
-
-    Returns
-    -------
-    skfem.MeshTri or skfem.MeshTet
-        With subdomains ``"region 0"`` and so on where simplices have a ``region``. Segments are
-        boundaries: ``"marker 0"`` and so on where they have a ``marker``, else ``"segments"``.
-
-    Raises
-    ------
-    InputError
-        The simplices are triangles in 3-D or edges.
-    MissingExtraError
-        scikit-fem is not installed (extra ``fem``).
-
-    Examples
-    --------
-    >>> from delone.exchange.skfem import to_skfem
-    >>> to_skfem(([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])).nelements
-    1
+    Subdomains are ``"region 0"`` and so on where simplices have a ``region``; boundaries are
+    segments, ``"marker 0"`` and so on where these have a ``marker``, else ``"segments"``.
     """
     skfem = require("skfem", extra="fem", what="to_skfem")
     parts = parts_of(mesh)
