@@ -14,7 +14,16 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["axis_names", "draw_dots", "frame", "new_axes", "pixels", "require_bounds"]
+__all__ = [
+    "axis_names",
+    "draw_dots",
+    "figure_size",
+    "frame",
+    "new_axes",
+    "pixels",
+    "require_bounds",
+    "thin",
+]
 
 _DRAWABLE = 1e-305, 1e305  # matplotlib scales and pads by factors of up to a hundred
 _MOST_DOTS = 2000
@@ -48,39 +57,30 @@ def pixels(ax: Any, low: Floats, high: Floats) -> tuple[int, int]:
     return max(1, round(width * scale)), max(1, round(height * scale))
 
 
-def draw_dots(ax: Any, points: Floats, wanted: bool | None, *, count: int | None = None) -> None:
-    """Draw points, for None only if there are few enough to tell them apart.
+def figure_size(width: float, height: float, size: float, *, with_bar: bool) -> tuple[float, float]:
+    """Return width and height that the data fill, with room for labels and a color bar."""
+    ratio = min(max(width / height, 0.4), 2.5)
+    beside, above = (1.9 if with_bar else 0.9), 0.9
+    inner = size - max(beside, above)
+    if ratio >= 1:
+        return inner + beside, inner / ratio + above
+    return inner * ratio + beside, inner + above
 
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where to draw.
-    points : ndarray of float64, shape (n, 2)
-        The points.
-    wanted : bool or None
-        Whether to draw them.
-    count : int, optional
-        The number of points that None depends on; by default n.
-    """
+
+def thin(count: int, most: float = 1.0) -> float:
+    """Return the width of the edges of triangles or cells: smaller the more there are."""
+    return float(np.clip(30 / np.sqrt(max(count, 1)), 0.15, most))
+
+
+def draw_dots(ax: Any, points: Floats, wanted: bool | None, *, count: int | None = None) -> None:
+    """Draw points, for None only if they (or `count`) are few enough to tell them apart."""
     if wanted or (wanted is None and (len(points) if count is None else count) <= _MOST_DOTS):
         size = float(np.clip(60 / np.sqrt(max(len(points), 1)), 0.8, 5.0))
         ax.plot(*points.T, "o", color=_DOT, markersize=size, markeredgewidth=0, zorder=4)
 
 
 def frame(ax: Any, low: Floats, high: Floats, title: str | None, *, margin: float) -> None:
-    """Set limits, aspect, title, and ticks that show the coordinates as they are.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        The axes.
-    low, high : ndarray of float64, shape (2,)
-        The limits.
-    title : str or None
-        The title.
-    margin : float
-        How much more is shown on each side, in the unit of the data.
-    """
+    """Set limits, `margin` wider in the unit of the data, and ticks of the plain coordinates."""
     ticker = require("matplotlib.ticker", extra="plot", what="drawing")
     ax.set_xlim(low[0] - margin, high[0] + margin)
     ax.set_ylim(low[1] - margin, high[1] + margin)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.extras import require
+from delone.plot.axes import thin
+from delone.plot.colors import show
 from delone.plot.shading import facet_values
 
 if TYPE_CHECKING:
@@ -36,30 +38,10 @@ _PART = 20_000
 
 
 def color_of_regions(mesh: Segmented) -> Indices:
-    """Choose a color for each triangle, by its region.
+    """Return the color of each triangle by its region, (m,), from 0 to 9; -1 without a label.
 
-    Parameters
-    ----------
-    mesh : Segmented
-        What to color.
-
-    Returns
-    -------
-    ndarray of int32, shape (m,)
-        Numbers of colors from 0 to 9, -1 for triangles without a label.
-
-    Notes
-    -----
     Regions that share a segment differ, as long as there are enough colors. O(m log m) time, and a
     step of Python for each region.
-
-    Examples
-    --------
-    >>> from delone import ConstrainedDelaunay
-    >>> from delone.plot.cartography import color_of_regions
-    >>> mesh = ConstrainedDelaunay([(0, 0), (3, 0), (3, 1), (0, 1)], [(0, 2)])
-    >>> sorted(color_of_regions(mesh).tolist())
-    [0, 1]
     """
     region = mesh.region
     names, compact = np.unique(region, return_inverse=True)
@@ -89,17 +71,7 @@ def _adjacency(
 
 
 def draw_regions(ax: Any, mesh: Segmented, pixels: int | None) -> None:
-    """Draw the triangles in the colors of their regions.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where to draw.
-    mesh : Segmented
-        What to draw.
-    pixels : int or None
-        Draw an image with this many pixels along its longer side; for None, triangles.
-    """
+    """Draw triangles in the colors of their regions, or an image of `pixels` on its longer side."""
     colors = require("matplotlib.colors", extra="plot", what="drawing")
     # The last color is for triangles without a label, whose number is -1.
     rgb = np.array([colors.to_rgb(each) for each in (*_PALETTE, _NO_LABEL)])
@@ -112,8 +84,7 @@ def draw_regions(ax: Any, mesh: Segmented, pixels: int | None) -> None:
     rgba = np.zeros((*inside.shape, 4))
     rgba[inside, :3] = rgb[raster.values[inside].astype(np.int32)]
     rgba[inside, 3] = 1
-    image = np.round(rgba * 255).astype(np.uint8)
-    ax.imshow(image, extent=raster.extent, origin="lower", interpolation="auto", zorder=0)
+    show(ax, rgba, raster.extent)
 
 
 def _draw_facets(ax: Any, mesh: Segmented, rgb: Floats) -> None:
@@ -122,26 +93,14 @@ def _draw_facets(ax: Any, mesh: Segmented, rgb: Floats) -> None:
         mesh.points[mesh.simplices],
         facecolors=rgb,
         edgecolors=_EDGE,
-        linewidths=_thin(mesh.nsimplex),
+        linewidths=thin(mesh.nsimplex, 0.8),
         zorder=1,
     )
     ax.add_collection(facets, autolim=False)
 
 
-def _thin(count: int) -> float:
-    return float(np.clip(30 / np.sqrt(max(count, 1)), 0.15, 0.8))
-
-
 def draw_segments(ax: Any, mesh: Segmented) -> None:
-    """Draw the subsegments on kept triangles as bold lines.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where to draw.
-    mesh : Segmented
-        What to draw.
-    """
+    """Draw the subsegments on kept triangles as bold lines."""
     pairs = _kept_segments(mesh)
     width = float(np.clip(90 / np.sqrt(max(len(pairs), 1)), 0.6, 2.4))
     for start in range(0, len(pairs), _PART):
@@ -184,17 +143,7 @@ def _line(points: Floats, pairs: Indices) -> Floats:
 
 
 def draw_boundary(ax: Any, mesh: Segmented, color: str) -> None:
-    """Draw the boundary edges that are not segments.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where to draw.
-    mesh : Segmented
-        What to draw.
-    color : str
-        The color of the lines.
-    """
+    """Draw the boundary edges that are not segments."""
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     rows, corner = np.nonzero((mesh.neighbors < 0) & ~mesh.constrained)
     ends = mesh.simplices[rows, (corner + 1) % 3], mesh.simplices[rows, (corner + 2) % 3]

@@ -9,7 +9,7 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.extras import require
-from delone.plot.axes import draw_dots, new_axes
+from delone.plot.axes import draw_dots, new_axes, thin
 from delone.plot.plotter import new_plotter
 
 if TYPE_CHECKING:
@@ -36,47 +36,7 @@ def plot_cells2(
     colorbar: bool = True,
     linewidth: float | None = None,
 ) -> Any:
-    """Draw a 2-D Voronoi diagram.
-
-    Parameters
-    ----------
-    diagram : Cells2
-        What to draw: a `Voronoi`. Without a clip it is drawn as far as the box of the sites and a
-        tenth more.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on the axes of a new pyplot figure.
-    values : array_like of float, shape (n,), optional
-        Cells are colored by them.
-    cmap : str or matplotlib Colormap, optional
-        Colors of the values.
-    points : bool, optional
-        Draw the sites. By default only if there are few enough to tell them apart.
-    colorbar : bool, optional
-        Add the color bar.
-    linewidth : float, optional
-        Width of the edges of cells; by default smaller the more cells there are.
-
-    Returns
-    -------
-    matplotlib Axes
-        Where it is drawn.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-    InputError
-        `values` has another length.
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> from delone.plot import plot
-    >>> diagram = Voronoi([(0, 0), (2, 0), (1, 2)])
-    >>> ax = plot(diagram, values=[1, 2, 3], colorbar=False)
-    >>> len(ax.collections)
-    1
-    """
+    """Draw a 2-D Voronoi diagram; for the options see `delone.plot.plot`."""
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     bar = as_flag(colorbar, name="colorbar")
     dots = as_optional_flag(points, name="points")
@@ -87,9 +47,7 @@ def plot_cells2(
     sites = np.setdiff1d(shown.duplicate_of, shown.hidden)
     rings = [[ring for part in shown.cell(site).parts for ring in part] for site in sites.tolist()]
     look: dict[str, Any] = {"facecolors": "none"} if numbers is None else {"cmap": cmap}
-    look["linewidths"] = (
-        float(np.clip(30 / np.sqrt(len(sites)), 0.15, 1.0)) if linewidth is None else linewidth
-    )
+    look["linewidths"] = thin(len(sites)) if linewidth is None else linewidth
     outlines = [_path(each) for each in rings]
     cells = collections.PathCollection(outlines, edgecolors=_EDGE, **look)
     ax = new_axes(ax)
@@ -158,38 +116,7 @@ def _path(rings: list[Floats]) -> Any:
 def plot_cells3(
     diagram: Cells3, ax: Any = None, *, off_screen: bool | None = None, **options: Any
 ) -> Any:
-    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk.
-
-    Parameters
-    ----------
-    diagram : Cells3
-        What to draw: a 3-D `Voronoi`.
-    ax : pyvista.Plotter, optional
-        Where to draw; by default a new plotter.
-    off_screen : bool, optional
-        Whether a new plotter draws without a window. Not together with `ax`.
-    **options
-        As for ``pyvista.Plotter.add_mesh``.
-
-    Returns
-    -------
-    pyvista.Plotter
-        Where it is drawn; ``show()`` opens the window.
-
-    Raises
-    ------
-    InputError
-        Both `ax` and `off_screen` are given.
-    MissingExtraError
-        PyVista is not installed.
-
-    Examples
-    --------
-    >>> from delone import Voronoi
-    >>> from delone.plot import plot
-    >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
-    >>> plot(Voronoi(corners, clip="box"), off_screen=True).close()
-    """
+    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk, on a plotter of PyVista."""
     plotter = new_plotter(ax, off_screen=off_screen)
     grid = diagram.to_pyvista()
     look: dict[str, Any] = {"scalars": "site", "show_edges": True, "ambient": 0.4}

@@ -24,13 +24,7 @@ _CIRCLE = "#d98b2b"
 
 
 def require_few(mesh: Triangles) -> None:
-    """Refuse more triangles than circles can be distinguished.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        The triangulation.
-    """
+    """Refuse more triangles than circles can be distinguished."""
     if mesh.nsimplex > _MOST_CIRCLES:
         raise InputError(
             f"the circles of {mesh.nsimplex} triangles would hide each other; "
@@ -39,15 +33,7 @@ def require_few(mesh: Triangles) -> None:
 
 
 def draw_circles(ax: Any, mesh: Triangles) -> None:
-    """Draw the circles, and their centers if they are few.
-
-    Parameters
-    ----------
-    ax : matplotlib Axes
-        Where to draw.
-    mesh : Triangles
-        The triangulation.
-    """
+    """Draw the circles, and their centers if they are few."""
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     centers, radii = _circles(mesh)
     circles = collections.EllipseCollection(
@@ -69,18 +55,7 @@ def draw_circles(ax: Any, mesh: Triangles) -> None:
 
 
 def bounds_with_circles(mesh: Triangles) -> tuple[Floats, Floats]:
-    """Return limits that show the circles, as far as the points stay visible.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        The triangulation.
-
-    Returns
-    -------
-    low, high : ndarray of float64, shape (2,)
-        The limits.
-    """
+    """Return the low and high limits that show the circles, as far as the points stay visible."""
     low, high = mesh.min_bound, mesh.max_bound
     centers, radii = _circles(mesh)
     # The circles of flat triangles are of any size.

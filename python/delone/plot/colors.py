@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["add_bar", "scale", "shaded"]
+__all__ = ["add_bar", "scale", "shaded", "show"]
 
 _LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
 _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
@@ -39,6 +39,12 @@ def shaded(rgb: Floats, light: Floats) -> Floats:
     """Darken away from the sun, lighten toward it; flat ground almost keeps its color."""
     strength = (0.30 + 0.95 * light)[..., None]
     return np.clip(np.where(strength < 1, rgb * strength, 1 - (1 - rgb) / strength), 0, 1)
+
+
+def show(ax: Any, rgba: Floats, extent: tuple[float, float, float, float]) -> None:
+    """Draw colors, (rows, columns, 4), as an image with the first row lowest."""
+    image = np.round(rgba * 255).astype(np.uint8)
+    ax.imshow(image, extent=extent, origin="lower", interpolation="auto", zorder=0)
 
 
 def add_bar(ax: Any, mapped: Any, values: Floats, label: str) -> None:

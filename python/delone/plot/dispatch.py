@@ -10,7 +10,7 @@ from delone.plot import tetrahedra, triangles
 from delone.plot.cells import plot_cells2, plot_cells3
 from delone.plot.hull import plot_hull
 from delone.plot.periodic import plot_periodic
-from delone.plot.protocols import kind_of
+from delone.plot.protocols import hint, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -119,8 +119,7 @@ def plot(
     drawer = _DRAWERS.get(kind_of(mesh))
     if drawer is None:
         name = f"{type(mesh).__module__}.{type(mesh).__name__}"
-        hint = "use its own plot()" if hasattr(mesh, "plot") else "draw delone.Delaunay(points)"
-        raise InputError(f"an object of type {name} cannot be drawn: {hint}")
+        raise InputError(f"an object of type {name} cannot be drawn: {hint(mesh)}")
     _require_options(drawer, mesh, options)
     return drawer(mesh, ax, **options)
 

@@ -21,39 +21,7 @@ _FACE, _RIM = "#c9dcea", "#b3372f"
 def plot_hull(
     hull: Hull2, ax: Any = None, *, vertices: bool | None = None, title: str | None = None
 ) -> Any:
-    """Draw a 2-D convex hull as a polygon, and the points.
-
-    Parameters
-    ----------
-    hull : Hull2
-        What to draw: a 2-D `ConvexHull`.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on the axes of a new pyplot figure.
-    vertices : bool, optional
-        Draw the points. By default only if there are few enough to tell them apart.
-    title : str, optional
-        Title of the axes.
-
-    Returns
-    -------
-    matplotlib Axes
-        Where it is drawn.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-    InputError
-        matplotlib cannot draw the coordinates.
-
-    Examples
-    --------
-    >>> from delone import ConvexHull
-    >>> from delone.plot import plot
-    >>> ax = plot(ConvexHull([(0, 0), (4, 0), (4, 3), (2, 1)]))
-    >>> len(ax.patches[0].get_xy())  # the first corner is repeated
-    4
-    """
+    """Draw a 2-D convex hull and the points; for the options see `delone.plot.plot`."""
     patches = require("matplotlib.patches", extra="plot", what="drawing")
     dots = as_optional_flag(vertices, name="vertices")
     corners = hull.points[hull.vertices]

@@ -8,7 +8,7 @@ import numpy as np
 
 from delone._arrays import as_flag, as_optional_flag
 from delone.extras import require
-from delone.plot.axes import draw_dots, frame, new_axes, require_bounds
+from delone.plot.axes import draw_dots, frame, new_axes, require_bounds, thin
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,43 +30,7 @@ def plot_periodic(
     vertices: bool | None = None,
     title: str | None = None,
 ) -> Any:
-    """Draw one triangle of each class of translates of a periodic triangulation.
-
-    Parameters
-    ----------
-    mesh : Periodic
-        What to draw: a `PeriodicDelaunay`.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on the axes of a new pyplot figure.
-    box : bool, optional
-        Draw the outline of one period around the points, dashed: a box, or two lines if only one
-        direction has a period.
-    vertices : bool, optional
-        Draw the points. By default only if there are few enough to tell them apart.
-    title : str, optional
-        Title of the axes.
-
-    Returns
-    -------
-    matplotlib Axes
-        Where it is drawn.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-    InputError
-        matplotlib cannot draw the coordinates.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone import PeriodicDelaunay
-    >>> from delone.plot import plot
-    >>> mesh = PeriodicDelaunay(np.random.default_rng(1).random((9, 2)), (1, 1))
-    >>> len(plot(mesh).collections[0].get_paths()) == mesh.nsimplex
-    True
-    """
+    """Draw one triangle of each class of translates; for the options see `delone.plot.plot`."""
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     outlined = as_flag(box, name="box")
     dots = as_optional_flag(vertices, name="vertices")
@@ -81,7 +45,7 @@ def plot_periodic(
         corners,
         facecolors=_FACE,
         edgecolors=_INK,
-        linewidths=float(np.clip(30 / np.sqrt(len(corners)), 0.15, 1.0)),
+        linewidths=thin(len(corners)),
         zorder=1,
     )
     ax.add_collection(facets, autolim=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from delone._values import as_values
 from delone.atomic import replacing
 from delone.extras import require
-from delone.plot.axes import axis_names
+from delone.plot.axes import axis_names, figure_size
 from delone.plot.protocols import has, is_quality_mesh
 from delone.plot.triangles import plot, require_drawable, require_flat
 
@@ -94,7 +94,8 @@ def draw_picture(
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     require_flat(mesh)
     require_drawable(mesh, as_values(z, mesh.npoints))
-    width, height = _figure_size(mesh, size, with_bar=z is not None)
+    across, up = (mesh.max_bound - mesh.min_bound).tolist()
+    width, height = figure_size(across, up, size, with_bar=z is not None)
     if is_quality_mesh(mesh):
         figure = figure_module.Figure(figsize=(width, height + 2.5), dpi=dpi, layout="constrained")
         ax, below = figure.subplots(2, 1, height_ratios=(height, 2.5))
@@ -113,14 +114,3 @@ def _numbers(mesh: Triangles) -> str:
     if has(mesh, "input_segments"):
         numbers += f", {len(cast('Any', mesh).input_segments):,} segments"
     return numbers
-
-
-def _figure_size(mesh: Triangles, size: float, *, with_bar: bool) -> tuple[float, float]:
-    """Return width and height that the data fill, with room for labels and a color bar."""
-    width, height = (mesh.max_bound - mesh.min_bound).tolist()
-    ratio = min(max(width / height, 0.4), 2.5)
-    beside, above = (1.9 if with_bar else 0.9), 0.9
-    inner = size - max(beside, above)
-    if ratio >= 1:
-        return inner + beside, inner / ratio + above
-    return inner * ratio + beside, inner + above

@@ -23,6 +23,7 @@ __all__ = [
     "Simplices",
     "Triangles",
     "has",
+    "hint",
     "is_quality_mesh",
     "kind_of",
     "segmented",
@@ -175,86 +176,26 @@ class Cells3(Protocol):
 
 
 def has(thing: Any, *names: str) -> bool:
-    """Tell whether an object has all of these attributes, without computing any.
-
-    Parameters
-    ----------
-    thing : object
-        Anything.
-    *names : str
-        Names of attributes.
-
-    Returns
-    -------
-    bool
-        Whether it has them.
-
-    Examples
-    --------
-    >>> from delone import Delaunay
-    >>> from delone.plot.protocols import has
-    >>> mesh = Delaunay([(0, 0), (1, 0), (0, 1)])
-    >>> has(mesh, "edges"), has(mesh, "edges", "region")
-    (True, False)
-    """
+    """Tell whether an object has all of these attributes, without computing any."""
     missing = object()
     return all(inspect.getattr_static(thing, name, missing) is not missing for name in names)
 
 
 def segmented(mesh: Triangles) -> Segmented | None:
-    """Return the triangulation itself if it has segments and regions, else None.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        A 2-D triangulation.
-
-    Returns
-    -------
-    Segmented or None
-        The same object.
-    """
+    """Return the triangulation itself if it has segments and regions, else None."""
     names = ("region", "segments", "constrained", "neighbors", "areas")
     return cast("Segmented", mesh) if has(mesh, *names) else None
 
 
 def is_quality_mesh(mesh: Any) -> bool:
-    """Tell whether an object is a quality mesh, that is, plots its own angles.
-
-    Parameters
-    ----------
-    mesh : object
-        Anything.
-
-    Returns
-    -------
-    bool
-        Whether it has ``plot_quality``.
-    """
+    """Tell whether an object is a quality mesh, that is, plots its own angles."""
     return has(mesh, "plot_quality")
 
 
 def kind_of(thing: Any) -> str:
-    """Tell what an object is drawn as.
+    """Tell what an object is drawn as; "" for anything else.
 
-    Parameters
-    ----------
-    thing : object
-        Anything.
-
-    Returns
-    -------
-    str
-        ``"triangles"``, ``"tetrahedra"`` (or a surface of triangles in 3-D), ``"hull"``,
-        ``"periodic"``, ``"cells2"``, ``"cells3"``; ``""`` for anything else.
-
-    Examples
-    --------
-    >>> from delone import ConvexHull, Voronoi
-    >>> from delone.plot.protocols import kind_of
-    >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    >>> kind_of(ConvexHull(square)), kind_of(Voronoi(square)), kind_of(square)
-    ('hull', 'cells2', '')
+    Surfaces of triangles in 3-D are "tetrahedra" as well.
     """
     d, corners = (_columns(thing, name) for name in ("points", "simplices"))
     if has(thing, "ridge_points", "cell"):
@@ -266,6 +207,11 @@ def kind_of(thing: Any) -> str:
     if d == corners == 2 and has(thing, "vertices"):
         return "hull"
     return "tetrahedra" if d == 3 and corners in (3, 4) else ""
+
+
+def hint(thing: Any) -> str:
+    """Return what to do in place of drawing an object that is nothing that can be drawn."""
+    return "use its own plot()" if hasattr(thing, "plot") else "draw delone.Delaunay(points)"
 
 
 def _columns(thing: Any, name: str) -> int:

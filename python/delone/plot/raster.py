@@ -9,8 +9,8 @@ import numpy as np
 from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.extras import require
-from delone.plot.axes import axis_names, new_axes
-from delone.plot.colors import add_bar, scale, shaded
+from delone.plot.axes import axis_names, figure_size, new_axes
+from delone.plot.colors import add_bar, scale, shaded, show
 from delone.plot.shading import Raster, relief
 
 if TYPE_CHECKING:
@@ -93,8 +93,7 @@ def plot_raster(
         light = relief(Raster(values, (extent[1] - extent[0]) / len(x), extent))
         rgba[..., :3] = shaded(rgba[..., :3], light)
     rgba[..., 3] = np.isfinite(values)
-    image = np.round(rgba * 255).astype(np.uint8)
-    ax.imshow(image, extent=extent, origin="lower", interpolation="auto", zorder=0)
+    show(ax, rgba, extent)
     if contours is not None:
         ax.contour(
             x,
@@ -125,33 +124,14 @@ def draw_raster(
     size: float = 10.0,
     dpi: int = 160,
 ) -> None:
-    """Draw a raster into a PNG or SVG file.
+    """Draw a raster as `plot_raster` does into a PNG or SVG file, `size` inches on its longer side.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    values, x, y
-        As for `plot_raster`.
-    label : str, optional
-        Name of the values.
-    shade : bool, optional
-        Add light and shadow, as for `plot_raster`.
-    crs : str, optional
-        Coordinate reference system, which names the axes if pyproj is installed.
-    size : float, optional
-        Longer side of the image in inches.
-    dpi : int, optional
-        Pixels per inch.
+    The reference system names the axes if pyproj is installed.
     """
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     left, right, bottom, top = _extent(x, y)
-    ratio = min(max((right - left) / (top - bottom), 0.4), 2.5)
-    inner = size - 1.9
-    width, height = (inner, inner / ratio) if ratio >= 1 else (inner * ratio, inner)
-    figure = figure_module.Figure(
-        figsize=(width + 1.9, height + 0.9), dpi=dpi, layout="constrained"
-    )
+    figsize = figure_size(right - left, top - bottom, size, with_bar=True)
+    figure = figure_module.Figure(figsize=figsize, dpi=dpi, layout="constrained")
     ax = plot_raster(values, x, y, figure.add_subplot(), label=label, shade=shade)
     xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)

@@ -33,52 +33,17 @@ _STEEP = 1.2
 
 
 class Raster(NamedTuple):
-    """Values on square pixels, the first row lowest.
+    """Values on square pixels, the first row lowest."""
 
-    Parameters
-    ----------
-    values : ndarray of float64, shape (rows, columns)
-        NaN for no value.
-    cell : float
-        Side of a pixel.
-    extent : tuple of float
-        Left, right, bottom, top.
-    """
-
-    values: Floats
-    cell: float
-    extent: tuple[float, float, float, float]
+    values: Floats  # (rows, columns), NaN for no value
+    cell: float  # the side of a pixel
+    extent: tuple[float, float, float, float]  # left, right, bottom, top
 
 
 def rasterize(mesh: Triangles, values: Floats, pixels: int) -> Raster:
-    """Return a surface over a triangulation as pixels.
+    """Return the surface of values at points, (n,), as `pixels` along the longer side.
 
-    Parameters
-    ----------
-    mesh : Triangles
-        The mesh.
-    values : ndarray of float64, shape (n,)
-        A value for each point.
-    pixels : int
-        Number of pixels along the longer side.
-
-    Returns
-    -------
-    Raster
-        The surface.
-
-    Notes
-    -----
     O(n + pixels²) time, and memory for the pixels and a block of points.
-
-    Examples
-    --------
-    >>> from delone import Delaunay
-    >>> from delone.plot.shading import rasterize
-    >>> import numpy as np
-    >>> mesh = Delaunay([(0, 0), (4, 0), (4, 4), (0, 4)])
-    >>> rasterize(mesh, np.array([0.0, 4.0, 4.0, 0.0]), 4).values[1]
-    array([0.5, 1.5, 2.5, 3.5])
     """
     frame = _frame(mesh, pixels)
     count, total = _gathered(mesh.points, values, frame)
@@ -97,29 +62,7 @@ def rasterize(mesh: Triangles, values: Floats, pixels: int) -> Raster:
 
 
 def point_density(mesh: Triangles, pixels: int) -> Raster:
-    """Return how many points lie on the area of each pixel, per unit of area.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        The mesh.
-    pixels : int
-        Number of pixels along the longer side.
-
-    Returns
-    -------
-    Raster
-        NaN where there are no points.
-
-    Examples
-    --------
-    >>> from delone import Delaunay
-    >>> from delone.plot.shading import point_density
-    >>> mesh = Delaunay([(0, 0), (2, 0), (2, 2), (0, 2)])
-    >>> point_density(mesh, 2).values
-    array([[1., 1.],
-           [1., 1.]])
-    """
+    """Return how many points lie on the area of each pixel, per unit of area; NaN for none."""
     frame = _frame(mesh, pixels)
     count, _ = _gathered(mesh.points, None, frame)
     with np.errstate(divide="ignore", over="ignore"):
@@ -128,32 +71,7 @@ def point_density(mesh: Triangles, pixels: int) -> Raster:
 
 
 def facet_values(mesh: Triangles, values: NDArray[np.integer] | Floats, pixels: int) -> Raster:
-    """Return values of triangles as pixels: those of the triangles at their centers.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        The mesh.
-    values : ndarray, shape (m,)
-        A value for each triangle.
-    pixels : int
-        Number of pixels along the longer side.
-
-    Returns
-    -------
-    Raster
-        NaN where there is no triangle.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone import ConstrainedDelaunay
-    >>> from delone.plot.shading import facet_values
-    >>> corners = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 0), (2, 4)]
-    >>> mesh = ConstrainedDelaunay(corners, [(4, 5)])
-    >>> facet_values(mesh, mesh.region, 4).values[0]
-    array([0., 0., 1., 1.])
-    """
+    """Return the values of the triangles, (m,), at the centers of pixels; NaN outside of them."""
     frame = _frame(mesh, pixels)
     triangle = mesh.find_simplex(_all_centers(frame))
     found = np.full(triangle.shape, np.nan)
@@ -162,30 +80,10 @@ def facet_values(mesh: Triangles, values: NDArray[np.integer] | Floats, pixels: 
 
 
 def relief(raster: Raster) -> Floats:
-    """Return how bright the sun makes each pixel.
+    """Return how bright the sun makes each pixel: from 0 to 1 (toward it), 0.71 for flat ground.
 
-    Parameters
-    ----------
-    raster : Raster
-        Heights.
-
-    Returns
-    -------
-    ndarray of float64, shape (rows, columns)
-        From 0 (away from the sun) to 1 (toward it); flat ground has 0.71.
-
-    Notes
-    -----
     Heights are exaggerated until the steepest tenth of the ground is as steep as 50 degrees, so
     that plains, towns and heights in meters over degrees all show relief.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plot.shading import Raster, relief
-    >>> relief(Raster(np.zeros((2, 2)), 1.0, (0, 2, 0, 2))).round(2)
-    array([[0.71, 0.71],
-           [0.71, 0.71]])
     """
     if min(raster.values.shape) < 2:
         return np.full(raster.values.shape, _SUN[2])
@@ -196,30 +94,7 @@ def relief(raster: Raster) -> Floats:
 
 
 def facet_light(points: Floats, z: Floats, simplices: NDArray[np.int32]) -> Floats:
-    """Return how bright the sun makes each triangle.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Horizontal coordinates.
-    z : ndarray of float64, shape (n,)
-        Heights.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    Returns
-    -------
-    ndarray of float64, shape (m,)
-        As `relief` does for pixels.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plot.shading import facet_light
-    >>> square = np.array([(0, 0), (1, 0), (0, 1.0)])
-    >>> facet_light(square, np.zeros(3), np.array([[0, 1, 2]])).round(2)
-    array([0.71])
-    """
+    """Return how bright the sun makes each triangle, (m,), as `relief` does for pixels."""
     a, b, c = (points[simplices[:, k]] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     uz, vz = z[simplices[:, 1]] - z[simplices[:, 0]], z[simplices[:, 2]] - z[simplices[:, 0]]

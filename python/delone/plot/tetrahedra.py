@@ -14,7 +14,7 @@ from delone._arrays import as_choice, as_flag, as_number
 from delone.errors import InputError
 from delone.extras import require
 from delone.plot.plotter import new_plotter
-from delone.plot.protocols import has, kind_of
+from delone.plot.protocols import has, hint, kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -43,52 +43,10 @@ def plot(
     colorbar: bool = True,
     off_screen: bool | None = None,
 ) -> Any:
-    """Draw tetrahedra or a surface of triangles, with edges.
+    """Draw tetrahedra or a surface of triangles; for the options see `delone.plot.plot`.
 
-    Parameters
-    ----------
-    mesh : Simplices
-        What to draw: a 3-D `Delaunay`, `RegularTriangulation` or `ConvexHull`, or a `TetMesh`.
-    ax : pyvista.Plotter, optional
-        Where to draw; by default a new plotter.
-    values : array_like, shape (n,) or (m,), optional
-        A number for each point or each simplex (if there are as many of both, for each point), for
-        colors. By default a single color; with `below`, the smallest dihedral angles.
-    cut : {"none", "x", "y", "z"}, optional
-        The axis along which the farther half of the simplices is left out.
-    shrink : float, optional
-        Share of the size at which each simplex is drawn, at most 1.
-    below : float, optional
-        Draw only the tetrahedra whose smallest dihedral angle is below this, in degrees, within
-        the translucent surface of the mesh.
-    points : bool, optional
-        Draw the points as well.
-    cmap : str, optional
-        Colors of values.
-    colorbar : bool, optional
-        Add the color bar.
-    off_screen : bool, optional
-        Whether a new plotter draws without a window. Not together with `ax`.
-
-    Returns
-    -------
-    pyvista.Plotter
-        Where it is drawn: ``show()`` opens the window, ``screenshot(path)`` writes an image.
-
-    Raises
-    ------
-    InputError
-        `mesh` is 2-D or has no simplices, or an option is not one of its choices.
-    MissingExtraError
-        PyVista is not installed.
-
-    Examples
-    --------
-    >>> from delone import Delaunay, datasets
-    >>> from delone.plot import plot
-    >>> mesh = Delaunay(datasets.uniform(50, ndim=3))
-    >>> plotter = plot(mesh, values=mesh.volumes, cut="x", off_screen=True)
-    >>> plotter.close()
+    If there are as many simplices as points, `values` are those of points. With `below`, they are
+    by default the smallest dihedral angles.
     """
     pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
     as_choice(cut, ("none", *_AXES), name="cut")
@@ -126,11 +84,8 @@ def _require_simplices(mesh: Any) -> None:
     kind = kind_of(mesh)
     if kind == "tetrahedra":
         return
-    if kind:
-        hint = "delone.plot.plot draws it"
-    else:
-        hint = "use its own plot()" if hasattr(mesh, "plot") else "draw delone.Delaunay(points)"
-    raise InputError(f"a {type(mesh).__name__} is not a mesh in 3-D: {hint}")
+    instead = "delone.plot.plot draws it" if kind else hint(mesh)
+    raise InputError(f"a {type(mesh).__name__} is not a mesh in 3-D: {instead}")
 
 
 def _in_front(mesh: Simplices, cut: str) -> NDArray[np.bool_]:

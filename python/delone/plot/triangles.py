@@ -11,11 +11,11 @@ from delone._values import as_values
 from delone.errors import InputError
 from delone.extras import require
 from delone.plot import cartography
-from delone.plot.axes import draw_dots, frame, new_axes, pixels, require_bounds
+from delone.plot.axes import draw_dots, frame, new_axes, pixels, require_bounds, thin
 from delone.plot.circles import bounds_with_circles, draw_circles, require_few
-from delone.plot.colors import add_bar, scale, shaded
-from delone.plot.protocols import kind_of, segmented
-from delone.plot.shading import Raster, facet_light, point_density, rasterize, relief
+from delone.plot.colors import add_bar, scale, shaded, show
+from delone.plot.protocols import hint, kind_of, segmented
+from delone.plot.shading import facet_light, point_density, rasterize, relief
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -45,66 +45,7 @@ def plot(
     title: str | None = None,
     segments: bool = True,
 ) -> Any:
-    """Draw a 2-D triangulation.
-
-    Parameters
-    ----------
-    mesh : Triangles
-        What to draw: a `Delaunay`, `RegularTriangulation`, `ConstrainedDelaunay` or `Mesh`.
-    ax : matplotlib Axes, optional
-        Where to draw; by default on the axes of a new pyplot figure.
-    z : array_like of float, shape (n,), optional
-        Heights: triangles are colored by them.
-    hull : bool, optional
-        Draw the convex hull; of a constrained triangulation the boundary except for its segments.
-    circumcircles : bool, optional
-        Draw the circle through the corners of each triangle, for up to 3000 triangles.
-    vertices : bool, optional
-        Draw the points. By default only if there are few enough to tell them apart.
-    cmap : str or matplotlib Colormap, optional
-        Colors of z. By default those of land, or of water if nothing lies above zero.
-    shade : bool, optional
-        Add light and shadow to the colors of z. They then differ from those of the color bar, so
-        this is for terrain. By default only with ``colorbar=False`` and at least 2000 triangles.
-    colorbar : bool, optional
-        Add the color bar.
-    title : str, optional
-        Title of the axes.
-    segments : bool, optional
-        Draw the segments of a constrained triangulation as bold lines.
-
-    Returns
-    -------
-    matplotlib Axes
-        Where it is drawn.
-
-    Raises
-    ------
-    MissingExtraError
-        matplotlib is not installed.
-    InputError
-        `mesh` is not a 2-D triangulation; `z` has the wrong length or no finite value; there are
-        too many triangles for circles.
-
-    Notes
-    -----
-    If triangles are smaller than 14 pixels on average, an image is drawn: the surface of z, or
-    without z the density of points. The color scale spans the values without the lowest and the
-    highest hundredth, which have the colors of its ends.
-
-    A `ConstrainedDelaunay` without z has its regions in colors, such that regions on both sides of
-    a segment differ; triangles without a label are gray, holes stay white.
-
-    Examples
-    --------
-    >>> import matplotlib
-    >>> matplotlib.use("Agg")
-    >>> from delone import Delaunay
-    >>> from delone.plot import plot
-    >>> ax = plot(Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]), circumcircles=True)
-    >>> ax.get_aspect()
-    1.0
-    """
+    """Draw a 2-D triangulation; for the options see `delone.plot.plot`."""
     require("matplotlib", extra="plot", what="drawing")
     require_flat(mesh)
     for name, flag in {"hull": hull, "circumcircles": circumcircles, "segments": segments}.items():
@@ -141,15 +82,11 @@ def require_flat(mesh: Any) -> None:
     if kind == "triangles":
         return
     if kind in {"tetrahedra", "cells3"}:
-        hint = "delone.plot.plot draws it with PyVista"
-    elif kind:
-        hint = "delone.plot.plot draws it"
-    elif hasattr(mesh, "plot"):
-        hint = "use its own plot()"
+        instead = "delone.plot.plot draws it with PyVista"
     else:
-        hint = "draw delone.Delaunay(points)"
+        instead = "delone.plot.plot draws it" if kind else hint(mesh)
     name = f"{type(mesh).__module__}.{type(mesh).__name__}"
-    raise InputError(f"a {name} is not a 2-D triangulation: {hint}")
+    raise InputError(f"a {name} is not a 2-D triangulation: {instead}")
 
 
 def require_drawable(mesh: Triangles, heights: Floats | None) -> None:
@@ -193,7 +130,7 @@ def _draw_image(
     if shade or (shade is None and not colorbar):
         rgba[..., :3] = shaded(rgba[..., :3], relief(raster))
     rgba[..., 3] = np.isfinite(raster.values)
-    _show(ax, raster, rgba)
+    show(ax, rgba, raster.extent)
     if colorbar:
         add_bar(ax, mapped, z, "z")
 
@@ -216,11 +153,6 @@ def _draw_density(ax: Any, mesh: Triangles, size: int, cmap: Any, colorbar: bool
         ax.figure.colorbar(image, ax=ax, label="points per unit of area", shrink=0.75, pad=0.02)
 
 
-def _show(ax: Any, raster: Raster, rgba: Floats) -> None:
-    image = np.round(rgba * 255).astype(np.uint8)
-    ax.imshow(image, extent=raster.extent, origin="lower", interpolation="auto", zorder=0)
-
-
 def _draw_triangles(
     ax: Any,
     mesh: Triangles,
@@ -232,10 +164,10 @@ def _draw_triangles(
 ) -> None:
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     points, simplices = mesh.points, mesh.simplices
-    thin = float(np.clip(30 / np.sqrt(mesh.nsimplex), 0.15, 1.0))
+    width = thin(mesh.nsimplex)
     if z is None:
         lines = collections.LineCollection(
-            points[mesh.edges], colors=_INK, linewidths=thin, zorder=1
+            points[mesh.edges], colors=_INK, linewidths=width, zorder=1
         )
         ax.add_collection(lines, autolim=False)
         return
@@ -246,12 +178,12 @@ def _draw_triangles(
         rgba[:, :3] = shaded(rgba[:, :3], facet_light(points, z, simplices))
     rgba[~np.isfinite(means)] = 0
     facets = collections.PolyCollection(
-        points[simplices], facecolors=rgba, edgecolors="face", linewidths=0.5 * thin, zorder=1
+        points[simplices], facecolors=rgba, edgecolors="face", linewidths=0.5 * width, zorder=1
     )
     ax.add_collection(facets, autolim=False)
     # Fainter where there are many, so that they do not darken the colors.
     lines = collections.LineCollection(
-        points[mesh.edges], colors=[(0, 0, 0, thin / 3)], linewidths=0.5 * thin, zorder=1
+        points[mesh.edges], colors=[(0, 0, 0, width / 3)], linewidths=0.5 * width, zorder=1
     )
     ax.add_collection(lines, autolim=False)
     if colorbar:
