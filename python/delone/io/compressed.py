@@ -27,40 +27,17 @@ _EXPANSION, _ALWAYS = 200, 1 << 26
 
 
 def opened(path: Path) -> IO[bytes]:
-    """Open a file for reading bytes.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    file object
-        Its contents, decompressed.
-    """
+    """Open a file for reading bytes, decompressed."""
     opener = _OPENERS.get(path.suffix.lower(), open)
     file: IO[bytes] = opener(path, "rb")
     return file
 
 
 class Bounded(io.RawIOBase):
-    """A file that raises if it contains far more than its size makes likely.
+    """A file, closed with this one, that raises if it contains far more than its size makes likely.
 
-    Parameters
-    ----------
-    file : file object
-        The result of `opened`; it is closed with this one.
-    path : Path
-        The file.
-    longest_line : int, optional
-        The greatest number of bytes in a line.
-
-    Raises
-    ------
-    FileFormatError
-        While reading: a line is longer; or the contents of a compressed file exceed 64 MiB and 200
-        times the size of the file.
+    That is a line of more than `longest_line` bytes; or in a compressed file more than 64 MiB and
+    200 times its size.
     """
 
     def __init__(self, file: IO[bytes], path: Path, *, longest_line: int | None = None) -> None:
@@ -103,18 +80,7 @@ class Bounded(io.RawIOBase):
 
 @contextmanager
 def corrupt_is_an_error(source: str) -> Iterator[None]:
-    """Convert errors of decompression to `FileFormatError`.
-
-    Parameters
-    ----------
-    source : str
-        The file, for the message.
-
-    Raises
-    ------
-    FileFormatError
-        The file is truncated, corrupt or not compressed.
-    """
+    """Convert errors of decompression to `FileFormatError`."""
     try:
         yield
     except _TORN as error:

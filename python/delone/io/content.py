@@ -21,21 +21,11 @@ __all__ = ["Content", "content"]
 
 
 class Content(NamedTuple):
-    """The parts of a mesh, and beside them what a caller gives.
+    """The parts of a mesh, and beside them what a caller gives."""
 
-    Attributes
-    ----------
-    own : Parts
-        Points, simplices or edges, and the values that the mesh has of them.
-    heights : ndarray of float64, shape (n,), or None
-        The third coordinate of points in 2-D.
-    of_points, of_simplices : mapping of str to ndarray
-        The values that are given.
-    """
-
-    own: Parts
-    heights: NDArray[np.float64] | None
-    of_points: Mapping[str, NDArray[Any]]
+    own: Parts  # with the values that the mesh has
+    heights: NDArray[np.float64] | None  # (n,), the third coordinate of points in 2-D
+    of_points: Mapping[str, NDArray[Any]]  # the values that are given, as of_simplices
     of_simplices: Mapping[str, NDArray[Any]]
 
     @property
@@ -76,40 +66,10 @@ def content(
     edges: bool = False,
     attributes: Mapping[str, ArrayLike] | None = None,
 ) -> Content:
-    """Return what goes into a file.
+    """Return what goes into a file; with `edges`, edges in place of simplices.
 
-    Parameters
-    ----------
-    mesh : object with ``_parts()``, or with points and simplices
-        The mesh.
-    z : array_like of float, shape (n,), optional
-        Heights of points in 2-D.
-    edges : bool, optional
-        Whether edges are written in place of simplices: with ``segment``, 1 for edges that are part
-        of one, where the mesh has segments.
-    attributes : mapping of str to array_like, optional
-        Values of points, (n,), or of simplices or edges.
-
-    Returns
-    -------
-    Content
-        Of a mesh that has points of its own for each simplex, heights and values of points are
-        those of their rows.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        Heights or values do not fit the mesh, or are no numbers.
-
-    Examples
-    --------
-    >>> from delone import ConstrainedDelaunay
-    >>> from delone.io.content import content
-    >>> square = ConstrainedDelaunay([(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 3)])
-    >>> content(square).own.of_simplices
-    {'region': array([0, 1], dtype=int32)}
-    >>> square.edges[content(square, edges=True).own.of_simplices["segment"] == 1].tolist()
-    [[1, 3]]
+    These have ``segment``, 1 for parts of one, where the mesh has segments. Where a mesh has points
+    of its own for each simplex, heights and values of points are those of their rows.
     """
     own = parts_of(mesh)
     if edges:

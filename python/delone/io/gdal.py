@@ -57,22 +57,9 @@ _KINDS = ("name", "epsg", "ogc")
 
 @contextmanager
 def admitted(path: Path) -> Iterator[str]:
-    """Yield the name under which GDAL may read a file.
+    """Yield the absolute path of a file for GDAL, with a prefix if that restricts the driver.
 
-    Parameters
-    ----------
-    path : Path
-        An existing file; GeoJSON may be compressed.
-
-    Yields
-    ------
-    str
-        An absolute path, with a prefix if that restricts the driver.
-
-    Raises
-    ------
-    FileFormatError
-        The file is not what its suffix says, or refers to something else.
+    A file that is not what its suffix says, or refers to something else, is rejected.
     """
     if path.suffix.lower() in SUFFIXES:
         with tempfile.TemporaryDirectory(prefix="delone-") as folder:
@@ -110,20 +97,7 @@ def admitted(path: Path) -> Iterator[str]:
 
 
 def check_driver(path: Path, driver: str) -> None:
-    """Reject a file that another driver opened.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    driver : str
-        GDAL's name of the driver that opened it.
-
-    Raises
-    ------
-    FileFormatError
-        It is not the driver of the suffix.
-    """
+    """Reject a file that another driver than that of its suffix opened."""
     wanted = DRIVERS.get(path.suffix.lower(), "GeoJSON")
     if driver != wanted:
         raise FileFormatError(
@@ -132,30 +106,7 @@ def check_driver(path: Path, driver: str) -> None:
 
 
 def local_name(path: Path) -> str:
-    """Return the absolute path of a file if pyogrio and GDAL treat it as a plain path.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        Its absolute path.
-
-    Raises
-    ------
-    FileFormatError
-        They would treat it as an archive, a URL or another file.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> from delone.io.gdal import local_name
-    >>> local_name(Path("wells.gpkg")).endswith("wells.gpkg")
-    True
-    """
+    """Return the absolute path of a file, unless pyogrio or GDAL read it as an archive or a URL."""
     name = _absolute(path)
     taken = require("pyogrio.util", extra="geo", what=f"reading {path.suffix}").vsi_path(name)
     if taken != name:
@@ -197,8 +148,7 @@ def _check_beginning(path: Path) -> None:
 def _check_tables(path: Path) -> None:
     """Reject a GeoPackage with tables or views that SQLite alone cannot read.
 
-    GDAL provides functions and virtual tables that open files. SQLite here has none of them, so
-    whatever it can prepare does not use them.
+    GDAL's functions and virtual tables open files; SQLite here has none, so it rejects their use.
     """
     name = ""
     try:

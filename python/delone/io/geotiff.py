@@ -36,29 +36,9 @@ def write_geotiff(
     crs: str | None,
     units: str | None = None,
 ) -> None:
-    """Write a raster of doubles; NaN marks cells without a value.
+    """Write doubles, (rows, columns), lowest row first, and compare what is in the file.
 
-    Parameters
-    ----------
-    path : Path
-        The file, written in place.
-    values : ndarray of float64, shape (rows, columns)
-        The values, lowest row first; a memory map is read in parts.
-    corner : tuple of float
-        The left and the upper edge of the raster.
-    cell : tuple of float
-        Width and height of a cell.
-    name : str
-        Name of the values.
-    crs : str or None
-        Coordinate reference system.
-    units : str, optional
-        The units of the values.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written, or its contents are not what was written.
+    `corner` is the left and the upper edge; NaN marks no value. A memory map is read in parts.
     """
     rasterio = require("rasterio", extra="raster", what="writing GeoTIFF files")
     profile = {

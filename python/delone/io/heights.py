@@ -17,32 +17,7 @@ __all__ = ["split_attributes"]
 def split_attributes(
     attributes: dict[str, NDArray[np.generic]], npoints: int, ncells: int
 ) -> tuple[dict[str, NDArray[np.generic]], dict[str, NDArray[np.generic]]]:
-    """Split values into those of points and those of cells, by their number.
-
-    Parameters
-    ----------
-    attributes : dict of str to ndarray
-        Values.
-    npoints, ncells : int
-        Number of points and of triangles (or edges).
-
-    Returns
-    -------
-    of_points, of_cells : dict of str to ndarray
-        The same arrays.
-
-    Raises
-    ------
-    ShapeError
-        The length of an array matches neither.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.io.heights import split_attributes
-    >>> [list(part) for part in split_attributes({"class": np.zeros(5)}, 5, 4)]
-    [['class'], []]
-    """
+    """Split values into those of points and those of cells, by their number."""
     of_points, of_cells = {}, {}
     for name, values in attributes.items():
         if values.ndim == 1 and len(values) == npoints:

@@ -119,15 +119,20 @@ def _has_chunks_of_any_size(header: Any) -> bool:
     if not header.are_points_compressed:
         return False
     lazrs = require("lazrs", extra="las", what="reading LAZ")
-    vlr = lazrs.LazVlr(header.vlrs.get("LasZipVlr")[0].record_data)
-    return bool(vlr.uses_variable_size_chunks())
+    return bool(lazrs.LazVlr(_laz_record(header)).uses_variable_size_chunks())
+
+
+def _laz_record(header: Any) -> bytes:
+    """The record that tells how the points are compressed."""
+    record: bytes = header.vlrs.get("LasZipVlr")[0].record_data
+    return record
 
 
 def _from_chunks(path: Path, header: Any, start: int, stop: int) -> Any:
     """Decode the chunks that contain given records; the decoder's own seek is wrong here."""
     laspy = _laspy(path)
     lazrs = require("lazrs", extra="las", what="reading LAZ")
-    record = header.vlrs.get("LasZipVlr")[0].record_data
+    record = _laz_record(header)
     with path.open("rb") as file:
         file.seek(int(header.offset_to_point_data))
         table = np.array(lazrs.read_chunk_table(file, lazrs.LazVlr(record)), dtype=np.int64)
@@ -271,7 +276,7 @@ def _check_claim(path: Path, file: Any) -> None:
 def _compressed_records(path: Path, header: Any) -> tuple[int, int]:
     """Return the least and the greatest number of records in the chunks of a LAZ file."""
     lazrs = require("lazrs", extra="las", what="reading LAZ")
-    record = header.vlrs.get("LasZipVlr")[0].record_data
+    record = _laz_record(header)
     vlr = lazrs.LazVlr(record)
     if not vlr.uses_variable_size_chunks() and vlr.chunk_size() > _LONGEST_CHUNK:
         raise FileFormatError(f"{path} is corrupt: chunks of {vlr.chunk_size()} points")
@@ -348,16 +353,17 @@ def _read(
 
 def _crs(path: Path, header: Any) -> str | None:
     """Return the reference system as authority and code, or as WKT; None if there is none."""
-    for record in header.vlrs:
-        if type(record).__name__ == "WktCoordinateSystemVlr":
-            check_system(str(record.string).rstrip("\0"), str(path))
+    names = [
+        str(record.string)
+        for record in header.vlrs
+        if type(record).__name__ == "WktCoordinateSystemVlr"
+    ]
+    for name in names:
+        check_system(name.rstrip("\0"), str(path))
     try:
         crs = header.parse_crs()
     except Exception:  # pyproj is not needed for the points, and records are often invalid
         crs = None
     if crs is not None:
         return str(crs.to_string())
-    for record in header.vlrs:
-        if type(record).__name__ == "WktCoordinateSystemVlr" and record.string:
-            return str(record.string).rstrip("\0")
-    return None
+    return next((name.rstrip("\0") for name in names if name), None)

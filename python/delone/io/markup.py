@@ -20,18 +20,7 @@ class _RootError(Exception):
 
 
 def refuse_document_type(path: Path) -> None:
-    """Reject XML with a document type, which may define endless entities or name other files.
-
-    Parameters
-    ----------
-    path : Path
-        The file; errors in the XML are left to its reader.
-
-    Raises
-    ------
-    FileFormatError
-        The file has a document type.
-    """
+    """Reject XML with a document type; errors in the XML are left to its reader."""
 
     def document_type(*_: object) -> None:
         raise FileFormatError(

@@ -43,6 +43,10 @@ _DIMENSIONS = {"triangle": 2, "tetra": 3}
 # These hold triangles, and no lines or tetrahedra.
 _PLAIN = (".ply", ".obj", ".stl")
 _HEAD, _TAIL = 1 << 16, 1 << 12
+_COUNTS = {
+    ".ply": re.compile(rb"^element +\w+ +(\d+)", re.MULTILINE),
+    ".vtu": re.compile(rb'NumberOf(?:Points|Cells)="\s*(\d+)'),
+}
 _RELATIVE = re.compile(rb"^[ \t]*f[ \t][^\r\n]*-\d", re.MULTILINE)
 
 
@@ -126,8 +130,8 @@ def _read(path: Path) -> Any:
     if suffix == ".vtu":
         refuse_document_type(path)
     _check_claim(path, suffix)
-    announced = _announced(path) if suffix == ".ply" else {}
-    if announced.get("vertex") == 0:
+    claimed = _announced(path) if suffix == ".ply" else {}
+    if claimed.get("vertex") == 0:
         # meshio reads no such file as text; and nothing else can be in it.
         return meshio.Mesh(np.empty((0, 3)), [])
     try:
@@ -147,9 +151,9 @@ def _read(path: Path) -> Any:
         raise FileFormatError(f"{path} is truncated or not a {suffix} file: {reason}") from error
     found = {"vertex": len(mesh.points), "face": sum(len(block.data) for block in mesh.cells)}
     for item, count in found.items():
-        if count != announced.get(item, count):
+        if count != claimed.get(item, count):
             raise FileFormatError(
-                f"{path} announces {announced[item]} items of type {item} and holds {count}: "
+                f"{path} announces {claimed[item]} items of type {item} and holds {count}: "
                 "it is cut short"
             )
     return mesh
@@ -216,15 +220,9 @@ def _check_claim(path: Path, suffix: str) -> None:
 
 
 def _claims(file: IO[bytes], suffix: str, size: int) -> list[int]:
-    head, source = file.read(_HEAD), file.name
-    if suffix == ".ply":
-        return [
-            announced(n, source) for n in re.findall(rb"^element +\w+ +(\d+)", head, re.MULTILINE)
-        ]
-    if suffix == ".vtu":
-        return [
-            announced(n, source) for n in re.findall(rb'NumberOf(?:Points|Cells)="\s*(\d+)', head)
-        ]
+    head = file.read(_HEAD)
+    if suffix in _COUNTS:
+        return [announced(n, file.name) for n in _COUNTS[suffix].findall(head)]
     if suffix == ".stl" and not head.lstrip().startswith(b"solid") and len(head) >= 84:
         count = int.from_bytes(head[80:84], "little")
         return [0 if 84 + 50 * count <= size else max(count, size + 1)]
@@ -324,8 +322,7 @@ def write_mesh(
 def _write_tagged(path: Path, mesh: Any, found: Content) -> None:
     """Write triangles and segments to an MSH file, with regions and markers as its tags.
 
-    Version 4 needs the entities of CAD that points lie on, and in neither version does meshio read
-    values of several kinds of cells back.
+    Version 4 needs the CAD entities of points; meshio reads values of mixed cells in neither.
     """
     if found.of_simplices:
         raise FileFormatError(".msh files of meshes cannot store attributes of triangles; use .vtu")

@@ -79,10 +79,9 @@ def look(
     with _corrupt_is_an_error(path):
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
         with parquet.ParquetFile(path) as file:
-            schema = file.schema_arrow
-            chosen = choose_columns(_numbers(schema), columns, str(path), named=True)
-            _known(schema, attributes, path)
-            return int(file.metadata.num_rows), len(chosen) == 3
+            kept = _coordinates(file.schema_arrow, columns, path)
+            _known(file.schema_arrow, attributes, path)
+            return int(file.metadata.num_rows), len(kept) == 3
 
 
 def read_range(
@@ -101,10 +100,8 @@ def read_range(
         arrow = require("pyarrow", extra="geo", what="reading Parquet")
         parquet = require("pyarrow.parquet", extra="geo", what="reading Parquet")
         with parquet.ParquetFile(path) as file:
-            schema = file.schema_arrow
-            numbers = _numbers(schema)
-            kept = [numbers[i] for i in choose_columns(numbers, columns, str(path), named=True)]
-            names = _known(schema, attributes, path)
+            kept = _coordinates(file.schema_arrow, columns, path)
+            names = _known(file.schema_arrow, attributes, path)
             wanted = list(dict.fromkeys([*kept, *names]))
             parts, end = [], 0
             for group in range(file.num_row_groups):
@@ -145,11 +142,9 @@ def _parquet(
     with parquet.ParquetFile(path) as file:
         schema = file.schema_arrow
         if b"geo" not in (schema.metadata or {}):
-            numbers = _numbers(schema)
-            chosen = choose_columns(numbers, columns, str(path), named=True)
-            kept = [numbers[i] for i in chosen]
-            table = file.read(columns=[*kept, *_known(schema, attributes, path)])
-            return _from_table(table, kept, _known(schema, attributes, path), str(path))
+            kept = _coordinates(schema, columns, path)
+            names = _known(schema, attributes, path)
+            return _from_table(file.read(columns=[*kept, *names]), kept, names, str(path))
     return from_frame(_frame(path), columns=columns, attributes=attributes, source=str(path))
 
 
@@ -173,21 +168,20 @@ def _feather(
     arrow = require("pyarrow", extra="geo", what="reading Arrow")
     with arrow.memory_map(str(path)) as mapped:
         try:
-            reader = arrow.ipc.open_file(mapped)
-            table = reader.read_all()
+            table = arrow.ipc.open_file(mapped).read_all()
         except arrow.ArrowInvalid:
             mapped.seek(0)
             table = arrow.ipc.open_stream(mapped).read_all()
-        numbers = _numbers(table.schema)
-        chosen = choose_columns(numbers, columns, str(path), named=True)
-        kept = [numbers[i] for i in chosen]
+        kept = _coordinates(table.schema, columns, path)
         return _from_table(table, kept, _known(table.schema, attributes, path), str(path))
 
 
-def _numbers(schema: Any) -> list[str]:
+def _coordinates(schema: Any, columns: Sequence[str | int] | None, path: Path) -> list[str]:
+    """The names of the columns of x, y and, if there is one, z, which hold numbers."""
     types = require("pyarrow.types", extra="geo", what="reading tables")
     tests = (types.is_integer, types.is_floating, types.is_decimal)
-    return [field.name for field in schema if any(test(field.type) for test in tests)]
+    numbers = [field.name for field in schema if any(test(field.type) for test in tests)]
+    return [numbers[i] for i in choose_columns(numbers, columns, str(path), named=True)]
 
 
 def _known(schema: Any, attributes: Sequence[str], path: Path) -> list[str]:

@@ -118,32 +118,9 @@ def _first_line(crs: str) -> str:
 
 
 def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
-    """Return the position of a column given by name or by number from 0.
+    """Return the position of a column given by name, in any case, or by number from 0.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the columns; numbers if the file has no header.
-    wanted : str or int
-        Name (any case) or number of a column. A string of digits is a number unless it is a name.
-    source : str
-        The file, for the error message.
-
-    Returns
-    -------
-    int
-        Position in `names`.
-
-    Raises
-    ------
-    FileFormatError
-        There is no such column, or several have this name.
-
-    Examples
-    --------
-    >>> from delone.io.pointset import find_column
-    >>> find_column(["id", "East", "North"], "east", "survey.csv")
-    1
+    A string of digits is a number unless it is a name.
     """
     text = str(wanted).strip()
     folded = [name.strip().casefold() for name in names]
@@ -162,58 +139,16 @@ def find_column(names: Sequence[str], wanted: Column, source: str) -> int:
 
 
 def names_height(name: str) -> bool:
-    """Return whether a name is one of the usual words for height or depth.
-
-    Parameters
-    ----------
-    name : str
-        Name of a column.
-
-    Returns
-    -------
-    bool
-        Whether values with this name are terrain.
-
-    Examples
-    --------
-    >>> from delone.io.pointset import names_height
-    >>> names_height("Depth [m]"), names_height("temperature")
-    (True, False)
-    """
+    """Return whether a name is one of the usual words for height or depth: "Depth [m]"."""
     return _word(name) in _WORDS["z"]
 
 
 def choose_columns(
     names: Sequence[str], columns: Sequence[Column] | None, source: str, *, named: bool
 ) -> list[int]:
-    """Return the positions of x, y and, if there is one, z.
+    """Return the positions of x, y and, if there is one, z among the numeric columns.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the numeric columns.
-    columns : sequence of str or int or None
-        Two or three columns chosen by the caller; None to recognize them.
-    source : str
-        The file, for error messages.
-    named : bool
-        Whether the names are meaningful. Otherwise the first columns are x, y and z.
-
-    Returns
-    -------
-    list of int
-        Two or three positions.
-
-    Raises
-    ------
-    FileFormatError
-        A column is missing, x and y are not recognized, or one of them is ambiguous.
-
-    Examples
-    --------
-    >>> from delone.io.pointset import choose_columns
-    >>> choose_columns(["id", "lat", "lon", "depth_m"], None, "survey.csv", named=True)
-    [2, 1, 3]
+    Without `columns` they are recognized by name, or are the first ones if these are not `named`.
     """
     if columns is not None:
         if len(columns) not in (2, 3):

@@ -145,25 +145,7 @@ def write_raster(
 
 
 def raster_writer(path: str | os.PathLike[str]) -> Callable[..., None]:
-    """Return the function that writes rasters with this suffix, after importing its library.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file to be written.
-
-    Returns
-    -------
-    callable
-        Takes the arguments of `write_raster` and writes in place.
-
-    Raises
-    ------
-    FileFormatError
-        Unknown suffix.
-    MissingExtraError
-        The library for this format is not installed.
-    """
+    """Return the function that writes this suffix in place, after importing its library."""
     file = Path(path)
     if file.suffix.lower() not in _WRITERS:
         raise FileFormatError(

@@ -18,27 +18,9 @@ __all__ = ["cf_attributes", "left_out", "warn_if_left_out"]
 
 
 def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> str | None:
-    """Return a warning that a file will not contain the given reference system.
+    """Return a warning that a file will not contain a reference system; None if nothing is lost.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-    crs : str or None
-        The reference system, if one was given.
-    known : sequence of str
-        The suffixes of formats that can store one.
-
-    Returns
-    -------
-    str or None
-        One sentence; None if nothing is lost.
-
-    Examples
-    --------
-    >>> from delone.io.referencing import left_out
-    >>> left_out("mesh.vtu", "EPSG:28992", [".gpkg"])
-    'mesh.vtu: .vtu files cannot store a reference system; EPSG:28992 is not in the file. Use .gpkg'
+    `known` has the suffixes of formats that can store one.
     """
     suffix = Path(path).suffix.lower()
     if crs is None or suffix in known:
@@ -50,18 +32,7 @@ def left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]
 
 
 def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Sequence[str]) -> None:
-    """Warn that a file will not contain the given reference system.
-
-    Parameters
-    ----------
-    path, crs, known
-        As in `left_out`.
-
-    Warns
-    -----
-    CRSWarning
-        The format cannot store it.
-    """
+    """Warn that a file will not contain the given reference system; see `left_out`."""
     message = left_out(path, crs, known)
     if message is not None:
         warnings.warn(message, CRSWarning, stacklevel=3)
@@ -70,33 +41,7 @@ def warn_if_left_out(path: str | os.PathLike[str], crs: str | None, known: Seque
 def cf_attributes(
     crs: str | None,
 ) -> tuple[dict[str, Any] | None, dict[str, Any], dict[str, Any]]:
-    """Return the attributes of a reference system in the CF conventions.
-
-    Parameters
-    ----------
-    crs : str or None
-        The reference system, if it is known.
-
-    Returns
-    -------
-    mapping : dict or None
-        Attributes of the grid mapping; None without a system.
-    across, up : dict
-        Attributes of x and y: axis and, with a system, standard name and units.
-
-    Raises
-    ------
-    FileFormatError
-        The system is unknown to pyproj.
-    MissingExtraError
-        A system is given, but pyproj is not installed.
-
-    Examples
-    --------
-    >>> from delone.io.referencing import cf_attributes
-    >>> cf_attributes("EPSG:4326")[1]["units"]
-    'degrees_east'
-    """
+    """Return the CF attributes of the grid mapping (None without a system), of x and of y."""
     if crs is None:
         return None, {"axis": "X"}, {"axis": "Y"}
     pyproj = require("pyproj", extra="geo", what="writing a reference system to NetCDF")

@@ -134,19 +134,7 @@ def input_suffixes() -> tuple[str, ...]:
 
 
 def mesh_suffixes() -> tuple[str, ...]:
-    """Return the suffixes of the files that `read_mesh` reads.
-
-    Returns
-    -------
-    tuple of str
-        The suffixes, with the dot.
-
-    Examples
-    --------
-    >>> from delone.io.registry import mesh_suffixes
-    >>> ".ele" in mesh_suffixes()
-    True
-    """
+    """Return the suffixes of the files that `read_mesh` reads."""
     return tuple(_MESH_READERS)
 
 
@@ -299,24 +287,7 @@ def line_numbers(path: str | os.PathLike[str], rows: Sequence[int]) -> list[int]
 
 
 def is_text(path: str | os.PathLike[str]) -> bool:
-    """Return whether the suffix of a file is that of a text file of points.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-
-    Returns
-    -------
-    bool
-        Whether `line_numbers` can read it.
-
-    Examples
-    --------
-    >>> from delone.io.registry import is_text
-    >>> is_text("survey.csv.gz"), is_text("survey.las")
-    (True, False)
-    """
+    """Return whether the suffix is that of a text file of points, which `line_numbers` can read."""
     suffixes = [suffix.lower() for suffix in Path(path).suffixes]
     if suffixes and suffixes[-1] in SUFFIXES:
         suffixes.pop()
@@ -324,33 +295,9 @@ def is_text(path: str | os.PathLike[str]) -> bool:
 
 
 def holds_geometries(path: str | os.PathLike[str]) -> bool:
-    """Return whether `read_geometries` can read a file.
+    """Return whether `read_geometries` can read a file; no error for an unknown suffix.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-
-    Returns
-    -------
-    bool
-        From the suffix; Parquet files are opened to see if they are GeoParquet.
-
-    Raises
-    ------
-    FileNotFoundError, FileFormatError, MissingExtraError
-        As for `read_geometries`; an unknown suffix is not an error.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from delone.io.registry import holds_geometries
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "survey.csv"
-    ...     _ = file.write_text("1,2")
-    ...     holds_geometries(file)
-    False
+    Parquet files are opened to see if they are GeoParquet.
     """
     file = _existing(path)
     module = _READERS.get(_suffix(file))
@@ -586,32 +533,9 @@ def _plain(
 
 
 def writer(path: str | os.PathLike[str], *, space: bool = False) -> Callable[..., None]:
-    """Return the function that writes files with this suffix, after importing its library.
+    """Return the function that writes this suffix in place, after importing its library.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file to be written.
-    space : bool, optional
-        Whether tetrahedra will be written.
-
-    Returns
-    -------
-    callable
-        Takes the arguments of `write_mesh` and writes in place.
-
-    Raises
-    ------
-    FileFormatError
-        Unknown suffix.
-    MissingExtraError
-        The library for this format is not installed.
-
-    Examples
-    --------
-    >>> from delone.io.registry import writer
-    >>> writer("mesh.npz").__name__
-    'write_mesh'
+    It takes the arguments of `write_mesh`. With `space`, tetrahedra will be written.
     """
     return _writer(path, "tetrahedra" if space else "triangles")
 

@@ -32,25 +32,7 @@ _PARAMETERS = {"init", "proj", "grids", "nadgrids", "geoidgrids", "file"}
 
 
 def check_system(system: Any, source: str) -> None:
-    """Reject a reference system that names a file or a URL.
-
-    Parameters
-    ----------
-    system : str, dict or None
-        An authority and a code, WKT, PROJJSON, parameters of PROJ or a name.
-    source : str
-        Where it was found, for the error message.
-
-    Raises
-    ------
-    FileFormatError
-        A library would open the file or URL that it names.
-
-    Examples
-    --------
-    >>> from delone.io.systems import check_system
-    >>> check_system("EPSG:28992", "survey.gpkg")
-    """
+    """Reject a reference system, as text or PROJJSON, that names a file or a URL."""
     if system is not None and names_a_source(system):
         raise FileFormatError(
             f"{source}: its reference system {str(system)!r:.100} names a file or a URL, "
@@ -61,21 +43,7 @@ def check_system(system: Any, source: str) -> None:
 def names_a_source(system: Any) -> bool:
     """Return whether a library would open a file or a URL for a reference system.
 
-    Parameters
-    ----------
-    system : str or dict
-        A reference system.
-
-    Returns
-    -------
-    bool
-        Also True for text that is not a reference system and might be read as a path.
-
-    Examples
-    --------
-    >>> from delone.io.systems import names_a_source
-    >>> names_a_source("+init=/some/file:1"), names_a_source("Amersfoort / RD New")
-    (True, False)
+    Also True for text that is not a reference system and might be read as a path.
     """
     if not isinstance(system, str) or system.lstrip().startswith("{"):
         return _is_suspect_json(system)
@@ -112,30 +80,9 @@ def _in_json(value: Any) -> bool:
 
 
 def plain_system(system: Any, source: str) -> Any:
-    """Return a reference system that GDAL cannot mistake for a file name.
+    """Return a reference system unchanged if GDAL cannot mistake it for a file name, else raise.
 
-    Parameters
-    ----------
-    system : str or None
-        A reference system; objects of other libraries are returned as they are.
-    source : str
-        The file to be written, for the error message.
-
-    Returns
-    -------
-    str or None
-        The reference system, unchanged.
-
-    Raises
-    ------
-    FileFormatError
-        The system is neither an authority and a code nor WKT, PROJJSON or parameters of PROJ.
-
-    Examples
-    --------
-    >>> from delone.io.systems import plain_system
-    >>> plain_system("EPSG:28992", "heights.tif")
-    'EPSG:28992'
+    Objects of other libraries are returned as they are.
     """
     if not isinstance(system, str) or not system:
         return system

@@ -122,29 +122,7 @@ def attribute_names(path: Path, *, layer: str | None) -> list[str]:
 def from_frame(
     frame: Any, *, columns: Sequence[str | int] | None, attributes: Sequence[str], source: str
 ) -> PointSet:
-    """Extract points from a GeoDataFrame.
-
-    Parameters
-    ----------
-    frame : GeoDataFrame
-        Points or MultiPoints.
-    columns : sequence of str, or None
-        The one column that is z; None for the z of the geometries.
-    attributes : sequence of str
-        Further columns to keep.
-    source : str
-        The file.
-
-    Returns
-    -------
-    PointSet
-        The points; those of a MultiPoint are consecutive.
-
-    Raises
-    ------
-    FileFormatError
-        A geometry is missing, empty or not a point.
-    """
+    """Extract Points and MultiPoints from a GeoDataFrame; `columns` is as in `geometries_of`."""
     shapely = require("shapely", extra="geo", what="reading geometries")
     found = geometries_of(frame, columns=columns, source=source)
     points = found.as_points()
@@ -154,27 +132,7 @@ def from_frame(
 
 
 def geometries_of(frame: Any, *, columns: Sequence[str | int] | None, source: str) -> GeometrySet:
-    """Extract geometries from a GeoDataFrame.
-
-    Parameters
-    ----------
-    frame : GeoDataFrame
-        Geometries of any kind.
-    columns : sequence of str, or None
-        The one column that is z; None for the z of the geometries.
-    source : str
-        The file.
-
-    Returns
-    -------
-    GeometrySet
-        One geometry for each row.
-
-    Raises
-    ------
-    FileFormatError
-        There are no geometries.
-    """
+    """Extract the geometries of a GeoDataFrame; `columns` has the one column that is z, if any."""
     if not hasattr(frame, "geometry") or not len(frame):
         raise FileFormatError(f"{source} contains no points")
     heights = None
@@ -279,26 +237,7 @@ def _system(crs: str | None, suffix: str) -> Any:
 
 
 def write_layer(path: Path, frame: Any, layer: str, *, driver: str, **options: Any) -> None:
-    """Write a layer of geometries, and verify that all of it is in the file.
-
-    Parameters
-    ----------
-    path : Path
-        The file, written in place.
-    frame : GeoDataFrame
-        The geometries and their attributes.
-    layer : str
-        The name of the layer.
-    driver : str
-        GDAL's name of the format.
-    **options
-        Options of `pyogrio.write_dataframe`.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write a layer of geometries in place, and verify that all of it is in the file."""
     pyogrio = require("pyogrio", extra="geo", what="writing geometries")
     with warnings.catch_warnings():
         # A survey without a reference system is common and needs no warning.
