@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
-from delone.atomic import check_target, replacing
 from delone.cli import cells, field, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
@@ -33,14 +32,25 @@ from delone.cli.exits import (
 )
 from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
+from delone.cli.options import (
+    Classes,
+    Json,
+    Layer,
+    MeshOutput,
+    Quiet,
+    Workers,
+    class_numbers,
+    split,
+)
+from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, note, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
 from delone.cli.show import (
-    memory_text,
     print_json,
+    print_report,
     print_rows,
-    print_stages,
     print_text,
+    space_rows,
     spinner,
     triangulation_rows,
 )
@@ -49,17 +59,16 @@ from delone.cli.solid import (
     improvement_figures,
     improvement_rows,
     is_space,
-    space_rows,
     space_summary,
     triangulated_space,
 )
 from delone.counting import agreed
 from delone.errors import MissingExtraError, NonFiniteError, OutputError
-from delone.io import GeometrySet, PointSet, input_suffixes, output_suffixes
+from delone.io import GeometrySet, PointSet, input_suffixes
 from delone.io.registry import WITH_CRS, mesh_suffixes, writer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Sequence
 
     from delone import TetMesh
     from delone.cli.report import Mesh
@@ -94,12 +103,6 @@ Columns = Annotated[
         help="Columns of x, y and z, by name or by number from 0: lon,lat,depth or 0,1,2."
     ),
 ]
-Classes = Annotated[
-    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
-]
-Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
 def _version(wanted: bool) -> None:
@@ -120,22 +123,14 @@ def _options(
 def triangulate(
     source: Input,
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(output_suffixes()),
-        ),
-    ] = None,
+    output: MeshOutput = None,
     classes: Classes = None,
     columns: Columns = None,
     layer: Layer = None,
     method: Annotated[
         str, typer.Option(help="Algorithm; the result does not depend on it.")
     ] = "auto",
-    workers: Annotated[int | None, typer.Option(help="Threads; by default one per core.")] = None,
+    workers: Workers = None,
     edges: Annotated[
         bool, typer.Option("--edges", help="Write edges instead of triangles.")
     ] = False,
@@ -202,13 +197,13 @@ def triangulate(
         raise Failure("--max-iter is the limit of --improve: give --improve as well", Exit.USAGE)
     with writing():
         protect_inputs(output or (), source)
-        writers = {path: _ready(path) for path in output or ()}
+        writers = {path: ready(path) for path in output or ()}
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
             survey = read_input(
-                source, columns=_split(columns), classes=_numbers(classes), layer=layer
+                source, columns=split(columns), classes=class_numbers(classes), layer=layer
             )
         survey = referenced(
             survey, crs, planar=planar, quiet=quiet, outputs=writers, known=WITH_CRS
@@ -238,7 +233,7 @@ def triangulate(
             with watch.stage("improve"):
                 tetrahedra = improved(mesh, writers, say, min_angle=min_angle, passes=max_iter)
             written, gained = tetrahedra, {"improvement": improvement_figures(tetrahedra.report)}
-        _write(writers, written, {"z": z, "crs": survey.crs, "edges": edges}, watch, say)
+        write_all(writers, written, watch, say, z=z, crs=survey.crs, edges=edges)
         say("reporting")
         figures: dict[str, Any] = {
             "delone": __version__,
@@ -256,10 +251,7 @@ def triangulate(
     elif not quiet:
         rows = space_rows(figures) if solid else triangulation_rows(figures)
         rows += improvement_rows(figures["improvement"]) if better else []
-        rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
-        rows += [("written", str(path)) for path in writers]
-        print_rows(str(source), rows)
-        print_stages(figures["stages"])
+        print_report(str(source), rows, figures)
 
 
 def check(
@@ -311,7 +303,11 @@ def info(
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(
-            source, columns=_split(columns), classes=_numbers(classes), layer=layer, space=space
+            source,
+            columns=split(columns),
+            classes=class_numbers(classes),
+            layer=layer,
+            space=space,
         )
     if as_json:
         print_json(figures)
@@ -321,20 +317,12 @@ def info(
 
 # Called, not used as decorators: the functions above remain plain functions.
 app.callback()(_options)
-for _command in (triangulate, check, info, field.interpolate, field.crossval, cells.voronoi):
-    app.command(epilog="The table of exit codes is in: delone --help")(naming_lines(_command))
-
-app.command(epilog="The table of exit codes is in: delone --help")(naming_lines(tiles.tile))
-app.command(epilog="The table of exit codes is in: delone --help")(tiles.dem)
-
-app.command(name="mesh", epilog="The table of exit codes is in: delone --help")(make_mesh)
-
-
-def _ready(path: Path) -> Callable[..., None]:
-    """Check that a file can be written before any work is done."""
-    write = writer(path)
-    check_target(path)
-    return write
+_EPILOG = "The table of exit codes is in: delone --help"
+_ON_POINTS = triangulate, check, info, field.interpolate, field.crossval, cells.voronoi, tiles.tile
+for _command in _ON_POINTS:
+    app.command(epilog=_EPILOG)(naming_lines(_command))
+app.command(epilog=_EPILOG)(tiles.dem)
+app.command(name="mesh", epilog=_EPILOG)(make_mesh)
 
 
 def _what(survey: PointSet | GeometrySet) -> str:
@@ -347,47 +335,8 @@ def _of_constraints(mesh: Mesh, survey: PointSet | GeometrySet) -> dict[str, Any
     return {}
 
 
-def _write(
-    writers: Mapping[Path, Callable[..., None]],
-    mesh: Mesh | TetMesh,
-    what: Mapping[str, Any],
-    watch: Stopwatch,
-    say: Callable[[str], None],
-) -> None:
-    """Write all files next to their targets, and rename them once all are complete."""
-    with writing(), contextlib.ExitStack() as stack:
-        for path, write in writers.items():
-            say(f"writing {path.name}")
-            with watch.stage(f"write {path.name}"):
-                write(stack.enter_context(replacing(path)), mesh, **what)
-
-
-def _split(text: str | None) -> list[str] | None:
-    return None if text is None else [part.strip() for part in text.split(",")]
-
-
-def _numbers(text: str | None) -> list[int] | None:
-    try:
-        return None if text is None else [int(part) for part in text.split(",")]
-    except ValueError:
-        raise Failure(
-            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
-        ) from None
-
-
 def run(arguments: Sequence[str]) -> int:
-    """Run the command.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        The arguments after ``delone`` on the command line.
-
-    Returns
-    -------
-    int
-        The exit code. Errors have been reported in one line on standard error.
-    """
+    """Run the command and return its exit code; errors are one line on standard error."""
     # Only the main thread may set signal handlers.
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGTERM, _terminated) if main else None

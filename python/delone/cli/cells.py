@@ -12,9 +12,10 @@ import typer
 from delone import Voronoi, __version__
 from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import Json, Layer, Quiet, Workers, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
+from delone.cli.show import print_json, print_report, spinner
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
 from delone.extras import require
 from delone.io import input_suffixes, read_geometries, read_points
@@ -60,12 +61,12 @@ def voronoi(
     columns: Annotated[
         str | None, typer.Option(help="Columns of x and y, by name or by number from 0.")
     ] = None,
-    layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
+    layer: Layer = None,
     crs: Crs = None,
     planar: Planar = False,
-    workers: Annotated[int | None, typer.Option(help="Threads; by default one per core.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Clip the Voronoi cells of sites to an outline, and write them with their attributes."""
     require_known(crs)
@@ -77,7 +78,7 @@ def voronoi(
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
         with reading(), watch.stage("read"):
-            sites = _sites(source, _split(columns), layer, _split(attributes), weights)
+            sites = _sites(source, split(columns), layer, split(attributes), weights)
             sites = referenced(sites, crs, planar=planar, quiet=quiet)
             outline = _outline(clip, sites.crs)
         say(f"computing {len(sites):,} cells")
@@ -113,14 +114,7 @@ def _print(figures: dict[str, Any], source: str) -> None:
     rows = [(name, f"{figures[name]:,}") for name in names if figures[name] or name != "hidden"]
     if figures["area"] is not None:
         rows.append(("area", f"{figures['area']:.10g}"))
-    rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
-    rows += [("written", path) for path in figures["outputs"]]
-    print_rows(source, rows)
-    print_stages(figures["stages"])
-
-
-def _split(text: str | None) -> list[str] | None:
-    return None if text is None else [part.strip() for part in text.split(",")]
+    print_report(source, rows, figures)
 
 
 def _ready(path: Path) -> None:
@@ -222,15 +216,7 @@ def _write(diagram: Voronoi, sites: PointSet, output: list[Path], watch: Stopwat
 
 
 def write_cells(table: Any, path: Path) -> None:
-    """Write a table of cells to a file; the suffix determines the format.
-
-    Parameters
-    ----------
-    table : GeoDataFrame
-        The result of `Voronoi.to_geopandas`.
-    path : Path
-        The file, written in place.
-    """
+    """Write the table of `Voronoi.to_geopandas` in place; the suffix determines the format."""
     suffix = path.suffix.lower()
     if suffix == ".parquet":
         table.to_parquet(path, index=False)

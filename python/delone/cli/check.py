@@ -32,25 +32,10 @@ _FIRST = 10
 def check_mesh(
     path: Path, *, canonical: bool, say: Callable[[str], None]
 ) -> tuple[dict[str, Any], list[str]]:
-    """Read triangles and prove that they are Delaunay, or name the faults.
+    """Prove that triangles are Delaunay, or name the faults: figures, with ``ok``, and lines.
 
-    Files of `ConstrainedDelaunay.save` are checked as constrained triangulations.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    canonical : bool
-        Whether a different choice among cocircular points is a fault.
-    say : callable
-        Called with a description of the current step.
-
-    Returns
-    -------
-    figures : dict
-        Machine-readable; ``figures["ok"]`` is the verdict.
-    lines : list of str
-        Human-readable.
+    Files of `ConstrainedDelaunay.save` are checked as constrained triangulations. With `canonical`,
+    a different choice among cocircular points is a fault. `say` is told the current step.
     """
     watch = Stopwatch()
     say(f"reading {path.name}")
@@ -99,22 +84,16 @@ def _lines(report: ValidationReport, mesh: MeshFile, delaunay: bool) -> list[str
     if delaunay:
         lines = ["a Delaunay triangulation, proven exactly, but not the canonical one:"]
         if ties := len(report.ties):
-            what = (
-                "tetrahedra share a sphere"
-                if mesh.points.shape[1] == 3
-                else ("triangles share a circle")
-            )
+            solid = mesh.points.shape[1] == 3
+            what = "tetrahedra share a sphere" if solid else "triangles share a circle"
             lines.append(f"  {ties:,} pairs of {what} and have other diagonals")
         if repeats := len(report.repeats):
             lines.append(f"  {repeats:,} vertices are not the first row with their coordinates")
         return lines
     lines = str(report).replace("a canonical", "a", 1).splitlines()
-    if isinstance(report, ConstrainedReport):
-        # Its row numbers refer to all triangles of the hull.
-        return lines
-    if isinstance(report, SpaceReport):
-        return lines
-    return lines + _coordinates(report, mesh)
+    # The row numbers of a ConstrainedReport refer to all triangles of the hull.
+    shown = not isinstance(report, ConstrainedReport | SpaceReport)
+    return lines + _coordinates(report, mesh) if shown else lines
 
 
 def _coordinates(report: ValidationReport, mesh: MeshFile) -> list[str]:

@@ -28,36 +28,15 @@ _FIRST = 3
 
 
 class Constraints(NamedTuple):
-    """The command-line options for lines and polygons.
+    """The command-line options for lines and polygons."""
 
-    Parameters
-    ----------
-    crossing : str or None
-        How to treat crossing segments; None if not given.
-    outline, conforming : bool
-        Remove triangles outside; add vertices until all segments are Delaunay edges.
-    max_points : int or None
-        Maximum number of added vertices.
-    """
-
-    crossing: str | None
-    outline: bool
-    conforming: bool
-    max_points: int | None
+    crossing: str | None  # None if not given
+    outline: bool  # remove triangles outside
+    conforming: bool  # add vertices until all segments are Delaunay edges
+    max_points: int | None  # the most vertices to add
 
     def require_none(self, source: str) -> None:
-        """Reject options that do not apply to points.
-
-        Parameters
-        ----------
-        source : str
-            The file.
-
-        Raises
-        ------
-        Failure
-            One of these options was given.
-        """
+        """Reject options that do not apply to points."""
         given = [f"--{name.replace('_', '-')}" for name in self._fields if self._is_given(name)]
         if given:
             raise Failure(
@@ -76,20 +55,7 @@ def read_input(
     layer: str | None,
     attributes: Sequence[str] = (),
 ) -> PointSet | GeometrySet:
-    """Read points, or geometries if there are lines or areas among them.
-
-    Parameters
-    ----------
-    source : Path
-        The file.
-    columns, classes, layer, attributes
-        As in `delone.io.read_points`.
-
-    Returns
-    -------
-    PointSet or GeometrySet
-        The contents of the file.
-    """
+    """Read points, or geometries if there are lines or areas among them."""
     if classes is None and holds_geometries(source):
         found = read_geometries(source, columns=columns, layer=layer)
         return found.as_points() if found.only_points else found
@@ -101,24 +67,7 @@ def read_input(
 def triangulated(
     survey: PointSet | GeometrySet, constraints: Constraints, **options: Any
 ) -> tuple[Mesh, NDArray[np.float64] | None]:
-    """Triangulate the input.
-
-    Parameters
-    ----------
-    survey : PointSet or GeometrySet
-        Points, or lines and polygons as well.
-    constraints : Constraints
-        The options for those.
-    **options
-        `method` and `workers`.
-
-    Returns
-    -------
-    mesh : Delaunay or ConstrainedDelaunay
-        The triangulation.
-    z : ndarray of float64, shape (n,), or None
-        Heights of its points.
-    """
+    """Triangulate the input, with `method` and `workers`; return heights of its points as well."""
     if not isinstance(survey, GeometrySet):
         constraints.require_none(survey.source)
         return Delaunay(survey.points, **options), survey.z
@@ -159,20 +108,7 @@ def _boundary(survey: GeometrySet, outline: bool) -> str:
 
 
 def constraint_figures(mesh: ConstrainedDelaunay, survey: GeometrySet) -> dict[str, Any]:
-    """Return the figures on lines and polygons.
-
-    Parameters
-    ----------
-    mesh : ConstrainedDelaunay
-        The triangulation.
-    survey : GeometrySet
-        The input.
-
-    Returns
-    -------
-    dict
-        Counts, and the first crossings.
-    """
+    """Return the figures on lines and polygons: counts, and the first crossings."""
     report = mesh.report
     names = ("repeated", "overlaps", "through", "zero", "steiner")
     return {
@@ -195,18 +131,7 @@ def _first(mesh: ConstrainedDelaunay, crossings: NDArray[np.int32]) -> list[dict
 
 
 def constraint_rows(figures: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the rows of the report on lines and polygons.
-
-    Parameters
-    ----------
-    figures : dict
-        The result of `constraint_figures`.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values; counts of zero are omitted.
-    """
+    """Return the rows of the report on lines and polygons, without counts of zero."""
     rows = [
         ("features", f"{figures['features']:,}"),
         ("segments", f"{figures['segments']:,} in {figures['pieces']:,} pieces"),

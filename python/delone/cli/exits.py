@@ -85,15 +85,7 @@ MEANINGS = {
 
 
 class Failure(Exception):  # noqa: N818
-    """Terminates the command with a message for the user and an exit code.
-
-    Parameters
-    ----------
-    message : str
-        One line.
-    code : Exit
-        The exit code.
-    """
+    """Terminates the command with a message of one line for the user and an exit code."""
 
     def __init__(self, message: str, code: Exit) -> None:
         super().__init__(message)
@@ -101,20 +93,7 @@ class Failure(Exception):  # noqa: N818
 
 
 def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
-    """Reject outputs that would replace an input, or each other.
-
-    Parameters
-    ----------
-    outputs : iterable of Path
-        Files to be written.
-    *inputs : Path
-        Files to be read, existing or not.
-
-    Raises
-    ------
-    Failure
-        Two of the names refer to the same file, after following links.
-    """
+    """Reject outputs that would replace an input, or each other, after following links."""
     read = {os.path.realpath(path): path for path in inputs}
     written: set[str] = set()
     for path in outputs:
@@ -127,20 +106,8 @@ def protect_inputs(outputs: Iterable[Path], *inputs: Path) -> None:
 
 
 def code_of(error: BaseException) -> Exit:
-    """Return the exit code of an error that is not related to a file.
-
-    Parameters
-    ----------
-    error : BaseException
-        The exception.
-
-    Returns
-    -------
-    Exit
-        Its exit code; that of a bug for unexpected errors.
-    """
+    """Return the exit code of an error unrelated to a file; an unexpected one is a bug."""
     codes: tuple[tuple[type[BaseException], Exit], ...] = (
-        (KeyboardInterrupt, Exit.INTERRUPTED),
         (MissingExtraError, Exit.MISSING_EXTRA),
         (DegenerateInputError, Exit.DEGENERATE),
         (NonFiniteError, Exit.DEGENERATE),
@@ -152,7 +119,6 @@ def code_of(error: BaseException) -> Exit:
         (InternalError, Exit.INTERNAL),
         (FileFormatError, Exit.INPUT),
         (InputError, Exit.USAGE),
-        (MemoryError, Exit.MEMORY),
     )
     return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
 
@@ -164,47 +130,12 @@ _OPTION = re.compile(
 
 
 def as_options(message: str) -> str:
-    """Rewrite Python arguments in a message as options of the command.
-
-    Parameters
-    ----------
-    message : str
-        The message of an exception.
-
-    Returns
-    -------
-    str
-        The message with command-line options.
-
-    Examples
-    --------
-    >>> from delone.cli.exits import as_options
-    >>> as_options("choose nan='drop'")
-    'choose --nan drop'
-    """
+    """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``."""
     return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", message)
 
 
 def os_message(error: OSError) -> str:
-    """Return the name of the file and the system's message.
-
-    Parameters
-    ----------
-    error : OSError
-        The error.
-
-    Returns
-    -------
-    str
-        One line.
-
-    Examples
-    --------
-    >>> import errno
-    >>> from delone.cli.exits import os_message
-    >>> os_message(OSError(errno.EIO, "Input/output error", "survey.las"))
-    'survey.las: Input/output error'
-    """
+    """Return the name of the file and the system's message in one line."""
     if error.errno is None:
         # delone's own messages already contain the name.
         return str(error)
@@ -212,17 +143,9 @@ def os_message(error: OSError) -> str:
 
 
 def naming_lines(command: Callable[Given, None]) -> Callable[Given, None]:
-    """Make a command add the lines of a text file to errors that name rows.
+    """Make a command add the lines of its text file to errors that name rows.
 
-    Parameters
-    ----------
-    command : callable
-        A command whose argument ``source`` or ``sources`` names its input.
-
-    Returns
-    -------
-    callable
-        The command; it adds a note to errors that have rows.
+    The file is its argument ``source`` or ``sources``.
     """
 
     @functools.wraps(command)

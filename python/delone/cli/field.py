@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,11 +9,13 @@ import numpy as np
 import typer
 
 from delone import __version__
-from delone.atomic import check_target, replacing
+from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import Classes, Json, Layer, Quiet, Workers, split
+from delone.cli.outputs import write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
-from delone.cli.show import memory_text, print_json, print_rows, print_stages, spinner
+from delone.cli.show import print_json, print_report, print_rows, spinner
 from delone.interpolate import Grid, Interpolator, cross_validate, grid, interpolator
 from delone.interpolate.methods import METHODS
 from delone.interpolate.values import chosen
@@ -35,10 +36,6 @@ Value = Annotated[
 Columns = Annotated[
     str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
 ]
-Classes = Annotated[
-    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
-]
-Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
 Duplicates = Annotated[
     str,
     typer.Option(
@@ -51,9 +48,6 @@ Nan = Annotated[
 Gradients = Annotated[
     str | None, typer.Option(help="Gradients of the smooth methods: global, local or plane.")
 ]
-Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 _NAMES = " ".join(METHODS)
 _COMPARED = "linear,nearest,sibson,laplace"
@@ -126,7 +120,7 @@ def interpolate(
             found = grid(
                 made, **where, max_distance=max_distance, progress=_told(say, "interpolating")
             )
-        _write(writers, found, {"name": name, "crs": survey.crs, "units": units}, watch, say)
+        write_all(writers, found, watch, say, name=name, crs=survey.crs, units=units)
         figures = _figures(source, survey, made, method, found) | {
             "max_distance": max_distance,
             "stages": watch.rows(
@@ -138,8 +132,7 @@ def interpolate(
     if as_json:
         print_json(figures)
     elif not quiet:
-        print_rows(str(source), _rows(figures, list(writers)))
-        print_stages(figures["stages"])
+        print_report(str(source), _rows(figures), figures)
 
 
 def crossval(
@@ -236,7 +229,7 @@ def _read(  # noqa: PLR0917
     with reading(), watch.stage("read"):
         survey = read_points(
             source,
-            columns=None if columns is None else [part.strip() for part in columns.split(",")],
+            columns=split(columns),
             classes=None if classes is None else _numbers(classes, int, "--classes"),
             layer=layer,
             attributes=() if value is None else (value,),
@@ -289,21 +282,6 @@ def _numbers(text: str, kind: type, option: str) -> list[Any]:
         raise Failure(f"{option} takes numbers, got {text!r}", Exit.USAGE) from None
 
 
-def _write(
-    writers: dict[Path, Callable[..., None]],
-    found: Grid,
-    what: dict[str, Any],
-    watch: Stopwatch,
-    say: Callable[[str], None],
-) -> None:
-    """Write all files next to their targets, and rename them once all are complete."""
-    with writing(), contextlib.ExitStack() as stack:
-        for path, write in writers.items():
-            say(f"writing {path.name}")
-            with watch.stage(f"write {path.name}"):
-                write(stack.enter_context(replacing(path)), found, **what)
-
-
 def _figures(
     source: Path, survey: PointSet, made: Interpolator, method: str, found: Grid
 ) -> dict[str, Any]:
@@ -332,7 +310,7 @@ def _why_none(figures: dict[str, Any]) -> str:
     return f"outside the hull{beyond}"
 
 
-def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]:
+def _rows(figures: dict[str, Any]) -> list[tuple[str, str]]:
     cells = figures["columns"] * figures["rows"]
     rows = [
         ("points read", f"{figures['points']:,}"),
@@ -344,5 +322,4 @@ def _rows(figures: dict[str, Any], outputs: list[Path]) -> list[tuple[str, str]]
     ]
     if figures["least"] is not None:
         rows.append(("values", f"{figures['least']:.6g} to {figures['greatest']:.6g}"))
-    rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
-    return rows + [("written", str(path)) for path in outputs]
+    return rows

@@ -50,23 +50,9 @@ def describe(
     layer: str | None,
     space: bool | None = None,
 ) -> tuple[dict[str, Any], list[Row]]:
-    """Read a file and describe its contents.
+    """Read a file and return figures and rows of its contents.
 
-    Parameters
-    ----------
-    source : Path
-        The file.
-    columns, classes, layer
-        As in `delone.io.read_points`.
-    space : bool or None, optional
-        Whether points are 3-D; by default as `delone.cli.solid.is_space` decides.
-
-    Returns
-    -------
-    figures : dict
-        Machine-readable.
-    rows : list of tuple of str
-        Human-readable.
+    Points are 3-D (`space`) by default as `delone.cli.solid.is_space` decides.
     """
     las = source.suffix.lower() in (".las", ".laz")
     with reading():

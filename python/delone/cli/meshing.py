@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,14 +12,15 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from delone import Mesh, __version__, mesh
-from delone.atomic import check_target, replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import Json, Layer, MeshOutput, Quiet
+from delone.cli.outputs import ready, write_all
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, peak_memory, summary
-from delone.cli.show import memory_text, print_json, print_rows, print_stages
+from delone.cli.show import print_json, print_report
 from delone.errors import CrossingSegmentsError, NonFiniteError
-from delone.io import output_suffixes, read_geometries
-from delone.io.registry import WITH_CRS, writer
+from delone.io import read_geometries
+from delone.io.registry import WITH_CRS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -39,15 +40,7 @@ def make_mesh(
         ),
     ],
     *,
-    output: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUTPUT",
-            help="File to write, once or more: " + " ".join(output_suffixes()),
-        ),
-    ] = None,
+    output: MeshOutput = None,
     min_angle: Annotated[
         float, typer.Option(help="Minimum angle in degrees: at least 0, below 60.")
     ] = 30.0,
@@ -63,11 +56,11 @@ def make_mesh(
     freeze: Annotated[
         bool, typer.Option("--freeze-boundary", help="Add no points on the boundary.")
     ] = False,
-    layer: Annotated[str | None, typer.Option(help="Layer of a file that has several.")] = None,
+    layer: Layer = None,
     crs: Crs = None,
     planar: Planar = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Mesh polygons with triangles without small angles.
 
@@ -76,7 +69,7 @@ def make_mesh(
     require_known(crs)
     with writing():
         protect_inputs(output or (), source)
-        writers = {path: _ready(path) for path in output or ()}
+        writers = {path: ready(path) for path in output or ()}
     watch = Stopwatch()
     with reading(), watch.stage("read"):
         survey = read_geometries(source, layer=layer)
@@ -93,10 +86,7 @@ def make_mesh(
     with _bar(quiet or as_json) as tell:
         found = _meshed(survey, options, tell)
     watch.seconds |= found.stages
-    with writing(), ExitStack() as stack:
-        for path, write in writers.items():
-            with watch.stage(f"write {path.name}"):
-                write(stack.enter_context(replacing(path)), found, crs=survey.crs)
+    write_all(writers, found, watch, lambda _: None, crs=survey.crs)
     figures: dict[str, Any] = {
         "delone": __version__,
         "input": str(source),
@@ -115,16 +105,7 @@ def make_mesh(
     elif not quiet:
         rows = [("points", f"{found.npoints:,}"), ("triangles", f"{found.nsimplex:,}")]
         rows.append(("quality", str(found.report)))
-        rows.append(("peak memory", memory_text(figures["peak_memory_bytes"])))
-        rows += [("written", str(path)) for path in writers]
-        print_rows(str(source), rows)
-        print_stages(figures["stages"])
-
-
-def _ready(path: Path) -> Callable[..., None]:
-    write = writer(path)
-    check_target(path)
-    return write
+        print_report(str(source), rows, figures)
 
 
 def _meshed(survey: GeometrySet, options: dict[str, Any], tell: Any) -> Mesh:

@@ -38,18 +38,7 @@ Survey = TypeVar("Survey", bound=PointSet | GeometrySet)
 
 
 def require_known(crs: str | None) -> None:
-    """Reject an unknown reference system before any work is done.
-
-    Parameters
-    ----------
-    crs : str or None
-        The value of --crs.
-
-    Raises
-    ------
-    Failure
-        The system is unknown to pyproj.
-    """
+    """Reject a --crs that pyproj does not know before any work is done."""
     if crs is not None and not is_known(crs):
         raise Failure(f"--crs {crs}: not a reference system known to pyproj", Exit.USAGE)
 
@@ -63,27 +52,9 @@ def referenced(
     outputs: Iterable[Path] = (),
     known: Sequence[str] = (),
 ) -> Survey:
-    """Set the reference system of a survey from the command line, and print notes.
+    """Set the reference system of a survey to that of --crs, if given, and print notes.
 
-    Parameters
-    ----------
-    survey : PointSet or GeometrySet
-        The input.
-    crs : str or None
-        The value of --crs.
-    planar : bool
-        Whether --planar is given.
-    quiet : bool
-        Whether notes are suppressed.
-    outputs : iterable of Path, optional
-        Files to be written.
-    known : sequence of str, optional
-        The suffixes of formats that can store a reference system.
-
-    Returns
-    -------
-    PointSet or GeometrySet
-        The input with the reference system.
+    `known` has the suffixes of the formats that can store one.
     """
     if crs is not None:
         if survey.crs is not None and not same_crs(survey.crs, crs):
@@ -105,33 +76,13 @@ def referenced(
 def note_degrees(
     source: str, by: str | None, coordinates: NDArray[np.float64], *, quiet: bool
 ) -> None:
-    """Print a note that coordinates are longitudes and latitudes.
-
-    Parameters
-    ----------
-    source : str
-        The file.
-    by : str or None
-        How that is known; None for no note.
-    coordinates : ndarray of float64, shape (n, 2)
-        The coordinates.
-    quiet : bool
-        Whether notes are suppressed.
-    """
+    """Print a note that coordinates, (n, 2), are longitudes and latitudes, unless `by` is None."""
     if by is not None and may_be_degrees(coordinates):
         sentence = message_of_degrees(f"{source}: coordinates", by)
         note(sentence.replace("planar=True", "--planar"), quiet=quiet)
 
 
 def note(message: str | None, *, quiet: bool = False) -> None:
-    """Print a note on standard error.
-
-    Parameters
-    ----------
-    message : str or None
-        The note; None for nothing.
-    quiet : bool, optional
-        Whether notes are suppressed.
-    """
+    """Print a note on standard error, if there is one."""
     if message is not None and not quiet:
         print(f"delone: note: {' '.join(message.split())}", file=sys.stderr)

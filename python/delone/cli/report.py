@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     Mesh: TypeAlias = Delaunay | ConstrainedDelaunay | QualityMesh
 
-__all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "summary"]
+__all__ = ["Stopwatch", "finite_or_none", "geometry", "peak_memory", "repeated_rows", "summary"]
 
 _BLOCK = 1 << 18
 _FIRST_DUPLICATES = 5
@@ -41,32 +41,13 @@ class Stopwatch:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Measure the time of a block.
-
-        Parameters
-        ----------
-        name : str
-            Name of the stage.
-        """
+        """Measure the time of a block."""
         start = time.perf_counter()
         yield
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
 
     def rows(self, points: int, *, others: Mapping[str, int] | None = None) -> list[dict[str, Any]]:
-        """Return a row for each stage.
-
-        Parameters
-        ----------
-        points : int
-            Number of points processed.
-        others : mapping of str to int, optional
-            Number of points in stages where it is different.
-
-        Returns
-        -------
-        list of dict
-            Names, seconds and points per second.
-        """
+        """Return seconds and points per second by stage; `others` have other numbers of points."""
         counts = dict.fromkeys(self.seconds, points) | dict(others or {})
         return [
             {
@@ -79,22 +60,12 @@ class Stopwatch:
 
 
 def summary(triangulation: Mesh) -> dict[str, Any]:
-    """Return the counts and measures of a triangulation.
+    """Return counts, those expected from Euler's formula, duplicates, and measures.
 
-    Parameters
-    ----------
-    triangulation : Delaunay or ConstrainedDelaunay
-        The triangulation to report on.
-
-    Returns
-    -------
-    dict
-        Counts, duplicates, the numbers expected from Euler's formula, mean degree, smallest angle,
-        area. If triangles have been removed, no numbers are expected.
+    If triangles have been removed, no numbers are expected.
     """
     n, m = triangulation.npoints, triangulation.nsimplex
-    coplanar = triangulation.coplanar
-    distinct = n - len(coplanar)
+    distinct = n - len(triangulation.coplanar)
     rim = int(np.count_nonzero(triangulation.neighbors < 0))
     edges = (3 * m - rim) // 2 + rim
     whole = _is_whole(triangulation)
@@ -104,7 +75,7 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
     return {
         "points": n,
         "distinct": distinct,
-        "duplicates": {"count": len(coplanar), "first": _first(triangulation, coplanar)},
+        "duplicates": repeated_rows(triangulation),
         "hull_vertices": h,
         "triangles": {"count": m, "expected": 2 * distinct - h - 2 if whole else None},
         "edges": {"count": edges, "expected": 3 * distinct - h - 3 if whole else None},
@@ -116,20 +87,7 @@ def summary(triangulation: Mesh) -> dict[str, Any]:
 
 
 def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
-    """Return the measures of arbitrary triangles.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    Returns
-    -------
-    dict
-        Counts and the smallest angle.
-    """
+    """Return the counts of arbitrary triangles and their smallest angle."""
     return {
         "points": len(points),
         "triangles": len(simplices),
@@ -138,25 +96,10 @@ def geometry(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[
 
 
 def smallest_angle(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> float:
-    """Return the smallest angle of all triangles in degrees.
+    """Return the smallest angle of all triangles in degrees, 180 if there are none.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    Returns
-    -------
-    float
-        180 if there are no triangles.
-
-    Notes
-    -----
-    The cross product of two sides is the same at each corner, so the smallest angle is at the
-    corner with the largest dot product. Each triangle is scaled to its own size, so that squares do
-    not overflow.
+    The cross product of two sides is the same at each corner, so it is at the corner with the
+    largest dot product. Each triangle is scaled to its own size, so that squares do not overflow.
     """
     smallest = math.pi
     for start in range(0, len(simplices), _BLOCK):
@@ -185,18 +128,7 @@ def _is_whole(triangulation: Mesh) -> bool:
 
 
 def area(triangulation: Mesh) -> float:
-    """Return the area of all triangles.
-
-    Parameters
-    ----------
-    triangulation : Delaunay or ConstrainedDelaunay
-        The triangulation.
-
-    Returns
-    -------
-    float
-        The area in squared units of the points.
-    """
+    """Return the area of all triangles."""
     ring = triangulation.points[triangulation.hull]
     with np.errstate(all="ignore"):
         if not _is_whole(triangulation):
@@ -205,25 +137,19 @@ def area(triangulation: Mesh) -> float:
         return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
-def _first(triangulation: Mesh, coplanar: NDArray[np.int32]) -> list[dict[str, Any]]:
-    return [
-        {"row": row, "same_as": same, "x": x, "y": y}
-        for (row, _, same), (x, y) in zip(
-            coplanar[:_FIRST_DUPLICATES].tolist(),
-            triangulation.points[coplanar[:_FIRST_DUPLICATES, 0]].tolist(),
-            strict=True,
-        )
+def repeated_rows(triangulation: Mesh) -> dict[str, Any]:
+    """Return the number of duplicates, and the first ones with their coordinates."""
+    rows = triangulation.coplanar[:_FIRST_DUPLICATES]
+    places = triangulation.points[rows[:, 0]].tolist()
+    first = [
+        {"row": row, "same_as": same, **dict(zip("xyz", place, strict=False))}
+        for (row, _, same), place in zip(rows.tolist(), places, strict=True)
     ]
+    return {"count": len(triangulation.coplanar), "first": first}
 
 
 def peak_memory() -> int | None:
-    """Return the peak memory of this process in bytes.
-
-    Returns
-    -------
-    int or None
-        None if the system does not report it.
-    """
+    """Return the peak memory of this process in bytes, None if the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows
@@ -233,16 +159,5 @@ def peak_memory() -> int | None:
 
 
 def finite_or_none(value: float) -> float | None:
-    """Return a number that JSON can represent.
-
-    Parameters
-    ----------
-    value : float
-        Any number.
-
-    Returns
-    -------
-    float or None
-        None for NaN and infinity.
-    """
+    """Return a number that JSON can represent: None for NaN and infinity."""
     return value if math.isfinite(value) else None

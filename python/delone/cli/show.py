@@ -18,10 +18,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 __all__ = [
+    "memory_text",
     "print_json",
+    "print_report",
     "print_rows",
-    "print_stages",
     "print_text",
+    "space_rows",
     "spinner",
     "triangulation_rows",
 ]
@@ -33,26 +35,12 @@ _UNBOUNDED = 1 << 16
 
 
 def print_json(figures: dict[str, Any]) -> None:
-    """Print one JSON object on standard output.
-
-    Parameters
-    ----------
-    figures : dict
-        The figures, without NaN and infinity.
-    """
+    """Print figures without NaN and infinity as one JSON object on standard output."""
     print_text(json.dumps(figures, indent=2, allow_nan=False))
 
 
 def print_rows(title: str, rows: list[Row]) -> None:
-    """Print a table of two columns on standard output.
-
-    Parameters
-    ----------
-    title : str
-        Heading of the table.
-    rows : list of tuple of str
-        Names and values.
-    """
+    """Print a table of two columns on standard output."""
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
@@ -61,14 +49,14 @@ def print_rows(title: str, rows: list[Row]) -> None:
     print_text(f"{_heading(title)}\n{_rendered(table)}")
 
 
-def print_stages(stages: list[dict[str, Any]]) -> None:
-    """Print seconds and points per second on standard output.
+def print_report(title: str, rows: list[Row], figures: dict[str, Any]) -> None:
+    """Print rows, and what the figures of a command tell of memory, outputs and stages."""
+    peak = ("peak memory", memory_text(figures["peak_memory_bytes"]))
+    print_rows(title, [*rows, peak, *(("written", path) for path in figures["outputs"])])
+    _print_stages(figures["stages"])
 
-    Parameters
-    ----------
-    stages : list of dict
-        The result of `Stopwatch.rows`.
-    """
+
+def _print_stages(stages: list[dict[str, Any]]) -> None:
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("stage", no_wrap=True)
     table.add_column("seconds", justify="right")
@@ -82,18 +70,7 @@ def print_stages(stages: list[dict[str, Any]]) -> None:
 
 
 def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
-    """Return the rows of the report of a triangulation.
-
-    Parameters
-    ----------
-    figures : dict
-        The result of `report.summary`.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values.
-    """
+    """Return the rows of the report of a triangulation from `report.summary`."""
     angle, area = figures["smallest_angle_degrees"], figures["area"]
     return [
         *_input_rows(figures),
@@ -109,19 +86,23 @@ def triangulation_rows(figures: dict[str, Any]) -> list[Row]:
     ]
 
 
+def space_rows(figures: dict[str, Any]) -> list[Row]:
+    """Return the rows of the report from `solid.space_summary`."""
+    volume = figures["volume"]
+    return [
+        *_input_rows(figures),
+        ("hull vertices", f"{figures['hull_vertices']:,}"),
+        ("hull faces", f"{figures['hull_faces']:,}"),
+        ("tetrahedra", _against(figures["tetrahedra"], "n - edges + faces - 1")),
+        ("edges", f"{figures['edges']['count']:,}"),
+        ("faces", f"{figures['faces']['count']:,}"),
+        ("mean degree", f"{figures['mean_degree']:.4f}"),
+        ("volume", "beyond range" if volume is None else f"{volume:,.6g}"),
+    ]
+
+
 def memory_text(size: int | None) -> str:
-    """Format a number of bytes.
-
-    Parameters
-    ----------
-    size : int or None
-        Number of bytes.
-
-    Returns
-    -------
-    str
-        The size in MiB.
-    """
+    """Format a number of bytes in MiB."""
     return "unknown" if size is None else f"{size / 2**20:,.0f} MiB"
 
 
@@ -147,7 +128,9 @@ def _against(counted: dict[str, int | None], formula: str) -> str:
 def _duplicates(duplicates: dict[str, Any]) -> str:
     count, first = duplicates["count"], duplicates["first"]
     lines = [f"{count:,}"]
-    lines += [f"row {d['row']} is row {d['same_as']} at ({d['x']!r}, {d['y']!r})" for d in first]
+    for each in first:
+        place = ", ".join(repr(each[axis]) for axis in "xyz" if axis in each)
+        lines.append(f"row {each['row']} is row {each['same_as']} at ({place})")
     if count > len(first):
         lines.append("...")
     return "\n".join(lines)
@@ -156,15 +139,7 @@ def _duplicates(duplicates: dict[str, Any]) -> str:
 def print_text(text: str) -> None:
     """Print text on standard output.
 
-    Parameters
-    ----------
-    text : str
-        One or more lines.
-
-    Raises
-    ------
-    Failure
-        Standard output is closed. The message is empty, as nothing can be reported there.
+    If that is closed, the message of the failure is empty, as nothing can be reported there.
     """
     try:
         print(text, flush=True)
@@ -196,18 +171,7 @@ def _console() -> Console:
 
 @contextmanager
 def spinner(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show the current step on standard error, if that is a terminal.
-
-    Parameters
-    ----------
-    quiet : bool
-        Show nothing.
-
-    Yields
-    ------
-    callable
-        Takes a description of the current step.
-    """
+    """Yield a function that shows the current step on standard error, if that is a terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield lambda _: None

@@ -13,7 +13,7 @@ import numpy as np
 
 from delone import Delaunay, improve
 from delone.cli.exits import Exit, Failure
-from delone.cli.report import finite_or_none
+from delone.cli.report import finite_or_none, repeated_rows
 from delone.counting import counted
 from delone.errors import FileFormatError
 from delone.io import PointSet, read_mesh
@@ -34,12 +34,10 @@ __all__ = [
     "improvement_rows",
     "is_space",
     "space_measures",
-    "space_rows",
     "space_summary",
     "triangulated_space",
 ]
 
-_FIRST_DUPLICATES = 5
 # Defaults of the command line for the goal in degrees and the maximum number of passes.
 _GOAL = 20.0
 _PASSES = 30
@@ -48,27 +46,7 @@ _DELAUNAY_ONLY = (".npz",)
 
 
 def is_space(source: Path, wanted: bool | None, survey: PointSet | GeometrySet) -> bool:
-    """Return whether the points of a file are triangulated in 3-D.
-
-    Parameters
-    ----------
-    source : Path
-        The file.
-    wanted : bool or None
-        The option of the command line; None if not given.
-    survey : PointSet or GeometrySet
-        The input.
-
-    Returns
-    -------
-    bool
-        `wanted` if given; otherwise whether it is a PLY file with only points, with 3 coordinates.
-
-    Raises
-    ------
-    Failure
-        3-D is requested, but there are no heights, or no points.
-    """
+    """Return `wanted` if given, else whether the file is PLY with only points, in 3-D."""
     if wanted is None:
         return (
             source.suffix.lower() == ".ply"
@@ -90,20 +68,7 @@ def _has_no_faces(source: Path) -> bool:
 
 
 def triangulated_space(survey: PointSet, **options: Any) -> Delaunay:
-    """Triangulate points with their heights as third coordinate.
-
-    Parameters
-    ----------
-    survey : PointSet
-        Points with heights.
-    **options
-        `method` and `workers`.
-
-    Returns
-    -------
-    Delaunay
-        A triangulation in 3-D.
-    """
+    """Triangulate points with their heights as third coordinate, with `method` and `workers`."""
     assert survey.z is not None
     return Delaunay(np.column_stack((survey.points, survey.z)), **options)
 
@@ -116,30 +81,9 @@ def improved(
     min_angle: float | None,
     passes: int | None,
 ) -> TetMesh:
-    """Improve tetrahedra before they are written.
+    """Improve tetrahedra until dihedral angles reach `min_angle`, in degrees.
 
-    Parameters
-    ----------
-    mesh : Delaunay
-        A triangulation in 3-D.
-    outputs : iterable of Path
-        The files to be written.
-    say : callable
-        Called with a description of the current step.
-    min_angle : float or None
-        The goal for dihedral angles, in degrees.
-    passes : int or None
-        Maximum number of passes.
-
-    Returns
-    -------
-    TetMesh
-        The result of `delone.improve`.
-
-    Raises
-    ------
-    Failure
-        A file has a format for Delaunay triangulations only.
+    Outputs of a format for Delaunay triangulations only are rejected.
     """
     for path in outputs:
         if path.suffix.lower() in _DELAUNAY_ONLY:
@@ -155,18 +99,7 @@ def improved(
 
 
 def improvement_figures(report: ImproveReport) -> dict[str, Any]:
-    """Return the figures of an improvement.
-
-    Parameters
-    ----------
-    report : ImproveReport
-        Its report.
-
-    Returns
-    -------
-    dict
-        Angles before and after, tetrahedra below the goal by cause.
-    """
+    """Return angles before and after, and the tetrahedra below the goal by cause."""
     causes, counts = np.unique(report.cause, return_counts=True)
     return {
         "goal": report.min_angle,
@@ -182,18 +115,7 @@ def improvement_figures(report: ImproveReport) -> dict[str, Any]:
 
 
 def improvement_rows(figures: dict[str, Any]) -> list[Row]:
-    """Return the rows of the report of an improvement.
-
-    Parameters
-    ----------
-    figures : dict
-        The result of `improvement_figures`.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values.
-    """
+    """Return the rows of the report from `improvement_figures`."""
     small, large = figures["smallest_dihedral"], figures["largest_dihedral"]
     below = ", ".join(f"{count:,} ({cause})" for cause, count in figures["below"].items())
     return [
@@ -215,34 +137,15 @@ def _ended(figures: dict[str, Any]) -> list[Row]:
 
 
 def space_summary(mesh: Delaunay) -> dict[str, Any]:
-    """Return the counts and measures of a 3-D triangulation.
-
-    Parameters
-    ----------
-    mesh : Delaunay
-        The triangulation to report on.
-
-    Returns
-    -------
-    dict
-        Counts, duplicates, the number expected from Euler's formula, mean degree, volume.
-    """
-    n, m, repeats = mesh.npoints, mesh.nsimplex, mesh.coplanar
-    distinct, edges, faces = n - len(repeats), len(mesh.edges), len(mesh.faces)
+    """Return counts, that expected from Euler's formula, duplicates, and measures."""
+    n, m, edges, faces = mesh.npoints, mesh.nsimplex, len(mesh.edges), len(mesh.faces)
+    distinct = n - len(mesh.coplanar)
     with np.errstate(over="ignore"):
         volume = float(mesh.volumes.sum())
-    first = [
-        {"row": row, "same_as": same, "x": x, "y": y, "z": z}
-        for (row, _, same), (x, y, z) in zip(
-            repeats[:_FIRST_DUPLICATES].tolist(),
-            mesh.points[repeats[:_FIRST_DUPLICATES, 0]].tolist(),
-            strict=True,
-        )
-    ]
     return {
         "points": n,
         "distinct": distinct,
-        "duplicates": {"count": len(repeats), "first": first},
+        "duplicates": repeated_rows(mesh),
         "hull_vertices": len(mesh.hull),
         "hull_faces": len(mesh.convex_hull),
         # Euler: vertices - edges + faces - tetrahedra = 1.
@@ -256,55 +159,5 @@ def space_summary(mesh: Delaunay) -> dict[str, Any]:
 
 
 def space_measures(points: NDArray[np.float64], simplices: NDArray[np.int32]) -> dict[str, Any]:
-    """Return the measures of arbitrary tetrahedra.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 4)
-        Tetrahedra.
-
-    Returns
-    -------
-    dict
-        Counts.
-    """
+    """Return the counts of arbitrary tetrahedra."""
     return {"points": len(points), "tetrahedra": len(simplices)}
-
-
-def space_rows(figures: dict[str, Any]) -> list[Row]:
-    """Return the rows of the report of a 3-D triangulation.
-
-    Parameters
-    ----------
-    figures : dict
-        The result of `space_summary`.
-
-    Returns
-    -------
-    list of tuple of str
-        Names and values.
-    """
-    duplicates, volume = figures["duplicates"], figures["volume"]
-    lines = [f"{duplicates['count']:,}"]
-    lines += [
-        f"row {d['row']} is row {d['same_as']} at ({d['x']!r}, {d['y']!r}, {d['z']!r})"
-        for d in duplicates["first"]
-    ]
-    if duplicates["count"] > len(duplicates["first"]):
-        lines.append("...")
-    count, expected = figures["tetrahedra"]["count"], figures["tetrahedra"]["expected"]
-    verdict = "=" if count == expected else f"IS NOT {expected:,} ="
-    return [
-        ("points read", f"{figures['points']:,}"),
-        ("distinct", f"{figures['distinct']:,}"),
-        ("duplicates", "\n".join(lines)),
-        ("hull vertices", f"{figures['hull_vertices']:,}"),
-        ("hull faces", f"{figures['hull_faces']:,}"),
-        ("tetrahedra", f"{count:,} {verdict} n - edges + faces - 1"),
-        ("edges", f"{figures['edges']['count']:,}"),
-        ("faces", f"{figures['faces']['count']:,}"),
-        ("mean degree", f"{figures['mean_degree']:.4f}"),
-        ("volume", "beyond range" if volume is None else f"{volume:,.6g}"),
-    ]

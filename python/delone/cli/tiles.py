@@ -16,6 +16,7 @@ import typer
 from delone import __version__, distributed
 from delone.atomic import check_target
 from delone.cli.exits import Exit, Failure, os_message, reading, writing
+from delone.cli.options import Classes, Json, Quiet, class_numbers, split
 from delone.cli.referenced import Crs, Planar, note_degrees, require_known
 from delone.cli.show import memory_text, print_json, print_rows, spinner
 from delone.distributed.run.executors import Processes
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
     from delone.distributed import Plan, Progress, TiledDelaunay
 
 __all__ = ["dem", "tile"]
-
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
 def tile(
@@ -63,9 +61,7 @@ def tile(
     columns: Annotated[
         str | None, typer.Option(help="Columns of x, y and z, by name or by number from 0.")
     ] = None,
-    classes: Annotated[
-        str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
-    ] = None,
+    classes: Classes = None,
     attributes: Annotated[
         str | None, typer.Option(help="Columns to keep at the vertices: intensity,gps_time.")
     ] = None,
@@ -84,9 +80,9 @@ def tile(
     """Triangulate more points than fit into memory, in tiles that form one triangulation."""
     options: dict[str, Any] = {
         "tile_points": tile_points,
-        "columns": _split(columns),
-        "classes": _numbers(classes),
-        "attributes": _split(attributes) or (),
+        "columns": split(columns),
+        "classes": class_numbers(classes),
+        "attributes": split(attributes) or (),
     }
     require_known(crs)
     if workers < 1:
@@ -151,7 +147,7 @@ def dem(
         check_target(output)
     with reading():
         found = distributed.open(tin)
-    cells = (sides * 2)[0], (sides * 2)[1]
+    cells = sides[0], sides[-1]
     with spinner(quiet or as_json) as say, writing():
         say(f"interpolating {found.ntiles:,} tiles")
         found.to_raster(cells, output, value=value, crs=crs)
@@ -293,16 +289,3 @@ def _report(
             ("written", str(output)),
         ]
         print_rows("tiles", rows)
-
-
-def _split(text: str | None) -> list[str] | None:
-    return None if text is None else [part.strip() for part in text.split(",")]
-
-
-def _numbers(text: str | None) -> list[int] | None:
-    try:
-        return None if text is None else [int(part) for part in text.split(",")]
-    except ValueError:
-        raise Failure(
-            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
-        ) from None

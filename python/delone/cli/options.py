@@ -1,0 +1,45 @@
+"""Options that several commands have, and the lists that they take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from delone.cli.exits import Exit, Failure
+from delone.io import output_suffixes
+
+__all__ = ["Classes", "Json", "Layer", "MeshOutput", "Quiet", "Workers", "class_numbers", "split"]
+
+Classes = Annotated[
+    str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
+]
+Layer = Annotated[str | None, typer.Option(help="Layer of a file that has several.")]
+MeshOutput = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="OUTPUT",
+        help="File to write, once or more: " + " ".join(output_suffixes()),
+    ),
+]
+Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+def split(text: str | None) -> list[str] | None:
+    """Return the parts between commas."""
+    return None if text is None else [part.strip() for part in text.split(",")]
+
+
+def class_numbers(text: str | None) -> list[int] | None:
+    """Return the value of --classes."""
+    try:
+        return None if text is None else [int(part) for part in text.split(",")]
+    except ValueError:
+        raise Failure(
+            f"--classes takes numbers such as 2 or 2,6; got {text!r}", Exit.USAGE
+        ) from None
