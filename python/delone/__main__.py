@@ -13,13 +13,7 @@ _MISSING_EXTRA = 6  # as in `delone.cli.exits`, which cannot be imported then
 
 
 def main() -> None:
-    """Run the command and leave the interpreter with its exit code.
-
-    Raises
-    ------
-    SystemExit
-        Always, with one of the codes that ``delone --help`` lists.
-    """
+    """Run the command and leave the interpreter with one of the codes that ``--help`` lists."""
     try:
         import rich  # noqa: F401
         import typer  # noqa: F401

@@ -11,6 +11,7 @@ for callers that do not use the core.
 
 from __future__ import annotations
 
+import contextlib
 import operator
 import os
 import sys
@@ -49,43 +50,10 @@ _REFUSED_KINDS = {
 def as_points(
     points: ArrayLike, *, ndim: int | None = None, name: str = "points"
 ) -> NDArray[np.float64]:
-    """Return points as a float64 C-contiguous array with exactly the values given.
+    """Return points as a C-contiguous float64 array with exactly the values given, NaN included.
 
-    Parameters
-    ----------
-    points : array_like, shape (n, 2) or (n, 3)
-        Floats of up to 64 bits, integers up to 2**53 in magnitude, in any memory layout or byte
-        order, or anything that converts to such an array.
-    ndim : {2, 3}, optional
-        Required number of coordinates. By default both are accepted.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 2) or (n, 3)
-        Aligned, native, C-contiguous. This is the input itself if possible, including read-only
-        arrays; never modify it.
-
-    Raises
-    ------
-    ShapeError
-        Wrong number of axes or coordinates, or rows of unequal length.
-    DtypeError
-        Booleans, complex numbers, objects, strings, dates, records or masked arrays; integers
-        beyond 2**53; extended precision that float64 cannot represent.
-
-    Notes
-    -----
-    NaN and infinity are accepted. O(n) time; no copy if none is needed.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_points
-    >>> as_points([(0, 0), (4, 0), (4, 3)])
-    array([[0., 0.],
-           [4., 0.],
-           [4., 3.]])
+    (n, 2) or (n, 3) from anything array-like; `ndim` requires one of them. No copy is made if none
+    is needed, so the result may be the input itself, even if read-only: never modify it.
     """
     if _is_right(points, ndim):
         return points
@@ -104,35 +72,7 @@ def as_points(
 
 
 def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np.float64]:
-    """Return points with any leading axes, with exactly the values given.
-
-    Parameters
-    ----------
-    values : array_like, shape (..., d)
-        Anything that `as_points` accepts, and single points, grids of points and so on.
-    d : {2, 3}
-        Number of coordinates.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of float64, shape (..., d)
-        Aligned, native, C-contiguous.
-
-    Raises
-    ------
-    ShapeError
-        The last axis does not have d entries, or rows have unequal lengths.
-    DtypeError
-        As in `as_points`.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_vectors
-    >>> as_vectors((0, 1), 2)
-    array([0., 1.])
-    """
+    """Return points with any leading axes, (..., d), with exactly the values given: `as_points`."""
     if (
         type(values) is np.ndarray
         and values.dtype is _FLOAT64
@@ -157,29 +97,7 @@ def as_vectors(values: ArrayLike, d: int, *, name: str = "points") -> NDArray[np
 
 
 def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None:
-    """Reject points with a NaN or infinite coordinate.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        The points.
-    name : str, optional
-        What the argument is called in the error message.
-
-    Raises
-    ------
-    NonFiniteError
-        Names the first ten such rows and their number.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone._arrays import require_finite
-    >>> require_finite(np.array([[0.0, 1.0], [np.nan, 2.0]]))
-    Traceback (most recent call last):
-    ...
-    delone.errors.NonFiniteError: points: 1 of 2 rows holds NaN or infinity; first: 1
-    """
+    """Reject points, (n, d), with a NaN or infinite coordinate; the error has the first ten."""
     finite = np.isfinite(points)
     if finite.all():
         return
@@ -195,41 +113,7 @@ def require_finite(points: NDArray[np.float64], *, name: str = "points") -> None
 def as_simplices(
     simplices: ArrayLike, npoints: int, d: int, *, name: str = "simplices"
 ) -> NDArray[np.int32]:
-    """Return simplices as an int32 C-contiguous array of valid vertex indices.
-
-    Parameters
-    ----------
-    simplices : array_like of int, shape (m, d + 1)
-        Vertex indices.
-    npoints : int
-        Number of points that the indices refer to.
-    d : {2, 3}
-        Dimension of the points.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of int32, shape (m, d + 1)
-        The input itself if no conversion is needed.
-
-    Raises
-    ------
-    ShapeError
-        The shape is not (m, d + 1).
-    DtypeError
-        The values are not integers.
-    InputError
-        An index below 0 or beyond the last point; the first such row is named.
-    LimitError
-        There are more points than int32 can number.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_simplices
-    >>> as_simplices([[0, 1, 2]], 3, 2)
-    array([[0, 1, 2]], dtype=int32)
-    """
+    """Return rows of points, (m, d + 1), as int32; the first row out of range is named."""
     if npoints > _LARGEST_INDEX:
         raise LimitError(
             f"{npoints} points exceed {_LARGEST_INDEX}, the largest number of an int32"
@@ -238,39 +122,7 @@ def as_simplices(
 
 
 def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") -> NDArray[np.int32]:
-    """Return segments as an int32 C-contiguous array of valid vertex indices.
-
-    Parameters
-    ----------
-    segments : array_like of int, shape (s, 2)
-        Vertex indices; an empty sequence means no segments.
-    npoints : int
-        Number of points that the indices refer to.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of int32, shape (s, 2)
-        The input itself if no conversion is needed.
-
-    Raises
-    ------
-    ShapeError
-        The shape is not (s, 2).
-    DtypeError
-        The values are not integers.
-    InputError
-        Indices below 0 or beyond the last point; the first ten such rows are named.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_segments
-    >>> as_segments([(0, 1), (1, 3), (2, -1)], 3)
-    Traceback (most recent call last):
-    ...
-    delone.errors.InputError: segments: 2 of 3 rows have indices outside 0 to 2; first: rows 1, 2
-    """
+    """Return pairs of points, (s, 2), as int32; the first ten rows out of range are named."""
     array = as_plain_array(segments, name)
     if array.shape in ((0,), (0, 2)):
         return np.empty((0, 2), dtype=np.int32)
@@ -290,37 +142,7 @@ def as_segments(segments: ArrayLike, npoints: int, *, name: str = "segments") ->
 
 
 def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray[np.float64]:
-    """Return seed points of areas.
-
-    Parameters
-    ----------
-    seeds : array_like, shape (k, 2) or (k, columns), or None
-        Finite points, with further columns after their coordinates; None or empty means no seeds.
-    name : str
-        Name of the argument in error messages.
-    columns : {2, 3}, optional
-        The maximum number of columns.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, 2) or (k, columns)
-        The input itself if no conversion is needed.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        As in `as_points`.
-    NonFiniteError
-        A number is NaN or infinite.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_seeds
-    >>> as_seeds([(1, 2)], name="holes")
-    array([[1., 2.]])
-    >>> as_seeds(None, name="holes").shape
-    (0, 2)
-    """
+    """Return finite seeds, (k, 2) or, with further numbers, (k, columns); None means no seeds."""
     if seeds is None:
         return np.empty((0, 2))
     array = as_plain_array(seeds, name)
@@ -332,33 +154,7 @@ def as_seeds(seeds: ArrayLike | None, *, name: str, columns: int = 2) -> NDArray
 
 
 def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
-    """Validate a string argument with given choices.
-
-    Parameters
-    ----------
-    value : str
-        The argument.
-    choices : tuple of str
-        The valid choices.
-    name : str
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    str
-        The argument.
-
-    Raises
-    ------
-    InputError
-        It is not one of the choices.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_choice
-    >>> as_choice("hull", ("hull", "outline"), name="boundary")
-    'hull'
-    """
+    """Return a string argument if it is one of the given choices; otherwise raise an error."""
     if isinstance(value, str) and value in choices:
         return value
     raise InputError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
@@ -367,39 +163,7 @@ def as_choice(value: str, choices: tuple[str, ...], *, name: str) -> str:
 def as_neighbors(
     neighbors: ArrayLike, nsimplex: int, d: int, *, name: str = "neighbors"
 ) -> NDArray[np.int32]:
-    """Return neighbors as an int32 C-contiguous array of simplex numbers or -1.
-
-    Parameters
-    ----------
-    neighbors : array_like of int, shape (nsimplex, d + 1)
-        Number of the simplex opposite each vertex, -1 outside.
-    nsimplex : int
-        Number of simplices.
-    d : {2, 3}
-        Dimension of the points.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of int32, shape (nsimplex, d + 1)
-        The input itself if no conversion is needed.
-
-    Raises
-    ------
-    ShapeError
-        The shape is not (nsimplex, d + 1).
-    DtypeError
-        The values are not integers.
-    InputError
-        A number below -1 or beyond the last simplex; the first such row is named.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_neighbors
-    >>> as_neighbors([[-1, -1, -1]], 1, 2)
-    array([[-1, -1, -1]], dtype=int32)
-    """
+    """Return simplex numbers, (nsimplex, d + 1), as int32: opposite each vertex, -1 outside."""
     array = _as_indices(neighbors, d + 1, -1, nsimplex, name)
     if len(array) != nsimplex:
         raise ShapeError(f"{name} has {len(array)} rows, but there are {nsimplex} simplices")
@@ -407,217 +171,61 @@ def as_neighbors(
 
 
 def as_count(n: int, *, name: str = "n") -> int:
-    """Return a count as a Python integer.
-
-    Parameters
-    ----------
-    n : int
-        At least 0.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    InputError
-        The number is negative (a ValueError), or not an integer (also a TypeError).
-
-    Examples
-    --------
-    >>> from delone._arrays import as_count
-    >>> as_count(3)
-    3
-    """
-    wanted = f"{name} must be an integer of at least 0"
-    if isinstance(n, bool | np.bool_ | np.ma.MaskedArray):
-        raise DtypeError(f"{wanted}, got {n}")
-    try:
-        number = operator.index(n)
-    except TypeError:
-        raise DtypeError(f"{wanted}, got {n!r}") from None
-    if number < 0:
-        raise InputError(f"{wanted}, got {number}")
-    return number
+    """Return an integer of at least 0 as a Python integer; booleans are rejected."""
+    return _as_integer(n, 0, f"{name} must be an integer of at least 0")
 
 
 def as_number(value: float, *, name: str) -> float:
-    """Return a real number as a Python float.
-
-    Parameters
-    ----------
-    value : float
-        A Python or NumPy number, including NaN and infinity; not a boolean or string.
-    name : str
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    float
-        The number, rounded to a double.
-
-    Raises
-    ------
-    DtypeError
-        It is not a real number, or is beyond the range of doubles.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_number
-    >>> as_number(3, name="tol")
-    3.0
-    >>> as_number("3", name="tol")
-    Traceback (most recent call last):
-    ...
-    delone.errors.DtypeError: tol must be a real number, got '3'
-    """
-    plain = not isinstance(value, bool | np.bool_ | str | bytes | np.ndarray) or (
-        isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf"
-    )
-    plain = plain and not isinstance(value, np.ma.MaskedArray)
-    try:
-        if plain:
+    """Return a real number, including NaN and infinity, as a float; no booleans, no text."""
+    if isinstance(value, np.ndarray):
+        masked = isinstance(value, np.ma.MaskedArray)
+        plain = not masked and value.ndim == 0 and value.dtype.kind in "iuf"
+    else:
+        plain = not isinstance(value, bool | np.bool_ | str | bytes)
+    if plain:
+        with contextlib.suppress(TypeError, ValueError, OverflowError):
             return float(value)
-    except (TypeError, ValueError, OverflowError):
-        pass
     raise DtypeError(f"{name} must be a real number, got {value!r:.60}")
 
 
 def as_flag(flag: bool, *, name: str) -> bool:
-    """Return a boolean as a Python bool.
-
-    Parameters
-    ----------
-    flag : bool
-        A Python or NumPy boolean; no other truthy or falsy object.
-    name : str
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    bool
-        The value.
-
-    Raises
-    ------
-    DtypeError
-        It is not a boolean.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_flag
-    >>> as_flag(True, name="flips")
-    True
-    >>> as_flag(None, name="flips")
-    Traceback (most recent call last):
-    ...
-    delone.errors.DtypeError: flips must be True or False, got None
-    """
+    """Return a Python or NumPy boolean as a Python bool; other truthy objects are rejected."""
     if isinstance(flag, bool | np.bool_):
         return bool(flag)
     raise DtypeError(f"{name} must be True or False, got {flag!r:.60}")
 
 
 def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
-    """Return a boolean as a Python bool, or None.
-
-    Parameters
-    ----------
-    flag : bool or None
-        As for `as_flag`, or None.
-    name : str
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    bool or None
-        The value.
-
-    Raises
-    ------
-    DtypeError
-        It is neither a boolean nor None.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_optional_flag
-    >>> as_optional_flag(None, name="shade")
-    >>> as_optional_flag("no", name="shade")
-    Traceback (most recent call last):
-    ...
-    delone.errors.DtypeError: shade must be True, False or None, got 'no'
-    """
-    if flag is None or isinstance(flag, bool | np.bool_):
-        return None if flag is None else bool(flag)
+    """Return a boolean as a Python bool, or None, as for `as_flag`."""
+    if flag is None:
+        return None
+    if isinstance(flag, bool | np.bool_):
+        return bool(flag)
     raise DtypeError(f"{name} must be True, False or None, got {flag!r:.60}")
 
 
 def as_workers(workers: int | None) -> int:
-    """Return how many threads to use.
-
-    Parameters
-    ----------
-    workers : int or None
-        None means one per core that this process may use.
-
-    Returns
-    -------
-    int
-        At least 1 and at most 256, to which larger numbers are reduced: the result does not depend
-        on the number of threads, and each costs memory.
-
-    Raises
-    ------
-    InputError
-        The number is below 1 (a ValueError), or not an integer (also a TypeError).
-
-    Examples
-    --------
-    >>> from delone._arrays import as_workers
-    >>> as_workers(3)
-    3
-    >>> as_workers(0)
-    Traceback (most recent call last):
-    ...
-    delone.errors.InputError: workers must be None (all cores) or an integer of at least 1, got 0
-    """
+    """Return a number of threads, at least 1 and at most 256; None means one per usable core."""
     if workers is None:
         return min(_usable_cores(), _MOST_WORKERS)
     wanted = "workers must be None (all cores) or an integer of at least 1"
-    if isinstance(workers, bool | np.bool_):
-        raise DtypeError(f"{wanted}, got {workers}")
+    return min(_as_integer(workers, 1, wanted), _MOST_WORKERS)
+
+
+def _as_integer(value: int, least: int, wanted: str) -> int:
+    if isinstance(value, bool | np.bool_ | np.ma.MaskedArray):
+        raise DtypeError(f"{wanted}, got {value}")
     try:
-        number = operator.index(workers)
+        number = operator.index(value)
     except TypeError:
-        raise DtypeError(f"{wanted}, got {workers!r}") from None
-    if number < 1:
+        raise DtypeError(f"{wanted}, got {value!r}") from None
+    if number < least:
         raise InputError(f"{wanted}, got {number}")
-    return min(number, _MOST_WORKERS)
+    return number
 
 
 def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return a read-only view of an array; the array itself is unchanged.
-
-    Parameters
-    ----------
-    array : ndarray
-        Any array.
-
-    Returns
-    -------
-    ndarray
-        The same memory, not writeable.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone._arrays import frozen
-    >>> frozen(np.zeros(3)).flags.writeable
-    False
-    """
+    """Return a read-only view of an array; the array itself is unchanged."""
     view = array.view()
     view.flags.writeable = False
     return view
@@ -635,35 +243,7 @@ def _is_right(points: Any, ndim: int | None) -> TypeGuard[NDArray[np.float64]]:
 
 
 def as_plain_array(points: Any, name: str) -> NDArray[Any]:
-    """Return a plain ndarray, of any dtype and shape.
-
-    Parameters
-    ----------
-    points : array_like
-        The argument.
-    name : str
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray
-        The array. Masked arrays are rejected, because masks would be silently dropped.
-
-    Raises
-    ------
-    DtypeError
-        A masked array.
-    ShapeError
-        Rows of unequal length.
-
-    Examples
-    --------
-    >>> from delone._arrays import as_plain_array
-    >>> as_plain_array([[1, 2], [3]], "values")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    delone.errors.ShapeError: values has rows of unequal length: ...
-    """
+    """Return an ndarray of any dtype and shape, but not of a masked array or uneven rows."""
     refuse_masks(points, name)
     try:
         return np.asarray(points)
@@ -781,20 +361,5 @@ def _usable_cores() -> int:
 def as_mesh(
     points: NDArray[np.float64], simplices: NDArray[np.integer[Any]]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return points and simplices as the core requires them: contiguous, with 32-bit indices.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        Coordinates.
-    simplices : ndarray of int, shape (m, k)
-        Rows of points.
-
-    Returns
-    -------
-    points : ndarray of float64, shape (n, d)
-        The points, copied only if they are not contiguous.
-    simplices : ndarray of int32, shape (m, k)
-        The simplices.
-    """
+    """Return points and simplices as the core requires them: contiguous, with 32-bit indices."""
     return np.ascontiguousarray(points), np.ascontiguousarray(simplices, dtype=np.int32)

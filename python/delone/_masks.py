@@ -12,29 +12,7 @@ __all__ = ["refuse_masks"]
 
 
 def refuse_masks(given: Any, name: str) -> None:
-    """Reject a masked array, or a list of them, before the mask is silently dropped.
-
-    Parameters
-    ----------
-    given : object
-        The argument.
-    name : str
-        Name of the argument in the error message.
-
-    Raises
-    ------
-    DtypeError
-        The argument has a mask.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone._masks import refuse_masks
-    >>> refuse_masks(np.ma.masked_array([1, 2], mask=[0, 1]), "z")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    delone.errors.DtypeError: z is a masked array; ...
-    """
+    """Reject a masked array, or a list of them, before the mask is silently dropped."""
     rows = given if isinstance(given, list | tuple) else ()
     if isinstance(given, np.ma.MaskedArray) or any(
         isinstance(row, np.ma.MaskedArray) for row in rows

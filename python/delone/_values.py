@@ -18,35 +18,7 @@ __all__ = ["as_values"]
 def as_values(
     values: ArrayLike | None, count: int, *, name: str = "z"
 ) -> NDArray[np.float64] | None:
-    """Return one float64 value for each point.
-
-    Parameters
-    ----------
-    values : array_like, shape (count,), or None
-        Numbers.
-    count : int
-        The number of points.
-    name : str, optional
-        The name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of float64, shape (count,), or None
-        None for None.
-
-    Raises
-    ------
-    ShapeError
-        The number of values is not `count`.
-    DtypeError
-        The values are not real numbers.
-
-    Examples
-    --------
-    >>> from delone._values import as_values
-    >>> as_values([1, 2], 2)
-    array([1., 2.])
-    """
+    """Return one float64 value for each of `count` points; None for None."""
     if values is None:
         return None
     if isinstance(values, np.ma.MaskedArray):

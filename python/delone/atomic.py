@@ -34,29 +34,7 @@ _PROBE = 1 << 20
 
 
 def check_target(path: str | os.PathLike[str]) -> Path:
-    """Reject a target that cannot be written, before any work is done.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file to be written.
-
-    Returns
-    -------
-    Path
-        The target; if `path` is a symbolic link, the file that it points to.
-
-    Raises
-    ------
-    OSError
-        The folder is missing or read-only, or the target exists and is not a regular file.
-
-    Examples
-    --------
-    >>> from delone.atomic import check_target
-    >>> check_target("mesh.vtu").name
-    'mesh.vtu'
-    """
+    """Return the file to be written, behind symbolic links; an OSError if it cannot be written."""
     # A rename would replace the link, not the file that it points to.
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
@@ -74,40 +52,8 @@ def check_target(path: str | os.PathLike[str]) -> Path:
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield a temporary name next to the target, and rename it to the target at the end.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The file to be written. An existing file is kept until the new one is complete.
-
-    Yields
-    ------
-    Path
-        A fresh name in the same folder with the same suffix, to be written by the caller.
-
-    Raises
-    ------
-    OutputError
-        The disk is full, or the system or a library cannot write the file. The error names the
-        target, not the temporary file.
-    OSError
-        The target cannot be written, as for `check_target`.
-
-    Notes
-    -----
-    A rename within one folder is atomic, so a reader sees the old file or the new one. Other
-    exceptions of the caller propagate. In either case, no file is left whose name begins with the
-    temporary name.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from delone.atomic import replacing
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with replacing(Path(folder) / "a.txt") as temporary:
-    ...         _ = temporary.write_text("whole")
-    ...     (Path(folder) / "a.txt").read_text()
-    'whole'
+    A rename within one folder is atomic: a reader sees the old file or the new one. On failure
+    nothing is left whose name begins with the temporary name, and an OutputError names the target.
     """
     target = check_target(path)
     # Only plain characters: some libraries cut a name at ";" or treat it as a pattern.
@@ -138,7 +84,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _refusal(error: Exception, temporary: Path, path: str) -> OutputError | None:
-    """Convert an exception during writing to an error that names the file.
+    """Convert an exception during writing to an error that names the file; None to keep it.
 
     Libraries hide the error number, or raise another error while they close the file. Therefore the
     preceding exceptions in the chain are examined, and then the disk is tested.

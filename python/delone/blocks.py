@@ -23,47 +23,12 @@ ROWS = 1 << 16
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Split a number of rows into blocks.
-
-    Parameters
-    ----------
-    count : int
-        Number of rows.
-
-    Yields
-    ------
-    slice
-        Consecutive rows.
-
-    Examples
-    --------
-    >>> from delone.blocks import ROWS, blocks
-    >>> [block.start for block in blocks(ROWS + 1)] == [0, ROWS]
-    True
-    """
+    """Split a number of rows into slices of `ROWS` consecutive rows."""
     return (slice(start, start + ROWS) for start in range(0, count, ROWS))
 
 
 def copied(array: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return a C-contiguous copy of an array.
-
-    Parameters
-    ----------
-    array : ndarray
-        An array of at least one dimension.
-
-    Returns
-    -------
-    ndarray
-        The copy.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.blocks import copied
-    >>> copied(np.array([1, 2]))
-    array([1, 2])
-    """
+    """Return a C-contiguous copy of an array of at least one dimension."""
     if len(array) <= ROWS:
         return array.copy()
     copy = np.empty(array.shape, dtype=array.dtype)

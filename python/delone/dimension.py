@@ -36,51 +36,29 @@ class Locator(Protocol):
 
 @dataclass(frozen=True)
 class Dimension:
-    """The functions of one dimension, by one name each in all of them.
-
-    Parameters
-    ----------
-    ndim : int
-        Number of coordinates.
-    simplex : str
-        What a simplex is called.
-    boundary : callable
-        Facets with a simplex on one side, of simplices and neighbors.
-    hull : callable
-        Vertices of the boundary, of points and boundary.
-    edges : callable
-        Every edge once, of simplices, neighbors, the number of points and workers.
-    faces : callable
-        Every triangle once, of the same.
-    sizes, circumcenters, transform : callable
-        Areas or volumes, centers and affine maps, of points, simplices and workers.
-    quality : callable
-        The measures of shape, of points, simplices and workers.
-    locator : callable
-        The index for point location, of points, simplices and neighbors.
-    located : callable
-        Where points lie, of the index, points and workers: simplices, their weights, the simplices
-        beside, facets of the boundary, and weights of their corners.
-    on_facets : callable
-        Points of facets, of points, facets and the weights of their corners.
-    delaunay : callable or None
-        Simplices and neighbors of the Delaunay triangulation, of points and workers; None if the
-        index finds the nearest vertex in any triangulation.
-    """
+    """The functions of one dimension, by one name each in all of them; a last int is `workers`."""
 
     ndim: int
     simplex: str
+    # Facets with a simplex on one side, of simplices and neighbors.
     boundary: Callable[[Indices, Indices], Indices]
+    # Vertices of the boundary.
     hull: Callable[[Floats, Indices], NDArray[np.int64]]
+    # Every edge and every triangle once; also of the number of points.
     edges: Callable[[Indices, Indices, int, int | None], Indices]
     faces: Callable[[Indices, Indices, int, int | None], Indices]
+    # Areas or volumes, centers, affine maps and shapes, of points and simplices.
     sizes: Callable[[Floats, Indices, int | None], Floats]
     circumcenters: Callable[[Floats, Indices, int | None], Floats]
     transform: Callable[[Floats, Indices, int | None], Floats]
     quality: Callable[[Floats, Indices, int | None], Measures]
+    # The index for point location.
     locator: Callable[[Floats, Indices, Indices], Any]
+    # Simplices, their weights, simplices beside, facets of the boundary, weights of their corners.
     located: Callable[[Any, Floats, int], tuple[Indices, Floats, Indices, Indices, Floats]]
+    # Points of facets by the weights of their corners.
     on_facets: Callable[[Floats, Indices, Floats], Floats]
+    # Simplices and neighbors; None if the index finds nearest vertices in any triangulation.
     delaunay: Callable[[Floats, int], tuple[Indices, Indices]] | None
 
 
@@ -90,17 +68,8 @@ F = TypeVar("F", bound="Callable[..., Any]")
 def only(ndim: int, instead: str) -> Callable[[F], F]:
     """Give a method, or the getter of a property, to objects of one dimension.
 
-    Parameters
-    ----------
-    ndim : int
-        The number of coordinates that it needs.
-    instead : str
-        What to use in other dimensions.
-
-    Returns
-    -------
-    callable
-        A decorator. In other dimensions the attribute does not exist, also for ``hasattr``.
+    In others the attribute does not exist, also for ``hasattr``; the error says what to use
+    `instead`.
     """
 
     def decorate(method: F) -> F:

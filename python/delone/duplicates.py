@@ -13,25 +13,7 @@ __all__ = ["first_rows"]
 
 
 def first_rows(points: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return for each point the first row with the same coordinates.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        Coordinates.
-
-    Returns
-    -------
-    ndarray of int64, shape (n,)
-        Rows.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.duplicates import first_rows
-    >>> first_rows(np.array([(1.0, 2), (0, 0), (1, 2)])).tolist()
-    [0, 1, 0]
-    """
+    """Return for each point, (n, d), the first row with the same coordinates, (n,)."""
     order = np.lexsort(points.T)
     ordered = points[order]
     new = np.ones(len(order), dtype=bool)

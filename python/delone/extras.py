@@ -11,33 +11,7 @@ __all__ = ["require"]
 
 
 def require(module: str, *, extra: str, what: str) -> Any:
-    """Import an optional library, or say how to install it.
-
-    Parameters
-    ----------
-    module : str
-        Dotted name of the module.
-    extra : str
-        The extra of delone that installs it.
-    what : str
-        What needs it, to begin a sentence: ``"reading LAZ"``.
-
-    Returns
-    -------
-    module
-        The module.
-
-    Raises
-    ------
-    MissingExtraError
-        The library, or one that it requires, is not installed or cannot be imported.
-
-    Examples
-    --------
-    >>> from delone.extras import require
-    >>> require("json", extra="las", what="this example").__name__
-    'json'
-    """
+    """Import an optional library for `what` ("reading LAZ"), or name the extra to install."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:

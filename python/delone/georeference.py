@@ -80,30 +80,9 @@ class CRSWarning(UserWarning):
 
 
 def as_crs(crs: Any, *, name: str = "crs") -> str | None:
-    """Return a reference system as text.
+    """Return a reference system as text: authority and code if available, else WKT; None for None.
 
-    Parameters
-    ----------
-    crs : str, int, pyproj.CRS or None
-        ``"EPSG:28992"``, the number of an EPSG code, WKT, or an object that has ``to_string``.
-    name : str, optional
-        Name of the argument in error messages.
-
-    Returns
-    -------
-    str or None
-        Authority and code if available, else WKT; None for None.
-
-    Raises
-    ------
-    DtypeError
-        It is not one of these.
-
-    Examples
-    --------
-    >>> from delone.georeference import as_crs
-    >>> as_crs(28992)
-    'EPSG:28992'
+    Takes text, the number of an EPSG code, or an object with ``to_string``, such as pyproj.CRS.
     """
     if crs is None or isinstance(crs, str):
         return crs or None
@@ -115,25 +94,7 @@ def as_crs(crs: Any, *, name: str = "crs") -> str | None:
 
 
 def crs_of(data: Any) -> str | None:
-    """Return the reference system that data declare.
-
-    Parameters
-    ----------
-    data : object
-        A GeoSeries, GeoDataFrame, `delone.io.PointSet` or anything else with an attribute ``crs``.
-
-    Returns
-    -------
-    str or None
-        The reference system; None if they declare none.
-
-    Examples
-    --------
-    >>> from delone.datasets import ahn3
-    >>> from delone.georeference import crs_of
-    >>> crs_of(ahn3()), crs_of([(0, 0), (1, 1)])
-    ('EPSG:28992', None)
-    """
+    """Return the reference system that data declare in an attribute ``crs``; None without one."""
     # GeoDataFrames without a geometry column raise an error.
     try:
         found = getattr(data, "crs", None)
@@ -143,23 +104,7 @@ def crs_of(data: Any) -> str | None:
 
 
 def common_crs(geometries: Any) -> str | None:
-    """Return the reference system of geometries, or of all tables in a list or tuple of them.
-
-    Parameters
-    ----------
-    geometries : object
-        As for `delone.from_geometry`.
-
-    Returns
-    -------
-    str or None
-        The reference system; None if none is declared.
-
-    Raises
-    ------
-    InputError
-        Two parts have different systems.
-    """
+    """Return the one system of geometries, or of all tables in a list or tuple; None without."""
     parts = geometries if isinstance(geometries, list | tuple) else [geometries]
     found: str | None = None
     for part in parts:
@@ -176,24 +121,7 @@ def common_crs(geometries: Any) -> str | None:
 
 
 def same_crs(a: str, b: str) -> bool:
-    """Return whether two strings denote the same reference system.
-
-    Parameters
-    ----------
-    a, b : str
-        Strings as returned by `as_crs`.
-
-    Returns
-    -------
-    bool
-        According to pyproj; without it, whether they are equal.
-
-    Examples
-    --------
-    >>> from delone.georeference import same_crs
-    >>> same_crs("EPSG:28992", "EPSG:28992")
-    True
-    """
+    """Return whether two results of `as_crs` denote one system; without pyproj, whether equal."""
     if a == b:
         return True
     first, second = _parsed(a), _parsed(b)
@@ -201,86 +129,26 @@ def same_crs(a: str, b: str) -> bool:
 
 
 def is_known(crs: str) -> bool:
-    """Return whether a string denotes a reference system.
-
-    Parameters
-    ----------
-    crs : str
-        String as returned by `as_crs`.
-
-    Returns
-    -------
-    bool
-        According to pyproj; without it always True.
-
-    Examples
-    --------
-    >>> from delone.georeference import is_known
-    >>> is_known("EPSG:28992")
-    True
-    """
+    """Return whether a string denotes a reference system; without pyproj always True."""
     return _parsed(crs) is not None or not _has_pyproj()
 
 
 def is_geographic(crs: str) -> bool:
-    """Return whether coordinates of a reference system are longitudes and latitudes.
-
-    Parameters
-    ----------
-    crs : str
-        String as returned by `as_crs`.
-
-    Returns
-    -------
-    bool
-        According to pyproj; without it, whether it is one of the common ones.
-
-    Examples
-    --------
-    >>> from delone.georeference import is_geographic
-    >>> is_geographic("EPSG:4326"), is_geographic("EPSG:28992")
-    (True, False)
-    """
+    """Return whether coordinates are degrees; without pyproj, if the system is a common one."""
     known = _parsed(crs)
     return bool(_GEOGRAPHIC.match(crs)) if known is None else bool(known.is_geographic)
 
 
 def names_degrees(names: Any) -> bool:
-    """Return whether columns are named longitude and latitude.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Names of columns; units and other words after the first are ignored.
-
-    Returns
-    -------
-    bool
-        Whether both are among them.
-
-    Examples
-    --------
-    >>> from delone.georeference import names_degrees
-    >>> names_degrees(["Longitude [deg]", "LAT", "depth"]), names_degrees(["x", "lat"])
-    (True, False)
-    """
+    """Return whether columns are named longitude and latitude; units after names are ignored."""
     words = {found[0] for name in names if (found := re.findall(r"[a-z]+", str(name).casefold()))}
     return bool(words & _LONGITUDE and words & _LATITUDE)
 
 
 def degrees_in(data: Any) -> str | None:
-    """Return what identifies data as longitudes and latitudes.
+    """Return the reference system or column names that identify degrees; None if nothing does.
 
-    Parameters
-    ----------
-    data : object
-        The points or geometries.
-
-    Returns
-    -------
-    str or None
-        The reference system or the names of columns; None if they are not identified. The system
-        takes precedence over names.
+    The system takes precedence over names.
     """
     if isinstance(data, np.ndarray | list | tuple):
         return None
@@ -304,24 +172,8 @@ def warn_of_degrees(
 ) -> None:
     """Warn if data are longitudes and latitudes, unless they are declared to be planar.
 
-    Parameters
-    ----------
-    data : object
-        The points or geometries.
-    coordinates : ndarray of float64, shape (n, d)
-        The coordinates. If they are too large for degrees there is no warning: a library may assume
-        degrees for files without a reference system.
-    planar : bool
-        Whether the coordinates are declared to be planar, whatever they are.
-    name : str, optional
-        Name of the argument.
-    by : str, optional
-        What identifies them, if already known; the data are then not examined.
-
-    Warns
-    -----
-    GeographicWarning
-        The data are longitudes and latitudes.
+    `by` is what identifies them, if known. Coordinates too large for degrees cause no warning:
+    libraries may assume degrees for files without a reference system.
     """
     if planar is False and by is None and type(data) is np.ndarray:
         return  # hot path for small inputs
@@ -335,45 +187,14 @@ def warn_of_degrees(
 
 
 def may_be_degrees(coordinates: NDArray[np.float64]) -> bool:
-    """Return whether coordinates are in the range of longitudes and latitudes.
-
-    Parameters
-    ----------
-    coordinates : ndarray of float64, shape (n, d)
-        Coordinates, longitudes first.
-
-    Returns
-    -------
-    bool
-        Whether all finite coordinates are in the range.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.georeference import may_be_degrees
-    >>> may_be_degrees(np.array([(4.5, 52.0)])), may_be_degrees(np.array([(85000.0, 446000.0)]))
-    (True, False)
-    """
+    """Return whether all finite coordinates, longitudes first, are in the range of degrees."""
     with np.errstate(invalid="ignore"):
         far = (np.abs(coordinates[:, 0]) > _WIDEST) | (np.abs(coordinates[:, 1]) > _HIGHEST)
     return not bool((far & np.isfinite(coordinates).all(axis=1)).any())
 
 
 def message_of_degrees(what: str, by: str) -> str:
-    """Return the message about longitudes and latitudes.
-
-    Parameters
-    ----------
-    what : str
-        Name of the data.
-    by : str
-        What identifies them.
-
-    Returns
-    -------
-    str
-        One sentence.
-    """
+    """Return the message that `what` are longitudes and latitudes, as identified `by` something."""
     return (
         f"{what} are longitudes and latitudes ({by}), used as planar coordinates: distances "
         "are distorted, and 179.9 is far from -179.9. Project them first, or give planar=True"
@@ -381,13 +202,7 @@ def message_of_degrees(what: str, by: str) -> str:
 
 
 def caller_level() -> int:
-    """Return the stack level of the first caller outside of the package, for a warning.
-
-    Returns
-    -------
-    int
-        For ``warnings.warn`` in the function that calls this one.
-    """
+    """Return the stack level of the first caller outside of the package, for ``warnings.warn``."""
     level, frame = 2, sys._getframe(2)
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("delone."):
         level, frame = level + 1, frame.f_back

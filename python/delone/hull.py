@@ -16,8 +16,9 @@ from delone.delaunay import Delaunay
 from delone.errors import InternalError
 from delone.immutable import kept, own_copy, sealed
 from delone.plane import geometry as plane
+from delone.plane.topology import vertex_to_simplex
 from delone.space import geometry as space
-from delone.validation import ValidationReport
+from delone.validation import ValidationReport, no_pairs, no_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -52,8 +53,8 @@ class HullReport(ValidationReport):
     True
     """
 
-    concave: NDArray[np.integer] = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
-    outside: NDArray[np.integer] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    concave: NDArray[np.integer] = field(default_factory=no_pairs)
+    outside: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a convex hull"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
@@ -256,9 +257,7 @@ class ConvexHull(Complex):
     def coplanar(self) -> Indices:
         """The rows that repeat a vertex, (k, 3): row, a simplex of the vertex, the vertex."""
         row, first = self._duplicates.T
-        simplex = np.full(self.npoints, -1, dtype=np.int32)
-        order = np.arange(self.nsimplex - 1, -1, -1, dtype=np.int32)
-        simplex[self._simplices[::-1]] = order[:, None]
+        simplex = vertex_to_simplex(self._simplices, self.npoints)
         return sealed(np.column_stack((row, simplex[first], first)))
 
     @property

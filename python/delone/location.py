@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Location", "find", "locate", "nearest", "segment_ends"]
+__all__ = ["Location"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,29 +88,7 @@ class Location:
 
 
 def find(dimension: Dimension, index: Locator, xi: ArrayLike, workers: int | None) -> Indices:
-    """Return the simplices that hold points.
-
-    Parameters
-    ----------
-    dimension : Dimension
-        The functions of the dimension.
-    index : Locator
-        The index over the simplices.
-    xi : array_like, shape (..., d)
-        The points.
-    workers : int or None
-        Number of threads; None for all cores.
-
-    Returns
-    -------
-    ndarray of int32, shape (...)
-        The first simplex that holds each point, -1 where there is none.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        `xi` is not a real array of shape (..., d).
-    """
+    """Return the first simplex that holds each point of `xi`, (..., d); -1 where there is none."""
     queries = as_vectors(xi, dimension.ndim, name="xi")
     flat = queries.reshape(-1, dimension.ndim)
     return index.find(flat, as_workers(workers)).reshape(queries.shape[:-1])
@@ -122,29 +100,10 @@ def nearest(
     xi: ArrayLike,
     workers: int | None,
 ) -> Indices:
-    """Return the sites that are nearest to points.
+    """Return the sites nearest to points, (..., d), as rows; -1 for points that are not finite.
 
-    Parameters
-    ----------
-    dimension : Dimension
-        The functions of the dimension.
-    sites : tuple
-        The index over a Delaunay triangulation, None if it has no simplex, and the row of each of
-        its points; None if these are all points in order.
-    xi : array_like, shape (..., d)
-        The points.
-    workers : int or None
-        Number of threads; None for all cores.
-
-    Returns
-    -------
-    ndarray of int32, shape (...)
-        Rows; -1 for points that are not finite.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        `xi` is not a real array of shape (..., d).
+    `sites` are the index over a Delaunay triangulation, None if it has no simplex, and the row of
+    each of its points; None if these are all points in order.
     """
     queries = as_vectors(xi, dimension.ndim, name="xi")
     index, rows = sites
@@ -159,31 +118,7 @@ def nearest(
 def locate(
     dimension: Dimension, index: Any, points: Floats, xi: ArrayLike, workers: int | None
 ) -> Location:
-    """Locate points.
-
-    Parameters
-    ----------
-    dimension : Dimension
-        The functions of the dimension.
-    index : Locator
-        The index over the simplices.
-    points : ndarray of float64, shape (n, d)
-        Coordinates of the vertices.
-    xi : array_like, shape (..., d)
-        The points to locate.
-    workers : int or None
-        Number of threads; None for all cores.
-
-    Returns
-    -------
-    Location
-        In the shape of `xi`.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        `xi` is not a real array of shape (..., d).
-    """
+    """Locate points, (..., d), in the simplices of an index; `points` are the vertices, (n, d)."""
     d = dimension.ndim
     queries = as_vectors(xi, d, name="xi")
     flat, leading = queries.reshape(-1, d), queries.shape[:-1]
@@ -206,25 +141,7 @@ def locate(
 
 
 def segment_ends(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
-    """Return the ends of a segment.
-
-    Parameters
-    ----------
-    a, b : array_like, shape (2,)
-        The ends.
-
-    Returns
-    -------
-    a, b : ndarray of float64, shape (2,)
-        The ends, converted.
-
-    Raises
-    ------
-    ShapeError, DtypeError
-        An end is not a 2-D point.
-    NonFiniteError
-        An end is not finite.
-    """
+    """Return the ends of a segment as finite points, (2,)."""
     return _end(a, "a"), _end(b, "b")
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["PeriodicDelaunay", "as_periods", "vertex_of"]
+__all__ = ["PeriodicDelaunay"]
 
 _LARGEST = sys.float_info.max
 # Copies nearer than this many mean distances to the box of the points are tried first.
@@ -296,23 +296,7 @@ class PeriodicDelaunay(Complex):
 
 
 def as_periods(periods: Any) -> tuple[float | None, float | None]:
-    """Return periods that are positive and finite, or None.
-
-    Parameters
-    ----------
-    periods : sequence of two floats or None
-        As for `PeriodicDelaunay`.
-
-    Returns
-    -------
-    tuple of two floats or None
-        The same.
-
-    Raises
-    ------
-    InputError
-        They are something else, or there is none.
-    """
+    """Return two periods, each None or positive and finite; an InputError if both are None."""
     try:
         x, y = (None if length is None else as_number(length, name="periods") for length in periods)
     except (TypeError, ValueError):
@@ -348,19 +332,9 @@ def _require_one_period(points: Floats, periods: tuple[float | None, float | Non
 
 
 def vertex_of(points: Floats, weights: Floats | None) -> Indices:
-    """Return for each row the first one with the same coordinates and weight.
+    """Return for each row, (n, 2), the first one with the same coordinates and weight.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    weights : ndarray of float64, shape (n,), optional
-        Weights: rows that are lighter than another with the same coordinates stay by themselves.
-
-    Returns
-    -------
-    ndarray of int32, shape (n,)
-        Rows.
+    Rows that are lighter than another with the same coordinates stay by themselves.
     """
     stands_for = _standing(points, weights)
     if weights is not None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["RegularTriangulation", "as_weights", "triangulated"]
+__all__ = ["RegularTriangulation"]
 
 _SPACE = 3
 
@@ -191,27 +191,7 @@ class RegularTriangulation(PointTriangulation):
 
 
 def as_weights(weights: ArrayLike, npoints: int) -> Floats:
-    """Return weights that no one else can change, one for each point.
-
-    Parameters
-    ----------
-    weights : array_like, shape (npoints,)
-        Finite numbers.
-    npoints : int
-        Number of points.
-
-    Returns
-    -------
-    ndarray of float64, shape (npoints,)
-        A copy.
-
-    Raises
-    ------
-    ShapeError
-        There are more or fewer.
-    NonFiniteError
-        One is NaN or infinite.
-    """
+    """Return a copy of finite weights, one for each point, that no one else can change."""
     shape = as_plain_array(weights, "weights").shape
     if shape != (npoints,):
         raise ShapeError(f"weights must have shape ({npoints},), one for each point, got {shape}")
@@ -228,26 +208,10 @@ def as_weights(weights: ArrayLike, npoints: int) -> Floats:
 
 
 def triangulated(points: Floats, weights: Floats) -> tuple[dict[str, NDArray[Any]], Indices]:
-    """Return the arrays of a regular triangulation, also where it has no triangle.
+    """Return what a `RegularTriangulation` holds, also if there is no triangle, and the chain.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2) or (n, 3)
-        Coordinates.
-    weights : ndarray of float64, shape (n,)
-        Finite weights.
-
-    Returns
-    -------
-    arrays : dict of ndarray
-        What a `RegularTriangulation` holds.
-    chain : ndarray of int32
-        Where all points of the plane lie on one line, those that are not hidden, in order.
-
-    Raises
-    ------
-    DegenerateInputError
-        3-D points lie in one plane; ``error.plane`` has its triangulation.
+    If all 2-D points lie on one line, the chain has those that are not hidden, in order. The error
+    for coplanar 3-D points has their triangulation as ``error.plane``.
     """
     try:
         regular = _core.regular3 if points.shape[1] == _SPACE else _core.regular2

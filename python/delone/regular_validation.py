@@ -12,7 +12,14 @@ import numpy as np
 
 from delone import _core
 from delone.space.plane import repeated_rows
-from delone.validation import SENTENCES, SpaceReport, ValidationReport, of_tetrahedra, of_triangles
+from delone.validation import (
+    SENTENCES,
+    SpaceReport,
+    ValidationReport,
+    no_rows,
+    of_tetrahedra,
+    of_triangles,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,13 +29,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = [
-    "PeriodicReport",
-    "RegularReport",
-    "RegularSpaceReport",
-    "validate_periodic",
-    "validate_regular",
-]
+__all__ = ["PeriodicReport", "RegularReport", "RegularSpaceReport"]
 
 _REGULAR = {
     "missing": (
@@ -50,10 +51,6 @@ _REGULAR = {
     "hidden": ("hidden point should be a vertex", "hidden points should be vertices"),
     "duplicates": ("row has the wrong duplicate", "rows have the wrong duplicates"),
 }
-
-
-def _none() -> NDArray[np.int64]:
-    return np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,8 +77,8 @@ class RegularReport(ValidationReport):
     a canonical regular triangulation
     """
 
-    hidden: NDArray[np.integer] = field(default_factory=_none)
-    duplicates: NDArray[np.integer] = field(default_factory=_none)
+    hidden: NDArray[np.integer] = field(default_factory=no_rows)
+    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a canonical regular triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | _REGULAR
@@ -108,8 +105,8 @@ class RegularSpaceReport(SpaceReport):
     True
     """
 
-    hidden: NDArray[np.integer] = field(default_factory=_none)
-    duplicates: NDArray[np.integer] = field(default_factory=_none)
+    hidden: NDArray[np.integer] = field(default_factory=no_rows)
+    duplicates: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = RegularReport._SUBJECT
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {**SpaceReport._SENTENCES, **_REGULAR}
@@ -145,9 +142,9 @@ class PeriodicReport(ValidationReport):
     a canonical periodic triangulation
     """
 
-    offsets: NDArray[np.integer] = field(default_factory=_none)
-    hidden: NDArray[np.integer] = field(default_factory=_none)
-    layers: NDArray[np.integer] = field(default_factory=_none)
+    offsets: NDArray[np.integer] = field(default_factory=no_rows)
+    hidden: NDArray[np.integer] = field(default_factory=no_rows)
+    layers: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a canonical periodic triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES | {
@@ -182,24 +179,7 @@ class PeriodicReport(ValidationReport):
 def validate_regular(
     points: Floats, weights: Floats, simplices: Indices, neighbors: Indices, duplicates: Indices
 ) -> RegularReport | RegularSpaceReport:
-    """Check the arrays of a regular triangulation.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        Coordinates.
-    weights : ndarray of float64, shape (n,)
-        Weights.
-    simplices, neighbors : ndarray of int32, shape (m, d + 1)
-        Simplices, and those opposite their vertices.
-    duplicates : ndarray of int32, shape (k, 2)
-        Rows that repeat others, and these.
-
-    Returns
-    -------
-    RegularReport or RegularSpaceReport
-        What is wrong.
-    """
+    """Check a 2-D or 3-D regular triangulation; duplicates are rows, and those that they repeat."""
     if points.shape[1] == 3:
         solid = _core.validate_regular3(points, weights, simplices, neighbors)
         return RegularSpaceReport(
@@ -218,7 +198,7 @@ def validate_regular(
 def _differing(found: Indices, expected: Indices) -> NDArray[np.int64]:
     """Return the rows of pairs that stand in one array only; of all where the order differs."""
     if np.array_equal(found, expected):
-        return _none()
+        return no_rows()
     pairs, count = np.unique(np.concatenate((found, expected)), axis=0, return_counts=True)
     single = pairs[count != 2] if (count != 2).any() else pairs
     return np.unique(single[:, 0]).astype(np.int64)
@@ -230,24 +210,7 @@ def validate_periodic(
     periods: tuple[float | None, float | None],
     topology: tuple[Indices, Indices, Indices, Indices],
 ) -> PeriodicReport:
-    """Check the arrays of a periodic triangulation.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    weights : ndarray of float64, shape (n,), or None
-        Weights.
-    periods : tuple of two floats or None
-        The periods in x and y.
-    topology : tuple of ndarray of int32
-        Simplices, offsets, neighbors and partners, as `PeriodicDelaunay` has them.
-
-    Returns
-    -------
-    PeriodicReport
-        What is wrong.
-    """
+    """Check a periodic triangulation; `topology` is simplices, offsets, neighbors and partners."""
     simplices, offsets, neighbors, partners = topology
     found = _core.validate_periodic2(
         points,

@@ -22,15 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = [
-    "SENTENCES",
-    "SpaceReport",
-    "ValidationReport",
-    "not_across",
-    "of_tetrahedra",
-    "of_triangles",
-    "validate",
-]
+__all__ = ["SpaceReport", "ValidationReport", "validate"]
 
 _SHOWN = 5
 
@@ -56,11 +48,11 @@ SENTENCES = {
 }
 
 
-def _none() -> NDArray[np.int64]:
+def no_rows() -> NDArray[np.int64]:
     return np.empty(0, dtype=np.int64)
 
 
-def _no_pairs() -> NDArray[np.int64]:
+def no_pairs() -> NDArray[np.int64]:
     return np.empty((0, 2), dtype=np.int64)
 
 
@@ -110,15 +102,15 @@ class ValidationReport(ReadOnly):
     a canonical Delaunay triangulation
     """
 
-    orientation: NDArray[np.integer] = field(default_factory=_none)
-    edges: NDArray[np.integer] = field(default_factory=_no_pairs)
-    neighbors: NDArray[np.integer] = field(default_factory=_none)
-    hull: NDArray[np.integer] = field(default_factory=_no_pairs)
-    missing: NDArray[np.integer] = field(default_factory=_none)
-    repeats: NDArray[np.integer] = field(default_factory=_none)
-    delaunay: NDArray[np.integer] = field(default_factory=_no_pairs)
-    ties: NDArray[np.integer] = field(default_factory=_no_pairs)
-    count: NDArray[np.integer] = field(default_factory=_none)
+    orientation: NDArray[np.integer] = field(default_factory=no_rows)
+    edges: NDArray[np.integer] = field(default_factory=no_pairs)
+    neighbors: NDArray[np.integer] = field(default_factory=no_rows)
+    hull: NDArray[np.integer] = field(default_factory=no_pairs)
+    missing: NDArray[np.integer] = field(default_factory=no_rows)
+    repeats: NDArray[np.integer] = field(default_factory=no_rows)
+    delaunay: NDArray[np.integer] = field(default_factory=no_pairs)
+    ties: NDArray[np.integer] = field(default_factory=no_pairs)
+    count: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a canonical Delaunay triangulation"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = SENTENCES
@@ -269,18 +261,7 @@ def _validate_space(
 
 
 def of_triangles(faults: _core.Faults2) -> ValidationReport:
-    """Make a report of what the core found wrong with triangles.
-
-    Parameters
-    ----------
-    faults : Faults2
-        What is wrong.
-
-    Returns
-    -------
-    ValidationReport
-        The same, with words.
-    """
+    """Make a report of what the core found wrong with triangles."""
     return ValidationReport(
         orientation=faults.orientation,
         edges=faults.edges,
@@ -295,18 +276,7 @@ def of_triangles(faults: _core.Faults2) -> ValidationReport:
 
 
 def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
-    """Make a report of what the core found wrong with tetrahedra.
-
-    Parameters
-    ----------
-    faults : Faults3
-        What is wrong.
-
-    Returns
-    -------
-    SpaceReport
-        The same, with words.
-    """
+    """Make a report of what the core found wrong with tetrahedra."""
     return SpaceReport(
         orientation=faults.orientation,
         facets=faults.facets,
@@ -322,21 +292,9 @@ def of_tetrahedra(faults: _core.Faults3) -> SpaceReport:
 def not_across(
     pairs: NDArray[np.integer], neighbors: NDArray[np.int32], constrained: NDArray[np.bool_]
 ) -> NDArray[np.integer]:
-    """Leave out pairs of triangles that a segment separates.
+    """Leave out pairs of adjacent triangles, (k, 2), that a segment separates.
 
-    Parameters
-    ----------
-    pairs : ndarray of int, shape (k, 2)
-        Adjacent triangles.
-    neighbors : ndarray of int32, shape (m, 3)
-        The triangle opposite each vertex.
-    constrained : ndarray of bool, shape (m, 3)
-        Whether the edge opposite each vertex is part of a segment.
-
-    Returns
-    -------
-    ndarray of int, shape (j, 2)
-        The other pairs.
+    `constrained`, (m, 3), says which edge opposite each vertex is part of a segment.
     """
     across = neighbors[pairs[:, 0]] == pairs[:, 1:]
     found: NDArray[np.integer] = pairs[~(across & constrained[pairs[:, 0]]).any(axis=1)]

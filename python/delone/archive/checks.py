@@ -121,9 +121,7 @@ def _check_polyhedron(
     _check_range("faces", faces, 0, len(corners))
     following = np.arange(1, len(faces) + 1)
     following[starts[1:] - 1] = starts[:-1]
-    tail, head = faces.astype(np.int64), faces[following].astype(np.int64)
-    keys, reverse = np.sort(tail * len(corners) + head), np.sort(head * len(corners) + tail)
-    closed = (keys == reverse).all() and (keys[1:] > keys[:-1]).all()
+    closed = _is_closed(faces, faces[following], len(corners), once=True)
     require(closed, "the clip is not one closed surface")
     normal, offset = (np.repeat(each, np.diff(starts), axis=0) for each in np.split(planes, [3], 1))
     with np.errstate(all="ignore"):
@@ -145,15 +143,18 @@ def _check_simplices(
 
 
 def _check_closed(boundary: NDArray[np.int32], npoints: int, *, convex: bool = False) -> None:
-    """Check that each edge of a surface is there as often in one direction as in the other.
-
-    On a convex surface it is there once.
-    """
     require(len(boundary) > 3, "it has no boundary")
-    tail, head = boundary.ravel().astype(np.int64), boundary[:, [1, 2, 0]].ravel().astype(np.int64)
-    keys, reverse = np.sort(tail * npoints + head), np.sort(head * npoints + tail)
-    closed = (keys == reverse).all() and (not convex or (keys[1:] > keys[:-1]).all())
+    closed = _is_closed(boundary.ravel(), boundary[:, [1, 2, 0]].ravel(), npoints, once=convex)
     require(closed, "the boundary is not one closed surface")
+
+
+def _is_closed(
+    tail: NDArray[np.int32], head: NDArray[np.int32], npoints: int, *, once: bool
+) -> bool:
+    """Return whether edges are there equally often in both directions, and, if required, once."""
+    tail, head = tail.astype(np.int64), head.astype(np.int64)
+    keys, reverse = np.sort(tail * npoints + head), np.sort(head * npoints + tail)
+    return bool((keys == reverse).all() and (not once or (keys[1:] > keys[:-1]).all()))
 
 
 def _check_sound(
@@ -223,11 +224,9 @@ def check_constrained(**arrays: NDArray[Any]) -> None:
 
 
 def _check_options(options: NDArray[np.int64]) -> None:
-    require(
-        len(options) == 5 and (options[:4] >= 0).all() and (options[:4] <= (2, 1, 1, 1)).all(),
-        "its options are invalid",
-    )
-    require(0 <= options[4] < 2**31, "its options are invalid")
+    limits = 2, 1, 1, 1, 2**31 - 1
+    valid = len(options) == 5 and (options >= 0).all() and (options <= limits).all()
+    require(valid, "its options are invalid")
 
 
 def _check_flags(arrays: Mapping[str, NDArray[Any]]) -> None:

@@ -30,22 +30,7 @@ _LONGEST_TEXT = 1 << 18
 
 
 def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], name: str) -> None:
-    """Write the arrays of an object to a file, atomically.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file; it is replaced at the end, in one step.
-    arrays : mapping of str to ndarray
-        The arrays of the layout, and texts as arrays of shape ().
-    name : str
-        The class.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written, or is not a regular file.
-    """
+    """Write the arrays of an object of a class to a file, atomically; texts have shape ()."""
     kind = next(kind for kind in KINDS[name] if kind.fits(arrays["points"]))
     texts = {name: arrays[name] for name in kind.texts if name in arrays}
     columns: dict[str, Any] = {name: arrays[name] for name in kind.layout} | texts
@@ -54,27 +39,7 @@ def write(path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], name
 
 
 def read(path: str | os.PathLike[str], name: str) -> dict[str, NDArray[Any]]:
-    """Read the arrays of an object from a file.
-
-    Parameters
-    ----------
-    path : str or path-like
-        A file that `write` made.
-    name : str
-        The class.
-
-    Returns
-    -------
-    dict of str to ndarray
-        The arrays that were given to `write`.
-
-    Raises
-    ------
-    FileFormatError
-        The file is truncated, of another class or version, or its arrays contradict each other.
-    OSError
-        The file cannot be read.
-    """
+    """Read the arrays of an object of a class, as given to `write`; damage is a FileFormatError."""
     source = _path(path)
     # Opening a pipe would wait for its writer.
     if source.exists() and not source.is_file() and not source.is_dir():
@@ -123,20 +88,7 @@ _DAMAGE = (
 
 
 def refusal(path: str | os.PathLike[str], why: Exception) -> FileFormatError:
-    """Return the error of a file whose arrays are wrong.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-    why : Exception
-        What is wrong.
-
-    Returns
-    -------
-    FileFormatError
-        To be raised.
-    """
+    """Return the error to raise for a file whose arrays are wrong."""
     return FileFormatError(
         f"{path}: not a file that `save` wrote for this class, or truncated: {why}"
     )

@@ -24,118 +24,26 @@ __all__ = ["areas", "circumcenters", "edge_normals", "total", "transform"]
 
 
 def areas(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the areas of triangles.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    ndarray of float64, shape (m,)
-        With a relative error below 1e-13, unless the area is beyond the range of doubles (then inf,
-        or rounded to a subnormal number).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.geometry import areas
-    >>> areas(np.array([(0, 0), (4, 0), (0, 3.0)]), np.array([[0, 1, 2]], dtype=np.int32))
-    array([6.])
-    """
+    """Return areas of triangles; the relative error is below 1e-13 within the range of doubles."""
     return _core.areas2(*as_mesh(points, simplices), as_workers(workers))
 
 
 def transform(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the affine maps from coordinates to barycentric coordinates.
+    """Return affine maps to barycentric coordinates, (m, 3, 2).
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    ndarray of float64, shape (m, 3, 2)
-        For each triangle, the inverse of the matrix whose columns are the vectors from the last
-        corner to the first two, and below it the last corner. Entries have a relative error below
-        1e-13, unless they are beyond the range of doubles.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.geometry import transform
-    >>> transform(np.array([(4, 0), (4, 2), (2, 1.0)]), np.array([[0, 1, 2]], dtype=np.int32))
-    array([[[ 0.25, -0.5 ],
-            [ 0.25,  0.5 ],
-            [ 2.  ,  1.  ]]])
+    The inverse of the matrix whose columns are the vectors from the last corner to the first two,
+    and below it the last corner. Entries have a relative error below 1e-13, if within doubles.
     """
     return _core.transforms2(*as_mesh(points, simplices), as_workers(workers))
 
 
 def circumcenters(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the centers of the circles through the corners of triangles.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    ndarray of float64, shape (m, 2)
-        Each coordinate within 4 units in the last place; infinite if it is beyond the range of
-        doubles.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.geometry import circumcenters
-    >>> circumcenters(np.array([(0, 0), (4, 0), (2, 1.0)]), np.array([[0, 1, 2]], dtype=np.int32))
-    array([[ 2. , -1.5]])
-    """
+    """Return circumcenters, within 4 units in the last place; infinite beyond doubles."""
     return _core.circumcenters2(*as_mesh(points, simplices), as_workers(workers))
 
 
 def edge_normals(points: Floats, edges: Indices) -> Floats:
-    """Return the unit normals of edges, to their right.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    edges : ndarray of int32, shape (k, 2)
-        Tails and heads, with different coordinates.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, 2)
-        With an error below 1e-15.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.geometry import edge_normals
-    >>> edge_normals(np.array([(1, 1), (1, 5.0)]), np.array([[0, 1], [1, 0]]))
-    array([[ 1.,  0.],
-           [-1.,  0.]])
-    """
+    """Return unit normals to the right of edges between distinct points; errors are below 1e-15."""
     # Halve the coordinates if their difference overflows, and scale by a power of two, so that
     # small differences keep their bits.
     ends = points[edges]
@@ -152,25 +60,7 @@ def edge_normals(points: Floats, edges: Indices) -> Floats:
 
 
 def total(sizes: Floats) -> float:
-    """Return the sum of sizes, rounded once.
-
-    Parameters
-    ----------
-    sizes : ndarray of float64, shape (m,)
-        Lengths, areas or volumes; not negative.
-
-    Returns
-    -------
-    float
-        Infinite if the sum is beyond the range of doubles.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.geometry import total
-    >>> total(np.array([0.1] * 10)), total(np.array([1e308, 1e308]))
-    (1.0, inf)
-    """
+    """Return the sum of sizes that are not negative, rounded once; inf beyond doubles."""
     try:
         return fsum(sizes.tolist())
     except OverflowError:

@@ -20,51 +20,14 @@ __all__ = ["across_line", "along", "located", "on_edges"]
 def located(
     index: _core.Locator2, xi: Floats, workers: int
 ) -> tuple[Indices, Floats, Indices, Indices, Floats]:
-    """Locate points in triangles.
-
-    Parameters
-    ----------
-    index : Locator2
-        The index over the triangles.
-    xi : ndarray of float64, shape (k, 2)
-        The points.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    simplex, barycentric, beside, facet, weights : ndarray
-        As in `delone.location.Location`.
-    """
+    """Locate points, (k, 2): the fields of `delone.location.Location` except `nearest`."""
     found = index.locate(xi, workers)
     weights = np.column_stack((1.0 - found.along, found.along))
     return found.simplex, found.weights, found.beside, found.edge, weights
 
 
 def on_edges(points: Floats, edge: Indices, weights: Floats) -> Floats:
-    """Return points on edges; if a weight is 1, exactly that end.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    edge : ndarray of int32, shape (k, 2)
-        Ends of the edges.
-    weights : ndarray of float64, shape (k, 2)
-        Weights of the ends; their sum is 1.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, 2)
-        The points.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.location import on_edges
-    >>> on_edges(np.array([(0.0, 0), (4, 2)]), np.array([(0, 1)]), np.array([(0.75, 0.25)]))
-    array([[1. , 0.5]])
-    """
+    """Return points on edges, (k, 2); if one of the two weights is 1, exactly that end."""
     start, end = points[edge[:, 0]], points[edge[:, 1]]
     return weights[:, :1] * start + weights[:, 1:] * end
 
@@ -76,24 +39,11 @@ def along(
     a: Floats,
     b: Floats,
 ) -> Indices:
-    """Return the triangles along a segment.
+    """Return the triangles along a segment from a to b, as `number` numbers them.
 
-    Parameters
-    ----------
-    index : Locator2
-        The index over all triangles of the convex hull.
-    tiling : tuple
-        Their points, simplices and neighbors.
-    number : ndarray of int32, shape (m + 1,), or None
-        The row of each triangle among those that are kept, -1 if it is removed; the last entry is
-        -1. None if all are kept.
-    a, b : ndarray of float64, shape (2,)
-        Ends of the segment, finite; they must differ if `number` is given.
-
-    Returns
-    -------
-    ndarray of int32, shape (k,)
-        Triangles from a to b.
+    `index` and `tiling` are of the whole hull. `number` has the row of each triangle among those
+    that are kept, -1 if removed and at the end; None keeps all. Unless it is None, a and b must
+    differ.
     """
     met = index.along(a, b)
     if number is None:
@@ -108,24 +58,7 @@ def along(
 def across_line(  # noqa: PLR0917 (a tiling is three arrays)
     points: Floats, simplices: Indices, neighbors: Indices, triangle: Indices, a: Floats, b: Floats
 ) -> Indices:
-    """Return the neighbors of triangles across their edges on the line through two points.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles, and those across their edges.
-    triangle : ndarray of int32, shape (k,)
-        Some of them.
-    a, b : ndarray of float64, shape (2,)
-        The points, which differ.
-
-    Returns
-    -------
-    ndarray of int32, shape (k,)
-        Triangles, -1 if there is no such edge, or no triangle beyond it.
-    """
+    """Return the neighbors of triangles across edges on the line through two points, -1 if none."""
     corners = points[simplices[triangle]].reshape(-1, 2)
     start, end = np.broadcast_to(a, corners.shape).copy(), np.broadcast_to(b, corners.shape).copy()
     off = (_core.orient2d(start, end, corners) != 0).reshape(-1, 3)

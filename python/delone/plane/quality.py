@@ -102,22 +102,7 @@ class Quality(Measures):
 
 
 def measured(points: Floats, simplices: Indices, workers: int | None = None) -> Quality:
-    """Measure triangles.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    Quality
-        The measures.
-    """
+    """Measure triangles."""
     found = _core.qualities2(*as_mesh(points, simplices), as_workers(workers))
     return Quality(
         **{each.name: column for each, column in zip(fields(Quality), found, strict=True)}
@@ -125,20 +110,7 @@ def measured(points: Floats, simplices: Indices, workers: int | None = None) -> 
 
 
 def smallest_corners(points: Floats, simplices: Indices) -> Indices:
-    """Return the corner of each triangle that has its smallest angle.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-
-    Returns
-    -------
-    ndarray of int32, shape (m,)
-        0, 1 or 2.
-    """
+    """Return the corner of each triangle that has its smallest angle: 0, 1 or 2."""
     corners = points[simplices]
     # Halve the coordinates, so that no difference overflows.
     sides = 0.5 * corners[:, [2, 0, 1]] - 0.5 * corners[:, [1, 2, 0]]
@@ -148,60 +120,17 @@ def smallest_corners(points: Floats, simplices: Indices) -> Indices:
 
 
 def squared_cosine(degrees: float) -> float:
-    """Return the square of the cosine of an angle, the bound that `below` compares with.
-
-    Parameters
-    ----------
-    degrees : float
-        From 0 to 60.
-
-    Returns
-    -------
-    float
-        Exact for 30 and 45 degrees; otherwise rounded.
-
-    Examples
-    --------
-    >>> from delone.plane.quality import squared_cosine
-    >>> squared_cosine(30)
-    0.75
-    """
+    """Return the square of the cosine of an angle from 0 to 60 degrees, exact for 30 and 45."""
     return _SIMPLE.get(degrees, math.cos(math.radians(degrees)) ** 2)
 
 
 def below(
     points: Floats, simplices: Indices, min_angle: float, workers: int | None = None
 ) -> NDArray[np.int64]:
-    """Return the triangles that have an angle below a bound.
+    """Return the triangles that have an angle below a bound from 0 to 60 degrees, ascending.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    min_angle : float
-        The bound in degrees, from 0 to 60.
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    ndarray of int64, shape (k,)
-        Triangles, ascending.
-
-    Notes
-    -----
     Exact for the double that `squared_cosine` returns: an angle is smaller if the square of its
     cosine is larger.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.plane.quality import below
-    >>> points = np.array([(0.0, 0), (1, 0), (0, 1), (0, 0.5)])
-    >>> below(points, np.array([(0, 1, 2), (0, 1, 3)], dtype=np.int32), 45)
-    array([1])
     """
     bound = squared_cosine(min_angle)
     return np.flatnonzero(_core.below2(*as_mesh(points, simplices), bound, as_workers(workers)))

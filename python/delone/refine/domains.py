@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
+    # Called with the number of added points and the smallest angle.
     Progress = Callable[[int, float], object]
 
 __all__ = [
@@ -42,9 +43,6 @@ __all__ = [
     "unit_of",
 ]
 
-# Tail and head of the half-edge opposite vertex k, counter-clockwise.
-_TAIL = [1, 2, 0]
-_HEAD = [2, 0, 1]
 # Products of four coordinate differences are doubles if the largest coordinate is in this range, as
 # in the core.
 _USUAL = 1e-60, 1e60
@@ -119,23 +117,8 @@ def of_constrained(
 ) -> Domain:
     """Return the domain of a constrained triangulation: the triangles that it keeps.
 
-    Parameters
-    ----------
-    base : ConstrainedDelaunay
-        The triangulation.
-    region : ndarray of int32, shape (m,)
-        The region of each of its triangles.
-    segment_markers : ndarray of int32, shape (s,)
-        A marker for each of its input segments.
-    point_markers : ndarray of int32, shape (n,)
-        A marker for each of its input points.
-    frozen : ndarray of bool, shape (s,)
-        Which of its input segments must not be split.
-
-    Returns
-    -------
-    Domain
-        Hull edges that bound the domain without a segment are lines without a source.
+    `region` is of these triangles, markers and `frozen` (not to be split) of its input segments and
+    points. Hull edges that bound the domain without a segment become lines without a source.
     """
     made, points = base._made, base.points
     simplices = made.simplices
@@ -146,7 +129,7 @@ def of_constrained(
     source = np.arange(len(points), dtype=np.int32)
     source[given:] = -1
     bare = (made.neighbors < 0) & ~made.constrained & (labels[:, None] >= 0)
-    hull = np.column_stack((simplices[:, _TAIL][bare], simplices[:, _HEAD][bare]))
+    hull = np.column_stack(topology.half_edges(simplices, *np.nonzero(bare)))
     start, rows = made.source_start, made.source
     ends = np.concatenate((made.segments, hull))
     last = np.full(len(hull), start[-1], dtype=np.int64)
@@ -197,32 +180,11 @@ def refined(
     sizes_yield: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Domain, Counts]:
-    """Let the core refine a domain.
+    """Let the core refine a domain, whose points come first in the result.
 
-    Parameters
-    ----------
-    domain : Domain
-        The domain to refine.
-    caps : ndarray of float64, shape (m,)
-        The largest allowed area of each triangle; triangles that replace it inherit it.
-    min_angle : float
-        The bound in degrees, below 60.
-    max_points : int
-        Maximum number of added points.
-    circles : bool, optional
-        Whether to empty the diametral circles of subsegments, so that all triangles are Delaunay.
-    sizes_yield : bool, optional
-        Whether triangles may stay too large if only points close to a frozen line would make them
-        smaller.
-    progress : callable, optional
-        Called from time to time with the number of added points and the smallest angle.
-
-    Returns
-    -------
-    domain : Domain
-        The refined domain; its first points are those of the input.
-    counts : Counts
-        The added points.
+    `caps` are maximum areas, which new triangles inherit. `circles` empties diametral circles of
+    subsegments: all triangles become Delaunay. `sizes_yield` drops sizes that need points close to
+    a frozen line.
     """
     lines = domain.lines
     kinds = circles, sizes_yield
@@ -244,22 +206,7 @@ def refined(
 
 
 def needles_in(domain: Domain, min_angle: float) -> tuple[Indices, Indices]:
-    """Find the needles of a domain that refinement leaves as they are.
-
-    Parameters
-    ----------
-    domain : Domain
-        The refined domain.
-    min_angle : float
-        The bound in degrees, below 60.
-
-    Returns
-    -------
-    simplices : ndarray of int32, shape (m, 3)
-        The triangles of the domain, possibly in another order.
-    needle : ndarray of int32, shape (m,)
-        The number of the needle that contains each triangle, or -1.
-    """
+    """Return the triangles of a refined domain, reordered, and the needle of each, or -1."""
     caps = np.full(len(domain.simplices), math.inf)
     # If no point may be added, the core only looks for needles.
     made = _made(domain, caps, (min_angle, 0))
@@ -273,11 +220,7 @@ def _made(
     kinds: tuple[bool, bool] = (False, False),
     progress: Progress | None = None,
 ) -> _core.RefinedMesh:
-    """Call the core.
-
-    `bounds` are the smallest angle and the maximum number of added points, `kinds` whether
-    diametral circles are emptied, and whether sizes yield to segments.
-    """
+    """Call the core; `bounds` are (min_angle, max_points), `kinds` (circles, sizes_yield)."""
     lines = domain.lines
     segments, line = sides_of(domain.simplices, domain.neighbors, domain.sides)
     return _core.refine2(
@@ -295,25 +238,10 @@ def _made(
 
 
 def unit_of(points: Floats) -> float:
-    """Return a unit of length in which areas do not overflow or underflow.
+    """Return a unit of length, a power of two, in which areas do not overflow or underflow.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-
-    Returns
-    -------
-    float
-        A power of two; 1 unless all coordinates are very small or some are very large, and also if
-        scaling would round other coordinates.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.refine.domains import unit_of
-    >>> unit_of(np.array([(0.0, 3.0)])), unit_of(np.array([(0.0, 2.0**-600)])) == 2.0**-599
-    (1.0, True)
+    1 unless all coordinates are very small or some are very large, and also if scaling would round
+    other coordinates.
     """
     largest = float(np.abs(points).max(initial=0.0))
     if largest == 0 or _USUAL[0] <= largest <= _USUAL[1]:
@@ -324,52 +252,19 @@ def unit_of(points: Floats) -> float:
 
 
 def sides_of(simplices: Indices, neighbors: Indices, sides: Indices) -> tuple[Indices, Indices]:
-    """Return the subsegments among the edges of triangles, each once, and their lines.
-
-    Parameters
-    ----------
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles.
-    sides : ndarray of int32, shape (m, 3)
-        The line under the edge opposite each vertex, or -1.
-
-    Returns
-    -------
-    segments : ndarray of int32, shape (q, 2)
-        Vertices.
-    line : ndarray of int32, shape (q,)
-        Lines.
-    """
+    """Return the subsegments under edges of triangles, each once, (q, 2), and their lines, (q,)."""
     once = (sides >= 0) & (neighbors < np.arange(len(simplices), dtype=np.int32)[:, None])
     t, k = np.nonzero(once)
-    tail, head = simplices[t, np.take(_TAIL, k)], simplices[t, np.take(_HEAD, k)]
-    return np.column_stack((tail, head)), sides[t, k]
+    return np.column_stack(topology.half_edges(simplices, t, k)), sides[t, k]
 
 
 def triangulated(
     points: Floats, segments: Indices, edges: Indices, labels: Indices, workers: int | None
 ) -> tuple[_core.ConstrainedTriangulation, Indices]:
-    """Triangulate points and subsegments, and restore the labels of the triangles.
+    """Triangulate points and subsegments; return what the core returns and labels of its triangles.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    segments : ndarray of int32, shape (q, 2)
-        Subsegments.
-    edges : ndarray of int32, shape (e, 2)
-        Directed subsegments with a labeled triangle to their left.
-    labels : ndarray of int32, shape (e,)
-        The labels of these triangles.
-    workers : int or None
-        Number of threads.
-
-    Returns
-    -------
-    made : ConstrainedTriangulation
-        The result of the core.
-    label : ndarray of int32, shape (m,)
-        The label of each triangle of the hull; -1 in components without such an edge.
+    `edges`, (e, 2), are directed subsegments whose left triangle has one of `labels`, (e,). The
+    label is -1 in components without such an edge.
     """
     count = as_workers(workers)
     # In this unit, triangles have the same order, in which sums are taken, as with usual
@@ -380,7 +275,8 @@ def triangulated(
     component = _core.components2(made.neighbors, constrained)
     t, k = np.nonzero(constrained)
     n = np.int64(len(points))
-    keys = simplices[t, np.take(_TAIL, k)] * n + simplices[t, np.take(_HEAD, k)]
+    tail, head = topology.half_edges(simplices, t, k)
+    keys = tail * n + head
     known = edges[:, 0] * n + edges[:, 1]
     order = np.argsort(known)
     place = np.minimum(np.searchsorted(known, keys, sorter=order), len(known) - 1)
@@ -394,21 +290,10 @@ def triangulated(
 def sides_at(
     simplices: Indices, constrained: Bools, segments: tuple[Indices, NDArray[np.integer]]
 ) -> Indices:
-    """Return the line under each edge of triangles.
+    """Return the line under the edge opposite each vertex, (m, 3), or -1.
 
-    Parameters
-    ----------
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    constrained : ndarray of bool, shape (m, 3)
-        Which edges are subsegments.
-    segments : tuple
-        The subsegments, (q, 2), and their lines, (q,).
-
-    Returns
-    -------
-    ndarray of int32, shape (m, 3)
-        The line under the edge opposite each vertex, or -1.
+    `segments` are the subsegments, (q, 2), and their lines, (q,); `constrained` says which edges
+    are subsegments.
     """
     ends, line = segments
     sides = np.full(simplices.shape, -1, dtype=np.int32)
@@ -416,7 +301,7 @@ def sides_at(
         return sides
     n = int(simplices.max()) + 1
     t, k = np.nonzero(constrained)
-    tail, head = simplices[t, np.take(_TAIL, k)], simplices[t, np.take(_HEAD, k)]
+    tail, head = topology.half_edges(simplices, t, k)
     keys = topology.edge_keys(ends[:, 0], ends[:, 1], n)
     order = np.argsort(keys)
     at = np.searchsorted(keys, topology.edge_keys(tail, head, n), sorter=order)

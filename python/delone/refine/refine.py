@@ -11,15 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import (
-    as_count,
-    as_flag,
-    as_plain_array,
-    as_workers,
-)
+from delone._arrays import as_count, as_flag, as_plain_array, as_workers
 from delone._masks import refuse_masks
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
+from delone.counting import listed
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.refine import domains
 from delone.refine.domains import Domain
@@ -205,34 +201,10 @@ def filled(
     markers: tuple[ArrayLike | None, ArrayLike | None],
     stages: dict[str, float],
 ) -> Mesh:
-    """Mesh the triangles of a constrained triangulation.
+    """Mesh the triangles of a constrained triangulation, whose regions are `region`.
 
-    Parameters
-    ----------
-    base : ConstrainedDelaunay
-        The triangulation.
-    region : ndarray of int32, shape (m,)
-        The region of each of its triangles.
-    limits : Limits
-        The bound on angles, the limit on points and other limits.
-    sizes : tuple
-        `max_area` and `size` of `mesh`.
-    fixed : bool, "boundary" or array_like of bool
-        As for `mesh`.
-    markers : tuple
-        `segment_markers` and `point_markers` of `mesh`.
-    stages : dict
-        Seconds by stage so far; those of the refinement are added.
-
-    Returns
-    -------
-    Mesh
-        The mesh.
-
-    Raises
-    ------
-    InputError
-        As for `mesh`.
+    `sizes` are `max_area` and `size` of `mesh`, `markers` those of segments and points. Seconds are
+    added to `stages`.
     """
     clock = time.perf_counter()
     if not base.nsimplex:
@@ -253,33 +225,7 @@ def filled(
 
 
 def as_rows(values: ArrayLike | None, count: int, name: str) -> Indices:
-    """Return one number per row; zeros if no numbers are given.
-
-    Parameters
-    ----------
-    values : array_like of int, shape (count,) or (count, 1), or None
-        The numbers.
-    count : int
-        The number of rows.
-    name : str
-        The name of the argument in error messages.
-
-    Returns
-    -------
-    ndarray of int32, shape (count,)
-        The numbers.
-
-    Raises
-    ------
-    ShapeError, DtypeError, InputError
-        The shape is wrong, or the numbers are not 32-bit integers.
-
-    Examples
-    --------
-    >>> from delone.refine.refine import as_rows
-    >>> as_rows(None, 2, "markers"), as_rows([[3], [4]], 2, "markers")
-    (array([0, 0], dtype=int32), array([3, 4], dtype=int32))
-    """
+    """Return 32-bit numbers, one per row, from shape (count,) or (count, 1); zeros for None."""
     if values is None:
         return np.zeros(count, dtype=np.int32)
     array = as_plain_array(values, name)
@@ -392,6 +338,6 @@ def _why_empty(base: ConstrainedDelaunay) -> str:
     loose = np.flatnonzero(degree == 1)
     if not loose.size:
         return "the segments form no closed ring, or only rings around holes"
-    rows = ", ".join(map(str, loose[:_FIRST].tolist())) + (", ..." if loose.size > _FIRST else "")
     positions = ", ".join(f"({x!r}, {y!r})" for x, y in base.points[loose[:3]].tolist())
+    rows = listed(loose, _FIRST)
     return f"the outline is open: only one segment ends at points {rows}, the first at {positions}"

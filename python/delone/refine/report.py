@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core
-from delone.counting import counted
+from delone.counting import counted, listed
 from delone.immutable import ReadOnly
 from delone.plane import geometry, quality
 
@@ -122,20 +122,16 @@ class MeshReport(ReadOnly):
         for cause, what in _SENTENCES.items():
             rows = self.below[self.cause == cause]
             if len(rows):
-                shown = ", ".join(map(str, rows[:_SHOWN].tolist()))
-                more = ", ..." if len(rows) > _SHOWN else ""
                 noun = counted(len(rows), "triangle")
-                lines.append(f"{noun} below the bound {what}: {shown}{more}")
+                lines.append(f"{noun} below the bound {what}: {listed(rows, _SHOWN)}")
         corners = np.unique(self.corner[self.corner >= 0])
         if len(corners):
-            shown = ", ".join(map(str, corners[:_SHOWN].tolist()))
-            more = ", ..." if len(corners) > _SHOWN else ""
-            lines.append(f"{counted(len(corners), 'responsible corner')}: {shown}{more}")
+            noun = counted(len(corners), "responsible corner")
+            lines.append(f"{noun}: {listed(corners, _SHOWN)}")
         if len(self.needles):
-            shown = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in self.needles[:_SHOWN].tolist())
-            more = ", ..." if len(self.needles) > _SHOWN else ""
             noun = counted(len(self.needles), "needle")
-            lines.append(f"{noun} left unrefined (too many points needed): {shown}{more}")
+            shown = listed([f"({x:.6g}, {y:.6g})" for x, y in self.needles.tolist()], _SHOWN)
+            lines.append(f"{noun} left unrefined (too many points needed): {shown}")
         if self.exhausted:
             lines.append("stopped at the limit on points")
         return "\n".join(lines)
@@ -163,30 +159,9 @@ def reported(
 ) -> MeshReport:
     """Create the report of a mesh.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    sides : ndarray of int32, shape (m, 3)
-        The line under the edge opposite each vertex, or -1.
-    on : ndarray of int32, shape (n,)
-        The line that each point was added on, or -1.
-    lines : Lines
-        The lines.
-    min_angle : float
-        The bound in degrees.
-    counts : ndarray of int64, shape (4,)
-        Points added on segments, for angles, for sizes; whether the limit was reached.
-    needles : callable
-        Returns the number of the needle that contains each triangle, (m,), or -1. Called only if
-        there may be needles.
-
-    Returns
-    -------
-    MeshReport
-        The report.
+    `counts` are points added on segments, for angles and for sizes, and whether the limit was
+    reached. `needles` is called only if there may be some, and returns the needle of each triangle,
+    or -1.
     """
     rows, angles = judged(points, simplices, min_angle)
     corner = _responsible(points, simplices[rows], sides[rows], on, lines)
@@ -223,36 +198,10 @@ def reported(
 def judged(
     points: Floats, simplices: Indices, min_angle: float
 ) -> tuple[NDArray[np.int64], tuple[float, float]]:
-    """Return the triangles below a bound, and the smallest and the largest angle.
+    """Return the triangles below a bound, ascending, and the extreme angles; 180 and 0 if none.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    min_angle : float
-        The bound in degrees.
-
-    Returns
-    -------
-    below : ndarray of int64, shape (k,)
-        Triangles with a smaller angle, compared exactly, ascending.
-    angles : tuple of float
-        The smallest and the largest angle, in degrees; 180 and 0 if there are no triangles.
-
-    Notes
-    -----
-    One pass of the core, in linear time. Angles are computed only for the few triangles that may
-    have the extreme angles; triangles whose squares are beyond the range of doubles are compared by
-    `quality`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.refine.report import judged
-    >>> judged(np.array([(0.0, 0), (1, 0), (0, 1)]), np.array([(0, 1, 2)], dtype=np.int32), 46)
-    (array([0]), (45.0, 90.0))
+    Linear. Angles are computed only for the few triangles that may have the extreme ones; `quality`
+    compares triangles whose squares are beyond the range of doubles.
     """
     cosine = quality.squared_cosine(min_angle)
     judged = _core.judge2(points, simplices, cosine)

@@ -47,24 +47,7 @@ class Limits(NamedTuple):
 
 
 def rounds(domain: Domain, sizes: tuple[Any, Any], limits: Limits) -> tuple[Domain, Counts]:
-    """Refine a domain until no triangle is too large for its position.
-
-    Parameters
-    ----------
-    domain : Domain
-        The domain to refine.
-    sizes : tuple
-        `max_area` and `size` of `mesh`.
-    limits : Limits
-        The bound on angles, the limit on points and other limits.
-
-    Returns
-    -------
-    domain : Domain
-        The refined domain.
-    counts : Counts
-        The added points.
-    """
+    """Refine a domain until no triangle is too large; `sizes` are `max_area`, `size` of `mesh`."""
     unit = domains.unit_of(domain.points)
     if unit != 1:
         # Compare areas in a unit in which they are doubles, whatever the lengths.
@@ -103,34 +86,7 @@ def _rounds(domain: Domain, sizing: Sizing, limits: Limits) -> tuple[Domain, Cou
 
 
 def as_min_angle(min_angle: float) -> float:
-    """Return a valid bound on angles.
-
-    Parameters
-    ----------
-    min_angle : float
-        In degrees.
-
-    Returns
-    -------
-    float
-        The angle.
-
-    Raises
-    ------
-    InputError
-        It is not in [0, 60).
-
-    Warns
-    -----
-    UserWarning
-        It is above 33.
-
-    Examples
-    --------
-    >>> from delone.refine.rounds import as_min_angle
-    >>> as_min_angle(20)
-    20.0
-    """
+    """Return a bound on angles in degrees, in [0, 60); a warning if it is above 33."""
     angle = as_number(min_angle, name="min_angle")
     if not 0 <= angle < 60:
         raise InputError(f"min_angle must be at least 0 and below 60 degrees, got {min_angle!r}")

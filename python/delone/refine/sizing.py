@@ -45,24 +45,9 @@ _SHARE = 0.77
 class Sizing:
     """The largest allowed area of a triangle, by position and region.
 
-    Parameters
-    ----------
-    max_area : float, mapping or None
-        Largest area, or a mapping from regions to areas.
-    size : float, mapping, callable, tuple, DataArray or None
-        Target edge length; see `delone.mesh`.
-    regions : ndarray of int32
-        The regions of the domain.
-    unit : float, optional
-        The power of two by which the coordinates of domains are divided. Areas and positions are in
-        this unit, except in what callers pass and in calls of their functions.
-
-    Raises
-    ------
-    LimitError
-        The square of a size underflows in this unit, or overflows without one.
-    InputError
-        A number is NaN, zero or negative, or `size` has a wrong type.
+    Domains, areas and positions are divided by `unit`, a power of two; callers and their functions
+    use the original coordinates. A size is a LimitError if its square underflows or, without a
+    unit, overflows.
     """
 
     def __init__(self, max_area: Any, size: Any, regions: Indices, unit: float = 1.0) -> None:
@@ -122,21 +107,9 @@ class Sizing:
         return found
 
     def caps(self, domain: Domain, samples: Samples | None = None) -> tuple[Floats, bool]:
-        """Return the largest area of each triangle in the next round.
+        """Return the largest area of each triangle in the next round, and whether all comply now.
 
-        Parameters
-        ----------
-        domain : Domain
-            The triangles.
-        samples : Samples, optional
-            Further positions besides the centers of triangles.
-
-        Returns
-        -------
-        caps : ndarray of float64, shape (m,)
-            Areas; infinite outside.
-        done : bool
-            Whether no triangle is too large.
+        Infinite outside. Sizes are evaluated at the centers of triangles and at samples.
         """
         inside = np.flatnonzero(domain.labels >= 0)
         labels = domain.labels[inside]
@@ -157,20 +130,7 @@ class Sizing:
         return Samples(self, domain, workers) if self.varies else None
 
     def estimate(self, domain: Domain, samples: Samples | None) -> float:
-        """Return an estimate of the number of triangles that the sizes alone require.
-
-        Parameters
-        ----------
-        domain : Domain
-            The current triangles.
-        samples : Samples, optional
-            Further positions besides the centers of triangles.
-
-        Returns
-        -------
-        float
-            The estimated number of triangles.
-        """
+        """Return an estimate of the number of triangles that the sizes alone require."""
         inside = np.flatnonzero(domain.labels >= 0)
         areas = geometry.areas(domain.points, domain.simplices[inside])
         caps = self._at(_centers(domain, inside), domain.labels[inside])
@@ -184,22 +144,7 @@ class Sizing:
             return float(np.where(inverse > 0, areas * inverse, 0).sum()) / _SHARE
 
     def require_within(self, domain: Domain, samples: Samples | None, max_points: int) -> None:
-        """Raise an error if sizes clearly need more points than the limit.
-
-        Parameters
-        ----------
-        domain : Domain
-            The current triangles.
-        samples : Samples or None
-            Further positions.
-        max_points : int
-            Maximum number of added points.
-
-        Raises
-        ------
-        BudgetExceededError
-            Even if each triangle were as large as allowed, there would be too many.
-        """
+        """Raise an error if even triangles as large as allowed need more points than the limit."""
         triangles = self.estimate(domain, samples)
         least = triangles * _SHARE / 2 - len(domain.points)
         if least > max_points:
@@ -213,16 +158,7 @@ class Sizing:
 
 
 class Samples:
-    """The allowed areas on a lattice over a domain.
-
-    Parameters
-    ----------
-    sizing : Sizing
-        The sizes to evaluate.
-    domain : Domain
-        The domain.
-    workers : int or None Number of threads.
-    """
+    """The allowed areas on a lattice over a domain."""
 
     def __init__(self, sizing: Sizing, domain: Domain, workers: int | None) -> None:
         self._workers = as_workers(workers)

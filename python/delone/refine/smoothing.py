@@ -135,24 +135,10 @@ def _moved(mesh: M, free: Bools, method: str) -> M | None:
 def rebuilt(
     mesh: MeshState, points: Floats, row: Indices
 ) -> tuple[Domain | None, NDArray[np.intp]]:
-    """Triangulate the points of a mesh again, with its subsegments and regions.
+    """Triangulate new positions of the points of a mesh, with its subsegments and regions.
 
-    Parameters
-    ----------
-    mesh : MeshState
-        The mesh.
-    points : ndarray of float64, shape (k, 2)
-        The new positions of points.
-    row : ndarray of int32, shape (n,)
-        The row of each point of the mesh in `points`; -1 for removed points. Ends of subsegments
-        stay.
-
-    Returns
-    -------
-    domain : Domain or None
-        The triangulation; None if points coincide, lie on a subsegment, or left their region.
-    lost : ndarray of int
-        Rows of `points` at invalid positions.
+    `row` has the row of each old point in `points`, -1 if removed; ends of subsegments stay. If
+    points coincide, lie on a subsegment or left their region, None and their rows are returned.
     """
     edges, label = mesh._directed
     segments = row[mesh.segments]
@@ -194,21 +180,9 @@ def _astray(
 
 
 def worse(mesh: MeshState, domain: Domain, number: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return the vertices of triangles below the bound that the mesh did not have.
+    """Return the vertices, in a domain, of triangles below the bound that the mesh did not have.
 
-    Parameters
-    ----------
-    mesh : MeshState
-        The mesh before the change.
-    domain : Domain
-        The domain after the change.
-    number : ndarray of int, shape (k,)
-        The point of the mesh that each point of the domain corresponds to; -1 for new points.
-
-    Returns
-    -------
-    ndarray of int
-        Rows of the points of the domain.
+    `number` has the point of the mesh for each point of the domain, -1 for new points.
     """
     inside = domain.simplices[domain.labels >= 0]
     rows = quality.below(domain.points, inside, float(mesh._bound[0]))

@@ -143,9 +143,8 @@ class MeshState(HullTiling):
     def _directed(self) -> tuple[Indices, Indices]:
         """The directed subsegments with a triangle to the left, and the row of its region."""
         t, k = np.nonzero(self._sides >= 0)
-        ends = self._simplices[t, (k + 1) % 3], self._simplices[t, (k + 2) % 3]
         label = np.searchsorted(self._regions, self._region[t]).astype(np.int32)
-        return np.column_stack(ends), label
+        return np.column_stack(topology.half_edges(self._simplices, t, k)), label
 
     @property
     @kept

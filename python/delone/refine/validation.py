@@ -48,22 +48,7 @@ class MeshValidation(ValidationReport):
 def validate(
     points: Floats, simplices: Indices, neighbors: Indices, constrained: Bools
 ) -> MeshValidation:
-    """Check the triangles of a mesh.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices, neighbors : ndarray of int32, shape (m, 3)
-        Triangles, and those opposite their vertices.
-    constrained : ndarray of bool, shape (m, 3)
-        Whether the edge opposite each vertex is part of a segment.
-
-    Returns
-    -------
-    MeshValidation
-        The faults.
-    """
+    """Check the triangles of a mesh; `constrained` says which edges are part of a segment."""
     found = _core.validate2(points, simplices, neighbors)
     used = np.zeros(len(points), dtype=bool)
     used[simplices] = True

@@ -109,22 +109,7 @@ class PlaneTriangulation(ReadOnly):
 def plane_of(
     points: Floats, workers: int = 1, weights: Floats | None = None
 ) -> PlaneTriangulation | None:
-    """Triangulate coplanar points.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        Finite coplanar points.
-    workers : int, optional
-        Number of threads; with weights, one thread is used.
-    weights : ndarray of float64, shape (n,), optional
-        Finite weights of the points.
-
-    Returns
-    -------
-    PlaneTriangulation or None
-        None if all points are collinear.
-    """
+    """Triangulate finite coplanar points, (n, 3); None if they are collinear."""
     corners = _corners(points)
     if corners is None:
         return None
@@ -157,19 +142,10 @@ def plane_of(
 
 
 def repeated_rows(stands_for: Indices, weights: Floats) -> Indices:
-    """Return the rows that repeat others, including weights.
+    """Return rows that repeat others, including weights, and those that they repeat, (k, 2).
 
-    Parameters
-    ----------
-    stands_for : ndarray of int32, shape (n,)
-        For each row, the first row with the same coordinates that has the largest weight.
-    weights : ndarray of float64, shape (n,)
-        The weights.
-
-    Returns
-    -------
-    ndarray of int32, shape (k, 2)
-        The rows, and the rows that they repeat.
+    `stands_for` is for each row the first row with the same coordinates that has the largest
+    weight.
     """
     other = stands_for != np.arange(len(weights))
     rows = np.flatnonzero(other & (weights == weights[stands_for]))

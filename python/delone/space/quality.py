@@ -150,31 +150,7 @@ class TetQuality(Measures):
 
 
 def measured(points: Floats, simplices: Indices, workers: int | None = None) -> TetQuality:
-    """Measure tetrahedra.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 4)
-        Tetrahedra, positively oriented.
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    TetQuality
-        The measures.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.space.quality import measured
-    >>> regular = np.array([(1.0, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
-    >>> quality = measured(regular, np.array([(0, 2, 1, 3)], dtype=np.int32))
-    >>> quality.radius_ratio.round(12), quality.smallest_dihedral.round(2)
-    (array([1.]), array([70.53]))
-    """
+    """Measure positively oriented tetrahedra."""
     found = _core.qualities3(*as_mesh(points, simplices), as_workers(workers))
     return TetQuality(
         **{each.name: column for each, column in zip(fields(TetQuality), found, strict=True)}
@@ -182,28 +158,5 @@ def measured(points: Floats, simplices: Indices, workers: int | None = None) -> 
 
 
 def dihedral_angles(points: Floats, simplices: Indices, workers: int | None = None) -> Floats:
-    """Return the dihedral angles of tetrahedra.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 4)
-        Tetrahedra, positively oriented.
-    workers : int or None, optional
-        Number of threads; by default all cores.
-
-    Returns
-    -------
-    ndarray of float64, shape (m, 6)
-        In degrees, at the edges between corners 01, 02, 03, 12, 13 and 23.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.space.quality import dihedral_angles
-    >>> corner = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
-    >>> dihedral_angles(corner, np.array([(0, 1, 2, 3)], dtype=np.int32)).round(2)
-    array([[90.  , 90.  , 90.  , 54.74, 54.74, 54.74]])
-    """
+    """Return dihedral angles in degrees, (m, 6), at the edges between corners as in `EDGES`."""
     return _core.dihedral_angles3(*as_mesh(points, simplices), as_workers(workers))

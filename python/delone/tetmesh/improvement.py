@@ -20,7 +20,7 @@ from delone._arrays import (
     as_simplices,
     require_finite,
 )
-from delone.counting import counted
+from delone.counting import agreed, counted
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.space import quality
 from delone.tetmesh import report
@@ -204,7 +204,7 @@ def _require_positive(points: Floats, simplices: Indices) -> None:
         rows = np.flatnonzero(signs == sign)
         if len(rows):
             noun = counted(len(rows), "tetrahedron")
-            verb = "is" if len(rows) == 1 else "are"
+            verb = agreed(len(rows), "is", "are")
             raise InputError(f"{noun} {verb} {what}; first: {rows[0]}")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.counting import counted
+from delone.counting import counted, listed
 from delone.immutable import ReadOnly
 from delone.space import quality
 from delone.space.quality import EDGES
@@ -130,10 +130,9 @@ class ImproveReport(ReadOnly):
         for cause, what in _SENTENCES.items():
             rows = self.below[self.cause == cause]
             if len(rows):
-                shown = ", ".join(map(str, rows[:_SHOWN].tolist()))
-                more = ", ..." if len(rows) > _SHOWN else ""
                 noun = counted(len(rows), "tetrahedron")
-                lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}{more}")
+                shown = listed(rows, _SHOWN)
+                lines.append(f"{noun} below {self.min_angle:.4g} {what}: {shown}")
         if self.exhausted:
             lines.append("stopped at the limit on passes")
         return "\n".join(lines)
@@ -191,34 +190,17 @@ _SENTENCES = {
 def report(
     before: quality.TetQuality, made: ImprovedMesh, fixed: NDArray[np.bool_], min_angle: float
 ) -> tuple[ImproveReport, quality.TetQuality]:
-    """Create the report of an improvement.
+    """Return the report of an improvement, and the measures of the result.
 
-    Parameters
-    ----------
-    before : TetQuality
-        The measures of the input.
-    made : ImprovedMesh
-        The result of the core.
-    fixed : ndarray of bool, shape (n,)
-        Points that must not move.
-    min_angle : float
-        The goal in degrees.
-
-    Returns
-    -------
-    report : ImproveReport
-        The report.
-    after : TetQuality
-        The measures of the result.
+    `before` are the measures of the input, `fixed`, (n,), the points that must not move.
     """
     points, simplices, counts = made.points, made.simplices, made.counts
-    exhausted = made.exhausted
     after = quality.measured(points, simplices)
     histogram_before, bounds = before.histogram()
     histogram_after, _ = after.histogram()
     below = np.flatnonzero(after.smallest_dihedral < min_angle)
     walls = _walls(made.neighbors, made.labels)
-    cause = np.full(len(below), _BUDGET if exhausted else _OTHER)
+    cause = np.full(len(below), _BUDGET if made.exhausted else _OTHER)
     held = _on_walls(simplices, walls, len(points)) | fixed
     cause[held[simplices[below]].all(axis=1)] = _BOUNDARY
     cause[_forced(points, simplices[below], walls[below], min_angle)] = _ANGLE
@@ -239,7 +221,7 @@ def report(
         weights=made.weights,
         refused=counts.refused,
         passes=counts.passes,
-        exhausted=exhausted,
+        exhausted=made.exhausted,
         below=below,
         cause=np.array(CAUSES)[cause],
     )
