@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone.testing.exact import (
-    SHOWN,
     Mesh,
     assert_none,
     directed_edges,
@@ -22,48 +21,32 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from delone.testing.exact import Indices
+    from delone.testing.space import SpaceMesh
 
 
-def assert_vertices(mesh: Mesh) -> None:
+def assert_vertices(mesh: Mesh | SpaceMesh, simplices: Indices, noun: str = "triangle") -> None:
     """Assert that the vertices are all distinct points, and of equal points only the first."""
     used = np.zeros(len(mesh.points), dtype=bool)
-    used[mesh.triangles] = True
+    used[simplices] = True
     is_first = mesh.first == np.arange(len(mesh.points))
-    repeats = np.flatnonzero(used & ~is_first)
-    assert_none(
-        [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
-        len(repeats),
-        "is used although an earlier row is equal",
-        "row",
-    )
-    lost = np.flatnonzero(is_first & ~used)
-    assert_none(
-        [mesh.name([row]) for row in lost[:SHOWN].tolist()],
-        len(lost),
-        "is not a vertex of any triangle",
-        "point",
-    )
+
+    def repeated(row: int) -> str:
+        return f"{mesh.name([row])} repeats row {mesh.first[row]}"
+
+    repeats, lost = np.flatnonzero(used & ~is_first), np.flatnonzero(is_first & ~used)
+    assert_none(repeats, repeated, "is used although an earlier row is equal", "row")
+    fault = f"is not a vertex of any {noun}"
+    assert_none(lost, lambda row: mesh.name([row]), fault, "point")
 
 
 def assert_counter_clockwise(mesh: Mesh) -> None:
     """Assert that triangles turn left, and each edge has one triangle on its left."""
     a, b, c = mesh.triangles.T
     turned = np.flatnonzero(orient(mesh, a, b, c) <= 0)
-    assert_none(
-        [f"triangle {t}: {mesh.name(mesh.triangles[t].tolist())}" for t in turned[:SHOWN]],
-        len(turned),
-        "is not counter-clockwise",
-        "triangle",
-    )
+    assert_none(turned, mesh.triangle, "is not counter-clockwise", "triangle")
     keys, counts = np.unique(directed_edges(mesh), return_counts=True)
-    doubled = keys[counts > 1]
-    n = len(mesh.points)
-    assert_none(
-        [f"edge {mesh.name((key // n, key % n))}" for key in doubled[:SHOWN].tolist()],
-        len(doubled),
-        "is used more than once in the same direction",
-        "edge",
-    )
+    fault = "is used more than once in the same direction"
+    assert_none(keys[counts > 1], mesh.edge, fault, "edge")
 
 
 def assert_hull_and_area(mesh: Mesh) -> None:
@@ -71,16 +54,11 @@ def assert_hull_and_area(mesh: Mesh) -> None:
     n, hull = len(mesh.points), hull_of(mesh)
     found = set(directed_edges(mesh)[opposite_corners(mesh) < 0].tolist())
     wanted = {u * n + v for u, v in zip(hull, hull[1:] + hull[:1], strict=True)}
-    for keys_left, fault in (
-        (sorted(found - wanted), "is on the boundary, but not on the convex hull"),
-        (sorted(wanted - found), "is on the convex hull, but not on the boundary"),
+    for left, fault in (
+        (found - wanted, "is on the boundary, but not on the convex hull"),
+        (wanted - found, "is on the convex hull, but not on the boundary"),
     ):
-        assert_none(
-            [f"edge {mesh.name((key // n, key % n))}" for key in keys_left[:SHOWN]],
-            len(keys_left),
-            fault,
-            "edge",
-        )
+        assert_none(sorted(left), mesh.edge, fault, "edge")
     # Count and area follow from the assertions above: they test the checks.
     distinct, m = len(np.unique(mesh.first)), len(mesh.triangles)
     expected = 2 * distinct - len(hull) - 2
@@ -107,21 +85,17 @@ def assert_locally_delaunay(
     q = mesh.triangles.ravel()[opposite[corner]]
     inside = incircle(mesh, p, u, v, q)
 
-    def edges(which: Indices) -> list[str]:
-        return [
-            f"edge {mesh.name(sorted((u[i], v[i])))} between {mesh.name(sorted((p[i], q[i])))}"
-            for i in which[:SHOWN].tolist()
-        ]
+    def edge(i: int) -> str:
+        return f"edge {mesh.name(sorted((u[i], v[i])))} between {mesh.name(sorted((p[i], q[i])))}"
 
-    wrong = np.flatnonzero(inside > 0)
-    assert_none(edges(wrong), len(wrong), "is not locally Delaunay", "edge")
+    assert_none(np.flatnonzero(inside > 0), edge, "is not locally Delaunay", "edge")
     if not canonical:
         return
     rank = mesh.rank
     apex_smallest = np.minimum(rank[p], rank[q]) < np.minimum(rank[u], rank[v])
     tied = np.flatnonzero((inside == 0) & apex_smallest)
     fault = "is not canonical: the smallest of four cocircular points is not on it"
-    assert_none(edges(tied), len(tied), fault, "edge")
+    assert_none(tied, edge, fault, "edge")
 
 
 def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
@@ -138,10 +112,9 @@ def assert_neighbors(mesh: Mesh, neighbors: ArrayLike) -> None:
         return
     opposite = opposite_corners(mesh)
     wanted = np.where(opposite < 0, -1, opposite // 3).reshape(-1, 3)
+
+    def both(t: int) -> str:
+        return f"triangle {t}: {array[t].tolist()}, not {wanted[t].tolist()}"
+
     wrong = np.flatnonzero((array != wanted).any(axis=1))
-    assert_none(
-        [f"triangle {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
-        len(wrong),
-        "has wrong neighbors",
-        "triangle",
-    )
+    assert_none(wrong, both, "has wrong neighbors", "triangle")

@@ -88,7 +88,7 @@ def assert_delaunay(
     if spans_no_area(mesh):
         require(len(triangles) == 0, f"{len(triangles)} triangles of points that span no area")
     else:
-        assert_vertices(mesh)
+        assert_vertices(mesh, triangles)
         assert_counter_clockwise(mesh)
         assert_hull_and_area(mesh)
         assert_locally_delaunay(mesh, canonical)

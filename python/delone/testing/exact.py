@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike, NDArray
 
     Indices = NDArray[np.int64]
     Integers = NDArray[np.object_]
 
-SHOWN = 5
+_SHOWN = 5
 
 
 class Mesh(NamedTuple):
@@ -36,16 +36,9 @@ class Mesh(NamedTuple):
     @classmethod
     def of(cls, points: NDArray[np.float64], triangles: Indices) -> Mesh:
         """Convert finite points and triangles whose indices are in range."""
-        x, y, exponent = scaled_to_integers(points)
-        flat = points + 0.0  # makes -0.0 the same as 0.0
-        order = np.lexsort((flat[:, 1], flat[:, 0]))
-        fresh = np.ones(len(points), dtype=bool)
-        fresh[1:] = (flat[order[1:]] != flat[order[:-1]]).any(axis=1)
-        group = np.cumsum(fresh) - 1
-        rank = np.empty(len(points), dtype=np.int64)
-        rank[order] = group
-        # lexsort is stable, so the first of each group is the smallest row.
-        return cls(points, triangles, x, y, order, rank, order[fresh][rank], exponent)
+        integers, exponent = integers_of(points)
+        x, y = integers.T
+        return cls(points, triangles, x, y, *ranked(points), exponent)
 
     def mirrored(self) -> Indices:
         """The place of each row in the order by ascending x, then descending y."""
@@ -58,15 +51,29 @@ class Mesh(NamedTuple):
         """Rows with their coordinates, for error messages."""
         return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
 
+    def edge(self, key: int) -> str:
+        """An edge u * n + v, for error messages."""
+        return f"edge {self.name(divmod(key, len(self.points)))}"
 
-def scaled_to_integers(points: NDArray[np.float64]) -> tuple[Integers, Integers, int]:
-    """Multiply all coordinates by the power of two that makes the finest of them an integer."""
-    integers, lowest = integers_of(points)
-    return integers[:, 0], integers[:, 1], lowest
+    def triangle(self, t: int) -> str:
+        """A triangle with its corners, for error messages."""
+        return f"triangle {t}: {self.name(self.triangles[t].tolist())}"
+
+
+def ranked(points: NDArray[np.float64]) -> tuple[Indices, Indices, Indices]:
+    """The rows in lexicographic order, and for each row its rank and the first equal row."""
+    flat = points + 0.0  # makes -0.0 the same as 0.0
+    order = np.lexsort(flat.T[::-1])
+    fresh = np.ones(len(points), dtype=bool)
+    fresh[1:] = (flat[order[1:]] != flat[order[:-1]]).any(axis=1)
+    rank = np.empty(len(points), dtype=np.int64)
+    rank[order] = np.cumsum(fresh) - 1
+    # lexsort is stable, so the first of each group is the smallest row.
+    return order, rank, order[fresh][rank]
 
 
 def integers_of(points: NDArray[np.float64]) -> tuple[Integers, int]:
-    """The same for any number of coordinates, (n, d)."""
+    """Coordinates, (n, d), times the power of two that makes the finest of them an integer."""
     fraction, exponent = np.frexp(points)
     mantissa = np.ldexp(fraction, 53).astype(np.int64)
     exponent = exponent.astype(np.int64) - 53
@@ -120,13 +127,9 @@ def as_rows(
         array.ndim == 2 and array.shape[1] == width,
         f"{name} must have shape ({'q' if width == 2 else 'm'}, {width}), got {array.shape}",
     )
-    bad = ((array < 0) | (array >= npoints)).any(axis=1)
-    assert_none(
-        [f"{noun} {t}: {array[t].tolist()}" for t in np.flatnonzero(bad)[:SHOWN]],
-        int(bad.sum()),
-        f"has a vertex outside the rows 0 to {npoints - 1}",
-        noun,
-    )
+    bad = np.flatnonzero(((array < 0) | (array >= npoints)).any(axis=1))
+    fault = f"has a vertex outside the rows 0 to {npoints - 1}"
+    assert_none(bad, lambda t: f"{noun} {t}: {array[t].tolist()}", fault, noun)
     return array.astype(np.int64)
 
 
@@ -136,16 +139,17 @@ def require(condition: bool, message: str) -> None:
         raise AssertionError(message)
 
 
-def assert_none(culprits: list[str], count: int, fault: str, noun: str) -> None:
-    """Fail if there are culprits, and list the first of them."""
+def assert_none(wrong: Any, name: Callable[[Any], str], fault: str, noun: str) -> None:
+    """Fail if an array or list has elements, and name the first of them."""
+    count = len(wrong)
     if count == 0:
         return
     if count > 1:
         noun += "s"
         noun = noun.replace("tetrahedrons", "tetrahedra")
         fault = fault.replace("is ", "are ", 1).replace("has ", "have ", 1)
-    more = "\n  ..." if count > len(culprits) else ""
-    raise AssertionError(f"{count} {noun} {fault}:\n  " + "\n  ".join(culprits) + more)
+    named = [name(each) for each in wrong[:_SHOWN]] + ["..."] * (count > _SHOWN)
+    raise AssertionError("\n  ".join((f"{count} {noun} {fault}:", *named)))
 
 
 def hull_of(mesh: Mesh) -> list[int]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from delone._arrays import as_points, require_finite
 from delone.testing.exact import (
-    SHOWN,
     Mesh,
     as_rows,
     assert_none,
@@ -116,13 +115,7 @@ def assert_regions(
         holds = _holding(exact, flags, seed)
         if holds is not None:
             wanted[area[holds]] = label
-    wrong = np.flatnonzero(found != wanted[area])
-    assert_none(
-        [f"triangle {t}: {found[t]}, not {wanted[area[t]]}" for t in wrong[:SHOWN].tolist()],
-        len(wrong),
-        "has the wrong label",
-        "triangle",
-    )
+    _assert_labels(found, wanted[area], "has the wrong label")
 
 
 def _areas(exact: Mesh, flags: Bools) -> Indices:
@@ -148,21 +141,16 @@ def _assert_told_apart(area: Indices, found: NDArray[np.integer]) -> None:
     """Assert that two triangles have the same label if and only if they are in the same area."""
     _, first = np.unique(area, return_index=True)
     of_area = found[first]
-    mixed = np.flatnonzero(found != of_area[area])
-    assert_none(
-        [f"triangle {t}: {found[t]}, not {of_area[area[t]]}" for t in mixed[:SHOWN].tolist()],
-        len(mixed),
-        "does not have the label of its area",
-        "triangle",
-    )
+    _assert_labels(found, of_area[area], "does not have the label of its area")
     _, kept = np.unique(of_area, return_index=True)
     shared = first[np.setdiff1d(np.arange(len(first)), kept)]
-    assert_none(
-        [f"triangle {t}: {found[t]}" for t in shared[:SHOWN].tolist()],
-        len(shared),
-        "has the label of another area",
-        "triangle",
-    )
+    fault = "has the label of another area"
+    assert_none(shared, lambda t: f"triangle {t}: {found[t]}", fault, "triangle")
+
+
+def _assert_labels(found: NDArray[np.integer], wanted: NDArray[np.integer], fault: str) -> None:
+    wrong = np.flatnonzero(found != wanted)
+    assert_none(wrong, lambda t: f"triangle {t}: {found[t]}, not {wanted[t]}", fault, "triangle")
 
 
 def _holding(exact: Mesh, flags: Bools, seed: int) -> int | None:

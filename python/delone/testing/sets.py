@@ -9,7 +9,7 @@ import numpy as np
 from delone.errors import DtypeError, ShapeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 
 def triangle_set(simplices: ArrayLike) -> set[tuple[int, int, int]]:
@@ -98,13 +98,7 @@ def same_tetrahedra(a: ArrayLike, b: ArrayLike) -> bool:
 
 def _even(simplices: ArrayLike, name: str) -> list[tuple[int, ...]]:
     """Tetrahedra with ascending vertices; an odd permutation exchanges the last two."""
-    array = np.asarray(simplices)
-    if array.shape in ((0,), (0, 4)):
-        return []
-    if array.ndim != 2 or array.shape[1] != 4:
-        raise ShapeError(f"{name} must have shape (m, 4), got {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+    array = _rows(simplices, name, 4)
     pairs = [(i, j) for i in range(4) for j in range(i + 1, 4)]
     odd = sum((array[:, i] > array[:, j]).astype(int) for i, j in pairs) % 2 == 1
     turned = np.sort(array, axis=1)
@@ -114,16 +108,21 @@ def _even(simplices: ArrayLike, name: str) -> list[tuple[int, ...]]:
 
 def _turned(simplices: ArrayLike, name: str) -> list[tuple[int, int, int]]:
     """Triangles as triples, each starting at its smallest vertex."""
-    try:
-        triangles = np.asarray(simplices)
-    except ValueError as error:
-        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
-    if triangles.shape in ((0,), (0, 3)):
-        return []
-    if triangles.ndim != 2 or triangles.shape[1] != 3:
-        raise ShapeError(f"{name} must have shape (m, 3), got {triangles.shape}")
-    if triangles.dtype.kind not in "iu":
-        raise DtypeError(f"{name} must hold integers, got dtype {triangles.dtype}")
+    triangles = _rows(simplices, name, 3)
     start = triangles.argmin(axis=1)[:, None]
     turned = np.take_along_axis(triangles, (start + np.arange(3)) % 3, axis=1)
     return [(a, b, c) for a, b, c in turned.tolist()]
+
+
+def _rows(simplices: ArrayLike, name: str, width: int) -> NDArray[np.integer]:
+    try:
+        array = np.asarray(simplices)
+    except ValueError as error:
+        raise ShapeError(f"{name} has rows of unequal length: {error}") from error
+    if array.shape in ((0,), (0, width)):
+        return np.empty((0, width), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ShapeError(f"{name} must have shape (m, {width}), got {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"{name} must hold integers, got dtype {array.dtype}")
+    return array

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone.testing.exact import SHOWN, assert_none, integers_of, require
+from delone.testing.checks import assert_vertices
+from delone.testing.exact import assert_none, integers_of, ranked, require
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -34,25 +35,16 @@ class SpaceMesh(NamedTuple):
     @classmethod
     def of(cls, points: NDArray[np.float64], tetrahedra: Indices) -> SpaceMesh:
         """Convert finite points and tetrahedra whose indices are in range."""
-        flat = points + 0.0  # makes -0.0 the same as 0.0
-        order = np.lexsort(flat.T[::-1])
-        fresh = np.ones(len(points), dtype=bool)
-        fresh[1:] = (flat[order[1:]] != flat[order[:-1]]).any(axis=1)
-        rank = np.empty(len(points), dtype=np.int64)
-        rank[order] = np.cumsum(fresh) - 1
-        at, _ = integers_of(points)
-        return cls(points, tetrahedra, at, rank, order[fresh][rank])
+        _, rank, first = ranked(points)
+        return cls(points, tetrahedra, integers_of(points)[0], rank, first)
 
     def name(self, rows: Iterable[int]) -> str:
         """Rows with their coordinates, for error messages."""
         return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
 
-    def names(self, which: Indices) -> list[str]:
-        """The first few tetrahedra with their corners."""
-        return [
-            f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
-            for t in which[:SHOWN].tolist()
-        ]
+    def tetrahedron(self, t: int) -> str:
+        """A tetrahedron with its corners, for error messages."""
+        return f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
 
 
 def orient3d(mesh: SpaceMesh, a: Any, b: Any, c: Any, d: Any) -> Any:
@@ -92,7 +84,7 @@ def assert_delaunay_space(mesh: SpaceMesh, neighbors: ArrayLike | None, *, canon
         count = len(mesh.tetrahedra)
         require(count == 0, f"{count} tetrahedra of points that span no volume")
     else:
-        _assert_vertices(mesh)
+        assert_vertices(mesh, mesh.tetrahedra, "tetrahedron")
         _assert_positive(mesh)
         beyond = _opposites(mesh)
         _assert_hull(mesh, beyond)
@@ -124,24 +116,9 @@ def _spans_no_volume(mesh: SpaceMesh) -> bool:
     return len(off) == 0 or not (orient3d(mesh, a, b, rows[off[0]], rows) != 0).any()
 
 
-def _assert_vertices(mesh: SpaceMesh) -> None:
-    used = np.zeros(len(mesh.points), dtype=bool)
-    used[mesh.tetrahedra] = True
-    is_first = mesh.first == np.arange(len(mesh.points))
-    repeats, lost = np.flatnonzero(used & ~is_first), np.flatnonzero(is_first & ~used)
-    assert_none(
-        [f"{mesh.name([row])} repeats row {mesh.first[row]}" for row in repeats[:SHOWN].tolist()],
-        len(repeats),
-        "is used although an earlier row is equal",
-        "row",
-    )
-    names = [mesh.name([row]) for row in lost[:SHOWN].tolist()]
-    assert_none(names, len(lost), "is not a vertex of any tetrahedron", "point")
-
-
 def _assert_positive(mesh: SpaceMesh) -> None:
     flat = np.flatnonzero(orient3d(mesh, *mesh.tetrahedra.T) <= 0)
-    assert_none(mesh.names(flat), len(flat), "is not positively oriented", "tetrahedron")
+    assert_none(flat, mesh.tetrahedron, "is not positively oriented", "tetrahedron")
 
 
 def _opposites(mesh: SpaceMesh) -> Indices:
@@ -156,8 +133,8 @@ def _opposites(mesh: SpaceMesh) -> Indices:
         if face in sides:
             doubled.append(face)
         sides[face] = corner
-    names = [f"face {mesh.name(face)}" for face in doubled[:SHOWN]]
-    assert_none(names, len(doubled), "is used more than once from the same side", "face")
+    fault = "is used more than once from the same side"
+    assert_none(doubled, lambda face: f"face {mesh.name(face)}", fault, "face")
     found = [sides.get((a, c, b), -1) for a, b, c in turned.tolist()]
     return np.array(found, dtype=np.int64)
 
@@ -215,20 +192,16 @@ def _assert_empty_spheres(mesh: SpaceMesh, beyond: Indices, canonical: bool) -> 
     t, far = corner // 4, mesh.tetrahedra.ravel()[beyond[corner]]
     inside = insphere(mesh, mesh.tetrahedra[t], far)
 
-    def names(which: Indices) -> list[str]:
-        return [
-            f"tetrahedron {mesh.name(mesh.tetrahedra[t[i]].tolist())} and {mesh.name([far[i]])}"
-            for i in which[:SHOWN].tolist()
-        ]
+    def face(i: int) -> str:
+        return f"tetrahedron {mesh.name(mesh.tetrahedra[t[i]].tolist())} and {mesh.name([far[i]])}"
 
-    wrong = np.flatnonzero(inside > 0)
-    assert_none(names(wrong), len(wrong), "is not locally Delaunay", "face")
+    assert_none(np.flatnonzero(inside > 0), face, "is not locally Delaunay", "face")
     if not canonical:
         return
     ties = np.flatnonzero(inside == 0).tolist()
     signs = [insphere_of_tie(mesh, mesh.tetrahedra[t[i]], int(far[i])) for i in ties]
-    tied = np.array([i for i, s in zip(ties, signs, strict=True) if s > 0], dtype=np.int64)
-    assert_none(names(tied), len(tied), "is not canonical: five points share a sphere", "face")
+    tied = [i for i, s in zip(ties, signs, strict=True) if s > 0]
+    assert_none(tied, face, "is not canonical: five points share a sphere", "face")
 
 
 def _assert_all_spheres_empty(mesh: SpaceMesh, canonical: bool) -> None:
@@ -237,14 +210,12 @@ def _assert_all_spheres_empty(mesh: SpaceMesh, canonical: bool) -> None:
         inside = insphere(mesh, mesh.tetrahedra, e)
         held = np.flatnonzero(inside > 0)
         fault = f"has point {mesh.name([e])} inside its sphere"
-        assert_none(mesh.names(held), len(held), fault, "tetrahedron")
+        assert_none(held, mesh.tetrahedron, fault, "tetrahedron")
         for t in np.flatnonzero(inside == 0).tolist() if canonical else []:
             corners = mesh.tetrahedra[t]
             if e not in corners:
                 tie = insphere_of_tie(mesh, corners, e)
-                require(
-                    tie <= 0, f"{mesh.names(np.array([t]))[0]} is not canonical: {mesh.name([e])}"
-                )
+                require(tie <= 0, f"{mesh.tetrahedron(t)} is not canonical: {mesh.name([e])}")
 
 
 def _assert_neighbors(mesh: SpaceMesh, neighbors: ArrayLike) -> None:
@@ -257,10 +228,9 @@ def _assert_neighbors(mesh: SpaceMesh, neighbors: ArrayLike) -> None:
         return
     beyond = _opposites(mesh)
     wanted = np.where(beyond < 0, -1, beyond // 4).reshape(-1, 4)
+
+    def both(t: int) -> str:
+        return f"tetrahedron {t}: {array[t].tolist()}, not {wanted[t].tolist()}"
+
     wrong = np.flatnonzero((array != wanted).any(axis=1))
-    assert_none(
-        [f"tetrahedron {t}: {array[t].tolist()}, not {wanted[t].tolist()}" for t in wrong[:SHOWN]],
-        len(wrong),
-        "has wrong neighbors",
-        "tetrahedron",
-    )
+    assert_none(wrong, both, "has wrong neighbors", "tetrahedron")
