@@ -15,7 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone._arrays import as_points, as_segments
-from delone.compat.triangle_input import Switches, again, interpolated, not_reached, rows_of
+from delone.compat.triangle_input import (
+    Switches,
+    again,
+    interpolated,
+    keys_of,
+    not_reached,
+    rows_of,
+)
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.delaunay import Delaunay
 from delone.errors import DtypeError, InputError
@@ -270,15 +277,15 @@ def _segment_markers(found: Mesh) -> Indices:
     """Markers of subsegments, 1 on the boundary if there is none."""
     marks = found.segment_markers.copy()
     n = found.npoints
-    keys = topology.edge_keys(*found.segments.T, n)
-    rim = topology.among(keys, topology.edge_keys(*found.boundary.T, n))
+    keys = keys_of(found.segments, n)
+    rim = topology.among(keys, keys_of(found.boundary, n))
     marks[rim & (marks == 0)] = 1
     return marks
 
 
 def _of_edges(found: Mesh, marks: Indices) -> Indices:
-    keys = topology.edge_keys(*found.edges.T, found.npoints)
-    wanted = topology.edge_keys(*found.segments.T, found.npoints)
+    keys = keys_of(found.edges, found.npoints)
+    wanted = keys_of(found.segments, found.npoints)
     order = np.argsort(keys)
     of_edges = np.zeros(len(keys), dtype=np.int32)
     of_edges[order[np.searchsorted(keys, wanted, sorter=order)]] = marks

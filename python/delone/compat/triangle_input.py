@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["Switches", "again", "interpolated", "not_reached", "rows_of"]
+__all__ = ["Switches", "again", "interpolated", "keys_of", "not_reached", "rows_of"]
 
 
 class Switches(NamedTuple):
@@ -51,6 +51,11 @@ def rows_of(values: Any, columns: int | None, name: str, count: int | None = Non
     if count is not None and len(array) != count:
         raise ShapeError(f"{name} must have {count} rows, got {len(array)}")
     return array
+
+
+def keys_of(edges: Indices, npoints: int) -> NDArray[np.int64]:
+    """A key for each edge, the same in both directions."""
+    return topology.edge_keys(edges[:, 0], edges[:, 1], npoints)
 
 
 def again(
@@ -98,17 +103,17 @@ def _domain(
     markers = as_rows(tri.get("segment_markers"), len(given), "segment_markers")
     rim = topology.boundary_edges(simplices, neighbors)
     n = len(points)
-    rim_keys = topology.edge_keys(*rim.T, n)
-    bare = ~topology.among(rim_keys, topology.edge_keys(*given.T, n))
+    rim_keys = keys_of(rim, n)
+    bare = ~topology.among(rim_keys, keys_of(given, n))
     ends = np.concatenate((given, rim[bare])).astype(np.int32)
-    _, first = np.unique(topology.edge_keys(*ends.T, n), return_index=True)
+    _, first = np.unique(keys_of(ends, n), return_index=True)
     first.sort()
     ends = ends[first]
     made, label = domains.triangulated(points, ends, rim, np.zeros(len(rim), np.int32), None)
     marks = np.append(markers, np.zeros(int(bare.sum()), dtype=np.int32))[first]
     own = np.flatnonzero(first < len(given))
     counts = (first < len(given)).astype(np.int64)
-    on_rim = topology.among(topology.edge_keys(*ends.T, n), rim_keys)
+    on_rim = topology.among(keys_of(ends, n), rim_keys)
     frozen = np.full(len(ends), switches.fixed is True) | (bool(switches.fixed) & on_rim)
     lines = Lines(
         ends,
