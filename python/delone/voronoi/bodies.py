@@ -21,10 +21,10 @@ __all__ = ["Bodies", "Body"]
 
 
 class Body(NamedTuple):
-    """One cell: its corners and faces, and the ridge of each face, negative for a face of the clip.
+    """One cell: its corners, its faces as rows of them, and the ridge of each face.
 
-    Faces are rows of the corners, counter-clockwise as seen from outside. An unbounded cell has its
-    vertices for corners, and no faces.
+    Faces are counter-clockwise as seen from outside; the ridge of a face of the clip is negative.
+    An unbounded cell has its vertices for corners, and no faces.
     """
 
     vertices: Floats
@@ -36,27 +36,10 @@ _EMPTY = Body(np.empty((0, 3)), (), np.empty(0, dtype=np.int32))
 
 
 class Bodies:
-    """The clipped cells, in the order of the cells, and their measures.
+    """The clipped cells of 3-D sites, in the order of the cells, and their measures.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        The sites.
-    weights : ndarray of float64, shape (n,), optional
-        Their weights.
-    dual : Diagram3
-        The diagram.
-    clip : Polyhedron, optional
-        Where cells end.
-    workers : int
-        Number of threads.
-
-    Attributes
-    ----------
-    volumes, areas : ndarray of float64, shape (c,)
-        Measures; infinite for unbounded cells.
-    centroids : ndarray of float64, shape (c, 3)
-        Centers of gravity; NaN for unbounded and empty cells.
+    `volumes` and `areas`, (c,), are infinite for unbounded cells; `centroids`, (c, 3), are NaN for
+    unbounded and empty ones.
     """
 
     def __init__(
@@ -87,18 +70,7 @@ class Bodies:
         return self._ridge_areas
 
     def body(self, cell: int) -> Body:
-        """Return one cell; -1 is an empty one.
-
-        Parameters
-        ----------
-        cell : int
-            Which cell.
-
-        Returns
-        -------
-        Body
-            Corners, faces and ridges.
-        """
+        """Return one cell; -1 is an empty one."""
         if cell < 0:
             return _EMPTY
         number = int(self._cut_as[cell])

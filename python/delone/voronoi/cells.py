@@ -28,25 +28,7 @@ __all__ = ["Cells"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Cells:
-    """The cells of sites: arrays that never change, and what follows from them.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, d)
-        The sites.
-    weights : ndarray of float64, shape (n,), optional
-        Their weights.
-    mesh : Delaunay, RegularTriangulation, PeriodicDelaunay or None
-        The triangulation; None if all sites lie on one line.
-    dual : Diagram2 or Diagram3
-        The arrays of the whole diagram.
-    clip : Clip or Polyhedron, optional
-        Where cells end.
-    periods : tuple of two floats or None, optional
-        The periods of the sites.
-    workers : int, optional
-        Number of threads; None for one per core.
-    """
+    """The cells of d-dimensional sites: arrays that never change, and what follows from them."""
 
     points: Floats
     weights: Floats | None

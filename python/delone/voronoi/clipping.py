@@ -35,23 +35,10 @@ _OUTSIDE, _INSIDE, _CUT = 0, 1, 2
 
 
 class Clipped:
-    """The clipped cells, in the order of the cells, and their measures.
+    """The clipped cells, convex polygons in the order of the cells, and their measures.
 
-    Parameters
-    ----------
-    starts, corners, ridges : ndarray
-        Convex polygons: their corners, and the ridge along which each edge lies.
-    ridge_count : int
-        Number of ridges.
-    workers : int
-        Number of threads.
-
-    Attributes
-    ----------
-    areas, perimeters : ndarray of float64, shape (c,)
-        Measures; infinite for unbounded cells.
-    centroids : ndarray of float64, shape (c, 2)
-        Centers of gravity; NaN for unbounded and empty cells.
+    `ridges` has the ridge along which each edge lies. `areas` and `perimeters`, (c,), are infinite
+    for unbounded cells; `centroids`, (c, 2), are NaN for unbounded and empty ones.
     """
 
     def __init__(
@@ -89,14 +76,9 @@ class Clipped:
         return ((ring,),) if len(ring) > 2 else ()
 
     def simple(self) -> tuple[Indices, Floats, NDArray[np.int64]]:
-        """Return polygons without holes that cover the cells.
+        """Return polygons without holes as compressed rows, and the cell of each.
 
-        Returns
-        -------
-        starts, corners : ndarray
-            The corners of each polygon as compressed rows.
-        cell : ndarray of int64
-            The cell of each polygon.
+        Together they cover the cells.
         """
         rows = np.flatnonzero(np.diff(self.starts) > 2)
         return *_taken(self.starts, self.corners, rows), rows
@@ -143,11 +125,7 @@ class _Bounded(Clipped):
 
 
 class _InOutline(Clipped):
-    """Cells cut to an outline.
-
-    The core cuts those on the outline if exact signs leave no doubt (see `pieces`); the others are
-    geometries of shapely.
-    """
+    """Cells cut to an outline: by the core if exact signs leave no doubt, otherwise by shapely."""
 
     def __init__(self, whole: Clipped, clip: Clip, workers: int) -> None:
         super().__init__(whole.starts, whole.corners, whole.ridges, whole.ridge_count, workers)
@@ -174,7 +152,6 @@ class _InOutline(Clipped):
 
     def _measure(self, rows: NDArray[np.int64]) -> None:
         shapely = shapely_or_say()
-
         outside = self._side == _OUTSIDE
         self.areas[outside] = self.perimeters[outside] = 0
         self.centroids[outside] = np.nan
@@ -187,8 +164,9 @@ class _InOutline(Clipped):
             cut = self._overlaid
             self.areas[self._doubtful] = shapely.area(cut) / self._scale / self._scale
             self.perimeters[self._doubtful] = shapely.length(cut) / self._scale
-            centers = shapely.get_coordinates(_points_or_nan(shapely.centroid(cut)))
-            self.centroids[self._doubtful] = centers / self._scale
+            centers = shapely.centroid(cut)
+            centers[shapely.is_empty(centers)] = shapely.Point(np.nan, np.nan)
+            self.centroids[self._doubtful] = shapely.get_coordinates(centers) / self._scale
 
     def _geometries(self) -> tuple[NDArray[np.int64], NDArray[Any]]:
         """Return the cells on the outline, and the clipped geometry of each."""
@@ -208,7 +186,6 @@ class _InOutline(Clipped):
 
     def ridge_sizes(self) -> Floats:
         shapely = shapely_or_say()
-
         owner = np.repeat(np.arange(len(self._side)), np.diff(self.starts))
         lengths = np.zeros(self.ridge_count)
         along = self.ridges >= 0
@@ -245,7 +222,6 @@ class _InOutline(Clipped):
 
     def _doubtful_edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
         shapely = shapely_or_say()
-
         turned = shapely.orient_polygons(times(self._overlaid, 1 / self._scale))
         parts, cell = shapely.get_parts(turned, return_index=True)
         rings, part = shapely.get_rings(parts, return_index=True)
@@ -256,7 +232,6 @@ class _InOutline(Clipped):
 
     def parts(self, cell: int) -> tuple[tuple[Floats, ...], ...]:
         shapely = shapely_or_say()
-
         if self._side[cell] != _CUT:
             return super().parts(cell) if self._side[cell] == _INSIDE else ()
         rows, cut = self._geometries()
@@ -269,7 +244,6 @@ class _InOutline(Clipped):
 
     def simple(self) -> tuple[Indices, Floats, NDArray[np.int64]]:
         shapely = shapely_or_say()
-
         inside = np.flatnonzero((self._side == _INSIDE) & (np.diff(self.starts) > 2))
         starts, corners = _taken(self.starts, self.corners, inside)
         cells, cut = self._geometries()
@@ -311,28 +285,7 @@ def cells(
     periods: tuple[float | None, float | None] | None = None,
     workers: int,
 ) -> Clipped:
-    """Return the clipped cells of a diagram.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    weights : ndarray of float64, shape (n,), optional
-        Their weights.
-    dual : Diagram2 or PeriodicDual
-        The diagram.
-    clip : Clip, optional
-        Where cells end.
-    periods : tuple of two floats or None, optional
-        The periods of the sites.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    Clipped
-        Polygons and their measures.
-    """
+    """Return the clipped cells of a diagram, or without a clip its bounded cells."""
     cells_alone = dual.cells if isinstance(dual, torus.PeriodicDual) else dual
     if clip is None:
         return _Bounded(cells_alone, workers)
@@ -389,7 +342,6 @@ def _taken(starts: Indices, corners: Floats, rows: NDArray[np.int64]) -> tuple[I
 def _sides(whole: Clipped, corners: Floats, clip: Clip) -> NDArray[np.int8]:
     """Return which cells lie outside, inside, or on the outline; corners are in its units."""
     shapely = shapely_or_say()
-
     rings, places = clip.rings
     segments = np.column_stack((places, places[next_corner(rings, len(places))]))
     group, _count = _core.touched2(whole.starts, corners, whole.ridges, segments)
@@ -400,11 +352,3 @@ def _sides(whole: Clipped, corners: Floats, clip: Clip) -> NDArray[np.int8]:
     inside = shapely.contains_xy(clip.scaled, whole.centroids[free[first]] * clip.unit)
     side[free] = np.where(inside, _INSIDE, _OUTSIDE)[group[free]]
     return side
-
-
-def _points_or_nan(points: NDArray[Any]) -> NDArray[Any]:
-    """Return points, with NaN for the coordinates of empty ones."""
-    shapely = shapely_or_say()
-
-    points[shapely.is_empty(points)] = shapely.Point(np.nan, np.nan)
-    return points

@@ -34,27 +34,9 @@ _SMALLEST, _LARGEST = 2.0**-900, 2.0**900
 
 
 def of_chain(points: Floats, chain: Indices) -> Diagram2:
-    """Return the diagram of distinct sites on one line: half-planes and strips.
+    """Return the diagram of distinct sites on one line, half-planes and strips, as from the core.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    chain : ndarray of int32, shape (k,)
-        Rows of the sites in their order along the line, k > 0.
-
-    Returns
-    -------
-    Diagram2
-        As from the core.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.dual import of_chain
-    >>> dual = of_chain(np.array([(0.0, 0), (2, 0)]), np.array([0, 1]))
-    >>> dual.sites.tolist(), dual.ends.tolist(), dual.rays.tolist()
-    ([[0, 1]], [[-1, -2]], [[0.0, -1.0], [0.0, 1.0]])
+    `chain` has the rows of the sites in their order along the line; it is not empty.
     """
     k = len(chain)
     ridges = np.arange(k - 1, dtype=np.int32)
@@ -96,28 +78,10 @@ def _directions(a: Floats, b: Floats) -> Floats:
 
 
 def foot(a: Floats, b: Floats, weights: Floats | None = None) -> Floats:
-    """Return the points where bisectors intersect the lines through their two sites.
+    """Return where bisectors intersect the lines through their sites, (k, 2); `weights` is (k, 2).
 
-    Parameters
-    ----------
-    a, b : ndarray of float64, shape (k, 2)
-        Sites, different in each row.
-    weights : ndarray of float64, shape (k, 2), optional
-        Weights of both.
-
-    Returns
-    -------
-    ndarray of float64, shape (k, 2)
-        Points; if one is beyond the range of doubles, the point of the bisector that is nearest to
-        the origin of the plane, and infinity if that is beyond the range, too.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.dual import foot
-    >>> a, b = np.array([(0.0, 0)]), np.array([(2.0, 0)])
-    >>> foot(a, b), foot(a, b, np.array([[4.0, 0]]))
-    (array([[1., 0.]]), array([[2., 0.]]))
+    If that is beyond the range of doubles: the point of the bisector nearest to the origin of the
+    plane, and infinity if that is beyond it, too. Sites differ in each row.
     """
     with np.errstate(all="ignore"):
         total = a + b

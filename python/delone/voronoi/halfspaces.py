@@ -52,37 +52,11 @@ class _Ray:
 
 
 def common_part(halfspaces: Floats) -> tuple[Floats, list[list[int]], list[int]]:
-    """Return corners and faces of the intersection of half-spaces.
+    """Return the corners and faces of the intersection of half-spaces, and the row of each face.
 
-    Parameters
-    ----------
-    halfspaces : ndarray of float64, shape (k, 4)
-        Rows (a, b, c, d) for ``a x + b y + c z + d <= 0``, finite; a, b, c are not all zero.
-
-    Returns
-    -------
-    corners : ndarray of float64, shape (p, 3)
-        The corners, ascending, each coordinate the double nearest to the true one.
-    faces : list of list of int
-        The corners of each face, counter-clockwise as seen from outside, the least one first.
-    rows : list of int
-        The row of each face, ascending; the first one of equal half-spaces.
-
-    Raises
-    ------
-    InputError
-        It is empty, flat or unbounded; or a corner is beyond the range of doubles.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.halfspaces import common_part
-    >>> rows = [(-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, -1, 0), (1, 1, 1, -1)]
-    >>> corners, faces, rows = common_part(np.array(rows, dtype=float))
-    >>> corners.tolist()
-    [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
-    >>> faces, rows
-    ([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], [0, 1, 2, 3])
+    Rows are a x + b y + c z + d <= 0, finite, (a, b, c) not 0. Corners ascend, correctly rounded;
+    faces are counter-clockwise as seen from outside, the least corner first; rows ascend, of equal
+    ones the first.
     """
     first: dict[Row, int] = {}
     for number, row in enumerate(halfspaces.tolist()):

@@ -24,28 +24,9 @@ _SMALLEST = 2.0**-960
 
 
 def nearest(points: Floats, chain: Indices, xi: ArrayLike) -> Indices:
-    """Return the sites that are nearest to points.
+    """Return the rows of the nearest sites, (...): the smaller of two, -1 for queries not finite.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    chain : ndarray of int32, shape (k,)
-        Rows of the sites in their order along the line, k > 0.
-    xi : array_like, shape (..., 2)
-        The points.
-
-    Returns
-    -------
-    ndarray of int32, shape (...)
-        Rows, the smaller one of two that are equally near; -1 for points that are not finite.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.line import nearest
-    >>> nearest(np.array([(4.0, 0), (0, 0)]), np.array([1, 0]), [(1, 9), (3, 1), (2, 0)])
-    array([1, 0, 0], dtype=int32)
+    `chain` has the rows of the sites in their order along the line; it is not empty.
     """
     queries = as_vectors(xi, points.shape[1], name="xi")
     flat = queries.reshape(-1, points.shape[1])

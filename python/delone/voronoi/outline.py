@@ -41,15 +41,7 @@ _SMALL, _LARGE = 2.0**-100, 2.0**100
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clip:
-    """Where cells end.
-
-    Parameters
-    ----------
-    bounds : tuple of float
-        The box ``(xmin, ymin, xmax, ymax)``.
-    outline : shapely geometry, optional
-        The outline; None for the box itself.
-    """
+    """Where cells end: the box (xmin, ymin, xmax, ymax), and the outline within it, if any."""
 
     bounds: tuple[float, float, float, float]
     outline: Any = None
@@ -105,36 +97,7 @@ def as_clip(
     fix: bool,
     periods: tuple[float | None, float | None] | None = None,
 ) -> Clip | None:
-    """Return the clip that a caller gave.
-
-    Parameters
-    ----------
-    clip : None, "box", sequence of 4 floats, geometry, or Clip
-        As for `delone.Voronoi`; or a result of this function.
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    fix : bool
-        Repair an invalid geometry.
-    periods : tuple of two floats or None, optional
-        The periods of the sites.
-
-    Returns
-    -------
-    Clip or None
-        None for no clip.
-
-    Raises
-    ------
-    InputError
-        It has no area, is not a polygon, or is invalid.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.outline import as_clip
-    >>> as_clip("box", np.array([(0.0, 0), (2, 1)]), fix=False).bounds
-    (0.0, 0.0, 2.0, 1.0)
-    """
+    """Return the clip that a caller of `Voronoi` gave; None, or a `Clip`, as it is."""
     if clip is None or isinstance(clip, Clip):
         return clip
     if periods is not None:
@@ -244,23 +207,7 @@ def _box(numbers: Any) -> Clip:
 
 
 def of_wkb(data: bytes) -> Any:
-    """Return the geometry of well-known binary.
-
-    Parameters
-    ----------
-    data : bytes
-        The geometry.
-
-    Returns
-    -------
-    geometry
-        Of shapely.
-
-    Raises
-    ------
-    InputError
-        It is not well-known binary.
-    """
+    """Return the geometry of well-known binary."""
     shapely = shapely_or_say()
     try:
         return shapely.from_wkb(data)
@@ -298,18 +245,7 @@ def _outline(geometry: Any, fix: bool) -> Clip:
 
 
 def unit_of(coordinates: Floats) -> float:
-    """Return a power of two by which products of coordinates stay in range.
-
-    Parameters
-    ----------
-    coordinates : ndarray of float64
-        Finite numbers.
-
-    Returns
-    -------
-    float
-        1 unless they are very large or small.
-    """
+    """Return a power of two that keeps products of coordinates in range; mostly 1."""
     largest = float(np.abs(coordinates).max(initial=0.0))
     if largest == 0 or _SMALL < largest < _LARGE:
         return 1.0
@@ -318,40 +254,14 @@ def unit_of(coordinates: Floats) -> float:
 
 
 def as_scaled(clip: Any, factor: float) -> Any:
-    """Return a box or an outline multiplied by a power of two.
-
-    Parameters
-    ----------
-    clip : tuple of 4 floats, or geometry
-        As `delone.Voronoi.clip` gives it.
-    factor : float
-        The power of two.
-
-    Returns
-    -------
-    tuple of 4 floats, or geometry
-        Of the same kind.
-    """
+    """Return a box (a tuple) or an outline multiplied by a power of two."""
     if isinstance(clip, tuple):
         return tuple(x * factor for x in clip)
     return times(clip, factor)
 
 
 def times(geometry: Any, factor: float) -> Any:
-    """Return geometries with coordinates multiplied by a power of two.
-
-    Parameters
-    ----------
-    geometry : geometry or ndarray of such
-        Of shapely.
-    factor : float
-        The power of two.
-
-    Returns
-    -------
-    geometry or ndarray of such
-        The same if the factor is 1.
-    """
+    """Return geometries multiplied by a power of two, the same ones if it is 1."""
     if factor == 1:
         return geometry
     return shapely_or_say().transform(geometry, lambda places: places * factor)
@@ -370,20 +280,7 @@ def areal_parts(geometries: NDArray[Any]) -> NDArray[Any]:
 
 
 def next_corner(starts: NDArray[Any], count: int) -> NDArray[np.int64]:
-    """Return the corner after each corner of closed rings.
-
-    Parameters
-    ----------
-    starts : ndarray of int
-        Where the corners of each ring begin, and the end.
-    count : int
-        Number of corners.
-
-    Returns
-    -------
-    ndarray of int64, shape (count,)
-        Their numbers.
-    """
+    """Return the corner after each of `count` corners of closed rings, which begin at `starts`."""
     after = np.arange(1, count + 1)
     filled = np.diff(starts) > 0
     after[starts[1:][filled] - 1] = starts[:-1][filled]

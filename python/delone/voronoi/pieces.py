@@ -28,23 +28,9 @@ _DOUBTFUL, _NOTHING, _WHOLE, _PARTS = -1, 0, 1, 2
 class Pieces:
     """Parts of cells, each an outer ring and its holes, in the units of the outline.
 
-    Parameters
-    ----------
-    rows : ndarray of int64, shape (k,)
-        The cells, ascending.
-    found : CellPieces2
-        The result of the core.
-
-    Attributes
-    ----------
-    doubtful, traced : ndarray of bool, shape (k,)
-        Whether exact signs do not decide what is left; whether parts are left.
-    corners : ndarray of float64, shape (p, 2)
-        The corners of all rings.
-    areas, perimeters : ndarray of float64, shape (k,)
-        Measures of the cells that have parts.
-    centroids : ndarray of float64, shape (k, 2)
-        Their centers of gravity.
+    For each cell `doubtful` tells whether exact signs do not decide what is left, `traced` whether
+    parts are left; measures are those of the cells that have parts. `corners` are those of all
+    rings.
     """
 
     def __init__(self, rows: NDArray[np.int64], found: CellPieces2) -> None:
@@ -56,55 +42,19 @@ class Pieces:
         self.centroids = found.measures.centroids
 
     def sides(self, outside: int, inside: int, cut: int) -> NDArray[np.int8]:
-        """Return one of three numbers for each cell.
-
-        Parameters
-        ----------
-        outside, inside, cut : int
-            For cells of which nothing is left, for whole cells, and for the others.
-
-        Returns
-        -------
-        ndarray of int8, shape (k,)
-            The numbers.
-        """
+        """Return a number for each cell, by whether nothing, all, or a part of it is left."""
         left = self._found.left
         found = np.where(left == _NOTHING, outside, np.where(left == _WHOLE, inside, cut))
         return found.astype(np.int8)
 
-    def _owner(self) -> NDArray[np.int64]:
-        """Return the cell of each corner."""
-        found = self._found
-        return np.repeat(self._rows, np.diff(found.rings[found.parts[found.cells]]))
-
     def edges(self) -> tuple[NDArray[np.int64], Floats, Floats]:
-        """Return all boundaries.
-
-        Returns
-        -------
-        owner : ndarray of int64, shape (p,)
-            The cell to the left of each edge.
-        begin, end : ndarray of float64, shape (p, 2)
-            Where it begins and ends.
-        """
-        after = next_corner(self._found.rings, len(self.corners))
-        return self._owner(), self.corners, self.corners[after]
+        """Return all boundaries: the cell to the left of each edge, its begin and its end."""
+        found = self._found
+        owner = np.repeat(self._rows, np.diff(found.rings[found.parts[found.cells]]))
+        return owner, self.corners, self.corners[next_corner(found.rings, len(self.corners))]
 
     def ridge_lengths(self, count: int) -> tuple[NDArray[np.int64], Floats]:
-        """Return the lengths of clipped ridges, each computed from one of its cells.
-
-        Parameters
-        ----------
-        count : int
-            Number of ridges.
-
-        Returns
-        -------
-        ridges : ndarray of int64
-            Those of which something is left.
-        lengths : ndarray of float64
-            Their lengths.
-        """
+        """Return the ridges of which something is left, and the length of each, from one cell."""
         owner, begin, end = self.edges()
         along = self._found.ridges >= 0
         ridges = self._found.ridges[along]
@@ -116,15 +66,9 @@ class Pieces:
         return used.astype(np.int64), lengths
 
     def polygons(self) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """Return geometries.
+        """Return the cells that have parts, ascending, and their polygons or multipolygons.
 
-        Returns
-        -------
-        rows : ndarray of int64, shape (t,)
-            The cells that have parts, ascending.
-        polygons : ndarray of object, shape (t,)
-            Polygons, and multipolygons if there are several parts. They may be invalid: a ring may
-            touch itself.
+        They may be invalid: a ring may touch itself.
         """
         shapely = shapely_or_say()
 
@@ -155,23 +99,10 @@ def cut(
     *,
     workers: int,
 ) -> Pieces:
-    """Cut some convex cells to an outline.
+    """Cut some convex cells, `rows`, ascending and none without corners, to an outline.
 
-    Parameters
-    ----------
-    starts, corners, ridges : ndarray
-        All cells: their corners in the units of the outline, and the ridge along each edge.
-    rows : ndarray of int64, shape (k,)
-        Those to cut, ascending, none without corners.
-    clip : Clip
-        The outline.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    Pieces
-        The clipped cells.
+    The first three arrays are those of all cells: corners in the units of the outline, and the
+    ridge along each edge.
     """
     first = corners[starts[:-1][rows]]
     inside = shapely_or_say().contains_xy(clip.scaled, first)

@@ -34,13 +34,7 @@ __all__ = ["PlaneCells"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PlaneCells(Cells):
-    """The cells of 2-D sites.
-
-    Parameters
-    ----------
-    repeated : PeriodicDual, optional
-        The diagram of a periodic set; `dual` is its part without periods.
-    """
+    """The cells of 2-D sites; `dual` is the part without periods of `repeated`."""
 
     dual: Diagram2
     clip: outline.Clip | None

@@ -82,33 +82,7 @@ class Polyhedron:
 
 
 def as_polyhedron(clip: Any, points: Floats) -> Polyhedron | None:
-    """Return the clip that a caller gave.
-
-    Parameters
-    ----------
-    clip : None, "box", array_like or Polyhedron
-        As for `delone.Voronoi` of 3-D points; or a result of this function.
-    points : ndarray of float64, shape (n, 3)
-        The sites.
-
-    Returns
-    -------
-    Polyhedron or None
-        None for no clip.
-
-    Raises
-    ------
-    InputError
-        It has no volume, is unbounded, or is none of these.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.polyhedra import as_polyhedron
-    >>> sites = np.array([(0.0, 0, 0), (2, 1, 4)])
-    >>> as_polyhedron("box", sites).bounds.tolist()
-    [[0.0, 0.0, 0.0], [2.0, 1.0, 4.0]]
-    """
+    """Return the clip that a caller of `Voronoi` gave; None, or a `Polyhedron`, as it is."""
     if clip is None or isinstance(clip, Polyhedron):
         return clip
     if isinstance(clip, str):
@@ -239,18 +213,7 @@ def _common(halfspaces: Floats) -> Polyhedron:
 
 
 def saved(clip: Polyhedron | None) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a file that `loaded` reads.
-
-    Parameters
-    ----------
-    clip : Polyhedron, optional
-        The clip.
-
-    Returns
-    -------
-    dict of ndarray
-        The six numbers of a box, or the arrays of any other polyhedron; what is not there is empty.
-    """
+    """Return the arrays of a file: the six numbers of a box, or a polyhedron; others are empty."""
     found: dict[str, NDArray[Any]] = {
         "box": np.empty(0),
         "corners": np.empty((0, 3)),
@@ -271,18 +234,7 @@ def saved(clip: Polyhedron | None) -> dict[str, NDArray[Any]]:
 
 
 def loaded(arrays: dict[str, NDArray[Any]]) -> Any:
-    """Return the clip of the arrays of a file.
-
-    Parameters
-    ----------
-    arrays : dict of ndarray
-        As from `saved`.
-
-    Returns
-    -------
-    ndarray, Polyhedron or None
-        A box, or a polyhedron.
-    """
+    """Return the clip of the arrays that `saved` returns; a box as an array, (2, 3)."""
     if len(arrays["box"]):
         return arrays["box"].reshape(2, 3)
     if not len(arrays["planes"]):

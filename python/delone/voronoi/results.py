@@ -165,29 +165,7 @@ class PolyhedralCell:
 
 
 def as_site(i: Any) -> int:
-    """Return the row of a site as a Python integer.
-
-    Parameters
-    ----------
-    i : int
-        The argument of the caller.
-
-    Returns
-    -------
-    int
-        The row, which may be out of range.
-
-    Raises
-    ------
-    DtypeError
-        It is not an integer.
-
-    Examples
-    --------
-    >>> from delone.voronoi.results import as_site
-    >>> as_site(2)
-    2
-    """
+    """Return the row of a site as a Python integer, which may be out of range."""
     try:
         return operator.index(i)
     except TypeError:

@@ -19,29 +19,7 @@ __all__ = ["as_lists", "from_the_gap", "of_pairs", "one_gap"]
 def of_pairs(
     pairs: NDArray[np.int64], values: Floats, npoints: int
 ) -> tuple[Indices, Indices, Floats]:
-    """Return symmetric pairs as compressed rows, with the value of each pair.
-
-    Parameters
-    ----------
-    pairs : ndarray of int64, shape (r, 2)
-        Pairs of rows.
-    values : ndarray of float64, shape (r,)
-        The value of each pair.
-    npoints : int
-        Number of rows.
-
-    Returns
-    -------
-    tuple of ndarray
-        Where each row begins, its partners ascending, and their values.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.rows import of_pairs
-    >>> [each.tolist() for each in of_pairs(np.array([(0, 2), (1, 0)]), np.array([5.0, 6.0]), 3)]
-    [[0, 2, 3, 4], [1, 2, 0, 0], [6.0, 5.0, 6.0, 5.0]]
-    """
+    """Return symmetric pairs, (r, 2), as compressed rows: starts, partners (ascending), values."""
     here = np.concatenate((pairs[:, 0], pairs[:, 1]))
     there = np.concatenate((pairs[:, 1], pairs[:, 0]))
     order = np.argsort(here * npoints + there)
@@ -51,27 +29,7 @@ def of_pairs(
 
 
 def as_lists(indptr: Indices, indices: Indices) -> list[list[int]]:
-    """Return compressed rows as lists.
-
-    Parameters
-    ----------
-    indptr : ndarray of int32, shape (r + 1,)
-        Where each row begins, and the end.
-    indices : ndarray of int32
-        The entries.
-
-    Returns
-    -------
-    list of list of int
-        The entries of each row.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.rows import as_lists
-    >>> as_lists(np.array([0, 2, 3]), np.array([-1, 4, 7]))
-    [[-1, 4], [7]]
-    """
+    """Return compressed rows as lists."""
     starts, entries = indptr.tolist(), indices.tolist()
     return [entries[a:b] for a, b in itertools.pairwise(starts)]
 
@@ -79,25 +37,7 @@ def as_lists(indptr: Indices, indices: Indices) -> list[list[int]]:
 def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
     """Return cyclic rows with each run of -1 written once, also a run across the end.
 
-    Parameters
-    ----------
-    starts : ndarray of int32, shape (c + 1,)
-        Where each row begins, and the end.
-    entries : ndarray of int32
-        Vertices in order around a cell, -1 for an end at infinity.
-
-    Returns
-    -------
-    indptr, indices : ndarray of int32
-        The same, each gap a single -1; the arrays themselves if no two gaps are adjacent.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.rows import as_lists, one_gap
-    >>> starts = np.array([0, 4, 6], dtype=np.int32)
-    >>> as_lists(*one_gap(starts, np.array([-1, 4, 7, -1, -1, -1], dtype=np.int32)))
-    [[4, 7, -1], [-1]]
+    The arrays themselves if no two gaps are adjacent.
     """
     gaps = entries < 0
     if not gaps.any():
@@ -119,26 +59,8 @@ def one_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
 def from_the_gap(starts: Indices, entries: Indices) -> tuple[Indices, Indices]:
     """Return ridges with their vertices in order, an unbounded one beginning with a single -1.
 
-    Parameters
-    ----------
-    starts : ndarray of int32, shape (r + 1,)
-        Where each ridge begins, and the end.
-    entries : ndarray of int32
-        Vertices in order around each ridge, negative for rays and for vertices beyond the range of
-        doubles.
-
-    Returns
-    -------
-    indptr, indices : ndarray of int32
-        The vertices from the first negative entry on, which becomes -1; others are left out.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.rows import as_lists, from_the_gap
-    >>> starts = np.array([0, 3, 7], dtype=np.int32)
-    >>> as_lists(*from_the_gap(starts, np.array([4, 5, 6, 0, 1, -1, 3], dtype=np.int32)))
-    [[4, 5, 6], [-1, 3, 0, 1]]
+    `entries` are negative for rays and for vertices beyond the range of doubles. Each row is turned
+    to begin with its first negative entry, which becomes -1; other negative ones are left out.
     """
     negative = np.flatnonzero(entries < 0)
     if not len(negative):

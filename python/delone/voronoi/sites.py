@@ -30,29 +30,7 @@ _NO_SITE = "there are no points; a diagram needs at least one"
 def in_plane(
     points: Floats, weights: Floats | None, workers: int | None
 ) -> tuple[Delaunay | RegularTriangulation | None, Diagram2]:
-    """Triangulate 2-D sites, and compute the dual.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    weights : ndarray of float64, shape (n,), or None
-        Their weights.
-    workers : int, optional
-        Number of threads.
-
-    Returns
-    -------
-    mesh : Delaunay, RegularTriangulation or None
-        The triangulation; None if all sites lie on one line.
-    arrays : Diagram2
-        As `dual` describes them.
-
-    Raises
-    ------
-    DegenerateInputError
-        There is no site.
-    """
+    """Triangulate 2-D sites, and compute the dual; the mesh is None if all are on one line."""
     return _delaunay(points, workers) if weights is None else _regular(points, weights, workers)
 
 
@@ -92,27 +70,9 @@ def _regular(
 def repeated(
     points: Floats, weights: Floats | None, periods: Any, workers: int | None
 ) -> tuple[PeriodicDelaunay | None, torus.PeriodicDual, tuple[float | None, float | None]]:
-    """Triangulate periodic sites, and compute the dual.
+    """Triangulate periodic sites, compute the dual, and return them with the checked periods.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    weights : ndarray of float64, shape (n,), or None
-        Their weights.
-    periods : tuple of two floats or None
-        As given by the caller.
-    workers : int, optional
-        Number of threads.
-
-    Returns
-    -------
-    mesh : PeriodicDelaunay or None
-        The triangulation; None if all copies lie on one line.
-    arrays : PeriodicDual
-        As `torus` describes them.
-    periods : tuple of two floats or None
-        The same, checked.
+    The mesh is None if all copies lie on one line.
     """
     torus.require_room(points, as_periods(periods))
     try:
@@ -131,24 +91,7 @@ def repeated(
 def in_space(
     points: Floats, weights: Floats | None, workers: int | None
 ) -> tuple[Delaunay | RegularTriangulation, Diagram3]:
-    """Triangulate 3-D sites, and compute the dual.
-
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 3)
-        The sites.
-    weights : ndarray of float64, shape (n,), or None
-        Their weights.
-    workers : int, optional
-        Number of threads.
-
-    Returns
-    -------
-    mesh : Delaunay or RegularTriangulation
-        The triangulation.
-    arrays : Diagram3
-        As `space` describes them.
-    """
+    """Triangulate 3-D sites, and compute the dual."""
     mesh: Delaunay | RegularTriangulation
     if weights is None:
         mesh = Delaunay(points, workers=workers)

@@ -89,10 +89,10 @@ class SpaceCells(Cells):
         return self.dual.region_starts, self.dual.region_vertices
 
     def rays(self) -> Rays:
-        """Return the unbounded ridges, two rows for each.
+        """The unbounded ridges, two rows for each, whose directions lead away.
 
-        In its first row the boundary of the ridge comes in from infinity, in the second it goes
-        out; directions lead away.
+        In the first row the boundary of the ridge comes in from infinity, in the second it goes
+        out.
         """
         starts, entries = self.dual.ridge_starts.astype(np.int64), self.dual.ridge_entries
         first, last = starts[:-1], starts[1:] - 1

@@ -49,30 +49,9 @@ class ThinCellWarning(UserWarning):
 def among(
     areas: Floats, perimeters: Floats, starts: NDArray[np.int32], corners: Floats
 ) -> NDArray[np.bool_]:
-    """Return which 2-D cells are thin, among those that have a perimeter.
+    """Return which 2-D cells are thin: those with a perimeter whose area may be all rounding.
 
-    Parameters
-    ----------
-    areas, perimeters : ndarray of float64, shape (c,)
-        As computed.
-    starts : ndarray of int32, shape (c + 1,)
-        Where the corners of each cell begin, and the end.
-    corners : ndarray of float64, shape (k, 2)
-        Corners of the cells, before they are cut to an outline.
-
-    Returns
-    -------
-    ndarray of bool, shape (c,)
-        Whether rounding may be as large as the area.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.voronoi.thin import among
-    >>> thin, wide = [(1, 0), (1 + 1e-15, 0), (1, 1)], [(0, 0), (1e-15, 0), (0, 1)]
-    >>> starts, corners = np.array([0, 3, 6]), np.array(thin + wide)
-    >>> among(np.full(2, 5e-16), np.full(2, 2.0), starts, corners).tolist()
-    [True, False]
+    `starts` and `corners` are those of the cells before they are cut to an outline.
     """
     found = np.zeros(len(areas), dtype=bool)
     rows = np.flatnonzero((np.diff(starts) > 0) & (perimeters > 0) & np.isfinite(perimeters))
@@ -97,15 +76,7 @@ def among(
 
 
 def warn(rows: NDArray[np.int32], measures: str) -> None:
-    """Warn of thin cells, if there are any, at the line that called the package.
-
-    Parameters
-    ----------
-    rows : ndarray of int32
-        Their rows.
-    measures : str
-        "areas" or "volumes".
-    """
+    """Warn of thin cells, if there are any, at the line that called the package."""
     if not len(rows):
         return
     some: list[Any] = rows[:_MOST_ROWS].tolist()

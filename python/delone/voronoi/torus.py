@@ -51,46 +51,12 @@ class PeriodicDual(NamedTuple):
     beside_moved: Indices
 
     def sealed(self, cells: Diagram2) -> PeriodicDual:
-        """Return the same with arrays that cannot be written to, and these cells.
-
-        Parameters
-        ----------
-        cells : Diagram2
-            The same cells, sealed.
-
-        Returns
-        -------
-        PeriodicDual
-            The same diagram.
-        """
-        return PeriodicDual(
-            cells=cells,
-            moved=sealed(self.moved),
-            beside=sealed(self.beside),
-            beside_moved=sealed(self.beside_moved),
-        )
+        """Return the same with arrays that cannot be written to, and `cells`, which are sealed."""
+        return PeriodicDual(cells, *map(sealed, self[1:]))
 
 
 def of_periodic(mesh: PeriodicDelaunay, workers: int) -> PeriodicDual:
-    """Return the diagram of sites with a period in x, in y, or both.
-
-    Parameters
-    ----------
-    mesh : PeriodicDelaunay
-        Their triangulation.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    PeriodicDual
-        Their diagram.
-
-    Raises
-    ------
-    LimitError
-        A vertex lies beyond the range of doubles.
-    """
+    """Return the diagram of sites with a period in x, in y, or both."""
     lengths = np.array([length or 0.0 for length in mesh.periods])
     bounded, partners, triangle, corner, tau = _across(mesh)
     apexes = np.dstack((mesh.simplices[triangle, corner], mesh.offsets[triangle, corner] + tau))
@@ -176,17 +142,7 @@ def _numbered(*parts: NDArray[Any]) -> tuple[NDArray[Any], list[Indices]]:
 def require_room(points: Floats, periods: tuple[float | None, float | None]) -> None:
     """Reject sites in a strip whose next copies are beyond the range of doubles.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    periods : tuple of two floats or None
-        The periods.
-
-    Raises
-    ------
-    LimitError
-        A copy lies beyond the range of doubles, so that rays and cells cannot be computed.
+    Rays and cells could not be computed.
     """
     if None not in periods:
         return
@@ -228,19 +184,7 @@ def of_line(
 ) -> PeriodicDual:
     """Return the diagram of sites on one line along their only period: strips.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    chain : ndarray of int32, shape (k,)
-        Rows of the sites in their order along the line, k > 0.
-    periods : tuple of two floats or None
-        The periods.
-
-    Returns
-    -------
-    PeriodicDual
-        As from `of_periodic`.
+    `chain` has the rows of the sites in their order along the line; it is not empty.
     """
     k = len(chain)
     axis = 0 if periods[1] is None else 1
@@ -283,24 +227,8 @@ def unrolled(
 ) -> tuple[Floats, Floats | None, Diagram2]:
     """Return the cells of one period, each with its own ridges, as a diagram without a period.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        The sites.
-    weights : ndarray of float64, shape (n,), optional
-        Their weights.
-    dual : PeriodicDual
-        Their diagram, with one period.
-    periods : tuple of two floats or None
-        The periods.
-
-    Returns
-    -------
-    points, weights : ndarray
-        The sites, and after them for each entry of a cell the site across its ridge, at the place
-        where the cell sees it.
-    cells : Diagram2
-        The cells. Their ridges are their entries.
+    After the sites come, for each entry of a cell, the site across its ridge, at the place where
+    the cell sees it. The ridges are the entries.
     """
     lengths = np.array([length or 0.0 for length in periods])
     cells = dual.cells
