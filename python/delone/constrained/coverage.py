@@ -28,30 +28,10 @@ __all__ = ["closed_rings", "first_polygon"]
 
 
 def closed_rings(ends: Indices, geometries: Indices, rings: Bools) -> Bools:
-    """Return which rows of segments are sides of closed rings.
+    """Return which rows of segments, of those created as sides of `rings`, form closed rings.
 
-    Parameters
-    ----------
-    ends : ndarray of int32, shape (s, 2)
-        Vertices of the segments; equal points have the same vertex.
-    geometries : ndarray of int32, shape (s,)
-        The geometry of each segment.
-    rings : ndarray of bool, shape (s,)
-        Whether it was created as the side of a ring.
-
-    Returns
-    -------
-    ndarray of bool, shape (s,)
-        False for all sides of a geometry if an odd number of them meet at some vertex: then a side
-        is missing, and the geometry has no inside.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.coverage import closed_rings
-    >>> ends = np.array([(0, 1), (1, 2), (2, 0), (0, 3), (3, 4)])
-    >>> closed_rings(ends, np.array([0, 0, 0, 1, 1]), np.ones(5, dtype=bool)).tolist()
-    [True, True, True, False, False]
+    False for all sides of a geometry if an odd number of them meet at some vertex: then a side is
+    missing, and the geometry has no inside. In `ends`, (s, 2), equal points have the same vertex.
     """
     if not rings.any():
         return rings
@@ -71,30 +51,10 @@ def first_polygon(
     component: Indices,
     sides: Bools,
 ) -> Indices:
-    """Return the first polygon that contains each component.
+    """Return the first geometry whose rings contain each component (even-odd rule), or -1.
 
-    Parameters
-    ----------
-    made : ConstrainedTriangulation
-        Triangles of the whole hull, and subsegments with their rows.
-    npoints : int
-        Number of points, including added ones.
-    geometries : ndarray of int32, shape (s,)
-        The geometry of each row of segments.
-    component : ndarray of int32, shape (m,)
-        Component of each triangle.
-    sides : ndarray of bool, shape (s,)
-        Which rows of segments are sides of closed rings.
-
-    Returns
-    -------
-    ndarray of int32, shape (c,)
-        The smallest number of a geometry whose rings, by the even-odd rule, contain the component;
-        -1 if there is none.
-
-    Notes
-    -----
-    O(m log m), plus for each component time in proportion to the polygons that overlap in it.
+    `geometries` has the geometry of each row of segments, `sides` those of closed rings. Takes O(m
+    log m), plus for each component time in proportion to the polygons that overlap in it.
     """
     count = int(component.max(initial=-1)) + 1
     walls = _walls(made, npoints, component, count)

@@ -54,38 +54,10 @@ class Parts(NamedTuple):
 
 
 def parts_of(geometries: Any, *, name: str = "geometries") -> Parts:
-    """Split geometries into parts.
+    """Split geometries, in order, into parts; each row of a table or feature is a geometry.
 
-    Parameters
-    ----------
-    geometries : geometry or iterable of geometries
-        Geometries of shapely, tables and series of geopandas, objects with ``__geo_interface__``,
-        mappings of that form, None, and iterables of these. Each row of a table and each feature of
-        a collection is a geometry.
-    name : str, optional
-        The name of the argument in error messages.
-
-    Returns
-    -------
-    Parts
-        The parts of the geometries, in order.
-
-    Raises
-    ------
-    InputError
-        An item is not a geometry, is curved, or is nested too deeply.
-    ShapeError
-        Coordinates of a mapping are not nested as its type requires.
-
-    Examples
-    --------
-    >>> from delone.constrained.geodata import parts_of
-    >>> square = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
-    >>> parts_of([square, {"type": "Point", "coordinates": (5, 5)}])
-    Parts(coordinates=array([[0., 0.],
-           [1., 0.],
-           [1., 1.],
-           [5., 5.]]), starts=array([0, 3, 4]), kinds=array([2, 0]), geometries=array([0, 1]))
+    They are geometries of shapely, tables and series of geopandas, objects with
+    ``__geo_interface__``, mappings of that form, None, or iterables of these.
     """
     found: list[Parts] = []
     count = 0
@@ -139,18 +111,7 @@ def _string_error(given: Any, name: str) -> str:
 
 
 def is_shapely(given: Any) -> bool:
-    """Return whether an object is a shapely geometry, without importing shapely.
-
-    Parameters
-    ----------
-    given : object
-        Any object.
-
-    Returns
-    -------
-    bool
-        Whether it is a shapely geometry.
-    """
+    """Return whether an object is a shapely geometry, without importing shapely."""
     shapely = sys.modules.get("shapely")
     return shapely is not None and isinstance(given, shapely.Geometry)
 
@@ -204,16 +165,12 @@ def _split(geometries: NDArray[Any]) -> Parts:
     # The rings of a polygon take its place in the order.
     items = np.concatenate((geometries[plain], rings))
     at = np.concatenate((np.flatnonzero(plain), index))
-    kinds = np.concatenate((_plain_kinds(shapely, geometries[plain]), _ring_kinds(index)))
+    # A ring that does not belong to a polygon is a closed line.
+    plain_kinds = np.where(shapely.get_type_id(geometries[plain]) == _POINT, POINTS, LINE)
+    kinds = np.concatenate((plain_kinds, _ring_kinds(index)))
     order = np.argsort(at, kind="stable")
     coordinates, part = shapely.get_coordinates(items[order], return_index=True)
     return _closed(coordinates, part, kinds[order], rows[at[order]])
-
-
-def _plain_kinds(shapely: Any, geometries: NDArray[Any]) -> NDArray[np.int64]:
-    types = shapely.get_type_id(geometries)
-    # A ring that does not belong to a polygon is a closed line.
-    return np.where(types == _POINT, POINTS, LINE)
 
 
 def _ring_kinds(polygon: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -42,20 +42,7 @@ class Tiling(NamedTuple):
 
 
 def outside(tiling: Tiling, component: Indices) -> Bools:
-    """Return which components can be reached from outside of the hull without crossing a segment.
-
-    Parameters
-    ----------
-    tiling : Tiling
-        The triangles.
-    component : ndarray of int32, shape (m,)
-        Component of each triangle.
-
-    Returns
-    -------
-    ndarray of bool, shape (c,)
-        One entry for each component.
-    """
+    """Return which components can be reached from outside of the hull without crossing segments."""
     found = np.zeros(int(component.max(initial=-1)) + 1, dtype=bool)
     open_to = ((tiling.neighbors < 0) & ~tiling.constrained).any(axis=1)
     found[component[open_to]] = True
@@ -65,25 +52,9 @@ def outside(tiling: Tiling, component: Indices) -> Bools:
 def located(
     tiling: Tiling, seeds: Floats, segments: Indices, workers: int
 ) -> tuple[Indices, Bools]:
-    """Return the triangles that contain seeds, and which seeds lie on a segment.
+    """Return the triangle that contains each seed, -1 outside, and whether it lies on a segment.
 
-    Parameters
-    ----------
-    tiling : Tiling
-        The triangles.
-    seeds : ndarray of float64, shape (k, 2)
-        The seeds.
-    segments : ndarray of int32, shape (q, 2)
-        All subsegments.
-    workers : int
-        Number of threads.
-
-    Returns
-    -------
-    triangle : ndarray of int32, shape (k,)
-        Triangles of the tiling; -1 outside.
-    on_segment : ndarray of bool, shape (k,)
-        Whether the seed lies on a segment, including its ends.
+    The ends of segments count.
     """
     points, simplices, neighbors, constrained = tiling
     triangle = _core.find_simplex2(points, simplices, neighbors, seeds, workers)
@@ -114,34 +85,10 @@ def corners(on_edge: Bools) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
-    """Number components in an order that depends on coordinates only.
+    """Number components, so far numbered in any way, by their smallest triangles, in O(n log n).
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates.
-    simplices : ndarray of int32, shape (m, 3)
-        Triangles.
-    component : ndarray of int32, shape (m,)
-        Component of each triangle, numbered in any way.
-
-    Returns
-    -------
-    ndarray of int32, shape (m,)
-        Components numbered from 0, in the order of their smallest triangles. Triangles are compared
-        by their smallest corners, then their middle ones, then their largest; corners by x, then y.
-
-    Notes
-    -----
-    O(n log n).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.regions import numbered
-    >>> square = np.array([(1.0, 0), (1, 1), (0, 1), (0, 0)])
-    >>> numbered(square, np.array([(1, 3, 0), (1, 2, 3)]), np.array([0, 1])).tolist()
-    [1, 0]
+    Triangles are compared by their smallest corners, then their middle ones, then their largest;
+    corners by x, then y. So the order depends on coordinates only.
     """
     count = int(component.max(initial=-1)) + 1
     rank = np.empty(len(points), dtype=np.int64)
@@ -159,31 +106,10 @@ def numbered(points: Floats, simplices: Indices, component: Indices) -> Indices:
 
 
 def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indices, Indices]:
-    """Label components with the labels of their seeds.
+    """Label triangles with the label of the first seed in their component, -1 without one.
 
-    Parameters
-    ----------
-    component : ndarray of int32, shape (m,)
-        Component of each triangle.
-    of_seed : ndarray of int32, shape (k,)
-        Component of each seed, -1 if it lies in none.
-    given : ndarray of int32, shape (k,)
-        Label of each seed.
-
-    Returns
-    -------
-    label : ndarray of int32, shape (m,)
-        Label of each triangle: that of the first seed in its component, -1 without one.
-    repeated : ndarray of int32, shape (r, 2)
-        Seeds whose component already has a label, and the seed that it is from.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.regions import labels
-    >>> label, repeated = labels(np.array([0, 1, 0]), np.array([0, -1, 0]), np.array([7, 8, 9]))
-    >>> label.tolist(), repeated.tolist()
-    ([7, -1, 7], [[2, 0]])
+    `of_seed` is -1 for seeds outside. The second result, (r, 2), has the seeds whose component
+    already has a label, and the seed that it is from.
     """
     seeds = np.flatnonzero(of_seed >= 0).astype(np.int32)
     first = np.full(int(component.max(initial=-1)) + 1, -1, dtype=np.int32)
@@ -196,21 +122,9 @@ def labels(component: Indices, of_seed: Indices, given: Indices) -> tuple[Indice
 
 
 def crossed(tiling: Tiling, along: Indices, a: Floats, b: Floats) -> Indices:
-    """Return the subsegments that a straight line crosses, in order.
+    """Return the subsegments that a straight line crosses, (c, 2), in order.
 
-    Parameters
-    ----------
-    tiling : Tiling
-        The triangles.
-    along : ndarray of int32, shape (k,)
-        The triangles that the line meets, in order.
-    a, b : ndarray of float64, shape (2,)
-        The ends of the line.
-
-    Returns
-    -------
-    ndarray of int32, shape (c, 2)
-        Ends of the edges.
+    `along` are the triangles that the line meets, in order.
     """
     corner = np.tile(np.arange(3), len(along))
     triangle = np.repeat(along, 3)

@@ -78,11 +78,7 @@ class Given(NamedTuple):
         """Return a copy with read-only arrays."""
         return Given(
             segments=sealed(self.segments),
-            origin=Origin(
-                geometries=sealed(self.origin.geometries),
-                rings=sealed(self.origin.rings),
-                parts=sealed(self.origin.parts),
-            ),
+            origin=Origin._make(map(sealed, self.origin)),
             holes=sealed(self.holes),
             regions=sealed(self.regions),
             labels=sealed(self.labels),

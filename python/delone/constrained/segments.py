@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Indices = NDArray[np.int32]
 
-__all__ = ["SegmentReport", "overlapping_rows", "repeated_rows", "steiner_rows"]
+__all__ = ["SegmentReport"]
 
 _SHOWN = 5
 
@@ -169,24 +169,9 @@ def _list(found: Indices) -> str:
 
 
 def repeated_rows(ends: Indices) -> Indices:
-    """Return the rows that have the same two ends as an earlier one.
+    """Return the rows with the same two ends as an earlier one, and the first such row, ascending.
 
-    Parameters
-    ----------
-    ends : ndarray of int32, shape (s, 2)
-        Vertices of the segments; equal points have the same vertex.
-
-    Returns
-    -------
-    ndarray of int32, shape (k, 2)
-        Row, and first row with these ends, ascending. Rows of zero length are not included.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.segments import repeated_rows
-    >>> repeated_rows(np.array([(0, 1), (2, 1), (1, 0), (3, 3), (3, 3)])).tolist()
-    [[2, 0]]
+    In `ends`, (s, 2), equal points have the same vertex. Rows of zero length are not included.
     """
     low, high = ends.min(axis=1, initial=2**31 - 1), ends.max(axis=1, initial=-1)
     order = np.lexsort((high, low))
@@ -201,32 +186,13 @@ def repeated_rows(ends: Indices) -> Indices:
 
 
 def overlapping_rows(start: NDArray[np.int64], source: Indices, repeated: Indices) -> Indices:
-    """Return the rows that share a subsegment with an earlier row with other ends.
+    """Return pairs of a row and the first row that covers a common subsegment, ascending.
 
-    Parameters
-    ----------
-    start : ndarray of int64, shape (q + 1,)
-        Start of the sources of each subsegment, and the end.
-    source : ndarray of int32
-        Rows that cover the subsegments, ascending for each.
-    repeated : ndarray of int32, shape (k, 2)
-        The result of `repeated_rows`.
-
-    Returns
-    -------
-    ndarray of int32, shape (k, 2)
-        Row, and the first row that covers a common subsegment, ascending, each pair once.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.segments import overlapping_rows
-    >>> start, source = np.array([0, 2, 3]), np.array([0, 1, 1])
-    >>> overlapping_rows(start, source, np.empty((0, 2), dtype=np.int32)).tolist()
-    [[1, 0]]
+    Each pair comes once, and pairs with equal ends (`repeated`) do not. The sources are compressed
+    rows, ascending for each subsegment.
     """
     if len(source) == 0:
-        return np.empty((0, 2), dtype=np.int32)
+        return _no_pairs()
     first = np.repeat(source[start[:-1]], np.diff(start))
     same = np.arange(int(source.max(initial=-1)) + 1, dtype=np.int32)
     same[repeated[:, 0]] = repeated[:, 1]
@@ -242,34 +208,9 @@ def steiner_rows(
     known: Indices,
     ends: Indices,
 ) -> Indices:
-    """Return the vertices on the paths of rows that are neither crossings nor points on them.
+    """Return row and vertex, ascending, where a path has neither a crossing nor a point on it.
 
-    Parameters
-    ----------
-    segments : ndarray of int32, shape (q, 2)
-        The subsegments.
-    start : ndarray of int64, shape (q + 1,)
-        Start of the sources of each subsegment, and the end.
-    source : ndarray of int32
-        Rows that cover the subsegments.
-    known : ndarray of int32, shape (c, 2)
-        Row and vertex: crossings of the row, and points that lie on it.
-    ends : ndarray of int32, shape (s, 2)
-        The two vertices at the ends of each row.
-
-    Returns
-    -------
-    ndarray of int32, shape (k, 2)
-        Row and vertex, ascending, each pair once.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from delone.constrained.segments import steiner_rows
-    >>> segments, start = np.array([(0, 5), (5, 6), (6, 1)]), np.array([0, 1, 2, 3])
-    >>> rows, known = np.array([0, 0, 0]), np.array([(0, 6)])
-    >>> steiner_rows(segments, start, rows, known, np.array([(0, 1)])).tolist()
-    [[0, 5]]
+    `known`, (c, 2), has these crossings and points with their rows; `ends` the ends of each row.
     """
     row = np.repeat(source, 2)
     vertex = np.repeat(segments, np.diff(start), axis=0).ravel()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["ConstrainedReport", "validate"]
+__all__ = ["ConstrainedReport"]
 
 
 def _none() -> NDArray[np.int64]:
@@ -96,24 +96,9 @@ def validate(
     *,
     conforming: bool = False,
 ) -> ConstrainedReport:
-    """Check the arrays of a constrained triangulation.
+    """Check the arrays of a constrained triangulation; `ends`, (s, 2), are those of input segments.
 
-    Parameters
-    ----------
-    points : ndarray of float64, shape (n, 2)
-        Coordinates of all points, including added ones.
-    made : ConstrainedTriangulation
-        Triangles of the whole hull, and subsegments.
-    ends : ndarray of int32, shape (s, 2)
-        The vertices of the input segments.
-    conforming : bool, optional
-        Whether rows were split to make the triangulation conforming: rounding may move such a
-        vertex off the row.
-
-    Returns
-    -------
-    ConstrainedReport
-        The faults.
+    Rows of a conforming triangulation are split: rounding may move such vertices off the row.
     """
     simplices, neighbors = made.simplices, made.neighbors
     faults = _core.validate2(points, simplices, neighbors)
