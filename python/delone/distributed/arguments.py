@@ -19,33 +19,17 @@ __all__ = ["as_callback", "as_classes", "as_names", "as_path"]
 
 
 def as_path(path: Any, *, name: str) -> Path:
-    """Return a path.
-
-    Raises
-    ------
-    DtypeError
-        It is not a path.
-    InputError
-        It contains a null character.
-    """
+    """Return a path, without null characters."""
     if isinstance(path, str | os.PathLike) and isinstance(text := os.fspath(path), str):
         if "\0" in text:
             raise InputError(f"{name} contains a null character: {text!r:.60}")
-        #  nobody wants.~ nobody wants.
+        # Otherwise ~ would be the name of a folder, which nobody wants.
         return Path(path).expanduser()
     raise DtypeError(f"{name} must be a string or a path-like object, got {path!r:.60}")
 
 
 def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
-    """Return column names or, if allowed, column numbers from 0.
-
-    Raises
-    ------
-    DtypeError
-        They are not names; a single string is not a sequence of names.
-    InputError
-        A name is empty or repeated, or a number is below 0.
-    """
+    """Return column names or, if `places`, column numbers from 0; a single string is an error."""
     wanted = f"{name} must be a sequence of column names" + (" or numbers" if places else "")
     found = tuple(_sequence(names, wanted))
     for one in found:
@@ -61,13 +45,7 @@ def as_names(names: Any, *, name: str, places: bool = False) -> tuple[Any, ...]:
 
 
 def as_classes(classes: Any) -> tuple[int, ...]:
-    """Return numbers of classes.
-
-    Raises
-    ------
-    DtypeError, InputError
-        They are not class numbers of LAS files, 0 to 255.
-    """
+    """Return numbers of classes of LAS files, 0 to 255."""
     wanted = "classes must be a sequence of integers from 0 to 255"
     found = tuple(as_count(one, name="a class") for one in _sequence(classes, wanted))
     if not found or max(found) > 255:
@@ -84,13 +62,7 @@ def _sequence(values: Any, wanted: str) -> Sequence[Any]:
 
 
 def as_callback(function: Any, *, name: str) -> Callable[..., Any] | None:
-    """Return a function, or None.
-
-    Raises
-    ------
-    DtypeError
-        It is not callable.
-    """
+    """Return a function, or None."""
     if function is None or callable(function):
         found: Callable[..., Any] | None = function
         return found

@@ -33,20 +33,11 @@ __all__ = ["Known", "corners_of"]
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """The region in which a tile knows all points.
+    """The region in which a tile knows all points: the cell of `tile`, and a closed box.
 
-    Parameters
-    ----------
-    tile : int
-        The tile, all of whose points are known.
-    box : ndarray of float64, shape (4,)
-        Left, bottom, right and top of a closed box in which the points of all tiles are known;
-        infinite where there are no points beyond.
-    tiles : Tiles
-        The cells of the tiles.
-    extents : ndarray of float64, shape (tiles, 4)
-        The bounding box of the points of each tile, inside out if it has none. Corners of the hull,
-        which all tiles know, are ignored.
+    The box (left, bottom, right, top) is infinite where there are no points beyond. `extents`,
+    (tiles, 4), are bounding boxes of points, inside out for none; corners of the hull, which all
+    tiles know, are ignored.
     """
 
     tile: int
@@ -55,20 +46,16 @@ class Known:
     extents: Floats
 
     def certain(self, points: Floats, simplices: Indices, own: int, *, threads: int = 1) -> Bools:
-        """Return which triangles are certain and have a corner among the first `own` points.
-
-        That is, their disks lie in the box.
-        """
+        """Return which triangles have their disk in the box and one of the first `own` points."""
         left, bottom, right, top = self.box.tolist()
         return _core.within2(points, simplices, own, (left, bottom, right, top), threads)
 
     def questions(
         self, points: Floats, simplices: Indices, rows: Numbers, among: Sequence[int] | None = None
     ) -> tuple[Numbers, Numbers]:
-        """Return all pairs of a row of `simplices` and a tile to query about it.
+        """Return pairs of a row of `simplices` and a tile to query: its disk may meet points of it.
 
-        These are the tiles (restricted to `some` if given) whose points its disk may meet. The part
-        in the box is ignored: there all points are known.
+        `among` restricts the tiles. The part in the box is ignored: there all points are known.
         """
         disks = _core.disks2(points, simplices.take(rows, axis=0))
         low, high = disks[:, :2] - disks[:, 2:], disks[:, :2] + disks[:, 2:]

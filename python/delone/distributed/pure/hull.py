@@ -16,7 +16,7 @@ __all__ = ["extreme_rows"]
 
 
 def extreme_rows(rows: Rows) -> Rows:
-    """Return the strictly extreme rows; the first of equal ones.
+    """Return the strictly extreme rows, the first of equal ones.
 
     They are the corners of the hull; the two ends of a line; one row where all are equal.
     """

@@ -17,16 +17,9 @@ __all__ = ["Layout"]
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """The partition of the plane.
+    """The partition of the plane: cells, the boxes that tiles know initially, corners of the hull.
 
-    Parameters
-    ----------
-    tiles : Tiles
-        The cells.
-    strips : ndarray of float64, shape (tiles, 4)
-        The box in which each tile knows all points initially.
-    hull : ndarray of records
-        The corners of the convex hull of all points, in the order of the source.
+    `strips` is (tiles, 4); the hull is in the order of the source.
     """
 
     tiles: Tiles

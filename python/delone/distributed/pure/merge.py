@@ -37,16 +37,9 @@ __all__ = ["Border", "advance", "belongs", "cut_out"]
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """The open region of a tile.
+    """The open region of a tile: its vertices with their tiles, and the certain edges around it.
 
-    Parameters
-    ----------
-    rows : ndarray of records, shape (n,)
-        Its vertices.
-    owner : ndarray of int32, shape (n,)
-        The tile of each.
-    edges : ndarray of int32, shape (k, 2)
-        The certain edges that bound it, as vertices, with the region on their left.
+    The edges, (k, 2), are pairs of vertices with the region on their left.
     """
 
     rows: Rows
@@ -78,37 +71,11 @@ def cut_out(
 def advance(
     border: Border, known: Known, news: Rows, partial: Sequence[int]
 ) -> tuple[Border | None, Rows, Indices, Floats, NDArray[np.int64]]:
-    """Insert the answers to all queries about a border.
+    """Insert `news`, the answers to all queries about a border, each point once.
 
-    Parameters
-    ----------
-    border : Border
-        The open region.
-    known : Known
-        The initial knowledge of the tile.
-    news : ndarray of records
-        The points in conflict that other tiles returned, each once.
-    partial : sequence of int
-        The tiles that returned only some of their points.
-
-    Returns
-    -------
-    Border or None
-        The region that is still open; None if nothing is.
-    ndarray of records
-        The vertices of the following triangles.
-    ndarray of int32, shape (k, 3)
-        Triangles that have become certain and have a vertex of the tile.
-    ndarray of float64, shape (m, 6)
-        Corners of the triangles to query about.
-    ndarray of int64, shape (m,)
-        The tiles to query.
-
-    Notes
-    -----
-    A triangle without a new corner existed before, no answer refuted it, and it is certain. Points
-    in conflict with a triangle that has a new corner were in conflict with one of the queried
-    triangles: a tile that gave a complete answer is not queried again.
+    Return the region that is still open, or None; vertices, and triangles of them, (k, 3), that
+    have become certain and have a vertex of the tile; corners, (m, 6), and tiles, (m,), of the next
+    queries.
     """
     rows = np.concatenate([border.rows, news])
     owner = np.concatenate([border.owner, known.tiles.locate(coordinates(news))])
@@ -118,6 +85,9 @@ def advance(
     if len(made.duplicates):
         raise InternalError("two vertices of a border are the same point")
     inside = _within(simplices, neighbors, border.edges)
+    # A triangle without a new corner existed before, no answer refuted it, and it is certain.
+    # Points in conflict with one that has a new corner were in conflict with a queried triangle:
+    # only the `partial` tiles, which returned some of their points, are queried again.
     certain = inside & (owner[simplices] == known.tile).any(axis=1)
     fresh = (simplices >= len(border.rows)).any(axis=1)
     triangle, tile = known.questions(points, simplices, np.flatnonzero(certain & fresh), partial)

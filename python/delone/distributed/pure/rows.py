@@ -64,11 +64,8 @@ def widened(types: Sequence[np.dtype[np.void]]) -> np.dtype[np.void]:
 def widen(rows: Rows, kind: np.dtype[np.void]) -> Rows:
     """Convert rows to a dtype found by `widened`.
 
-    Raises
-    ------
-    DtypeError
-        An attribute is an integer in some files and a float in others, or has gaps, and a value is
-        not representable as a double.
+    An attribute that is an integer in some files and a float in others, or has gaps, is rejected if
+    a value is not representable as a double.
     """
     for name in kind.names or ():
         if rows.dtype[name].kind in "iu" and kind[name].kind == "f":

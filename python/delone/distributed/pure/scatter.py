@@ -23,14 +23,9 @@ __all__ = ["scatter"]
 def scatter(rows: Rows, layout: Layout) -> tuple[Rows, dict[str, Any]]:
     """Sort the rows of a piece by tile, own rows first, then copies for halos; and the ranges.
 
-    Returns
-    -------
-    ndarray of records
-        The rows, within each run in the order of the source.
-    ``own`` and ``halo``: lists of tile, start and stop; ``boxes``: left, bottom, right and top of
-    each run of own rows, ignoring corners of the hull, which all tiles know; None if there are no
-    others.
-        no others.
+    ``own`` and ``halo`` are lists of tile, start and stop; each run is in the order of the source.
+    ``boxes`` are left, bottom, right and top of own runs, ignoring corners of the hull, which all
+    tiles know; None if there are no others.
     """
     if rows.dtype != layout.type:
         rows = widen(rows, layout.type)

@@ -31,16 +31,9 @@ HALO = 11.0
 class Tiles:
     """A k-d tree whose leaves are numbered tiles.
 
-    Parameters
-    ----------
-    axis : ndarray of int8, shape (nodes,)
-        The axis that a node cuts.
-    cut : ndarray of float64, shape (nodes,)
-        The coordinate of the cut; points below it are on the left.
-    children : ndarray of int64, shape (nodes, 2)
-        Left and right: the number of a node, or ``~tile``.
-    cells : ndarray of float64, shape (tiles, 4)
-        Left, bottom, right and top of each cell; infinite at the margin.
+    Node i cuts `axis[i]` at `cut[i]`, points below it are on the left; `children`, (nodes, 2), are
+    nodes or ``~tile``. `cells`, (tiles, 4), are left, bottom, right and top, infinite at the
+    margin.
     """
 
     axis: NDArray[np.int8]

@@ -79,13 +79,7 @@ class Tile:
 
 
 def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
-    """Read a tile, without comparing its figures with the manifest.
-
-    Raises
-    ------
-    FileFormatError
-        A file, which is named, is missing or truncated, lacks a column, or has invalid contents.
-    """
+    """Read a tile, without comparing its figures with the manifest; errors name the wrong file."""
     of_vertices, of_triangles = (store.path(name) for name in tile_names(number))
     names = [*(["z"] if manifest["heights"] else []), *manifest["attributes"]]
     vertices = read_columns(of_vertices, _VERTICES | dict.fromkeys(names, "biuf"))
@@ -108,13 +102,7 @@ def read_tile(store: Store, manifest: Mapping[str, Any], number: int) -> Tile:
 
 
 def read_columns(path: Path, wanted: Mapping[str, str | Sequence[str]]) -> dict[str, NDArray[Any]]:
-    """Read columns of a Parquet file of the output, each of a given NumPy kind.
-
-    Raises
-    ------
-    FileFormatError
-        The file is missing or truncated; a column is missing, has another type or has gaps.
-    """
+    """Read columns of a Parquet file of the output, each of a given NumPy kind, without gaps."""
     arrow = require("pyarrow", extra="dask", what=_WHAT)
     parquet = require("pyarrow.parquet", extra="dask", what=_WHAT)
     try:

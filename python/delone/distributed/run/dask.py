@@ -29,13 +29,9 @@ _LONGEST = 120.0
 
 
 class DaskExecutor:
-    """Tasks on the workers of a Dask client.
+    """Tasks on the workers of a Dask client that is connected to a scheduler.
 
-    Parameters
-    ----------
-    client : dask.distributed.Client
-        Connected to a scheduler. Its workers must see the folder of the output, and files of the
-        source, under the same names.
+    The workers must see the folder of the output, and files of the source, under the same names.
     """
 
     threads = 1

@@ -57,13 +57,7 @@ class Serial:
 
 
 class Processes:
-    """Tasks in processes of this machine.
-
-    Parameters
-    ----------
-    workers : int, optional
-        Number of processes; by default one per core.
-    """
+    """Tasks in processes of this machine, by default one per core."""
 
     threads = 1
 

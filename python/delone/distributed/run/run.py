@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +28,7 @@ from delone.errors import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from delone.distributed.pure.rows import Rows
     from delone.distributed.run.executors import Executor
@@ -89,24 +88,9 @@ class Progress:
 
 @dataclass
 class Run:
-    """One run.
+    """One run: the output, the source and what to read from it, and who performs the tasks.
 
-    Parameters
-    ----------
-    store : Store
-        The output.
-    source : Source
-        The source to triangulate.
-    choice : Choice
-        Which data to read from its files.
-    tile_points : int
-        Points in a tile.
-    nan : str
-        ``"raise"`` or ``"drop"``.
-    executor : Executor
-        Performs the tasks.
-    tell : callable
-        Called with the progress.
+    `nan` is ``"raise"`` or ``"drop"``; `tell` is called with the progress.
     """
 
     store: Store
@@ -195,7 +179,7 @@ class Run:
             self.store.note("work/run.json", settings)
         elif not resume:
             raise InputError(f"{root} already contains a run: remove it, or use resume=True")
-        elif before != json.loads(json.dumps(settings)):
+        elif before != settings:
             wrong = [name for name in settings if before.get(name) != settings[name]]
             raise InputError(
                 f"{root} contains a different run ({', '.join(wrong)} differ); runs are not "
@@ -331,17 +315,12 @@ class Run:
                 self._count(summary)
         todo = {key: arguments for key, arguments in tasks.items() if key not in found}
         self._say(stage=stage, done=len(found), total=len(tasks))
-        for key, summary in self._done(stage, todo):
-            found[key] = summary
-            self._count(summary)
-            self._say(done=len(found))
-        return found
-
-    def _done(
-        self, stage: str, todo: Mapping[int, Sequence[Any]]
-    ) -> Iterator[tuple[int, dict[str, Any]]]:
         if todo:
-            yield from self.executor.run(str(Path(self.store.root).absolute()), stage, todo)
+            for key, summary in self.executor.run(str(self.store.root.absolute()), stage, todo):
+                found[key] = summary
+                self._count(summary)
+                self._say(done=len(found))
+        return found
 
     def _count(self, summary: Mapping[str, Any]) -> None:
         memory = max(self.progress.memory, int(summary["memory"]))

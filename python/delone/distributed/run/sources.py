@@ -92,20 +92,10 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """All pieces of a source.
+    """All pieces of a source, in the order of their rows, and how many rows the files declare.
 
-    Parameters
-    ----------
-    pieces : tuple of Piece
-        The pieces, in the order of their rows.
-    count : int
-        Number of rows that the files declare.
-    crs : str or None
-        The reference system of all files.
-    identity : dict
-        What must not change if a run is resumed: names, sizes and times of files, or a hash.
-    array : ndarray of float64, optional
-        The points themselves, with heights in a third column.
+    `identity` must not change if a run is resumed: names, sizes and times of files, or a hash.
+    `array` has the points themselves, with heights in a third column.
     """
 
     pieces: tuple[Piece, ...]
@@ -116,15 +106,7 @@ class Source:
 
 
 def find(source: Given, choice: Choice) -> Source:
-    """Examine a source without reading its points.
-
-    Raises
-    ------
-    InputError
-        Nothing matches a pattern, a file is repeated, or reference systems differ.
-    FileFormatError, FileNotFoundError, MissingExtraError
-        As for `delone.io.read_points`.
-    """
+    """Examine a source without reading its points; errors are those of `delone.io.read_points`."""
     paths = _paths(source)
     if paths is None:
         return _of_array(source, choice)

@@ -9,10 +9,7 @@ __all__ = ["peak_memory"]
 
 
 def peak_memory() -> int:
-    """Return the peak resident memory of this process in bytes.
-
-    It is 0 if the system does not report it.
-    """
+    """Return the peak resident memory of this process in bytes, 0 if it is not reported."""
     try:
         # On Linux `getrusage` starts with the memory of the parent process.
         for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():

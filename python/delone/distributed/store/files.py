@@ -61,13 +61,7 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
 
 
 class Store:
-    """A folder of files that are written atomically.
-
-    Parameters
-    ----------
-    root : str or path-like
-        The folder.
-    """
+    """A folder of files that are written atomically."""
 
     def __init__(self, root: str | os.PathLike[str]) -> None:
         self.root = Path(root)

@@ -29,13 +29,7 @@ LOCK = "delone.lock"
 
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
-    """Lock a folder, which is created if necessary.
-
-    Raises
-    ------
-    BusyError
-        Another run is using the folder.
-    """
+    """Lock a folder, which is created if necessary; BusyError if another run is using it."""
     made = not root.exists()
     path = root / LOCK
     file = _taken(path)

@@ -61,15 +61,7 @@ _PASSING = ("seconds", "memory")
 
 
 def manifest_of(store: Store) -> dict[str, Any]:
-    """Return the manifest of an output.
-
-    Raises
-    ------
-    FileNotFoundError
-        There is no output, or it is not finished.
-    FileFormatError
-        The manifest is truncated, of another kind, or has a wrong field.
-    """
+    """Return the manifest of an output; FileNotFoundError if there is none, or none finished."""
     found = store.noted("manifest.json")
     if found is None:
         if store.exists("work/run.json"):

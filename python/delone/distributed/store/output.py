@@ -39,25 +39,10 @@ def write_tile(  # noqa: PLR0917
     late: dict[str, NDArray[Any]] | None,
     threads: int,
 ) -> dict[str, Any]:
-    """Write the certain triangles of a tile.
+    """Write the certain triangles of a tile, whose own rows come first in `rows`.
 
-    Parameters
-    ----------
-    store : Store
-        The output.
-    tile : int
-        The number of the tile.
-    rows : ndarray of records
-        The initial rows of the tile, its own first.
-    own : int
-        Number of own rows.
-    certain : ndarray of int32, shape (m, 3)
-        Triangles of the first round, as positions in `rows`; overwritten.
-    late : dict or None
-        Triangles of later rounds, ``kept``, as numbers in the source, and the ``seen`` rows of
-        their vertices.
-    threads : int
-        Number of threads.
+    `certain`, (m, 3), has positions in `rows` and is overwritten. `late` has triangles of later
+    rounds: `kept`, as numbers in the source, and the `seen` rows of their vertices.
     """
     vertices, triangles = _joined(rows, own, certain, late)
     points = coordinates(vertices)

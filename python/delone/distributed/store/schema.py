@@ -186,13 +186,7 @@ _MANIFEST = _record(
 
 
 def check_manifest(found: Any, path: Path) -> None:
-    """Reject an invalid manifest.
-
-    Raises
-    ------
-    FileFormatError
-        The message names the file and the first invalid field.
-    """
+    """Reject an invalid manifest; the message names the file and the first invalid field."""
     try:
         # In another format everything may be different.
         if not isinstance(found, dict) or found.get("format") != FORMAT:
@@ -229,34 +223,14 @@ def _check_tree(tree: Mapping[str, Any], tiles: int) -> None:
 
 
 def check_settings(found: Any, path: Path) -> None:
-    """Reject invalid settings of a run.
-
-    Raises
-    ------
-    FileFormatError
-        The message names the file and the first invalid field.
-    """
+    """Reject invalid settings of a run, like `check_manifest`."""
     _checked(_SETTINGS, found, path)
 
 
 def check_summary(stage: str, found: Any, tiles: int, path: Path) -> None:
-    """Reject an invalid note of a task.
+    """Reject an invalid note of a task of a stage (without the number of its round).
 
-    Parameters
-    ----------
-    stage : str
-        The stage of the task, without the number of its round.
-    found : object
-        The note.
-    tiles : int
-        Number of tiles; any number until it is known.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    FileFormatError
-        The message names the file and the first invalid field.
+    `tiles` may be any number until it is known.
     """
     tile, place = _whole(tiles - 1), _whole(_PLACES)
 
