@@ -20,8 +20,7 @@ from delone.testing.exact import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.testing.exact import Indices
-    from delone.testing.space import SpaceMesh
+    from delone.testing.exact import Indices, SpaceMesh
 
 
 def assert_vertices(mesh: Mesh | SpaceMesh, simplices: Indices, noun: str = "triangle") -> None:

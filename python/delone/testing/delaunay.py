@@ -12,8 +12,8 @@ from delone.testing.checks import (
     assert_neighbors,
     assert_vertices,
 )
-from delone.testing.exact import Mesh, as_rows, require, spans_no_area
-from delone.testing.space import SpaceMesh, assert_delaunay_space
+from delone.testing.exact import Mesh, SpaceMesh, as_rows, require, spans_no_area
+from delone.testing.space import assert_delaunay_space
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

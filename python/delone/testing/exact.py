@@ -1,4 +1,4 @@
-"""Triangles with exact integer coordinates: signs, edges, the hull, and assertions.
+"""Simplices with exact integer coordinates: signs, edges, the hull, and assertions.
 
 All coordinates are multiplied by one power of two that makes each of them an integer. NumPy stores
 them as Python integers, so that no product of them is ever rounded.
@@ -58,6 +58,30 @@ class Mesh(NamedTuple):
     def triangle(self, t: int) -> str:
         """A triangle with its corners, for error messages."""
         return f"triangle {t}: {self.name(self.triangles[t].tolist())}"
+
+
+class SpaceMesh(NamedTuple):
+    """Tetrahedra with exact coordinates and the data that every check needs."""
+
+    points: NDArray[np.float64]
+    tetrahedra: Indices
+    at: Integers  # (n, 3)
+    rank: Indices  # equal for equal points, ascending lexicographically
+    first: Indices  # for each row, the first row with the same coordinates
+
+    @classmethod
+    def of(cls, points: NDArray[np.float64], tetrahedra: Indices) -> SpaceMesh:
+        """Convert finite points and tetrahedra whose indices are in range."""
+        _, rank, first = ranked(points)
+        return cls(points, tetrahedra, integers_of(points)[0], rank, first)
+
+    def name(self, rows: Iterable[int]) -> str:
+        """Rows with their coordinates, for error messages."""
+        return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
+
+    def tetrahedron(self, t: int) -> str:
+        """A tetrahedron with its corners, for error messages."""
+        return f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
 
 
 def ranked(points: NDArray[np.float64]) -> tuple[Indices, Indices, Indices]:

@@ -2,49 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone.testing.checks import assert_vertices
-from delone.testing.exact import assert_none, integers_of, ranked, require
+from delone.testing.exact import SpaceMesh, assert_none, require
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from numpy.typing import ArrayLike
 
-    from numpy.typing import ArrayLike, NDArray
-
-    Indices = NDArray[np.int64]
-    Integers = NDArray[np.object_]
+    from delone.testing.exact import Indices
 
 # The face opposite each corner, with the corner on its inner side: counter-clockwise from outside.
 _FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]
 # Up to this number of points, every tetrahedron is tested against every point.
 _FEW = 64
-
-
-class SpaceMesh(NamedTuple):
-    """Tetrahedra with exact coordinates and the data that every check needs."""
-
-    points: NDArray[np.float64]
-    tetrahedra: Indices
-    at: Integers  # (n, 3)
-    rank: Indices  # equal for equal points, ascending lexicographically
-    first: Indices  # for each row, the first row with the same coordinates
-
-    @classmethod
-    def of(cls, points: NDArray[np.float64], tetrahedra: Indices) -> SpaceMesh:
-        """Convert finite points and tetrahedra whose indices are in range."""
-        _, rank, first = ranked(points)
-        return cls(points, tetrahedra, integers_of(points)[0], rank, first)
-
-    def name(self, rows: Iterable[int]) -> str:
-        """Rows with their coordinates, for error messages."""
-        return ", ".join(f"{row} {tuple(self.points[row].tolist())}" for row in rows)
-
-    def tetrahedron(self, t: int) -> str:
-        """A tetrahedron with its corners, for error messages."""
-        return f"tetrahedron {t}: {self.name(self.tetrahedra[t].tolist())}"
 
 
 def orient3d(mesh: SpaceMesh, a: Any, b: Any, c: Any, d: Any) -> Any:
