@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from delone.counting import agreed
 from delone.errors import CrossingSegmentsError, InputError
-from delone.reference.exact import exact_point, orient
+from delone.reference.exact import exact_point, exact_rows, first_rows, orient
 from delone.reference.flips import Edge, apexes, flip, make_delaunay, triangles_of
-from delone.reference.insertion import Triangle, bowyer_watson, exact_rows
+from delone.reference.insertion import Triangle, bowyer_watson
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -116,29 +116,12 @@ def constrained_delaunay(
 def pieces(
     points: Sequence[ExactPoint], segments: Iterable[Sequence[int]]
 ) -> dict[Edge, list[int]]:
-    """Split segments at all points on them.
+    """Split segments at all points on them; return the pieces with the rows that they come from.
 
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    segments : iterable of pairs of int
-        Rows of the points.
-
-    Returns
-    -------
-    dict of tuple of int to list of int
-        The pieces, the smaller vertex first, in ascending order, with the rows of the segments that
-        cover them. Vertices are the first rows of their points; a zero-length segment has no piece.
-
-    Raises
-    ------
-    InputError
-        A segment refers to a row that does not exist.
+    In ascending order, the smaller vertex first, and vertices are the first rows of their points. A
+    segment of zero length has no piece.
     """
-    first: dict[ExactPoint, int] = {}
-    for row, point in enumerate(points):
-        first.setdefault(point, row)
+    first = {points[row]: row for row in first_rows(points)}
     sources: dict[Edge, list[int]] = {}
     for row, segment in enumerate(segments):
         ends = [int(end) for end in segment]
@@ -156,22 +139,10 @@ def pieces(
 def refuse_crossings(
     points: Sequence[Sequence[Any]], exact: Sequence[ExactPoint], sources: dict[Edge, list[int]]
 ) -> None:
-    """Raise an error if pieces cross.
+    """Raise an error if pieces, which have no vertex in their interior, cross.
 
-    Parameters
-    ----------
-    points : sequence of pairs of numbers
-        All points, as given.
-    exact : sequence of exact points
-        The same, scaled to integers.
-    sources : dict of tuple of int to list of int
-        Pieces with no vertex in their interior, and the rows that they come from.
-
-    Raises
-    ------
-    CrossingSegmentsError
-        Two of them cross. It names the rows of each pair once, the smaller first, in ascending
-        order, and the points in which they meet.
+    It names the rows of each pair once, the smaller first, in ascending order, and the points in
+    which they meet. `points` are as given, `exact` are scaled to integers.
     """
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for one, other in combinations(sources, 2):
@@ -193,18 +164,7 @@ def refuse_crossings(
 def meeting(
     a: Sequence[Any], b: Sequence[Any], c: Sequence[Any], d: Sequence[Any]
 ) -> tuple[float, float]:
-    """Return the point in which the lines ab and cd meet.
-
-    Parameters
-    ----------
-    a, b, c, d : sequence of two numbers
-        Points; the lines are not parallel.
-
-    Returns
-    -------
-    tuple of float
-        Its coordinates, each the nearest double.
-    """
+    """Return the point in which the lines ab and cd, which are not parallel, meet, rounded once."""
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = map(exact_point, (a, b, c, d))
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
     t = Fraction((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
@@ -214,15 +174,7 @@ def meeting(
 def cross(a: ExactPoint, b: ExactPoint, c: ExactPoint, d: ExactPoint) -> bool:
     """Return whether ab and cd have one common point that is an end of neither.
 
-    Parameters
-    ----------
-    a, b, c, d : exact points
-        The ends.
-
-    Returns
-    -------
-    bool
-        Whether the ends of each lie strictly on both sides of the other.
+    This is so if the ends of each lie strictly on both sides of the other.
     """
     apart = any(
         max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)
@@ -233,19 +185,8 @@ def cross(a: ExactPoint, b: ExactPoint, c: ExactPoint, d: ExactPoint) -> bool:
 
 
 def insert_segment(points: Sequence[ExactPoint], apex: dict[Edge, int], a: int, b: int) -> None:
-    """Flip the edges that cross ab until none is left and ab is an edge.
+    """Flip the edges that cross ab, with no vertex between a and b, until ab is an edge.
 
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    apex : dict of tuple of int to int
-        A triangulation, as returned by `apexes`; it is modified in place.
-    a, b : int
-        Vertices with no other vertex between them.
-
-    Notes
-    -----
     The next crossing edges to flip are those that end in the vertex w farthest to the left of ab;
     of these, the one whose other end is farthest to the right is flipped first; among equally far
     ones, the one farthest along ab. Therefore w is a corner of the convex hull of all triangles
@@ -278,20 +219,5 @@ def insert_segment(points: Sequence[ExactPoint], apex: dict[Edge, int], a: int, 
 def edges_across(
     points: Sequence[ExactPoint], apex: Collection[Edge], a: int, b: int
 ) -> list[Edge]:
-    """List the edges that cross ab, each once.
-
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    apex : collection of tuple of int
-        Directed edges, with both directions of inner edges.
-    a, b : int
-        Vertices.
-
-    Returns
-    -------
-    list of tuple of int
-        Edges with their smaller vertex first.
-    """
+    """List the edges that cross ab, each once, the smaller vertex first."""
     return [(u, v) for u, v in apex if u < v and cross(points[a], points[b], points[u], points[v])]

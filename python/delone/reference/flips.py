@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.errors import InputError
-from delone.reference.exact import incircle_canonical, orient
-from delone.reference.insertion import Triangle, exact_rows, smallest_first
+from delone.reference.exact import exact_rows, incircle_canonical, orient
+from delone.reference.insertion import Triangle, smallest_first
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -73,19 +73,8 @@ def make_delaunay(
 ) -> int:
     """Flip edges until every one that is not fixed is locally Delaunay, ties broken canonically.
 
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    apex : dict of tuple of int to int
-        The triangulation, as returned by `apexes`; it is modified in place.
-    fixed : collection of tuple of int, optional
-        Edges that are kept, the smaller vertex first.
-
-    Returns
-    -------
-    int
-        The number of flips.
+    Modifies `apex`, see `apexes`, and returns the number of flips. Fixed edges have their smaller
+    vertex first.
     """
     waiting = [(u, v) for u, v in apex if u < v]
     flips = 0
@@ -103,19 +92,9 @@ def make_delaunay(
 
 
 def flip(apex: dict[Edge, int], u: int, v: int) -> Edge:
-    """Replace the edge uv by the other diagonal of its two triangles.
+    """Replace the edge uv by the other diagonal of its two triangles, and return that.
 
-    Parameters
-    ----------
-    apex : dict of tuple of int to int
-        The triangulation, as returned by `apexes`; it is modified in place.
-    u, v : int
-        The ends of an inner edge whose two triangles form a strictly convex quadrilateral.
-
-    Returns
-    -------
-    tuple of int
-        The new edge.
+    The triangles must form a strictly convex quadrilateral.
     """
     p, q = apex.pop((u, v)), apex.pop((v, u))
     #        p                 p
@@ -129,40 +108,14 @@ def flip(apex: dict[Edge, int], u: int, v: int) -> Edge:
 
 
 def triangles_of(apex: dict[Edge, int]) -> list[Triangle]:
-    """List the triangles of a map of apexes.
-
-    Parameters
-    ----------
-    apex : dict of tuple of int to int
-        The triangulation, as returned by `apexes`.
-
-    Returns
-    -------
-    list of tuple of int
-        Counter-clockwise, each starting with its smallest vertex, in ascending order.
-    """
+    """List the triangles of a map of apexes, each from its smallest vertex, in ascending order."""
     return sorted({smallest_first((u, v, p)) for (u, v), p in apex.items()})
 
 
 def apexes(points: Sequence[ExactPoint], triangles: Iterable[Sequence[int]]) -> dict[Edge, int]:
     """Map each directed edge to the third vertex of the triangle on its left.
 
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    triangles : iterable of triples of int
-        Counter-clockwise triangles.
-
-    Returns
-    -------
-    dict of tuple of int to int
-        Three entries per triangle. Flips need no other topology.
-
-    Raises
-    ------
-    InputError
-        A triangle is not counter-clockwise, or an edge has two triangles on its left.
+    These are three entries per triangle, and flips need no other topology.
     """
     apex: dict[Edge, int] = {}
     for triangle in triangles:

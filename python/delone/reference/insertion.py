@@ -12,13 +12,10 @@ polytopes", The Computer Journal 24 (2), 167-172.
 
 from __future__ import annotations
 
-from fractions import Fraction
-from math import lcm
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from delone.counting import agreed
-from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
-from delone.reference.exact import exact_point, incircle_canonical, orient
+from delone.errors import DegenerateInputError
+from delone.reference.exact import exact_rows, first_rows, incircle_canonical, orient
 from delone.reference.space import tetrahedra
 
 if TYPE_CHECKING:
@@ -31,9 +28,7 @@ Triangle: TypeAlias = tuple[int, int, int]
 INFINITE = -1
 
 
-def bowyer_watson(
-    points: Sequence[Sequence[Any]],
-) -> list[Any]:
+def bowyer_watson(points: Sequence[Sequence[Any]]) -> list[Any]:
     """Triangulate points by the algorithm of Bowyer and Watson.
 
     Parameters
@@ -96,19 +91,7 @@ def bowyer_watson(
 def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> bool:
     """Return whether a point lies inside the circle of a triangle, which may be a ghost.
 
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    triangle : tuple of int
-        Counter-clockwise; one of the vertices may be `INFINITE`.
-    row : int
-        The point to test.
-
-    Returns
-    -------
-    bool
-        For a ghost: whether the point is beyond its hull edge, or on that edge between its ends.
+    For a ghost: whether the point is beyond its hull edge, or on that edge between its ends.
     """
     if INFINITE not in triangle:
         a, b, c = (points[vertex] for vertex in triangle)
@@ -121,101 +104,16 @@ def in_conflict(points: Sequence[ExactPoint], triangle: Triangle, row: int) -> b
 
 
 def boundary(cavity: Iterable[Triangle]) -> set[tuple[int, int]]:
-    """Return the directed edges that bound a set of triangles.
+    """Return the directed edges that bound a set of triangles, with the set on their left.
 
-    Parameters
-    ----------
-    cavity : iterable of tuple of int
-        Counter-clockwise triangles.
-
-    Returns
-    -------
-    set of tuple of int
-        Edges u, v with the cavity on their left: those whose reverse is not in the cavity.
+    These are the edges whose reverse is not in the set.
     """
     edges = {(t[k - 1], t[k]) for t in cavity for k in range(3)}
     return {(u, v) for u, v in edges if (v, u) not in edges}
 
 
-def exact_rows(points: Sequence[Sequence[Any]]) -> list[ExactPoint]:
-    """Return points as exact integers, up to one common factor.
-
-    Parameters
-    ----------
-    points : sequence of pairs of numbers
-        The points.
-
-    Returns
-    -------
-    list of tuple of int
-        The points times the least common multiple of all their denominators. That does not change
-        any orientation or circle test, and integers are several times faster than fractions.
-
-    Raises
-    ------
-    NonFiniteError
-        A coordinate is NaN or infinite.
-    ShapeError
-        A point does not have two coordinates.
-    """
-    exact, bad = [], []
-    for row, point in enumerate(points):
-        if len(point) != 2:
-            raise ShapeError(f"points must have two coordinates; row {row} has {len(point)}")
-        try:
-            exact.append(exact_point(point))
-        except (ValueError, OverflowError):
-            bad.append(row)
-    if bad:
-        raise NonFiniteError(
-            f"{len(bad)} {agreed(len(bad), 'row holds', 'rows hold')} NaN or infinity; "
-            f"first: {bad[0]}",
-            rows=bad,
-            count=len(bad),
-        )
-    scale = lcm(*(Fraction(number).denominator for point in exact for number in point))
-    return [(int(x * scale), int(y * scale)) for x, y in exact]
-
-
-def first_rows(points: Sequence[ExactPoint]) -> list[int]:
-    """Return the rows of the distinct points, each at its first occurrence.
-
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-
-    Returns
-    -------
-    list of int
-        Ascending row numbers.
-    """
-    first: dict[ExactPoint, int] = {}
-    for row, point in enumerate(points):
-        first.setdefault(point, row)
-    return list(first.values())
-
-
 def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangle:
-    """Return the first two distinct points and the first one that is not on their line.
-
-    Parameters
-    ----------
-    points : sequence of exact points
-        All points.
-    rows : sequence of int
-        The rows of the distinct ones.
-
-    Returns
-    -------
-    tuple of int
-        Counter-clockwise.
-
-    Raises
-    ------
-    DegenerateInputError
-        No such triangle exists.
-    """
+    """Return the first two distinct points and the first one that is not on their line."""
     chain = sorted(rows, key=lambda row: points[row])
     if len(rows) < 3:
         raise DegenerateInputError(
@@ -234,17 +132,6 @@ def first_triangle(points: Sequence[ExactPoint], rows: Sequence[int]) -> Triangl
 
 
 def smallest_first(triangle: Triangle) -> Triangle:
-    """Return the same triangle, rotated so that its smallest vertex is first.
-
-    Parameters
-    ----------
-    triangle : tuple of int
-        Three vertices.
-
-    Returns
-    -------
-    tuple of int
-        The vertices in the same cyclic order.
-    """
+    """Return the same triangle, rotated so that its smallest vertex is first."""
     a, b, c = triangle
     return min((a, b, c), (b, c, a), (c, a, b))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from delone.errors import InputError
 from delone.reference.exact import exact_point
-from delone.reference.natural_space import laplace_in_space
+from delone.reference.natural_space import area, clip, laplace_in_space
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -100,27 +100,8 @@ def _clipped(polygon: Polygon, others: list[Point], to: Point) -> Polygon:
     """The part of a convex polygon that is nearer to a point than to others."""
     for other in others:
         if other != to:
-            polygon = _half(polygon, to, other)
+            polygon = clip(polygon, [_nearer(corner, to, other) for corner in polygon])
     return polygon
-
-
-def _half(polygon: Polygon, near: Point, far: Point) -> Polygon:
-    """The part of a convex polygon that is nearer to the first point than to the second."""
-    heights = [_nearer(corner, near, far) for corner in polygon]
-    kept: Polygon = []
-    for i, (corner, height) in enumerate(zip(polygon, heights, strict=True)):
-        before, below = polygon[i - 1], heights[i - 1]
-        if (height > 0 > below) or (height < 0 < below):
-            share = below / (below - height)
-            kept.append(
-                (
-                    before[0] + share * (corner[0] - before[0]),
-                    before[1] + share * (corner[1] - before[1]),
-                )
-            )
-        if height >= 0:
-            kept.append(corner)
-    return kept
 
 
 def _nearer(corner: Point, near: Point, far: Point) -> Fraction:
@@ -133,12 +114,8 @@ def _squared(a: Point, b: Point) -> Fraction:
 
 
 def _lost(sites: list[Point], row: int, q: Point, cell: Polygon) -> Fraction:
-    """Twice the area that a site loses to the query."""
-    part = _clipped(cell, sites, sites[row])
-    return sum(
-        (a[0] * b[1] - a[1] * b[0] for a, b in zip(part, part[1:] + part[:1], strict=True)),
-        Fraction(0),
-    )
+    """The area that a site loses to the query."""
+    return area(_clipped(cell, sites, sites[row]))
 
 
 def _shared(sites: list[Point], row: int, q: Point, cell: Polygon) -> Fraction:

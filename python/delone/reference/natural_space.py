@@ -15,43 +15,23 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from delone.errors import InputError
 from delone.reference.exact import exact_number
+from delone.reference.space import cross
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from delone.reference.exact import ExactNumber
+
 Vector: TypeAlias = tuple[int, int, int]
 Place: TypeAlias = tuple[Fraction, Fraction]
 
-__all__ = ["laplace_in_space"]
+__all__ = ["area", "clip", "laplace_in_space"]
 
 
 def laplace_in_space(points: Sequence[Sequence[Any]], query: Sequence[Any]) -> dict[int, Fraction]:
-    """Return the Laplace weights of the natural neighbors of a query in 3-D.
+    """Return the Laplace weights of a query in 3-D, by the rows of the sites.
 
-    Parameters
-    ----------
-    points : sequence of points, shape (n, 3)
-        Distinct sites.
-    query : sequence of three numbers
-        A point strictly inside their convex hull.
-
-    Returns
-    -------
-    dict of int to Fraction
-        Rows of the sites whose weight is above 0, ascending; the weights sum to 1.
-
-    Raises
-    ------
-    InputError
-        The query is not strictly inside the hull, so its cell is unbounded.
-
-    Examples
-    --------
-    >>> from delone.reference.natural_space import laplace_in_space
-    >>> cube = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)]
-    >>> found = laplace_in_space([*cube, (2, 2, 3)], (2, 2, 2))
-    >>> str(found[0]), str(found[1]), str(found[8])
-    ('9/97', '11/388', '50/97')
+    Only weights above 0 are listed; they sum to 1.
     """
     seen = _seen_from(query, points)
     here = [row for row, v in enumerate(seen) if not any(v)]
@@ -75,8 +55,8 @@ def _shared(seen: list[Vector], row: int) -> Fraction:
     v = seen[row]
     # A side perpendicular to v, from the axis least parallel to it, and one to both.
     axis = min(range(3), key=lambda k: abs(v[k]))
-    u = _cross(v, tuple(int(k == axis) for k in range(3)))
-    w = _cross(v, u)
+    u = cross(v, ((1, 0, 0), (0, 1, 0), (0, 0, 1))[axis])
+    w = cross(v, u)
     # Corners of the cell are quotients of determinants, within this distance.
     size = Fraction(1 + 100 * max(abs(x) for p in seen for x in p) ** 6)
     face = [(-size, -size), (size, -size), (size, size), (-size, size)]
@@ -84,15 +64,15 @@ def _shared(seen: list[Vector], row: int) -> Fraction:
         if other != v:
             # Nearer to the query than to the other site, on v / 2 + s u + t w.
             room = Fraction(_dot(other, other) - _dot(v, other), 2)
-            face = _half(face, _dot(u, other), _dot(w, other), room)
+            a, b = _dot(u, other), _dot(w, other)
+            face = clip(face, [room - a * s - b * t for s, t in face])
     if any(abs(x) == size for place in face for x in place):
         raise InputError("the query is not strictly inside the convex hull of the points")
-    return _dot(u, u) * _area(face)
+    return _dot(u, u) * area(face)
 
 
-def _half(polygon: list[Place], a: int, b: int, room: Fraction) -> list[Place]:
-    """The part of a convex polygon where a s + b t is at most `room`."""
-    depths = [room - a * s - b * t for s, t in polygon]
+def clip(polygon: list[Place], depths: list[Fraction]) -> list[Place]:
+    """The part of a convex polygon where a linear function, given at the corners, is at least 0."""
     kept: list[Place] = []
     for i, (corner, depth) in enumerate(zip(polygon, depths, strict=True)):
         before, above = polygon[i - 1], depths[i - 1]
@@ -105,20 +85,11 @@ def _half(polygon: list[Place], a: int, b: int, room: Fraction) -> list[Place]:
     return kept
 
 
-def _area(polygon: list[Place]) -> Fraction:
-    turns = (
-        p[0] * r[1] - p[1] * r[0] for p, r in zip(polygon, polygon[1:] + polygon[:1], strict=True)
-    )
-    return sum(turns, Fraction(0)) / 2
+def area(polygon: list[Place]) -> Fraction:
+    """The area of a counter-clockwise polygon."""
+    sides = zip(polygon, polygon[1:] + polygon[:1], strict=True)
+    return sum((p[0] * r[1] - p[1] * r[0] for p, r in sides), Fraction(0)) / 2
 
 
-def _dot(p: Sequence[int], q: Sequence[int]) -> int:
+def _dot(p: Sequence[ExactNumber], q: Sequence[ExactNumber]) -> ExactNumber:
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def _cross(p: Sequence[int], q: Sequence[int]) -> Vector:
-    return (
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    )

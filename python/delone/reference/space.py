@@ -10,14 +10,11 @@ triangulations", Computational Geometry 44 (3), 160-168, for points on one spher
 
 from __future__ import annotations
 
-from fractions import Fraction
 from itertools import combinations
-from math import lcm
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from delone.counting import agreed
-from delone.errors import DegenerateInputError, NonFiniteError, ShapeError
-from delone.reference.exact import exact_number, sign
+from delone.errors import DegenerateInputError
+from delone.reference.exact import exact_number, exact_rows, first_rows, sign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -139,35 +136,10 @@ def insphere_canonical(
 def tetrahedra(points: Sequence[Sequence[Any]]) -> list[Tetrahedron]:
     """Triangulate 3-D points by the algorithm of Bowyer and Watson.
 
-    Parameters
-    ----------
-    points : sequence of triples of numbers, length n
-        Integers, floats, fractions or decimals, all used exactly.
-
-    Returns
-    -------
-    list of tuple of int
-        Positively oriented tetrahedra as row numbers, ascending except that the last two are
-        exchanged if the orientation requires it; in ascending order. Of equal points only the first
-        appears.
-
-    Raises
-    ------
-    NonFiniteError
-        A coordinate is NaN or infinite.
-    DegenerateInputError
-        Fewer than four points are distinct, or all lie on one line or in one plane.
-    ShapeError
-        A point does not have three coordinates.
-
-    Examples
-    --------
-    >>> from delone.reference.space import tetrahedra
-    >>> tetrahedra([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)])
-    [(0, 1, 2, 4), (0, 1, 4, 3), (0, 2, 3, 4)]
+    See `bowyer_watson`, which calls this for 3-D points.
     """
-    exact = _exact_rows(points)
-    rows = _first_rows(exact)
+    exact = exact_rows(points, 3)
+    rows = first_rows(exact)
     first = _first_tetrahedron(exact, rows)
     a, b, c, d = first
     ghosts = {(b, c, d, INFINITE), (c, a, d, INFINITE), (a, b, d, INFINITE), (b, a, c, INFINITE)}
@@ -223,34 +195,6 @@ def _ascending(t: Tetrahedron) -> Tetrahedron:
     return (a, b, d, c) if odd else (a, b, c, d)
 
 
-def _exact_rows(points: Sequence[Sequence[Any]]) -> list[Vector]:
-    """Points as exact integers, up to one common factor."""
-    exact, bad = [], []
-    for row, point in enumerate(points):
-        if len(point) != 3:
-            raise ShapeError(f"points must have three coordinates; row {row} has {len(point)}")
-        try:
-            exact.append(_exact_vector(point))
-        except (ValueError, OverflowError):
-            bad.append(row)
-    if bad:
-        raise NonFiniteError(
-            f"{len(bad)} {agreed(len(bad), 'row holds', 'rows hold')} NaN or infinity; "
-            f"first: {bad[0]}",
-            rows=bad,
-            count=len(bad),
-        )
-    scale = lcm(*(Fraction(number).denominator for point in exact for number in point))
-    return [(int(x * scale), int(y * scale), int(z * scale)) for x, y, z in exact]
-
-
-def _first_rows(points: Sequence[Vector]) -> list[int]:
-    first: dict[Vector, int] = {}
-    for row, point in enumerate(points):
-        first.setdefault(point, row)
-    return list(first.values())
-
-
 def _first_tetrahedron(points: Sequence[Vector], rows: Sequence[int]) -> Tetrahedron:
     """The first two distinct points, the first not on their line, the first not in their plane."""
     chain = sorted(rows, key=lambda row: points[row])
@@ -258,7 +202,8 @@ def _first_tetrahedron(points: Sequence[Vector], rows: Sequence[int]) -> Tetrahe
         message = f"a 3-D triangulation needs four distinct points, got {len(rows)}"
         raise DegenerateInputError(message, reason="too few points", chain=chain)
     a, b, *others = rows
-    off = [c for c in others if any(_cross(points, a, b, c))]
+    along = _minus(points[b], points[a])
+    off = [c for c in others if any(cross(along, _minus(points[c], points[a])))]
     if not off:
         message = f"all {len(rows)} distinct points lie on one line"
         raise DegenerateInputError(message, reason="collinear", chain=chain)
@@ -271,8 +216,8 @@ def _first_tetrahedron(points: Sequence[Vector], rows: Sequence[int]) -> Tetrahe
     raise DegenerateInputError(message, reason="coplanar")
 
 
-def _cross(points: Sequence[Vector], a: int, b: int, c: int) -> Vector:
-    p, q = _minus(points[b], points[a]), _minus(points[c], points[a])
+def cross(p: Vector, q: Vector) -> Vector:
+    """The cross product."""
     return (
         p[1] * q[2] - p[2] * q[1],
         p[2] * q[0] - p[0] * q[2],
