@@ -25,37 +25,15 @@ __all__ = ["GENERATORS"]
 
 
 def uniform(n: int, *, seed: int = 0) -> Points:
-    """Return uniformly distributed points in the unit cube.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return uniformly distributed points in the unit cube."""
     return np.random.default_rng(seed).random((as_count(n), 3))
 
 
 def grid(n: int, *, seed: int | None = 0) -> Points:
     """Return the first n points of the smallest cubic integer grid with at least n points.
 
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int or None, optional
-        Shuffles the rows; None leaves them in order.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points; the eight corners of each small cube are on one sphere.
+    The eight corners of each small cube are on one sphere. With the seed None the rows are in
+    order.
     """
     n = as_count(n)
     side = max(1, int(np.ceil(np.cbrt(n))))
@@ -66,61 +44,20 @@ def grid(n: int, *, seed: int | None = 0) -> Points:
 
 
 def integer_lattice(n: int, *, seed: int = 0, side: int = 4) -> Points:
-    """Return random points of a cubic lattice, most of them repeated.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-    side : int, optional
-        Number of lattice points along an axis.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return random points of a cubic lattice of `side` points per axis, most of them repeated."""
     rng = np.random.default_rng(seed)
     return rng.integers(0, side, (as_count(n), 3)).astype(np.float64)
 
 
 def sphere(n: int, *, seed: int = 0) -> Points:
-    """Return points on the unit sphere, up to rounding: all are on the hull.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return points on the unit sphere, up to rounding: all are on the hull."""
     points = np.random.default_rng(seed).standard_normal((as_count(n), 3))
     points /= np.sqrt((points * points).sum(axis=1))[:, None]
     return points
 
 
 def integer_sphere(n: int, *, seed: int = 0) -> Points:
-    """Return integer points exactly on a sphere about the origin, distinct for small n.
-
-    Parameters
-    ----------
-    n : int
-        Number of points; if there are more than 294, some repeat.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points, at distance 45.
-    """
+    """Return integer points exactly on a sphere of radius 45; if n is above 294, some repeat."""
     n = as_count(n)
     radius = 45
     axis = np.arange(-radius, radius + 1)
@@ -136,20 +73,7 @@ def integer_sphere(n: int, *, seed: int = 0) -> Points:
 
 
 def clusters(n: int, *, seed: int = 0) -> Points:
-    """Return normal clusters in the unit cube, with widths over ten orders of magnitude.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return normal clusters in the unit cube, with widths over ten orders of magnitude."""
     n, rng = as_count(n), np.random.default_rng(seed)
     centers, widths = rng.random((11, 3)), np.logspace(-11, -1, 11)
     which = rng.integers(0, 11, n)
@@ -157,22 +81,7 @@ def clusters(n: int, *, seed: int = 0) -> Points:
 
 
 def planes(n: int, *, seed: int = 0, count: int = 3) -> Points:
-    """Return lattice points of a few parallel tilted planes: most are coplanar and cocircular.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-    count : int, optional
-        Number of planes.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return lattice points of `count` parallel tilted planes: most are coplanar and cocircular."""
     n, rng = as_count(n), np.random.default_rng(seed)
     side = max(2, int(np.sqrt(n)))
     x, y = rng.integers(0, side, (2, n))
@@ -180,20 +89,7 @@ def planes(n: int, *, seed: int = 0, count: int = 3) -> Points:
 
 
 def near_coplanar(n: int, *, seed: int = 0) -> Points:
-    """Return points within two times the smallest positive double of a plane.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return points within two times the smallest positive double of a plane."""
     n, rng = as_count(n), np.random.default_rng(seed)
     points = rng.random((n, 3))
     points[:, 2] = np.ldexp(rng.integers(0, 3, n).astype(np.float64), -1074)
@@ -201,20 +97,7 @@ def near_coplanar(n: int, *, seed: int = 0) -> Points:
 
 
 def prism(n: int, *, seed: int = 0) -> Points:
-    """Return points of a prism over a regular polygon: two large cocircular facets.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points: copies of one rounded polygon in two planes.
-    """
+    """Return points of a prism over a rounded regular polygon: two large cocircular facets."""
     n = as_count(n)
     angle = 2 * np.pi * (np.arange(n) // 2) / max(1, (n + 1) // 2)
     points = np.column_stack((np.cos(angle), np.sin(angle), (np.arange(n) % 2).astype(np.float64)))
@@ -222,37 +105,26 @@ def prism(n: int, *, seed: int = 0) -> Points:
 
 
 def mixed_exponents(n: int, *, seed: int = 0) -> Points:
-    """Return coordinates of all magnitudes of doubles, including subnormal ones.
-
-    Parameters
-    ----------
-    n : int
-        Number of points.
-    seed : int, optional
-        The same seed gives the same points.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, 3)
-        The points.
-    """
+    """Return coordinates of all magnitudes of doubles, including subnormal ones."""
     n, rng = as_count(n), np.random.default_rng(seed)
     return np.ldexp(rng.uniform(-1, 1, (n, 3)), rng.integers(-1073, 1024, (n, 3)))
 
 
-_ALL: dict[str, Callable[..., Points]] = {
-    each.__name__: each
-    for each in (
-        clusters,
-        grid,
-        integer_lattice,
-        integer_sphere,
-        mixed_exponents,
-        near_coplanar,
-        planes,
-        prism,
-        sphere,
-        uniform,
-    )
-}
-GENERATORS: Mapping[str, Callable[..., Points]] = MappingProxyType(_ALL)
+GENERATORS: Mapping[str, Callable[..., Points]] = MappingProxyType(
+    {
+        generator.__name__: generator
+        for generator in (
+            clusters,
+            grid,
+            integer_lattice,
+            integer_sphere,
+            mixed_exponents,
+            near_coplanar,
+            planes,
+            prism,
+            sphere,
+            uniform,
+        )
+    }
+)
+"""The generators of 3-D points by name; each is called with n and the keyword seed."""
