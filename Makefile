@@ -25,6 +25,8 @@ SOURCES := pyproject.toml Cargo.toml $(wildcard Cargo.lock) $(wildcard crates/*/
 PYTHON_SOURCES := $(shell find python -name '*.py' -o -name '*.pyi')
 # The bindings crate is a Python extension: its tests are those of the Python package.
 CARGO_TEST := cargo test --workspace --exclude delone-bindings
+# One process for each processor; the tests of a file stay together.
+PYTEST := $(VENV)/bin/pytest -n auto --dist loadfile
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 
@@ -132,9 +134,9 @@ demo: $(STAMPS)/demo
 
 test: $(STAMPS)/test
 	$(CARGO_TEST)
-	$(BIN)/pytest $(if $(SEED),--randomly-seed=$(SEED))
-	$(BIN)/pytest -p no:randomly --doctest-modules python/delone
-	$(BIN)/pytest -p no:randomly --doctest-glob='*.rst' docs
+	$(PYTEST) $(if $(SEED),--randomly-seed=$(SEED))
+	$(PYTEST) -p no:randomly --doctest-modules python/delone
+	$(PYTEST) -p no:randomly --doctest-glob='*.rst' docs
 	for example in examples/*.py; do $(BIN)/python $$example || exit 1; done
 
 lint: $(STAMPS)/test
