@@ -105,6 +105,12 @@ def test_beside_clusters_of_sites_that_nearly_coincide() -> None:
             check(np.vstack((lattice(ndim), scattered)), around(rng, ndim))
 
 
+def test_beside_a_fine_lattice_at_a_corner_of_the_hull() -> None:
+    """Its outermost site has others only behind several rings of neighbors."""
+    fine = 2.0 + lattice(2, 7) * 3e-14
+    check(np.vstack((lattice(2), fine)), around(np.random.default_rng(1), 2))
+
+
 @given(st.integers(0, 2**32 - 1), st.integers(-3, 0), st.integers(-3, 0))
 def test_beside_needles_and_slivers(seed: int, thin: int, flat: int) -> None:
     rng = np.random.default_rng(seed)
