@@ -25,7 +25,7 @@ fn height([x, y]: Point2) -> f64 {
 pub fn main() -> Result<(), Box<dyn Error>> {
     let (points, heights) = survey(20_000);
     let ground = Triangulation::new(&points)?;
-    let triangles: Vec<_> = ground.triangles().collect();
+    let triangles: Vec<_> = ground.simplices().collect();
     println!(
         "{} points, {} duplicates",
         points.len(),
@@ -34,7 +34,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     println!("{} triangles", triangles.len());
 
     let queries: Vec<Point2> = (1..20).map(|i| [5.0 * f64::from(i), 50.0]).collect();
-    for (query, place) in queries.iter().zip(ground.locate_all(&queries)?) {
+    for (query, place) in queries.iter().zip(ground.locate(&queries)?) {
         match place {
             Location::Inside { simplex, weights } => {
                 let corners = triangles[simplex].into_iter().zip(weights);

@@ -15,16 +15,16 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     ];
     let island = vec![[3.0, 2.0], [6.0, 3.0], [4.0, 6.0]];
     let water = Constrained::polygon(&[lake, island])?;
-    for (triangle, on_shore) in water.triangles().zip(water.is_constrained()) {
+    for (triangle, on_shore) in water.simplices().zip(water.is_constrained()) {
         let shores = on_shore.iter().filter(|shore| **shore).count();
         println!("{triangle:?}, {shores} edges on the shore");
     }
-    let area: f64 = water.areas()?.iter().sum();
+    let area: f64 = water.sizes()?.iter().sum();
     println!(
         "{area} of water, {} edges of shore",
         water.boundary()?.len()
     );
-    if water.locate([4.0, 4.0])?.simplex().is_some() {
+    if water.locate(&[[4.0, 4.0]])?[0].simplex().is_some() {
         return Err("the island is no water".into());
     }
     Ok(())

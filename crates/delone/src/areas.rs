@@ -4,10 +4,12 @@
 use std::collections::HashSet;
 
 use delone_core::arrays::Arrays;
-use delone_core::constrained::{Subsegments, components};
+use delone_core::constrained::components;
 use delone_core::error::{Error, Result};
 use delone_core::memory::{filled, push, with_room};
 use delone_core::watch::{Pace, Watch};
+
+use crate::arrays::Segments;
 
 /// Triangles between two looks at the watch.
 const LOT: usize = 1 << 16;
@@ -40,8 +42,8 @@ impl Hull<'_> {
     /// The triangles that closed rings wind around an odd number of times: a flood from outside of
     /// the hull, where each edge that an odd number of segments covers leads in or out. It visits
     /// each triangle once.
-    pub fn odd(&self, subsegments: &Subsegments, watch: &Watch) -> Result<Vec<bool>> {
-        let even = even(subsegments);
+    pub fn odd(&self, segments: &Segments, watch: &Watch) -> Result<Vec<bool>> {
+        let even = even(segments);
         let Arrays {
             simplices,
             neighbors,
@@ -80,9 +82,9 @@ fn sorted([u, v]: [i32; 2]) -> [i32; 2] {
 }
 
 /// The edges that an even number of segments covers, which are few.
-fn even(subsegments: &Subsegments) -> HashSet<[i32; 2]> {
-    let counts = subsegments.start.windows(2).map(|w| w[1] - w[0]);
-    let edges = subsegments.ends.iter().zip(counts);
+fn even(segments: &Segments) -> HashSet<[i32; 2]> {
+    let counts = segments.starts.windows(2).map(|w| w[1] - w[0]);
+    let edges = segments.ends.iter().zip(counts);
     edges
         .filter(|(_, count)| count % 2 == 0)
         .map(|(ends, _)| sorted(*ends))

@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::mem::take;
 use std::ops::Deref;
 
 use delone_core::arrays::{Arrays, Given};
 use delone_core::constrained::{self as core, Subsegments};
-use delone_core::delaunay2::Method;
 use delone_core::error::Result as CoreResult;
 use delone_core::memory::with_room;
 use delone_core::points::LIMIT2;
@@ -14,11 +14,9 @@ use delone_core::watch::Watch;
 use delone_predicates::orient2d;
 
 use crate::areas::{Hull, Part};
-use crate::tiling::{Tiling, watched};
-use crate::{Error, Options, Point2, Result};
-
-/// The points that may be added unless the caller sets another limit.
-const MOST_ADDED: usize = 4_000_000;
+use crate::arrays::Segments;
+use crate::dimension::Made;
+use crate::{Error, Options, Point2, Result, Tiling};
 
 /// A constrained Delaunay triangulation: every segment is an edge or a chain of edges, and all other
 /// edges are Delaunay as far as segments do not block the view.
@@ -36,10 +34,9 @@ const MOST_ADDED: usize = 4_000_000;
 /// ```
 #[derive(Debug)]
 pub struct Constrained<'a> {
-    tiling: Tiling<'a, 2, 3>,
-    added: usize,
+    tiling: Tiling<'a>,
     walls: Vec<[bool; 3]>,
-    subsegments: Subsegments,
+    segments: Segments,
     /// All triangles of the hull, if some are not kept.
     whole: Option<Whole>,
 }
@@ -69,13 +66,14 @@ impl<'c> Subsegment<'c> {
 
 impl<'a> Constrained<'a> {
     /// Triangulates the convex hull of points with segments, which are pairs of rows. Segments may
-    /// share ends, overlap and pass through points.
+    /// share ends, overlap and pass through points. [`Options::constrain`] removes what is outside,
+    /// splits crossings, and more.
     ///
     /// # Errors
     /// Those of [`Triangulation::new`](crate::Triangulation::new), [`Error::NoSuchPoint`], and
-    /// [`Error::Crossing`] if segments cross; see [`ConstrainedBuilder::split_crossings`].
+    /// [`Error::Crossing`] if segments cross; see [`Options::split_crossings`].
     pub fn new(points: impl Into<Cow<'a, [Point2]>>, segments: &[[usize; 2]]) -> Result<Self> {
-        Self::builder().build(points, segments)
+        Options::new().constrain(points, segments)
     }
 
     /// Triangulates the inside of polygons, given as closed rings without the repeated last point:
@@ -87,7 +85,7 @@ impl<'a> Constrained<'a> {
     ///
     /// let square = |low: f64, high: f64| vec![[low, low], [high, low], [high, high], [low, high]];
     /// let c = Constrained::polygon(&[square(0.0, 3.0), square(1.0, 2.0)])?;
-    /// assert_eq!(c.areas()?.iter().sum::<f64>(), 8.0);
+    /// assert_eq!(c.sizes()?.iter().sum::<f64>(), 8.0);
     /// assert_eq!(c.boundary()?.len(), 8);
     /// # Ok::<(), delone::Error>(())
     /// ```
@@ -96,52 +94,40 @@ impl<'a> Constrained<'a> {
     /// Those of [`Constrained::new`], but crossings are none; [`Error::EmptyDomain`] if there is no
     /// inside.
     pub fn polygon(rings: &[impl AsRef<[Point2]>]) -> Result<Constrained<'static>> {
-        Self::builder().split_crossings(true).build_polygon(rings)
-    }
-
-    /// Options for segments and holes.
-    pub fn builder<'o>() -> ConstrainedBuilder<'o> {
-        ConstrainedBuilder {
-            options: Options::new(),
-            split: false,
-            conforming: false,
-            enclosed: false,
-            max_points: MOST_ADDED,
-            holes: Vec::new(),
-        }
-    }
-
-    /// The number of points that were added, for crossings and for
-    /// [`conforming`](ConstrainedBuilder::conforming): the last rows of [`points`](Tiling::points).
-    pub fn added(&self) -> usize {
-        self.added
+        Options::new().polygon(rings)
     }
 
     /// For each triangle, whether the edge opposite each corner is part of a segment.
-    pub fn is_constrained(&self) -> impl ExactSizeIterator<Item = [bool; 3]> + '_ {
-        self.walls.iter().copied()
+    pub fn is_constrained(&self) -> &[[bool; 3]] {
+        &self.walls
     }
 
     /// The edges that segments have become, each once, in the order of the segments and along them.
     /// Those outside of the domain are included.
     pub fn subsegments(&self) -> impl ExactSizeIterator<Item = Subsegment<'_>> + '_ {
-        let Subsegments {
+        let Segments {
             ends,
-            start,
-            source,
+            starts,
+            sources,
             ..
-        } = &self.subsegments;
-        let rows = ends.iter().zip(start.windows(2));
+        } = &self.segments;
+        let rows = ends.iter().zip(starts.windows(2));
         rows.map(|(ends, range)| Subsegment {
             ends: ends.map(|v| v as usize),
-            sources: &source[range[0] as usize..range[1] as usize],
+            sources: &sources[range[0] as usize..range[1] as usize],
         })
+    }
+
+    /// The triangles, what [`is_constrained`](Self::is_constrained) says, and what segments have
+    /// become, without a copy.
+    pub fn into_parts(self) -> (Tiling<'a>, Vec<[bool; 3]>, Segments) {
+        (self.tiling, self.walls, self.segments)
     }
 
     /// All triangles of the hull, which of their edges are segments, and the triangles that are
     /// kept; `None` if all are.
     pub(crate) fn whole(&self) -> (Given<'_, 2, 3>, &[[bool; 3]], Option<&[bool]>) {
-        let given = self.tiling.given();
+        let given = given(&self.tiling);
         match &self.whole {
             None => (given, &self.walls, None),
             Some(whole) => {
@@ -156,109 +142,26 @@ impl<'a> Constrained<'a> {
     }
 
     pub(crate) fn subsegment_ends(&self) -> &[[i32; 2]] {
-        &self.subsegments.ends
-    }
-}
-
-impl<'a> Deref for Constrained<'a> {
-    type Target = Tiling<'a, 2, 3>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.tiling
-    }
-}
-
-impl<'a> From<Constrained<'a>> for Tiling<'a, 2, 3> {
-    fn from(constrained: Constrained<'a>) -> Self {
-        constrained.tiling
-    }
-}
-
-/// Options of a constrained triangulation; made by [`Constrained::builder`].
-///
-/// ```
-/// use delone::Constrained;
-///
-/// let points = [[0.0, 0.0], [2.0, 2.0], [0.0, 2.0], [2.0, 0.0]];
-/// let c = Constrained::builder().split_crossings(true).build(&points, &[[0, 1], [2, 3]])?;
-/// assert_eq!(c.points()[4], [1.0, 1.0]);
-/// # Ok::<(), delone::Error>(())
-/// ```
-#[derive(Debug, Clone)]
-pub struct ConstrainedBuilder<'o> {
-    options: Options<'o>,
-    split: bool,
-    conforming: bool,
-    enclosed: bool,
-    max_points: usize,
-    holes: Vec<Point2>,
-}
-
-impl<'o> ConstrainedBuilder<'o> {
-    /// Sets threads and interruption.
-    #[must_use]
-    pub fn options(mut self, options: Options<'o>) -> Self {
-        self.options = options;
-        self
+        &self.segments.ends
     }
 
-    /// Whether segments that cross get a vertex there, with rounded coordinates. Otherwise they are
-    /// an error, which is the default.
-    #[must_use]
-    pub fn split_crossings(mut self, split: bool) -> Self {
-        self.split = split;
-        self
-    }
-
-    /// Whether vertices are added on segments until the diametral circle of each subsegment is
-    /// empty, so that all triangles are Delaunay.
-    #[must_use]
-    pub fn conforming(mut self, conforming: bool) -> Self {
-        self.conforming = conforming;
-        self
-    }
-
-    /// Whether only the triangles that segments enclose are kept, not all of the convex hull.
-    #[must_use]
-    pub fn enclosed_only(mut self, enclosed: bool) -> Self {
-        self.enclosed = enclosed;
-        self
-    }
-
-    /// One point in each hole: the triangles around it are removed, up to the segments.
-    #[must_use]
-    pub fn holes(mut self, seeds: &[Point2]) -> Self {
-        self.holes = seeds.to_vec();
-        self
-    }
-
-    /// The most points that may be added, by default 4,000,000.
-    #[must_use]
-    pub fn max_points(mut self, most: usize) -> Self {
-        self.max_points = most;
-        self
-    }
-
-    /// Triangulates points and segments.
-    ///
-    /// # Errors
-    /// Those of [`Constrained::new`], and [`Error::Budget`], [`Error::Seed`], [`Error::EmptyDomain`],
-    /// [`Error::Interrupted`].
-    pub fn build<'a>(
-        &self,
-        points: impl Into<Cow<'a, [Point2]>>,
-        segments: &[[usize; 2]],
-    ) -> Result<Constrained<'a>> {
-        let points = points.into();
+    pub(crate) fn of_segments<I: Copy + TryInto<usize>>(
+        points: Cow<'a, [Point2]>,
+        segments: &[[I; 2]],
+        options: &Options,
+    ) -> Result<Self> {
         let pairs = pairs(segments, points.len())?;
-        self.made(points, &pairs, false)
+        let hull = Self::hull(points, &pairs, options)?;
+        if !options.enclosed && options.holes.is_empty() {
+            return Ok(hull);
+        }
+        hull.reduced(options, false)
     }
 
-    /// Triangulates the inside of polygons; see [`Constrained::polygon`].
-    ///
-    /// # Errors
-    /// Those of [`build`](Self::build).
-    pub fn build_polygon(&self, rings: &[impl AsRef<[Point2]>]) -> Result<Constrained<'static>> {
+    pub(crate) fn of_rings(
+        rings: &[impl AsRef<[Point2]>],
+        options: &Options,
+    ) -> Result<Constrained<'static>> {
         let count = rings.iter().map(|ring| ring.as_ref().len()).sum();
         if count > LIMIT2 {
             let limit = LIMIT2;
@@ -277,94 +180,81 @@ impl<'o> ConstrainedBuilder<'o> {
             pairs.extend((first..end).map(|row| [row, next(row)]));
             points.extend_from_slice(ring);
         }
-        self.made(Cow::Owned(points), &pairs, true)
+        let hull = Constrained::hull(Cow::Owned(points), &pairs, options)?;
+        hull.reduced(options, true)
     }
 
-    fn made<'a>(
-        &self,
-        points: Cow<'a, [Point2]>,
-        pairs: &[[u32; 2]],
-        rings: bool,
-    ) -> Result<Constrained<'a>> {
-        let workers = self.options.workers();
-        let options = core::Options {
-            split: self.split,
-            conforming: self.conforming,
-            max_vertices: self.max_points,
-            method: Method::Auto,
-            workers,
+    /// All triangles of the hull.
+    fn hull(points: Cow<'a, [Point2]>, pairs: &[[u32; 2]], options: &Options) -> Result<Self> {
+        let given = core::Options {
+            split: options.split,
+            conforming: options.conforming,
+            max_vertices: options.most_split(),
+            method: options.method,
+            workers: options.workers(),
         };
-        let made = watched(&self.options, |watch| {
-            core::constrain(&points, pairs, options, watch)
-        })?;
+        let made = options.watched(|watch| core::constrain(&points, pairs, given, watch))?;
+        let Subsegments {
+            ends,
+            start: starts,
+            source: sources,
+            forward,
+        } = made.subsegments;
+        let triangles = Made {
+            arrays: made.arrays,
+            duplicates: made.duplicates,
+            stages: made.stages,
+        };
         let added = made.added.len();
-        let points = if added == 0 {
-            points
-        } else {
-            let mut all = with_room(points.len() + added)?;
-            all.extend_from_slice(&points);
-            all.extend_from_slice(&made.added);
-            Cow::Owned(all)
-        };
-        let hull = Constrained {
-            tiling: Tiling::of(points, made.arrays, made.duplicates, workers),
-            added,
+        let points = joined(points, &made.added)?;
+        Ok(Self {
+            tiling: Tiling::of(points, triangles, added, options),
             walls: made.constrained,
-            subsegments: made.subsegments,
+            segments: Segments {
+                ends,
+                starts,
+                sources,
+                forward,
+                zero: made.zero,
+                through: made.through,
+                crossings: made.crossings,
+            },
             whole: None,
-        };
-        if !rings && !self.enclosed && self.holes.is_empty() {
-            return Ok(hull);
-        }
-        let seeds = seeds(&hull, &self.holes)?;
-        self.reduced(hull, &seeds, rings)
+        })
     }
 
-    /// The triangles of the domain.
-    fn reduced<'a>(
-        &self,
-        hull: Constrained<'a>,
-        seeds: &[usize],
-        rings: bool,
-    ) -> Result<Constrained<'a>> {
-        let Constrained {
-            tiling,
-            added,
-            walls,
-            subsegments,
-            ..
-        } = hull;
-        let Tiling {
-            points,
-            arrays,
-            duplicates,
-            ..
-        } = tiling;
+    /// Without the holes, and without what is outside of all segments or rings.
+    fn reduced(mut self, options: &Options, rings: bool) -> Result<Self> {
+        let seeds = seeds(&self, options.holes)?;
+        let arrays = Arrays {
+            simplices: take(self.tiling.simplices.to_mut()),
+            neighbors: take(self.tiling.neighbors.to_mut()),
+        };
+        let walls = self.walls;
         let reduce = |watch: &Watch| -> CoreResult<_> {
             let all = Hull {
                 arrays: &arrays,
                 walls: &walls,
             };
-            let mut kept = all.kept(self.enclosed && !rings, seeds, watch)?;
+            let mut kept = all.kept(options.enclosed && !rings, &seeds, watch)?;
             if rings {
-                let odd = all.odd(&subsegments, watch)?;
+                let odd = all.odd(&self.segments, watch)?;
                 kept.iter_mut()
                     .zip(odd)
                     .for_each(|(kept, odd)| *kept &= odd);
             }
             Ok((Part::of(&arrays, &kept, watch)?, kept))
         };
-        let (part, kept) = watched(&self.options, reduce)?;
+        let (part, kept) = options.watched(reduce)?;
         if part.of.is_empty() {
             return Err(Error::EmptyDomain);
         }
         let mut sides = with_room(part.of.len())?;
         sides.extend(part.of.iter().map(|&t| walls[t as usize]));
-        Ok(Constrained {
-            tiling: Tiling::of(points, part.arrays, duplicates, self.options.workers()),
-            added,
+        Ok(Self {
+            tiling: self.tiling.with(part.arrays),
             walls: sides,
-            subsegments,
+            segments: self.segments,
             whole: Some(Whole {
                 arrays,
                 walls,
@@ -374,10 +264,39 @@ impl<'o> ConstrainedBuilder<'o> {
     }
 }
 
+impl<'a> Deref for Constrained<'a> {
+    type Target = Tiling<'a>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.tiling
+    }
+}
+
+/// The arrays of a tiling as the core takes them.
+fn given<'t>(tiling: &'t Tiling<'_>) -> Given<'t, 2, 3> {
+    Given {
+        points: &tiling.points,
+        simplices: &tiling.simplices,
+        neighbors: &tiling.neighbors,
+    }
+}
+
+/// The points followed by those that were added.
+fn joined<'a>(points: Cow<'a, [Point2]>, added: &[Point2]) -> Result<Cow<'a, [Point2]>> {
+    if added.is_empty() {
+        return Ok(points);
+    }
+    let mut all = with_room(points.len() + added.len())?;
+    all.extend_from_slice(&points);
+    all.extend_from_slice(added);
+    Ok(Cow::Owned(all))
+}
+
 /// Segments as the core takes them.
-fn pairs(segments: &[[usize; 2]], points: usize) -> Result<Vec<[u32; 2]>> {
+fn pairs<I: Copy + TryInto<usize>>(segments: &[[I; 2]], points: usize) -> Result<Vec<[u32; 2]>> {
     let mut found = with_room(segments.len())?;
     for (segment, ends) in segments.iter().enumerate() {
+        let ends = ends.map(|end| end.try_into().unwrap_or(usize::MAX));
         if let Some(&row) = ends.iter().find(|row| **row >= points) {
             return Err(Error::NoSuchPoint {
                 segment,
@@ -393,10 +312,10 @@ fn pairs(segments: &[[usize; 2]], points: usize) -> Result<Vec<[u32; 2]>> {
 
 /// The triangles that hold the seeds of holes, none of which may be on a segment.
 fn seeds(hull: &Constrained, holes: &[Point2]) -> Result<Vec<usize>> {
-    let given = hull.tiling.given();
+    let given = given(&hull.tiling);
     let mut found = with_room(holes.len())?;
     let mut ends: HashSet<i32> = HashSet::new();
-    for (hole, place) in hull.locate_all(holes)?.into_iter().enumerate() {
+    for (hole, place) in hull.locate(holes)?.into_iter().enumerate() {
         let q = holes[hole];
         let Some(t) = place.simplex() else {
             return Err(Error::Seed { hole });
@@ -407,7 +326,7 @@ fn seeds(hull: &Constrained, holes: &[Point2]) -> Result<Vec<usize>> {
         // At a vertex it may be on a segment that is no edge of this triangle.
         if let Some(k) = corners.iter().position(|p| *p == q) {
             if ends.is_empty() {
-                ends.extend(hull.subsegments.ends.as_flattened());
+                ends.extend(hull.segments.ends.as_flattened());
             }
             bad |= ends.contains(&given.simplices[t][k]);
         }

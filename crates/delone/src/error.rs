@@ -12,10 +12,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// Coordinates are NaN or infinite.
-    #[error(
-        "{count} of the rows have a coordinate that is NaN or infinite, first row {}",
-        first(rows)
-    )]
+    #[error("{}", nonfinite(rows, *count))]
     #[non_exhaustive]
     NonFinite {
         /// The first of these rows, ascending.
@@ -24,11 +21,13 @@ pub enum Error {
         count: usize,
     },
     /// There are fewer distinct points than a simplex has corners.
-    #[error("{} distinct points are too few for a triangulation, rows {rows:?}", rows.len())]
+    #[error("{} too few for a {}", distinct(rows), simplex(*dimension))]
     #[non_exhaustive]
     TooFew {
         /// The first row of each distinct point.
         rows: Vec<usize>,
+        /// The dimension of the points.
+        dimension: usize,
     },
     /// All points lie on one line.
     #[error("all {} distinct points lie on one line, from row {} to row {}", rows.len(), first(rows), last(rows))]
@@ -45,8 +44,16 @@ pub enum Error {
         rows: Vec<usize>,
     },
     /// There are more points, or would be more simplices, than a triangulation can hold.
-    #[error("{0}")]
-    TooLarge(String),
+    #[error("{}{what} exceed the limit of {limit} for one triangulation", counted(*found))]
+    #[non_exhaustive]
+    TooLarge {
+        /// Points or tetrahedra.
+        what: &'static str,
+        /// How many there are, if that is known.
+        found: Option<usize>,
+        /// How many there may be.
+        limit: usize,
+    },
     /// A segment ends at a row that does not exist.
     #[error("segment {segment} ends at row {row}, but there are {points} points")]
     #[non_exhaustive]
@@ -69,7 +76,7 @@ pub enum Error {
     },
     /// More points would have to be added than `max_points` allows.
     #[error(
-        "{found} {what} exceed the limit of {limit} added points; most are on segments {segments:?}"
+        "found {found} {what}, more than the limit of {limit} vertices allows; most are on segments {segments:?}"
     )]
     #[non_exhaustive]
     Budget {
@@ -81,8 +88,10 @@ pub enum Error {
         found: usize,
         /// The rows of the segments on which most of them are.
         segments: Vec<usize>,
-        /// A place where many of them are.
+        /// The point where the first two of these meet, or where the last point would have been.
         place: Option<Point2>,
+        /// Whether they meet there.
+        corner: bool,
     },
     /// The segments enclose no triangle, or the holes remove all of them.
     #[error("the domain is empty: the segments enclose no triangle that is in no hole")]
@@ -97,8 +106,11 @@ pub enum Error {
     /// An option is out of range.
     #[error("{0}")]
     Option(String),
+    /// Arrays that are given do not fit together; the text names the first row that is wrong.
+    #[error("{0}")]
+    Shape(String),
     /// The system refused memory.
-    #[error("no memory for {bytes} bytes")]
+    #[error("out of memory: could not allocate {bytes} bytes")]
     #[non_exhaustive]
     Memory {
         /// The bytes that were requested.
@@ -120,26 +132,66 @@ fn last(rows: &[usize]) -> usize {
     rows.last().copied().unwrap_or_default()
 }
 
+fn nonfinite(rows: &[usize], count: usize) -> String {
+    let row = first(rows);
+    match count {
+        1 => format!("1 row has a coordinate that is NaN or infinite: row {row}"),
+        _ => format!(
+            "{count} rows have a coordinate that is NaN or infinite; the first is row {row}"
+        ),
+    }
+}
+
+fn distinct(rows: &[usize]) -> String {
+    match rows.len() {
+        1 => "1 distinct point is".into(),
+        count => format!("{count} distinct points are"),
+    }
+}
+
+fn simplex(dimension: usize) -> &'static str {
+    if dimension == 2 {
+        "triangle"
+    } else {
+        "tetrahedron"
+    }
+}
+
+fn counted(found: Option<usize>) -> String {
+    found.map_or_else(|| "the ".into(), |count| format!("{count} "))
+}
+
 fn wide(rows: Vec<u32>) -> Vec<usize> {
     rows.into_iter().map(|row| row as usize).collect()
 }
 
 impl From<core::Error> for Error {
     fn from(error: core::Error) -> Self {
-        let text = error.to_string();
         match error {
             core::Error::NonFinite { rows, count } => Self::NonFinite {
                 rows: wide(rows),
                 count,
             },
-            core::Error::TooFew { chain } | core::Error::TooFewInSpace { chain } => {
-                Self::TooFew { rows: wide(chain) }
-            }
+            core::Error::TooFew { chain } => Self::TooFew {
+                rows: wide(chain),
+                dimension: 2,
+            },
+            core::Error::TooFewInSpace { chain } => Self::TooFew {
+                rows: wide(chain),
+                dimension: 3,
+            },
             core::Error::Collinear { chain } => Self::Collinear { rows: wide(chain) },
             core::Error::Coplanar { chain } => Self::Coplanar { rows: wide(chain) },
-            core::Error::TooMany { .. } | core::Error::TooManyTetrahedra { .. } => {
-                Self::TooLarge(text)
-            }
+            core::Error::TooMany { found, limit } => Self::TooLarge {
+                what: "points",
+                found: Some(found),
+                limit,
+            },
+            core::Error::TooManyTetrahedra { limit } => Self::TooLarge {
+                what: "tetrahedra",
+                found: None,
+                limit,
+            },
             core::Error::Crossing { pairs, points } => Self::Crossing {
                 pairs: pairs.iter().map(|p| p.map(|s| s as usize)).collect(),
                 points,
@@ -155,11 +207,12 @@ impl From<core::Error> for Error {
                 found,
                 segments: wide(crowd.segments),
                 place: crowd.place,
+                corner: crowd.corner,
             },
+            core::Error::Shape(text) => Self::Shape(text),
             core::Error::Memory { bytes } => Self::Memory { bytes },
             core::Error::Interrupted => Self::Interrupted,
-            // Arrays come from the core itself, so one that does not fit is a bug, too.
-            core::Error::Shape(text) | core::Error::Internal(text) => Self::Internal(text),
+            core::Error::Internal(text) => Self::Internal(text),
         }
     }
 }

@@ -2,12 +2,11 @@
 //!
 //! | you have | you want | start with |
 //! |---|---|---|
-//! | points | triangles | [`Triangulation::new`] |
-//! | points in 3-D | tetrahedra | [`Triangulation3::new`] |
+//! | points in 2-D or 3-D | triangles or tetrahedra | [`Triangulation::new`] |
 //! | points and segments | triangles whose edges include the segments | [`Constrained::new`] |
 //! | polygons with holes | the triangles inside | [`Constrained::polygon`] |
 //! | a constrained triangulation | a mesh without small angles | [`Mesh::new`] |
-//! | a triangulation | cells, their areas and volumes | [`Voronoi::new`], [`Voronoi3::new`] |
+//! | a triangulation | cells, their areas and volumes | [`Voronoi::new`] |
 //! | a triangulation and queries | the triangles that contain them | [`Tiling::locate`] |
 //!
 //! ```
@@ -15,10 +14,10 @@
 //!
 //! let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [2.0, 1.0]];
 //! let triangulation = Triangulation::new(&points)?;
-//! for [a, b, c] in triangulation.triangles() {
+//! for [a, b, c] in triangulation.simplices() {
 //!     println!("{:?} {:?} {:?}", points[a], points[b], points[c]);
 //! }
-//! assert_eq!(triangulation.triangles().len(), 4);
+//! assert_eq!(triangulation.simplices().len(), 4);
 //! # Ok::<(), delone::Error>(())
 //! ```
 //!
@@ -47,21 +46,30 @@
 //! fn read() -> Result<Triangulation<'static>, delone::Error> {
 //!     Triangulation::new(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 //! }
-//! assert_eq!(read()?.triangles().len(), 1);
+//! assert_eq!(read()?.simplices().len(), 1);
 //! # Ok::<(), delone::Error>(())
 //! ```
 //!
-//! # Threads and interruption
+//! # Options
 //!
-//! [`Options`] sets the number of threads, which does not affect the result, and a function that long
+//! [`Options`] has all settings, and a method for each computation that uses them: bounds on angles and
+//! areas, holes, the number of threads, which does not affect the result, and a function that long
 //! calls ask whether to stop.
+//!
+//! # Arrays
+//!
+//! Iterators and slices of `usize` serve most programs. [`arrays`] has what is behind them, for
+//! bindings to other languages and for files.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
 mod areas;
+pub mod arrays;
 mod cells;
+mod checks;
 mod constrained;
+mod dimension;
 mod error;
 mod location;
 mod mesh;
@@ -69,19 +77,19 @@ mod options;
 mod tiling;
 mod triangulation;
 mod voronoi;
-mod voronoi3;
 
 pub use cells::Cells;
-pub use constrained::{Constrained, ConstrainedBuilder, Subsegment};
+pub use constrained::{Constrained, Subsegment};
+pub use delone_core::delaunay2::Method;
 pub use delone_predicates::{Point2, Point3};
+pub use dimension::Dimension;
 pub use error::{Error, Result};
 pub use location::Location;
-pub use mesh::{Mesh, MeshBuilder};
+pub use mesh::Mesh;
 pub use options::Options;
 pub use tiling::Tiling;
 pub use triangulation::{Triangulation, Triangulation3};
 pub use voronoi::{Corner, Ridge, Voronoi};
-pub use voronoi3::Voronoi3;
 
 /// Exact geometric predicates: the signs of determinants, for every finite double.
 ///

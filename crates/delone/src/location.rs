@@ -7,11 +7,11 @@
 ///
 /// let t = Triangulation::new(&[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])?;
 /// let heights = [0.0, 8.0, 4.0];
-/// let Location::Inside { simplex, weights } = t.locate([1.0, 2.0])? else { panic!() };
-/// let corners = t.triangles().nth(simplex).unwrap();
+/// let Location::Inside { simplex, weights } = t.locate(&[[1.0, 2.0]])?[0] else { panic!() };
+/// let corners = t.simplices().nth(simplex).unwrap();
 /// let height: f64 = (0..3).map(|k| weights[k] * heights[corners[k]]).sum();
 /// assert_eq!(height, 4.0);
-/// let Location::Outside { facet, weights, .. } = t.locate([1.0, -2.0])? else { panic!() };
+/// let Location::Outside { facet, weights, .. } = t.locate(&[[1.0, -2.0]])?[0] else { panic!() };
 /// assert_eq!((facet, weights), ([0, 1], [0.75, 0.25]));
 /// # Ok::<(), delone::Error>(())
 /// ```

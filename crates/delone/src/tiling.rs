@@ -1,61 +1,109 @@
 //! Triangles or tetrahedra with their neighbors, and the queries that all of them answer.
 
 use std::borrow::Cow;
-use std::sync::OnceLock;
+use std::time::Duration;
 
-use delone_core::arrays::{Arrays, Given};
+use delone_core::arrays::Arrays;
 use delone_core::memory::with_room;
-use delone_core::watch::Watch;
-use delone_core::{locate, locate3, measure};
 
+use crate::checks::{finite, has_length, in_range};
+use crate::dimension::{Kept, Kernel, Made, Scene};
 use crate::options::NEVER;
-use crate::{Error, Location, Point2, Point3, Result};
+use crate::{Dimension, Error, Location, Options, Result};
 
 /// Simplices that fill a domain: triangles in 2-D, tetrahedra in 3-D, with their neighbors.
 ///
-/// [`Triangulation`](crate::Triangulation), [`Triangulation3`](crate::Triangulation3),
-/// [`Constrained`](crate::Constrained) and [`Mesh`](crate::Mesh) dereference to it, so its methods are
-/// theirs. `D` is the dimension and `N` = `D` + 1 the number of corners of a simplex. Vertices are
-/// rows of [`points`](Self::points), simplices are numbered from 0. Triangles are counter-clockwise;
-/// tetrahedra have a positive determinant [`orient3d`](crate::predicates::orient3d).
+/// [`Triangulation`](crate::Triangulation), [`Constrained`](crate::Constrained) and
+/// [`Mesh`](crate::Mesh) dereference to it, so its methods are theirs. `D` is the dimension and
+/// `N` = `D` + 1 the number of corners of a simplex. Vertices are rows of [`points`](Self::points),
+/// simplices are numbered from 0. Triangles are counter-clockwise; tetrahedra have a positive
+/// determinant [`orient3d`](crate::predicates::orient3d).
 #[derive(Debug)]
-pub struct Tiling<'a, const D: usize, const N: usize> {
+pub struct Tiling<'a, const D: usize = 2, const N: usize = 3> {
     pub(crate) points: Cow<'a, [[f64; D]]>,
-    pub(crate) arrays: Arrays<N>,
+    pub(crate) simplices: Cow<'a, [[i32; N]]>,
+    pub(crate) neighbors: Cow<'a, [[i32; N]]>,
     pub(crate) duplicates: Vec<[u32; 2]>,
+    stages: Vec<(&'static str, Duration)>,
+    /// How many of the points were added.
+    added: usize,
     threads: usize,
     kept: Kept,
 }
 
-/// What queries share, made by the first of them; of the two, the one of the dimension is used.
-#[derive(Debug, Default)]
-struct Kept {
-    plane: OnceLock<locate::Kept>,
-    space: OnceLock<locate3::Kept>,
-}
-
 impl<'a, const D: usize, const N: usize> Tiling<'a, D, N> {
+    /// Of `made`, with the last `added` of the points.
     pub(crate) fn of(
         points: Cow<'a, [[f64; D]]>,
-        arrays: Arrays<N>,
-        duplicates: Vec<[u32; 2]>,
-        threads: usize,
+        made: Made<N>,
+        added: usize,
+        options: &Options,
     ) -> Self {
         Self {
             points,
-            arrays,
-            duplicates,
-            threads,
+            simplices: Cow::Owned(made.arrays.simplices),
+            neighbors: Cow::Owned(made.arrays.neighbors),
+            duplicates: made.duplicates,
+            stages: made.stages,
+            added,
+            threads: options.workers(),
             kept: Kept::default(),
         }
     }
 
-    pub(crate) fn given(&self) -> Given<'_, D, N> {
-        Given {
-            points: &self.points,
-            simplices: &self.arrays.simplices,
-            neighbors: &self.arrays.neighbors,
+    /// The same points with other simplices.
+    pub(crate) fn with(self, arrays: Arrays<N>) -> Self {
+        Self {
+            simplices: Cow::Owned(arrays.simplices),
+            neighbors: Cow::Owned(arrays.neighbors),
+            kept: Kept::default(),
+            ..self
         }
+    }
+
+    /// Simplices from elsewhere, borrowed: as rows of points, positively oriented, and for each of
+    /// them the simplex across the facet opposite each corner, -1 on the boundary.
+    ///
+    /// It is checked that points are finite and numbers in range; the rest is up to the caller. If
+    /// simplices overlap or do not name each other, queries have wrong answers or end with
+    /// [`Error::Internal`].
+    ///
+    /// ```
+    /// use delone::Tiling;
+    ///
+    /// let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    /// let halves = Tiling::from_arrays(&square, &[[0, 1, 2], [2, 3, 0]], &[[-1, 1, -1], [-1, 0, -1]])?;
+    /// assert_eq!(halves.locate(&[[0.2, 0.8]])?[0].simplex(), Some(1));
+    /// # Ok::<(), delone::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`], [`Error::Shape`].
+    pub fn from_arrays(
+        points: &'a [[f64; D]],
+        simplices: &'a [[i32; N]],
+        neighbors: &'a [[i32; N]],
+    ) -> Result<Self> {
+        finite(points)?;
+        has_length(neighbors, simplices.len(), "neighbors")?;
+        in_range(simplices, 0, points.len(), "simplices")?;
+        in_range(neighbors, -1, simplices.len(), "neighbors")?;
+        Ok(Self {
+            points: points.into(),
+            simplices: simplices.into(),
+            neighbors: neighbors.into(),
+            duplicates: Vec::new(),
+            stages: Vec::new(),
+            added: 0,
+            threads: Options::new().workers(),
+            kept: Kept::default(),
+        })
+    }
+
+    /// The arrays themselves: the corners of each simplex, and its neighbors, -1 on the boundary.
+    /// They are copied only if they were borrowed.
+    pub fn into_arrays(self) -> (Vec<[i32; N]>, Vec<[i32; N]>) {
+        (self.simplices.into_owned(), self.neighbors.into_owned())
     }
 
     /// The points: the rows of the input, then the points that were added.
@@ -63,9 +111,19 @@ impl<'a, const D: usize, const N: usize> Tiling<'a, D, N> {
         &self.points
     }
 
+    /// The points that were added, where segments cross or by refinement: the last of the points.
+    pub fn added(&self) -> &[[f64; D]] {
+        &self.points[self.points.len() - self.added..]
+    }
+
+    /// The vertices of each simplex.
+    pub fn simplices(&self) -> impl ExactSizeIterator<Item = [usize; N]> + '_ {
+        self.simplices.iter().map(|row| row.map(|v| v as usize))
+    }
+
     /// For each simplex, the simplex across the facet opposite each corner; `None` on the boundary.
     pub fn neighbors(&self) -> impl ExactSizeIterator<Item = [Option<usize>; N]> + '_ {
-        let rows = self.arrays.neighbors.iter();
+        let rows = self.neighbors.iter();
         rows.map(|row| row.map(|t| usize::try_from(t).ok()))
     }
 
@@ -73,249 +131,79 @@ impl<'a, const D: usize, const N: usize> Tiling<'a, D, N> {
     ///
     /// ```
     /// let t = delone::Triangulation::new(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0]])?;
-    /// assert_eq!(t.duplicates().collect::<Vec<_>>(), [(3, 1)]);
+    /// assert_eq!(t.duplicates(), [[3, 1]]);
     /// # Ok::<(), delone::Error>(())
     /// ```
-    pub fn duplicates(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + '_ {
-        let rows = self.duplicates.iter();
-        rows.map(|&[row, first]| (row as usize, first as usize))
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
     }
 
-    /// The arrays themselves, without a copy: the corners of each simplex, and its neighbors, -1 on
-    /// the boundary. For buffers and files that take integers of 32 bits.
-    pub fn into_arrays(self) -> (Vec<[i32; N]>, Vec<[i32; N]>) {
-        (self.arrays.simplices, self.arrays.neighbors)
+    /// The stages of the computation with the time that each took.
+    pub fn stages(&self) -> &[(&'static str, Duration)] {
+        &self.stages
+    }
+}
+
+impl<const D: usize, const N: usize> Tiling<'_, D, N>
+where
+    [f64; D]: Dimension<N>,
+{
+    pub(crate) fn scene(&self) -> Scene<'_, [f64; D], N> {
+        Scene {
+            points: &self.points,
+            simplices: &self.simplices,
+            neighbors: &self.neighbors,
+            kept: &self.kept,
+            workers: self.threads,
+        }
     }
 
-    fn simplices(&self) -> impl ExactSizeIterator<Item = [usize; N]> + '_ {
-        let rows = self.arrays.simplices.iter();
-        rows.map(|row| row.map(|v| v as usize))
+    /// Each edge once, the smaller vertex first, in ascending order.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn edges(&self) -> Result<Vec<[usize; 2]>> {
+        let edges = <[f64; D]>::edges(self.scene(), NEVER)?;
+        Ok(edges.iter().map(|e| e.map(|v| v as usize)).collect())
     }
 
-    /// The facets of the boundary; `facet` tells the corners of the one opposite a corner.
-    fn outer(&self, facet: impl Fn(usize) -> [usize; D]) -> Result<Vec<[usize; D]>> {
-        let rows = || self.arrays.simplices.iter().zip(&self.arrays.neighbors);
+    /// The facets of the boundary. An edge has its triangle on the left; a face is counter-clockwise
+    /// seen from outside.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn boundary(&self) -> Result<Vec<[usize; D]>> {
+        let rows = || self.simplices.iter().zip(self.neighbors.iter());
         let count = rows().map(|(_, n)| n.iter().filter(|t| **t < 0).count());
         let mut found = with_room(count.sum())?;
         for (corners, neighbors) in rows() {
             let open = (0..N).filter(|&k| neighbors[k] < 0);
-            found.extend(open.map(|k| facet(k).map(|corner| corners[corner] as usize)));
+            let facet = |k: usize| <[f64; D]>::FACETS[k];
+            found.extend(open.map(|k| std::array::from_fn(|i| corners[facet(k)[i]] as usize)));
         }
         Ok(found)
     }
-}
 
-/// Refuses queries that are not finite.
-fn finite<const D: usize>(queries: &[[f64; D]]) -> Result<()> {
-    let bad = |q: &[f64; D]| q.iter().any(|x| !x.is_finite());
-    let mut rows = (0..queries.len()).filter(|&row| bad(&queries[row]));
-    let few: Vec<usize> = rows.by_ref().take(10).collect();
-    if few.is_empty() {
-        return Ok(());
-    }
-    Err(Error::NonFinite {
-        count: few.len() + rows.count(),
-        rows: few,
-    })
-}
-
-fn vertex(v: i32) -> Result<usize> {
-    usize::try_from(v).map_err(|_| Error::Internal("a query has no nearest simplex".into()))
-}
-
-fn one<T>(found: Vec<T>) -> Result<T> {
-    let none = || Error::Internal("a query has no answer".into());
-    found.into_iter().next().ok_or_else(none)
-}
-
-/// Calls `work` with queries of triangles as the core takes them.
-fn batch2<T>(
-    tiling: &Tiling<2, 3>,
-    queries: &[Point2],
-    work: impl FnOnce(&locate::Batch) -> delone_core::error::Result<T>,
-) -> Result<T> {
-    finite(queries)?;
-    let given = tiling.given();
-    let kept = locate_kept(&tiling.kept.plane, || locate::Kept::of(&given, NEVER))?;
-    Ok(work(&locate::Batch {
-        locator: locate::Locator::new(given, kept, NEVER),
-        queries,
-        workers: tiling.threads,
-        watch: NEVER,
-    })?)
-}
-
-/// The same of tetrahedra.
-fn batch3<T>(
-    tiling: &Tiling<3, 4>,
-    queries: &[Point3],
-    work: impl FnOnce(&locate3::Batch) -> delone_core::error::Result<T>,
-) -> Result<T> {
-    finite(queries)?;
-    let given = tiling.given();
-    let kept = locate_kept(&tiling.kept.space, || locate3::Kept::of(&given, NEVER))?;
-    Ok(work(&locate3::Batch {
-        locator: locate3::Locator::new(given, kept, NEVER),
-        queries,
-        workers: tiling.threads,
-        watch: NEVER,
-    })?)
-}
-
-/// What is kept, or is made now; if two threads make it, one of two equal values.
-fn locate_kept<K>(
-    cell: &OnceLock<K>,
-    make: impl FnOnce() -> delone_core::error::Result<K>,
-) -> Result<&K> {
-    if let Some(kept) = cell.get() {
-        return Ok(kept);
-    }
-    let made = make()?;
-    Ok(cell.get_or_init(|| made))
-}
-
-impl Tiling<'_, 2, 3> {
-    /// The three vertices of each triangle, counter-clockwise.
-    pub fn triangles(&self) -> impl ExactSizeIterator<Item = [usize; 3]> + '_ {
-        self.simplices()
-    }
-
-    /// Each edge once, the smaller vertex first, in ascending order.
+    /// The area of each triangle or the volume of each tetrahedron, with a relative error below
+    /// 1e-14.
     ///
     /// # Errors
     /// [`Error::Memory`].
-    pub fn edges(&self) -> Result<Vec<[usize; 2]>> {
-        let Given {
-            points,
-            simplices,
-            neighbors,
-        } = self.given();
-        let edges = measure::edges2(simplices, neighbors, points.len(), self.threads, NEVER)?;
-        Ok(edges.iter().map(|e| e.map(|v| v as usize)).collect())
+    pub fn sizes(&self) -> Result<Vec<f64>> {
+        Ok(<[f64; D]>::sizes(self.scene(), NEVER)?)
     }
 
-    /// The edges of the boundary, each with its triangle on the left.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn boundary(&self) -> Result<Vec<[usize; 2]>> {
-        self.outer(|k| [(k + 1) % 3, (k + 2) % 3])
-    }
-
-    /// The area of each triangle, with a relative error below 1e-14.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn areas(&self) -> Result<Vec<f64>> {
-        let given = self.given();
-        let areas = measure::areas(given.points, given.simplices, self.threads, NEVER)?;
-        Ok(areas)
-    }
-
-    /// The smallest angle of each triangle in degrees.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn min_angles(&self) -> Result<Vec<f64>> {
-        let given = self.given();
-        let [smallest, ..] =
-            measure::qualities2(given.points, given.simplices, self.threads, NEVER)?;
-        Ok(smallest)
-    }
-
-    /// Where a point lies; see [`Location`]. Exact: no tolerance decides. The first call prepares a
-    /// search tree in linear time; then one call takes about the time of a short walk.
+    /// Where points lie; see [`Location`]. Exact: no tolerance decides. The first call prepares a
+    /// search tree in linear time; then each query takes about the time of a short walk. Many queries
+    /// in one call use threads and are faster than one by one.
     ///
     /// # Errors
     /// [`Error::NonFinite`] if a coordinate is NaN or infinite, and [`Error::Memory`].
-    pub fn locate(&self, query: Point2) -> Result<Location<2, 3>> {
-        one(self.locate_all(&[query])?)
-    }
-
-    /// The same for many points, with threads and faster than one by one.
-    ///
-    /// # Errors
-    /// As for [`locate`](Self::locate).
-    pub fn locate_all(&self, queries: &[Point2]) -> Result<Vec<Location<2, 3>>> {
-        let found = batch2(self, queries, locate::coordinates)?;
+    pub fn locate(&self, queries: &[[f64; D]]) -> Result<Vec<Location<D, N>>> {
+        finite(queries)?;
+        let found = <[f64; D]>::locate(self.scene(), queries, NEVER)?;
         let weights = found.weights.as_chunks().0;
-        let edges = found.edge.as_chunks::<2>().0;
-        let mut all = with_room(queries.len())?;
-        for (row, &t) in found.triangle.iter().enumerate() {
-            all.push(if t >= 0 {
-                Location::Inside {
-                    simplex: t as usize,
-                    weights: weights[row],
-                }
-            } else {
-                let [a, b] = edges[row];
-                Location::Outside {
-                    simplex: vertex(found.beside[row])?,
-                    facet: [vertex(a)?, vertex(b)?],
-                    weights: [1.0 - found.along[row], found.along[row]],
-                }
-            });
-        }
-        Ok(all)
-    }
-
-    pub(crate) fn nearest2(&self, query: Point2) -> Result<usize> {
-        vertex(one(batch2(self, &[query], locate::nearest)?)?)
-    }
-}
-
-impl Tiling<'_, 3, 4> {
-    /// The four vertices of each tetrahedron, positively oriented.
-    pub fn tetrahedra(&self) -> impl ExactSizeIterator<Item = [usize; 4]> + '_ {
-        self.simplices()
-    }
-
-    /// Each edge once, the smaller vertex first, in ascending order.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn edges(&self) -> Result<Vec<[usize; 2]>> {
-        let given = self.given();
-        let (n, workers) = (given.points.len(), self.threads);
-        let edges = measure::edges3(given.simplices, n, workers, NEVER)?;
-        Ok(edges.iter().map(|e| e.map(|v| v as usize)).collect())
-    }
-
-    /// The faces of the boundary, counter-clockwise seen from outside.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn boundary(&self) -> Result<Vec<[usize; 3]>> {
-        self.outer(|k| locate3::FACES[k])
-    }
-
-    /// The volume of each tetrahedron, with a relative error below 1e-14.
-    ///
-    /// # Errors
-    /// [`Error::Memory`].
-    pub fn volumes(&self) -> Result<Vec<f64>> {
-        let given = self.given();
-        let volumes = measure::volumes(given.points, given.simplices, self.threads, NEVER)?;
-        Ok(volumes)
-    }
-
-    /// Where a point lies; see [`Location`]. Exact: no tolerance decides. The first call prepares a
-    /// search tree in linear time; then one call takes about the time of a short walk.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`] if a coordinate is NaN or infinite, and [`Error::Memory`].
-    pub fn locate(&self, query: Point3) -> Result<Location<3, 4>> {
-        one(self.locate_all(&[query])?)
-    }
-
-    /// The same for many points, with threads and faster than one by one.
-    ///
-    /// # Errors
-    /// As for [`locate`](Self::locate).
-    pub fn locate_all(&self, queries: &[Point3]) -> Result<Vec<Location<3, 4>>> {
-        let found = batch3(self, queries, locate3::coordinates)?;
-        let weights = found.weights.as_chunks().0;
-        let faces = found.face.as_chunks::<3>().0;
+        let facets = found.facet.as_chunks::<D>().0;
         let shares = found.shares.as_chunks().0;
         let mut all = with_room(queries.len())?;
         for (row, &t) in found.simplex.iter().enumerate() {
@@ -325,26 +213,31 @@ impl Tiling<'_, 3, 4> {
                     weights: weights[row],
                 }
             } else {
-                let [a, b, c] = faces[row];
+                let beside = number(found.beside[row])?;
                 Location::Outside {
-                    simplex: vertex(found.beside[row])?,
-                    facet: [vertex(a)?, vertex(b)?, vertex(c)?],
+                    simplex: beside,
+                    facet: facets[row].map(|v| v as usize),
                     weights: shares[row],
                 }
             });
         }
         Ok(all)
     }
+}
 
-    pub(crate) fn nearest3(&self, query: Point3) -> Result<usize> {
-        vertex(one(batch3(self, &[query], locate3::nearest)?)?)
+impl Tiling<'_> {
+    /// The smallest angle of each triangle in degrees.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn min_angles(&self) -> Result<Vec<f64>> {
+        let [smallest, ..] =
+            delone_core::measure::qualities2(&self.points, &self.simplices, self.threads, NEVER)?;
+        Ok(smallest)
     }
 }
 
-/// The watch for a call: the core borrows it.
-pub(crate) fn watched<T>(
-    options: &crate::Options<'_>,
-    work: impl FnOnce(&Watch) -> delone_core::error::Result<T>,
-) -> Result<T> {
-    Ok(work(&options.watch())?)
+/// A number that the core has found, which is -1 if there is none.
+pub(crate) fn number(v: i32) -> Result<usize> {
+    usize::try_from(v).map_err(|_| Error::Internal("a query has no nearest simplex".into()))
 }

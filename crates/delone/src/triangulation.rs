@@ -3,152 +3,86 @@
 use std::borrow::Cow;
 use std::ops::Deref;
 
-use delone_core::delaunay2::{self, Method};
-use delone_core::delaunay3;
+use crate::checks::finite;
+use crate::dimension::Kernel;
+use crate::options::NEVER;
+use crate::tiling::number;
+use crate::{Dimension, Options, Result, Tiling};
 
-use crate::tiling::{Tiling, watched};
-use crate::{Options, Point2, Point3, Result};
-
-/// The Delaunay triangulation of points in 2-D: its triangles fill the convex hull, and no
-/// circumcircle contains another point.
+/// The Delaunay triangulation of points: its simplices fill the convex hull, and no circumcircle or
+/// circumsphere contains another point. The points tell whether it is in 2-D or in 3-D.
 ///
-/// Its methods are those of [`Tiling`].
+/// Its methods are those of [`Tiling`], too.
 ///
 /// ```
-/// use delone::Triangulation;
+/// use delone::{Triangulation, Triangulation3};
 ///
 /// // Four points on a circle: the diagonal starts at the lexicographically smallest one.
 /// let t = Triangulation::new(&[[1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [0.0, 0.0]])?;
 /// assert!(t.edges()?.contains(&[0, 3]));
 /// assert_eq!(t.boundary()?.len(), 4);
-/// # Ok::<(), delone::Error>(())
-/// ```
-#[derive(Debug)]
-pub struct Triangulation<'a>(Tiling<'a, 2, 3>);
-
-impl<'a> Triangulation<'a> {
-    /// Triangulates points, in O(n log n) time and with memory linear in n.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`](crate::Error::NonFinite), [`TooFew`](crate::Error::TooFew),
-    /// [`Collinear`](crate::Error::Collinear), [`TooLarge`](crate::Error::TooLarge) above 2^28 points,
-    /// [`Memory`](crate::Error::Memory).
-    pub fn new(points: impl Into<Cow<'a, [Point2]>>) -> Result<Self> {
-        Self::with_options(points, Options::new())
-    }
-
-    /// The same with options.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new), and [`Interrupted`](crate::Error::Interrupted).
-    pub fn with_options(
-        points: impl Into<Cow<'a, [Point2]>>,
-        options: Options<'_>,
-    ) -> Result<Self> {
-        let (points, workers) = (points.into(), options.workers());
-        let made = watched(&options, |watch| {
-            delaunay2::triangulate(&points, Method::Auto, workers, watch)
-        })?;
-        Ok(Self(Tiling::of(
-            points,
-            made.arrays,
-            made.duplicates,
-            workers,
-        )))
-    }
-
-    /// The vertex nearest to a point; of several, the one with the smallest row. Exact.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`](crate::Error::NonFinite) if a coordinate is NaN or infinite.
-    pub fn nearest(&self, query: Point2) -> Result<usize> {
-        self.0.nearest2(query)
-    }
-}
-
-impl<'a> Deref for Triangulation<'a> {
-    type Target = Tiling<'a, 2, 3>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.0
-    }
-}
-
-impl<'a> From<Triangulation<'a>> for Tiling<'a, 2, 3> {
-    fn from(triangulation: Triangulation<'a>) -> Self {
-        triangulation.0
-    }
-}
-
-/// The Delaunay triangulation of points in 3-D: its tetrahedra fill the convex hull, and no
-/// circumsphere contains another point.
-///
-/// Its methods are those of [`Tiling`].
-///
-/// ```
-/// use delone::Triangulation3;
 ///
 /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// let t = Triangulation3::new(&corners)?;
-/// assert_eq!(t.tetrahedra().len(), 1);
-/// assert!((t.volumes()?[0] - 1.0 / 6.0).abs() < 1e-15);
+/// let t: Triangulation3 = Triangulation::new(&corners)?;
+/// assert_eq!(t.simplices().len(), 1);
+/// assert!((t.sizes()?[0] - 1.0 / 6.0).abs() < 1e-15);
 /// # Ok::<(), delone::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct Triangulation3<'a>(Tiling<'a, 3, 4>);
+pub struct Triangulation<'a, const D: usize = 2, const N: usize = 3>(Tiling<'a, D, N>);
 
-impl<'a> Triangulation3<'a> {
-    /// Triangulates points. The result has up to O(n²) tetrahedra; for points that are spread evenly
-    /// it has about 6.8 n.
+/// A Delaunay triangulation in 3-D.
+pub type Triangulation3<'a> = Triangulation<'a, 3, 4>;
+
+impl<'a, const D: usize, const N: usize> Triangulation<'a, D, N>
+where
+    [f64; D]: Dimension<N>,
+{
+    /// Triangulates points. In 2-D it takes O(n log n) time and memory linear in n. In 3-D there are
+    /// up to O(n²) tetrahedra; for points that are spread evenly there are about 6.8 n.
     ///
     /// # Errors
-    /// [`Error::NonFinite`](crate::Error::NonFinite), [`TooFew`](crate::Error::TooFew),
+    /// [`NonFinite`](crate::Error::NonFinite), [`TooFew`](crate::Error::TooFew),
     /// [`Collinear`](crate::Error::Collinear), [`Coplanar`](crate::Error::Coplanar),
-    /// [`TooLarge`](crate::Error::TooLarge) above 2^27 points or 2^30 tetrahedra,
+    /// [`TooLarge`](crate::Error::TooLarge) above 2^28 points in 2-D, 2^27 points or 2^30 tetrahedra
+    /// in 3-D, [`Memory`](crate::Error::Memory).
+    pub fn new(points: impl Into<Cow<'a, [[f64; D]]>>) -> Result<Self> {
+        Options::new().triangulate(points)
+    }
+
+    pub(crate) fn made(points: Cow<'a, [[f64; D]]>, options: &Options) -> Result<Self> {
+        let made = options.watched(|watch| <[f64; D]>::triangulate(&points, options, watch))?;
+        Ok(Self(Tiling::of(points, made, 0, options)))
+    }
+
+    /// Takes a tiling that is a Delaunay triangulation, such as one from arrays that were stored.
+    /// This is not checked; if it is not one, nearest vertices and Voronoi cells are wrong.
+    pub fn trusted(tiling: Tiling<'a, D, N>) -> Self {
+        Self(tiling)
+    }
+
+    /// The vertex nearest to each query; of several, the one with the smallest row. Exact.
+    ///
+    /// # Errors
+    /// [`NonFinite`](crate::Error::NonFinite) if a coordinate is NaN or infinite, and
     /// [`Memory`](crate::Error::Memory).
-    pub fn new(points: impl Into<Cow<'a, [Point3]>>) -> Result<Self> {
-        Self::with_options(points, Options::new())
-    }
-
-    /// The same with options.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new), and [`Interrupted`](crate::Error::Interrupted).
-    pub fn with_options(
-        points: impl Into<Cow<'a, [Point3]>>,
-        options: Options<'_>,
-    ) -> Result<Self> {
-        let (points, workers) = (points.into(), options.workers());
-        let made = watched(&options, |watch| {
-            delaunay3::triangulate(&points, workers, watch)
-        })?;
-        Ok(Self(Tiling::of(
-            points,
-            made.arrays,
-            made.duplicates,
-            workers,
-        )))
-    }
-
-    /// The vertex nearest to a point; of several, the one with the smallest row. Exact.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`](crate::Error::NonFinite) if a coordinate is NaN or infinite.
-    pub fn nearest(&self, query: Point3) -> Result<usize> {
-        self.0.nearest3(query)
+    pub fn nearest(&self, queries: &[[f64; D]]) -> Result<Vec<usize>> {
+        finite(queries)?;
+        let found = <[f64; D]>::nearest(self.scene(), queries, NEVER)?;
+        found.into_iter().map(number).collect()
     }
 }
 
-impl<'a> Deref for Triangulation3<'a> {
-    type Target = Tiling<'a, 3, 4>;
+impl<'a, const D: usize, const N: usize> Deref for Triangulation<'a, D, N> {
+    type Target = Tiling<'a, D, N>;
 
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
-impl<'a> From<Triangulation3<'a>> for Tiling<'a, 3, 4> {
-    fn from(triangulation: Triangulation3<'a>) -> Self {
+impl<'a, const D: usize, const N: usize> From<Triangulation<'a, D, N>> for Tiling<'a, D, N> {
+    fn from(triangulation: Triangulation<'a, D, N>) -> Self {
         triangulation.0
     }
 }

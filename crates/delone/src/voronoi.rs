@@ -1,13 +1,15 @@
-//! Voronoi diagrams in 2-D.
+//! Voronoi diagrams, in 2-D and in 3-D.
 
-use delone_core::voronoi::{self as core, Diagram, Given};
+use delone_core::memory::filled;
+use delone_core::{voronoi as plane, voronoi3 as space};
 
+use crate::arrays::{Diagram2, Diagram3};
 use crate::cells::Cells;
-use crate::tiling::watched;
-use crate::{Error, Options, Point2, Result, Triangulation};
+use crate::dimension::Kernel;
+use crate::{Dimension, Error, Options, Point2, Result, Triangulation};
 
-/// The Voronoi diagram of points in 2-D: the cell of a point is what is nearer to it than to any
-/// other point.
+/// The Voronoi diagram of points: the cell of a point is what is nearer to it than to any other
+/// point.
 ///
 /// ```
 /// use delone::{Triangulation, Voronoi};
@@ -18,12 +20,23 @@ use crate::{Error, Options, Point2, Result, Triangulation};
 /// assert_eq!(voronoi.vertices(), [[1.0, 1.0]]);
 /// let cells = voronoi.clip([0.0, 0.0], [2.0, 2.0])?;
 /// assert_eq!((cells.area(0), cells.polygon(3).len()), (1.0, 4));
+///
+/// let axis = [-1.0, 0.0, 1.0];
+/// let plane = |z| axis.map(|y| axis.map(|x| [x, y, z])).concat();
+/// let grid = axis.map(plane).concat();
+/// let t = Triangulation::new(&grid)?;
+/// let volumes = Voronoi::new(&t)?.volumes()?;
+/// assert!((volumes[13] - 1.0).abs() < 1e-14);
+/// assert_eq!(volumes[0], f64::INFINITY);
 /// # Ok::<(), delone::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct Voronoi<'t> {
-    triangulation: &'t Triangulation<'t>,
-    diagram: Diagram,
+pub struct Voronoi<'t, const D: usize = 2, const N: usize = 3>
+where
+    [f64; D]: Dimension<N>,
+{
+    points: &'t [[f64; D]],
+    diagram: <[f64; D] as Kernel<N>>::Diagram,
     options: Options<'t>,
 }
 
@@ -55,46 +68,39 @@ impl<const D: usize> Corner<D> {
     }
 }
 
-impl<'t> Voronoi<'t> {
+impl<'t, const D: usize, const N: usize> Voronoi<'t, D, N>
+where
+    [f64; D]: Dimension<N>,
+{
     /// The diagram of the points of a triangulation, in linear time.
     ///
     /// # Errors
     /// [`Error::Memory`].
-    pub fn new(triangulation: &'t Triangulation<'t>) -> Result<Self> {
-        Self::with_options(triangulation, Options::new())
+    pub fn new(triangulation: &'t Triangulation<'_, D, N>) -> Result<Self> {
+        Self::of(triangulation, Options::new())
     }
 
-    /// The same with options.
-    ///
-    /// # Errors
-    /// [`Error::Memory`], [`Error::Interrupted`].
-    pub fn with_options(
-        triangulation: &'t Triangulation<'t>,
+    pub(crate) fn of(
+        triangulation: &'t Triangulation<'_, D, N>,
         options: Options<'t>,
     ) -> Result<Self> {
-        let arrays = triangulation.given();
-        let given = Given {
-            points: arrays.points,
-            weights: &[],
-            simplices: arrays.simplices,
-            neighbors: arrays.neighbors,
-        };
-        let diagram = watched(&options, |watch| {
-            core::diagram(given, options.workers(), watch)
-        })?;
+        let mut scene = triangulation.scene();
+        scene.workers = options.workers();
         Ok(Self {
-            triangulation,
-            diagram,
+            points: scene.points,
+            diagram: options.watched(|watch| <[f64; D]>::voronoi(scene, watch))?,
             options,
         })
     }
 
-    /// The vertices: the centers of circumcircles, rounded. Triangles with one circumcircle share a
-    /// vertex, which an exact test decides.
-    pub fn vertices(&self) -> &[Point2] {
-        &self.diagram.vertices
+    /// The vertices: the centers of circumcircles or circumspheres, rounded. Simplices with one
+    /// center share a vertex, which an exact test decides.
+    pub fn vertices(&self) -> &[[f64; D]] {
+        <[f64; D]>::vertices(&self.diagram)
     }
+}
 
+impl Voronoi<'_> {
     /// The edges of the cells. The first site is on the left of the way from the first corner to the
     /// second; if one of the corners is a ray, it is the first.
     pub fn ridges(&self) -> impl ExactSizeIterator<Item = Ridge<[Corner<2>; 2]>> + '_ {
@@ -117,14 +123,14 @@ impl<'t> Voronoi<'t> {
             let text = format!("the box from {min:?} to {max:?} has no finite positive area");
             return Err(Error::Option(text));
         }
-        let Diagram {
+        let Diagram2 {
             vertices,
             ridges,
             regions,
             ..
         } = &self.diagram;
-        let cells = core::Cells {
-            points: self.triangulation.points(),
+        let cells = plane::Cells {
+            points: self.points,
             weights: &[],
             vertices,
             sites: &ridges.sites,
@@ -137,11 +143,73 @@ impl<'t> Voronoi<'t> {
             entry_ridges: &regions.ridges,
         };
         let workers = self.options.workers();
-        watched(&self.options, |watch| {
-            let polygons = core::clip(cells, min, max, workers, watch)?;
+        self.options.watched(|watch| {
+            let polygons = plane::clip(cells, min, max, workers, watch)?;
             let (starts, points) = (&polygons.starts, &polygons.points);
-            let measures = core::measures(starts, points, workers, watch)?;
+            let measures = plane::measures(starts, points, workers, watch)?;
             Cells::of(&regions.of_point, polygons, measures)
         })
+    }
+}
+
+impl Voronoi<'_, 3, 4> {
+    /// The faces of the cells: convex polygons. An unbounded one begins and ends with a ray.
+    pub fn ridges(&self) -> impl ExactSizeIterator<Item = Ridge<Vec<Corner<3>>>> + '_ {
+        let ridges = &self.diagram.ridges;
+        let rows = ridges.sites.iter().zip(ridges.starts.windows(2));
+        rows.map(|(sites, range)| {
+            let entries = &ridges.entries[range[0] as usize..range[1] as usize];
+            let corner = |&code: &i32| Corner::of(code, &ridges.rays);
+            Ridge {
+                sites: sites.map(|v| v as usize),
+                corners: entries.iter().map(corner).collect(),
+            }
+        })
+    }
+
+    /// The volume of the cell of each point: infinite if the cell is unbounded, 0 for rows that
+    /// repeat a point.
+    ///
+    /// # Errors
+    /// [`Error::Memory`](crate::Error::Memory), [`Error::Interrupted`](crate::Error::Interrupted).
+    pub fn volumes(&self) -> Result<Vec<f64>> {
+        let Diagram3 {
+            vertices,
+            ridges,
+            regions,
+            ..
+        } = &self.diagram;
+        let cells = space::Cells {
+            points: self.points,
+            weights: &[],
+            vertices,
+            sites: &ridges.sites,
+            starts: &ridges.starts,
+            entries: &ridges.entries,
+            site: &regions.site,
+            ridge_starts: &regions.ridge_starts,
+            ridges: &regions.ridges,
+        };
+        let workers = self.options.workers();
+        let found = self
+            .options
+            .watched(|watch| space::measures(cells, workers, watch))?;
+        let mut volumes = filled(regions.of_point.len(), 0.0)?;
+        for (&site, volume) in regions.site.iter().zip(found.volumes) {
+            volumes[site as usize] = volume;
+        }
+        Ok(volumes)
+    }
+}
+
+impl From<Voronoi<'_>> for Diagram2 {
+    fn from(voronoi: Voronoi<'_>) -> Self {
+        voronoi.diagram
+    }
+}
+
+impl From<Voronoi<'_, 3, 4>> for Diagram3 {
+    fn from(voronoi: Voronoi<'_, 3, 4>) -> Self {
+        voronoi.diagram
     }
 }
