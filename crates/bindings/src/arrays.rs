@@ -7,7 +7,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 
-use delone_core::error::{Error, Result};
+use delone::{Error, Result};
 
 /// A 1-D NumPy array.
 pub type Column<T> = Py<PyArray1<T>>;
@@ -129,7 +129,7 @@ pub fn numbers(py: Python<'_>, numbers: Vec<u32>) -> Column<i32> {
 }
 
 /// Rows of numbers as an array.
-pub fn number_rows<const D: usize>(py: Python<'_>, rows: Vec<[u32; D]>) -> PyResult<Table<i32>> {
-    let signed: Vec<[i32; D]> = rows.into_iter().map(|row| row.map(|v| v as i32)).collect();
+pub fn number_rows<const D: usize>(py: Python<'_>, rows: &[[u32; D]]) -> PyResult<Table<i32>> {
+    let signed: Vec<[i32; D]> = rows.iter().map(|row| row.map(|v| v as i32)).collect();
     table(py, signed)
 }

@@ -1,19 +1,18 @@
 //! Constrained triangulations as arrays.
 
-use delone_core::Point2;
-use delone_core::constrained::{
-    Constrained, Options, Rule, components, constrain, polygon, simple_ring,
-};
-use delone_core::error::{Error, Result};
+use delone::arrays::Rule;
+use delone::{Constrained, Error, Options, Point2, Result};
+use delone_core::constrained::{components, simple_ring};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{Column, Table, column, frozen, in_range, number_rows, numbers, rows, table};
+use crate::arrays::{
+    Column, Table, column, flat, frozen, in_range, number_rows, numbers, rows, table,
+};
 use crate::errors::raise;
-use crate::given::pairs;
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::watched;
+use crate::signals::{optioned, watched};
 use crate::triangulation::{method_of, seconds};
 
 /// A constrained Delaunay triangulation of the whole hull.
@@ -93,35 +92,36 @@ pub fn constrained2<'py>(
     workers: usize,
 ) -> PyResult<(ConstrainedTriangulation, Py<PyTuple>)> {
     let method = method_of(method)?;
-    let options = Options {
-        split,
-        conforming,
-        max_vertices,
-        method,
-        workers,
-    };
     let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let segments = pairs(&segments, points.len(), "segments").map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| constrain(points, &segments, options, watch))?;
-    let stages = seconds(py, &made.stages)?;
+    let segments: &[[i32; 2]] = rows(&segments, "segments").map_err(|e| raise(py, &e))?;
+    let with = |options: Options<'_>| {
+        let options = options.method(method).max_points(max_vertices);
+        let options = options.split_crossings(split).conforming(conforming);
+        options.constrain(points, segments)
+    };
+    let made = optioned(py, workers, with)?;
+    let stages = seconds(py, made.stages())?;
     Ok((arrays_of(py, made)?, stages))
 }
 
-fn arrays_of(py: Python<'_>, made: Constrained) -> PyResult<ConstrainedTriangulation> {
-    let sub = made.subsegments;
+fn arrays_of(py: Python<'_>, made: Constrained<'_>) -> PyResult<ConstrainedTriangulation> {
+    let (tiling, constrained, segments) = made.into_parts();
+    let added = table(py, tiling.added().to_vec())?;
+    let duplicates = number_rows(py, tiling.duplicates())?;
+    let (simplices, neighbors) = tiling.into_arrays();
     Ok(ConstrainedTriangulation {
-        added: table(py, made.added)?,
-        simplices: table(py, made.arrays.simplices)?,
-        neighbors: table(py, made.arrays.neighbors)?,
-        constrained: table(py, made.constrained)?,
-        duplicates: number_rows(py, made.duplicates)?,
-        segments: table(py, sub.ends)?,
-        source_start: column(py, sub.start),
-        source: column(py, sub.source),
-        forward: column(py, sub.forward),
-        zero: numbers(py, made.zero),
-        through: number_rows(py, made.through)?,
-        crossings: number_rows(py, made.crossings)?,
+        added,
+        simplices: table(py, simplices)?,
+        neighbors: table(py, neighbors)?,
+        constrained: table(py, constrained)?,
+        duplicates,
+        segments: table(py, segments.ends)?,
+        source_start: column(py, segments.starts),
+        source: column(py, segments.sources),
+        forward: column(py, segments.forward),
+        zero: numbers(py, segments.zero),
+        through: number_rows(py, &segments.through)?,
+        crossings: number_rows(py, &segments.crossings)?,
     })
 }
 
@@ -157,13 +157,13 @@ pub fn polygon2(
     nonzero: bool,
 ) -> PyResult<(Table<f64>, Table<i32>)> {
     let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let starts = bounds(&starts, points.len()).map_err(|e| raise(py, &e))?;
+    let starts = bounds(&starts).map_err(|e| raise(py, &e))?;
     let rule = if nonzero {
         Rule::NonZero
     } else {
         Rule::EvenOdd
     };
-    let filled = watched(py, |watch| polygon(points, &starts, rule, watch))?;
+    let filled = optioned(py, 1, |options| options.fill(points, &starts, rule))?;
     Ok((table(py, filled.added)?, table(py, filled.simplices)?))
 }
 
@@ -182,22 +182,17 @@ pub fn ring2(
     let Ok(points) = rows::<f64, 2>(&points, "points") else {
         return Ok(None);
     };
-    let Some(simplices) = simple_ring(points).map_err(|e| raise(py, &e))? else {
+    let Some(simplices) = simple_ring(points).map_err(|e| raise(py, &e.into()))? else {
         return Ok(None);
     };
     Ok(Some((frozen(py, points)?, frozen(py, &simplices)?)))
 }
 
-/// The start of each ring, and the end: ascending, within `n` points.
-fn bounds(starts: &PyReadonlyArray1<'_, i32>, n: usize) -> Result<Vec<usize>> {
-    let starts = starts
-        .as_slice()
-        .map_err(|_| Error::Shape("starts is not contiguous".into()))?;
-    let ascend = starts.windows(2).all(|w| w[0] <= w[1]);
-    let inside = starts.iter().all(|&s| s >= 0 && s as usize <= n);
-    if !(ascend && inside) {
-        let message = format!("starts must ascend, from 0 to at most {n}");
-        return Err(Error::Shape(message));
-    }
-    Ok(starts.iter().map(|&s| s as usize).collect())
+/// The start of each ring, and the end.
+fn bounds(starts: &PyReadonlyArray1<'_, i32>) -> Result<Vec<usize>> {
+    let wrong = || Error::Shape("starts has an entry below 0".into());
+    let starts = flat(starts, "starts")?.iter();
+    starts
+        .map(|&s| usize::try_from(s).map_err(|_| wrong()))
+        .collect()
 }

@@ -1,7 +1,7 @@
 //! Disks of triangles and the points deepest in circles, for triangulations in tiles.
 
+use delone::{Error, Result};
 use delone_core::distributed::{deepest, disk, within};
-use delone_core::error::Error;
 use delone_core::memory::with_room;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -24,7 +24,7 @@ pub fn disks2(
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let simplices: &[[i32; 3]] = rows(&simplices, "simplices").map_err(|e| raise(py, &e))?;
     in_range(simplices, 0, points.len(), "simplices").map_err(|e| raise(py, &e))?;
-    let disks = watched(py, |watch| {
+    let disks = watched(py, |watch| -> Result<_> {
         let mut disks = with_room(simplices.len())?;
         for lot in simplices.chunks(LOT) {
             watch.check()?;

@@ -1,9 +1,8 @@
-//! Conversion of core errors to the exceptions of `delone.errors`; a panic becomes `InternalError`.
+//! Conversion of errors to the exceptions of `delone.errors`; a panic becomes `InternalError`.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use delone_core::Point2;
-use delone_core::error::{Crowd, Error, Result};
+use delone::{Error, Point2, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +10,10 @@ use pyo3::types::PyDict;
 use crate::arrays::table;
 
 /// Runs `work` without the GIL.
-pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+pub fn detached<T: Send, E: Into<Error>>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, E> + Send,
+) -> PyResult<T> {
     py.detach(|| caught(work)).map_err(|e| raise(py, &e))
 }
 
@@ -20,8 +22,9 @@ pub fn attached<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult
     caught(work).map_err(|e| raise(py, &e))
 }
 
-/// The result of `work`, with a panic converted to an error: all calls of the core go through here.
-fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+/// The result of `work`, with a panic converted to an error: all calls of Rust go through here.
+fn caught<T, E: Into<Error>>(work: impl FnOnce() -> Result<T, E>) -> Result<T> {
+    let work = || work().map_err(Into::into);
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -44,84 +47,90 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             return Ok(PyErr::take(py).unwrap_or_else(|| PyKeyboardInterrupt::new_err(())));
         }
         Error::Memory { .. } => return Ok(PyMemoryError::new_err(error.to_string())),
-        Error::NonFinite { rows, count } => {
+        Error::NonFinite { rows, count, .. } => {
             details.set_item("rows", rows)?;
             details.set_item("count", count)?;
-            let first = rows.first().copied().unwrap_or(0);
             let message = match count {
-                1 => format!("{error}: row {first}; drop or repair it"),
-                _ => format!("{error}; the first is row {first}: drop or repair them"),
+                1 => format!("{error}; drop or repair it"),
+                _ => format!("{error}: drop or repair them"),
             };
             ("NonFiniteError", message)
         }
-        Error::TooFew { chain } => {
+        Error::TooFew {
+            rows, dimension, ..
+        } => {
             details.set_item("reason", "too few points")?;
-            details.set_item("chain", chain)?;
-            let message =
-                format!("{error} for a triangle: at least three that are not collinear are needed");
+            details.set_item("chain", rows)?;
+            let message = match dimension {
+                2 => format!("{error}: at least three that are not collinear are needed"),
+                _ => format!("{error}: at least four that are not coplanar are needed"),
+            };
             ("DegenerateInputError", message)
         }
-        Error::Collinear { chain } => {
+        Error::Collinear { rows, .. } => {
             details.set_item("reason", "collinear")?;
-            details.set_item("chain", chain)?;
+            details.set_item("chain", rows)?;
             let message = format!(
-                "{error}, so there is no triangle; `error.chain` has their rows in order along it"
+                "all {} distinct points lie on one line, so there is no triangle; `error.chain` \
+                 has their rows in order along it",
+                rows.len()
             );
             ("DegenerateInputError", message)
         }
-        Error::TooFewInSpace { chain } => {
-            details.set_item("reason", "too few points")?;
-            details.set_item("chain", chain)?;
-            let message = format!(
-                "{error} for a tetrahedron: at least four that are not coplanar are needed"
-            );
-            ("DegenerateInputError", message)
-        }
-        Error::Coplanar { chain } => {
+        Error::Coplanar { rows, .. } => {
             details.set_item("reason", "coplanar")?;
-            details.set_item("chain", chain)?;
+            details.set_item("chain", rows)?;
             let message = format!(
                 "{error}, so there is no tetrahedron; triangulate them in 2-D, in that plane"
             );
             ("DegenerateInputError", message)
         }
         // The tiles of delone.distributed are 2-D.
-        Error::TooManyTetrahedra { .. } => {
+        Error::TooLarge { found: None, .. } => {
             ("LimitError", format!("{error}: triangulate fewer points"))
         }
-        Error::TooMany { .. } => {
+        Error::TooLarge { .. } => {
             let message = format!("{error}: use delone.distributed in 2-D, or fewer points");
             ("LimitError", message)
         }
-        Error::Crossing { pairs, points } => {
+        Error::Crossing { pairs, points, .. } => {
             // As arrays, because there may be millions.
-            details.set_item("pairs", table(py, pairs.clone())?)?;
+            let narrow = pairs.iter().map(|pair| pair.map(|row| row as u32));
+            details.set_item("pairs", table(py, narrow.collect())?)?;
             details.set_item("points", table(py, points.clone())?)?;
             ("CrossingSegmentsError", crossing(pairs, points))
         }
         Error::Budget {
+            what,
             limit,
             found,
-            crowd,
+            segments,
+            place,
+            corner,
             ..
         } => {
             details.set_item("limit", limit)?;
             details.set_item("found", found)?;
-            details.set_item("segments", &crowd.segments)?;
-            details.set_item("place", crowd.place.map(|[x, y]| (x, y)))?;
-            let place = crowded(crowd);
-            let message = format!("{error}{place}: allow more, or make the input simpler there");
+            details.set_item("segments", segments)?;
+            details.set_item("place", place.map(|[x, y]| (x, y)))?;
+            let place = crowded(segments, *place, *corner);
+            let message = format!(
+                "found {found} {what}, more than the limit of {limit} vertices allows{place}: \
+                 allow more, or make the input simpler there"
+            );
             ("BudgetExceededError", message)
         }
         Error::Shape(message) => ("ShapeError", message.clone()),
+        Error::NoSuchPoint { .. } | Error::Option(_) => ("ShapeError", error.to_string()),
         Error::Internal(message) => ("InternalError", message.clone()),
+        _ => ("InternalError", error.to_string()),
     };
     let class = py.import("delone.errors")?.getattr(class)?;
     Ok(PyErr::from_value(class.call((message,), Some(&details))?))
 }
 
 /// Names the first pair of segments that cross.
-fn crossing(pairs: &[[u32; 2]], points: &[Point2]) -> String {
+fn crossing(pairs: &[[usize; 2]], points: &[Point2]) -> String {
     let (count, [s, t]) = (pairs.len(), pairs.first().copied().unwrap_or_default());
     let [x, y] = points.first().copied().unwrap_or_default();
     let what = match count {
@@ -132,11 +141,11 @@ fn crossing(pairs: &[[u32; 2]], points: &[Point2]) -> String {
 }
 
 /// Names the segments with most of the vertices that exceed the budget.
-fn crowded(crowd: &Crowd) -> String {
-    let names: Vec<String> = crowd.segments.iter().map(u32::to_string).collect();
+fn crowded(rows: &[usize], place: Option<Point2>, corner: bool) -> String {
+    let names: Vec<String> = rows.iter().map(usize::to_string).collect();
     let (names, count) = (names.join(", "), names.len());
     let segments = if count == 1 { "segment" } else { "segments" };
-    match (count, crowd.place, crowd.corner) {
+    match (count, place, corner) {
         (0, ..) => String::new(),
         (_, Some([x, y]), true) => {
             format!("; most are on {segments} {names}, the first two of which meet at ({x}, {y})")

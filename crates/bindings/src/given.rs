@@ -1,8 +1,8 @@
 //! Triangulations passed as arrays: borrowed and checked for one call, or held for many; and other
 //! arrays passed with points: weights, edges.
 
+use delone::{Error, Result};
 use delone_core::arrays::Given;
-use delone_core::error::{Error, Result};
 use delone_core::watch::Watch;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -94,10 +94,10 @@ impl Lent<'_> {
 }
 
 /// Runs `work` for `count` queries, without the GIL unless there are few.
-pub fn answered<T: Send>(
+pub fn answered<T: Send, E: Into<Error>>(
     py: Python<'_>,
     count: usize,
-    work: impl FnOnce(&Watch) -> Result<T> + Send,
+    work: impl FnOnce(&Watch) -> Result<T, E> + Send,
 ) -> PyResult<T> {
     if count <= FEW {
         return watched_attached(py, work);

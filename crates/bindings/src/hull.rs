@@ -16,7 +16,7 @@ type Chain = (Column<i32>, Table<i32>);
 pub fn hull2(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Chain> {
     let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
     let (vertices, duplicates) = watched(py, |watch| hull::hull2(points, watch))?;
-    Ok((numbers(py, vertices), number_rows(py, duplicates)?))
+    Ok((numbers(py, vertices), number_rows(py, &duplicates)?))
 }
 
 /// The convex hull of 3-D points.
@@ -44,11 +44,11 @@ pub fn hull3(py: Python<'_>, points: PyReadonlyArray2<'_, f64>) -> PyResult<Opti
         return Ok(None);
     };
     Ok(Some(Hull3 {
-        simplices: number_rows(py, found.simplices)?,
-        neighbors: number_rows(py, found.neighbors)?,
+        simplices: number_rows(py, &found.simplices)?,
+        neighbors: number_rows(py, &found.neighbors)?,
         facet_of: numbers(py, found.facet),
         polygons: numbers(py, found.polygons),
         starts: numbers(py, found.starts),
-        duplicates: number_rows(py, found.duplicates)?,
+        duplicates: number_rows(py, &found.duplicates)?,
     }))
 }

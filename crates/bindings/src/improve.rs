@@ -1,6 +1,7 @@
 //! Improved tetrahedra as arrays.
 
-use delone_core::error::{Error, Result};
+use delone::Result;
+use delone_core::error::{Error, Result as CoreResult};
 use delone_core::improve::{Improved, Task, improve};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -86,7 +87,7 @@ pub fn improve3<'py>(
     };
     let task = task().map_err(|e| raise(py, &e))?;
     let mut failure = None;
-    let mut notify = |pass: usize, below: usize| -> Result<()> {
+    let mut notify = |pass: usize, below: usize| -> CoreResult<()> {
         let Some(progress) = &progress else {
             return Ok(());
         };

@@ -1,6 +1,6 @@
 //! Interpolation: the bodies of the methods of `Locator2`, and other functions.
 
-use delone_core::error::{Error, Result};
+use delone::{Error, Result};
 use delone_core::interpolate::{
     Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table as Sums, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
@@ -272,7 +272,7 @@ pub fn combine2(
         ));
     }
     let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, gradients, columns).map_err(fail)?;
+    let field = Field::of_rows(n, items, gradients, columns).map_err(|e| fail(e.into()))?;
     let found = watched(py, |watch| table.combine(n, field, workers, watch))?;
     shaped(py, found, [indptr.shape()[0].saturating_sub(1), columns])
 }
@@ -298,7 +298,7 @@ pub fn gradients_global2(
     let starts = flat(&indptr, "indptr").map_err(fail)?;
     let ends = flat(&indices, "indices").map_err(fail)?;
     let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
     let (found, sweeps) = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         global_gradients(rows, edges, field, tol, floor, maxiter, workers, watch)
@@ -326,7 +326,7 @@ pub fn gradients_local2(
     let starts = flat(&indptr, "indptr").map_err(fail)?;
     let ends = flat(&indices, "indices").map_err(fail)?;
     let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
     let found = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         local_gradients(rows, edges, field, degree, workers, watch)
@@ -353,7 +353,7 @@ pub fn gradients_local3(
     let vertices = flat(&vertices, "vertices").map_err(fail)?;
     each_in_range(vertices, 0, n, "vertices").map_err(fail)?;
     let items = flat(&values, "values").map_err(fail)?;
-    let field = Field::of_rows(n, items, None, columns).map_err(fail)?;
+    let field = Field::of_rows(n, items, None, columns).map_err(|e| fail(e.into()))?;
     let found = watched(py, |watch| {
         let edges = Adjacency::new(n, starts, ends)?;
         interpolate3::local_gradients(rows, edges, field, vertices, workers, watch)

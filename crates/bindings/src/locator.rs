@@ -1,7 +1,7 @@
 //! Triangulations that are kept for many calls: the common part of `Locator2` and `Locator3`.
 
+use delone::{Error, Result};
 use delone_core::arrays::Given;
-use delone_core::error::Result;
 use delone_core::locate::{self, Batch, Locator, Walks};
 use delone_core::locate3;
 use delone_core::watch::Watch;
@@ -26,11 +26,11 @@ pub type Space = Tiling<locate3::Kept, 3, 4>;
 
 impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
     /// Checks the arrays and builds the index.
-    pub fn new(
+    pub fn new<E: Into<Error>>(
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
         neighbors: &PyReadonlyArray2<'_, i32>,
-        keep: impl FnOnce(&Given<D, N>, &Watch) -> Result<K> + Send,
+        keep: impl FnOnce(&Given<D, N>, &Watch) -> Result<K, E> + Send,
     ) -> PyResult<Self> {
         let py = points.py();
         let given = checked(points, simplices, neighbors).map_err(|e| raise(py, &e))?;
@@ -42,11 +42,11 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
     }
 
     /// Calls `work` with a locator for `count` queries, without the GIL unless there are few.
-    pub fn run<T: Send>(
+    pub fn run<T: Send, E: Into<Error>>(
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&Locator<K, D, N>, &Watch) -> Result<T> + Send,
+        work: impl FnOnce(&Locator<K, D, N>, &Watch) -> Result<T, E> + Send,
     ) -> PyResult<T> {
         let lent = self.held.lend(py)?;
         let given = lent.given().map_err(|e| raise(py, &e))?;
@@ -56,11 +56,11 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
     }
 
     /// Calls `work` with a batch of queries; also returns their number.
-    pub fn batch<T: Send>(
+    pub fn batch<T: Send, E: Into<Error>>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<K, D, N>) -> Result<T> + Send,
+        work: impl FnOnce(&Batch<K, D, N>) -> Result<T, E> + Send,
     ) -> PyResult<(T, usize)> {
         let py = xi.py();
         let queries = rows(xi, "xi").map_err(|e| raise(py, &e))?;
@@ -76,11 +76,11 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
     }
 
     /// Calls `work`, which returns one number per query.
-    pub fn column<T: Element + Send>(
+    pub fn column<T: Element + Send, E: Into<Error>>(
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<K, D, N>) -> Result<Vec<T>> + Send,
+        work: impl FnOnce(&Batch<K, D, N>) -> Result<Vec<T>, E> + Send,
     ) -> PyResult<Column<T>> {
         let (found, _) = self.batch(xi, workers, work)?;
         Ok(column(xi.py(), found))

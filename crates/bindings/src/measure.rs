@@ -1,6 +1,6 @@
 //! Measures of simplices: edges and faces, centers, sizes, shapes.
 
-use delone_core::error::Result;
+use delone::{Error, Result};
 use delone_core::measure;
 use delone_core::watch::Watch;
 use numpy::{PyArray3, PyReadonlyArray2};
@@ -81,11 +81,11 @@ pub fn around(
 }
 
 /// Calls a measure of the core on simplices.
-fn measured<R: Send, const D: usize, const N: usize>(
+fn measured<R: Send, E: Into<Error>, const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
     simplices: &PyReadonlyArray2<'_, i32>,
-    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R> + Send,
+    of: impl FnOnce(&[[f64; D]], &[[i32; N]], &Watch) -> Result<R, E> + Send,
 ) -> PyResult<R> {
     let (points, simplices) = attached(py, || {
         let points: &[[f64; D]] = rows(points, "points")?;

@@ -1,6 +1,6 @@
 //! The predicates over arrays of points.
 
-use delone_core::error::Error;
+use delone::{Error, Result};
 use delone_core::memory::with_room;
 use delone_predicates as exact;
 use delone_predicates::Sign;
@@ -27,7 +27,7 @@ fn signs<const D: usize, const M: usize>(
             &Error::Shape("arguments differ in length".into()),
         ));
     }
-    let signs = detached(py, || {
+    let signs = detached(py, || -> Result<_> {
         let mut signs = with_room(n)?;
         signs.extend((0..n).map(|i| sign(columns.map(|c| c[i])) as i8));
         Ok(signs)

@@ -1,33 +1,18 @@
 //! Refined meshes as arrays.
 
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use delone_core::error::{Error, Result};
-use delone_core::refine::{Lines, Refined, Task, judge, refine_telling};
-use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2};
+use delone::arrays::{Domain, Lines, Refined};
+use delone::{Options, Result};
+use delone_core::refine::judge;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, column, in_range, numbers, rows, table};
-use crate::errors::raise;
+use crate::arrays::{Column, Table, column, flat, in_range, numbers, rows, table};
+use crate::errors::{attached, raise};
 use crate::given::pairs;
-use crate::signals::watched;
-
-/// A vector that must have `n` entries.
-fn each<'a, T: Element>(
-    array: &'a PyReadonlyArray1<'_, T>,
-    n: usize,
-    name: &str,
-) -> Result<&'a [T]> {
-    let values = array
-        .as_slice()
-        .map_err(|_| Error::Shape(format!("{name} is not contiguous")))?;
-    if values.len() == n {
-        Ok(values)
-    } else {
-        let found = values.len();
-        Err(Error::Shape(format!("{name} has {found} entries, not {n}")))
-    }
-}
+use crate::signals::{stoppable, watched};
 
 /// `(of, ends, on)`: the line of each segment, the ends of lines, the line of each point or -1.
 type Given<'py> = (
@@ -87,68 +72,88 @@ pub fn refine2<'py>(
     sizes_yield: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<RefinedMesh> {
-    let found = || -> Result<_> {
+    let (pieces, ends) = attached(py, || {
         let n = rows::<f64, 2>(&points, "points")?.len();
         let ends = lines.as_ref().map(|l| pairs(&l.1, n, "ends"));
         Ok((pairs(&segments, n, "segments")?, ends.transpose()?))
-    };
-    let (pieces, ends) = found().map_err(|e| raise(py, &e))?;
-    let task = || -> Result<Task<'_>> {
-        let all = rows(&points, "points")?;
-        let simplices = rows(&simplices, "simplices")?;
-        in_range(simplices, 0, all.len(), "simplices")?;
+    })?;
+    let domain = attached(py, || {
         let lines = match (&lines, &ends) {
-            (Some((of, _, on)), Some(ends)) => {
-                let of: &[[i32; 1]] = each(of, pieces.len(), "of")?.as_chunks().0;
-                in_range(of, 0, ends.len(), "of")?;
-                let on: &[[i32; 1]] = each(on, all.len(), "on")?.as_chunks().0;
-                in_range(on, -1, ends.len(), "on")?;
-                Some(Lines {
-                    of: of.as_flattened(),
-                    ends,
-                    on: on.as_flattened(),
-                })
-            }
+            (Some((of, _, on)), Some(ends)) => Some(Lines {
+                of: flat(of, "of")?,
+                ends,
+                on: flat(on, "on")?,
+            }),
             _ => None,
         };
-        let count = ends.as_ref().map_or(pieces.len(), Vec::len);
-        Ok(Task {
-            points: all,
-            simplices,
-            labels: each(&labels, simplices.len(), "labels")?,
-            areas: each(&areas, simplices.len(), "areas")?,
+        Ok(Domain {
+            points: rows(&points, "points")?,
+            simplices: rows(&simplices, "simplices")?,
+            labels: flat(&labels, "labels")?,
+            areas: flat(&areas, "areas")?,
             segments: &pieces,
             lines,
-            frozen: each(&frozen, count, "frozen")?,
-            min_angle,
+            frozen: flat(&frozen, "frozen")?,
             circles,
             sizes_yield,
-            max_vertices,
         })
-    };
-    let task = task().map_err(|e| raise(py, &e))?;
-    let mut called = Instant::now();
-    let mut failure = None;
-    let mut notify = |added: usize, smallest: &mut dyn FnMut() -> f64| -> Result<()> {
-        let Some(progress) = &progress else {
-            return Ok(());
+    })?;
+    let reporter = progress.map(Reporter::new);
+    let outcome = stoppable(py, |stop| {
+        let tell = |added: usize, smallest: &mut dyn FnMut() -> f64| {
+            if let Some(reporter) = &reporter {
+                reporter.tell(added, smallest);
+            }
         };
-        if called.elapsed() < BETWEEN {
-            return Ok(());
-        }
-        let angle = smallest();
-        let result = Python::attach(|py| progress.call1(py, (added, angle)).map(|_| ()));
-        called = Instant::now();
-        result.map_err(|error| {
-            failure = Some(error);
-            Error::Interrupted
-        })
-    };
-    let outcome = watched(py, |watch| refine_telling(task, watch, &mut notify));
-    if let Some(error) = failure {
+        let stop = || reporter.as_ref().is_some_and(Reporter::failed) || stop();
+        let options = Options::new().interrupt(&stop).progress(&tell);
+        let options = options.min_angle(min_angle).max_points(max_vertices);
+        options.refine(domain)
+    });
+    if let Some(error) = reporter.and_then(Reporter::exception) {
         return Err(error);
     }
     arrays_of(py, outcome?)
+}
+
+/// Calls a Python function from time to time, until it raises an exception.
+struct Reporter {
+    progress: Py<PyAny>,
+    called: Mutex<Instant>,
+    failure: OnceLock<PyErr>,
+}
+
+impl Reporter {
+    fn new(progress: Py<PyAny>) -> Self {
+        Self {
+            progress,
+            called: Mutex::new(Instant::now()),
+            failure: OnceLock::new(),
+        }
+    }
+
+    fn tell(&self, added: usize, smallest: &mut dyn FnMut() -> f64) {
+        let Ok(mut called) = self.called.try_lock() else {
+            return;
+        };
+        if called.elapsed() < BETWEEN {
+            return;
+        }
+        let angle = smallest();
+        let result = Python::attach(|py| self.progress.call1(py, (added, angle)).map(|_| ()));
+        if let Err(error) = result {
+            let _ = self.failure.set(error);
+        }
+        *called = Instant::now();
+    }
+
+    fn failed(&self) -> bool {
+        self.failure.get().is_some()
+    }
+
+    fn exception(self) -> Option<PyErr> {
+        self.failure.into_inner()
+    }
 }
 
 /// The result as Python arrays.

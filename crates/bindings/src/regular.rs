@@ -1,6 +1,6 @@
 //! Regular triangulations of weighted points, and triangulations of periodic points, as arrays.
 
-use delone_core::error::Error;
+use delone::Error;
 use delone_core::{regular, regular3 as space, voronoi};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

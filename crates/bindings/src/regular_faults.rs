@@ -1,6 +1,6 @@
 //! What is wrong with regular and with periodic triangulations, as arrays.
 
-use delone_core::error::Error;
+use delone::Error;
 use delone_core::regular::{self, Wrapped};
 use delone_core::regular3 as space;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -144,12 +144,12 @@ pub fn validate_periodic2(
         offsets: numbers(py, found.offsets),
         orientation: numbers(py, found.orientation),
         neighbors: numbers(py, found.neighbors),
-        hull: number_rows(py, found.hull)?,
+        hull: number_rows(py, &found.hull)?,
         missing: numbers(py, found.missing),
         repeats: numbers(py, found.repeats),
         hidden: numbers(py, found.hidden),
-        delaunay: number_rows(py, found.delaunay)?,
-        ties: number_rows(py, found.ties)?,
+        delaunay: number_rows(py, &found.delaunay)?,
+        ties: number_rows(py, &found.ties)?,
         count: numbers(py, found.count.into_flattened()),
         layers: numbers(py, found.layers),
     })

@@ -1,15 +1,15 @@
 //! 3-D triangulations as arrays.
 
-use delone_core::delaunay3::triangulate;
+use delone::Point3;
 use delone_core::delaunay3::validate::{Findings3, validate};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
+use crate::arrays::{Column, Table, number_rows, numbers, rows};
 use crate::errors::raise;
 use crate::given::checked;
-use crate::signals::watched;
-use crate::triangulation::{Triangulation, seconds};
+use crate::signals::{optioned, watched};
+use crate::triangulation::{Triangulation, arrays_of};
 
 /// The Delaunay triangulation of 3-D points.
 #[pyfunction]
@@ -18,14 +18,9 @@ pub fn triangulate3(
     points: PyReadonlyArray2<'_, f64>,
     workers: usize,
 ) -> PyResult<Triangulation> {
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| triangulate(points, workers, watch))?;
-    Ok(Triangulation {
-        simplices: table(py, made.arrays.simplices)?,
-        neighbors: table(py, made.arrays.neighbors)?,
-        duplicates: number_rows(py, made.duplicates)?,
-        stages: seconds(py, &made.stages)?,
-    })
+    let points: &[Point3] = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    let made = optioned(py, workers, |options| options.triangulate(points))?;
+    arrays_of(py, made.into())
 }
 
 /// Faults of a 3-D triangulation; arrays are empty if there are none.
@@ -66,12 +61,12 @@ pub fn validate3<'py>(
 pub fn faults3(py: Python<'_>, found: Findings3) -> PyResult<Faults3> {
     Ok(Faults3 {
         orientation: numbers(py, found.orientation),
-        facets: number_rows(py, found.facets)?,
+        facets: number_rows(py, &found.facets)?,
         neighbors: numbers(py, found.neighbors),
-        hull: number_rows(py, found.hull)?,
+        hull: number_rows(py, &found.hull)?,
         missing: numbers(py, found.missing),
         repeats: numbers(py, found.repeats),
-        delaunay: number_rows(py, found.delaunay)?,
-        ties: number_rows(py, found.ties)?,
+        delaunay: number_rows(py, &found.delaunay)?,
+        ties: number_rows(py, &found.ties)?,
     })
 }

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use delone::{Method, Point2, Tiling};
 use delone_core::delaunay2::validate::{Findings, validate};
-use delone_core::delaunay2::{Method, triangulate};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use pyo3::types::PyTuple;
 use crate::arrays::{Column, Table, number_rows, numbers, rows, table};
 use crate::errors::raise;
 use crate::given::checked;
-use crate::signals::watched;
+use crate::signals::{optioned, watched};
 
 /// Names of the methods of `triangulate2`.
 #[pyfunction]
@@ -56,13 +56,26 @@ pub fn triangulate2(
     workers: usize,
 ) -> PyResult<Triangulation> {
     let method = method_of(method)?;
-    let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
-    let made = watched(py, |watch| triangulate(points, method, workers, watch))?;
+    let points: &[Point2] = rows(&points, "points").map_err(|e| raise(py, &e))?;
+    let made = optioned(py, workers, |options| {
+        options.method(method).triangulate(points)
+    })?;
+    arrays_of(py, made.into())
+}
+
+/// A triangulation as arrays.
+pub fn arrays_of<const D: usize, const N: usize>(
+    py: Python<'_>,
+    made: Tiling<'_, D, N>,
+) -> PyResult<Triangulation> {
+    let duplicates = number_rows(py, &made.duplicates())?;
+    let stages = seconds(py, made.stages())?;
+    let (simplices, neighbors) = made.into_arrays();
     Ok(Triangulation {
-        simplices: table(py, made.arrays.simplices)?,
-        neighbors: table(py, made.arrays.neighbors)?,
-        duplicates: number_rows(py, made.duplicates)?,
-        stages: seconds(py, &made.stages)?,
+        simplices: table(py, simplices)?,
+        neighbors: table(py, neighbors)?,
+        duplicates,
+        stages,
     })
 }
 
@@ -106,13 +119,13 @@ pub fn validate2<'py>(
 pub fn faults2(py: Python<'_>, found: Findings) -> PyResult<Faults2> {
     Ok(Faults2 {
         orientation: numbers(py, found.orientation),
-        edges: number_rows(py, found.edges)?,
+        edges: number_rows(py, &found.edges)?,
         neighbors: numbers(py, found.neighbors),
-        hull: number_rows(py, found.hull)?,
+        hull: number_rows(py, &found.hull)?,
         missing: numbers(py, found.missing),
         repeats: numbers(py, found.repeats),
-        delaunay: number_rows(py, found.delaunay)?,
-        ties: number_rows(py, found.ties)?,
+        delaunay: number_rows(py, &found.delaunay)?,
+        ties: number_rows(py, &found.ties)?,
         count: numbers(py, found.count.into_flattened()),
     })
 }

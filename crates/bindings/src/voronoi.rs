@@ -1,7 +1,7 @@
 //! 2-D Voronoi and power diagrams, and polygons clipped from them, as arrays.
 
-use delone_core::Point2;
-use delone_core::error::{Error, Result};
+use delone::arrays::Diagram2 as Dual;
+use delone::{Dimension, Error, Point2, Result, Tiling, Triangulation};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use crate::arrays::{
 use crate::errors::{attached, detached};
 use crate::given::{checked, unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::watched;
+use crate::signals::{optioned, watched};
 
 /// The triangulation whose dual is computed.
 pub(crate) fn given<'a, const D: usize, const N: usize>(
@@ -28,6 +28,17 @@ pub(crate) fn given<'a, const D: usize, const N: usize>(
         simplices: found.simplices,
         neighbors: found.neighbors,
     })
+}
+
+/// The same for the crate `delone`, if there are no weights.
+pub(crate) fn delaunay<const D: usize, const N: usize>(
+    given: Given<'_, D, N>,
+) -> Result<Triangulation<'_, D, N>>
+where
+    [f64; D]: Dimension<N>,
+{
+    let tiling = Tiling::from_arrays(given.points, given.simplices, given.neighbors)?;
+    Ok(Triangulation::trusted(tiling))
 }
 
 /// A 2-D Voronoi or power diagram.
@@ -157,7 +168,13 @@ pub fn voronoi2(
     let given = attached(py, || {
         given(&points, weights.as_ref(), &simplices, &neighbors)
     })?;
-    let made = watched(py, |watch| voronoi::diagram(given, workers, watch))?;
+    let made: Dual = if weights.is_none() {
+        optioned(py, workers, |options| {
+            Ok(options.voronoi(&delaunay(given)?)?.into())
+        })?
+    } else {
+        watched(py, |watch| voronoi::diagram(given, workers, watch))?
+    };
     Ok(Diagram2 {
         vertices: table(py, made.vertices)?,
         simplex_vertex: column(py, made.triangle_vertex),

@@ -1,7 +1,7 @@
 //! 3-D Voronoi and power diagrams, their measures, and cells clipped to a polyhedron, as arrays.
 
-use delone_core::Point3;
-use delone_core::error::Result;
+use delone::arrays::Diagram3 as Dual;
+use delone::{Point3, Result};
 use delone_core::voronoi3::{self as dual, Cells, Clip, Measures};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -12,8 +12,8 @@ use crate::arrays::{
 use crate::errors::attached;
 use crate::given::{unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::watched;
-use crate::voronoi::given;
+use crate::signals::{optioned, watched};
+use crate::voronoi::{delaunay, given};
 
 /// A 3-D Voronoi or power diagram.
 #[pyclass(frozen, get_all, module = "delone._core")]
@@ -138,7 +138,13 @@ pub fn voronoi3(
     let given = attached(py, || {
         given(&points, weights.as_ref(), &simplices, &neighbors)
     })?;
-    let made = watched(py, |watch| dual::diagram(given, workers, watch))?;
+    let made: Dual = if weights.is_none() {
+        optioned(py, workers, |options| {
+            Ok(options.voronoi(&delaunay(given)?)?.into())
+        })?
+    } else {
+        watched(py, |watch| dual::diagram(given, workers, watch))?
+    };
     Ok(Diagram3 {
         vertices: table(py, made.vertices)?,
         simplex_vertex: column(py, made.simplex_vertex),

@@ -5,7 +5,7 @@ use delone_core::error as core;
 use crate::Point2;
 
 /// The result of a call.
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Why a call has no result. Rows are counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
