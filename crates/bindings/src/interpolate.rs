@@ -1,12 +1,12 @@
 //! Interpolation: the bodies of the methods of `Locator2`, and other functions.
 
-use delone::{Error, Result};
+use delone::{Error, Point2, Point3, Result};
 use delone_core::interpolate::{
     Adjacency, Barrier, Field, Kind, Method, Order, Rows, Table as Sums, clough_tocher,
     clough_tocher_weights, global_gradients, leave_one_out, linear, local_gradients, natural,
     natural_values,
 };
-use delone_core::{Point2, Point3, interpolate3};
+use delone_core::interpolate3;
 use numpy::{
     PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods,
 };

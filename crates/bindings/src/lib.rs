@@ -1,5 +1,9 @@
-//! The bindings between Python and the core: arrays in, arrays out, errors as Python exceptions. No
+//! The bindings between Python and Rust: arrays in, arrays out, errors as Python exceptions. No
 //! algorithm lives here.
+//!
+//! They use the public crate `delone`, and the core only where that crate has nothing: weights,
+//! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
+//! clipped cells, and tetrahedral improvement.
 
 mod arrays;
 mod consistency;

@@ -68,7 +68,7 @@ pub fn arrays_of<const D: usize, const N: usize>(
     py: Python<'_>,
     made: Tiling<'_, D, N>,
 ) -> PyResult<Triangulation> {
-    let duplicates = number_rows(py, &made.duplicates())?;
+    let duplicates = number_rows(py, made.duplicates())?;
     let stages = seconds(py, made.stages())?;
     let (simplices, neighbors) = made.into_arrays();
     Ok(Triangulation {
