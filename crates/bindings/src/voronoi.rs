@@ -1,7 +1,7 @@
 //! 2-D Voronoi and power diagrams, and polygons clipped from them, as arrays.
 
 use delone::arrays::Diagram2 as Dual;
-use delone::{Dimension, Error, Point2, Result, Tiling, Triangulation};
+use delone::{Dimension, Error, Point2, Result, Tiling, Triangulation, Voronoi};
 use delone_core::voronoi::{self, Cells, Convex, Given, Outline};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -30,15 +30,29 @@ pub(crate) fn given<'a, const D: usize, const N: usize>(
     })
 }
 
-/// The same for the crate `delone`, if there are no weights.
-pub(crate) fn delaunay<const D: usize, const N: usize>(
-    given: Given<'_, D, N>,
-) -> Result<Triangulation<'_, D, N>>
+/// The diagram of a Delaunay triangulation.
+pub(crate) fn delaunay<T, const D: usize, const N: usize>(
+    points: &PyReadonlyArray2<'_, f64>,
+    simplices: &PyReadonlyArray2<'_, i32>,
+    neighbors: &PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<T>
 where
     [f64; D]: Dimension<N>,
+    T: for<'t> From<Voronoi<'t, D, N>> + Send,
 {
-    let tiling = Tiling::from_arrays(given.points, given.simplices, given.neighbors)?;
-    Ok(Triangulation::trusted(tiling))
+    let py = points.py();
+    let (points, simplices, neighbors) = attached(py, || {
+        Ok((
+            rows(points, "points")?,
+            rows(simplices, "simplices")?,
+            rows(neighbors, "neighbors")?,
+        ))
+    })?;
+    optioned(py, workers, |options| {
+        let tiling = Tiling::from_arrays(points, simplices, neighbors)?;
+        Ok(options.voronoi(&Triangulation::trusted(tiling))?.into())
+    })
 }
 
 /// A 2-D Voronoi or power diagram.
@@ -165,14 +179,12 @@ pub fn voronoi2(
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<Diagram2> {
-    let given = attached(py, || {
-        given(&points, weights.as_ref(), &simplices, &neighbors)
-    })?;
     let made: Dual = if weights.is_none() {
-        optioned(py, workers, |options| {
-            Ok(options.voronoi(&delaunay(given)?)?.into())
-        })?
+        delaunay(&points, &simplices, &neighbors, workers)?
     } else {
+        let given = attached(py, || {
+            given(&points, weights.as_ref(), &simplices, &neighbors)
+        })?;
         watched(py, |watch| voronoi::diagram(given, workers, watch))?
     };
     Ok(Diagram2 {

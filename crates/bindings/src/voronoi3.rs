@@ -12,7 +12,7 @@ use crate::arrays::{
 use crate::errors::attached;
 use crate::given::{unequal, weights_of};
 use crate::results::{len_of, made_of_arrays, require_equal, rows_of};
-use crate::signals::{optioned, watched};
+use crate::signals::watched;
 use crate::voronoi::{delaunay, given};
 
 /// A 3-D Voronoi or power diagram.
@@ -135,14 +135,12 @@ pub fn voronoi3(
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<Diagram3> {
-    let given = attached(py, || {
-        given(&points, weights.as_ref(), &simplices, &neighbors)
-    })?;
     let made: Dual = if weights.is_none() {
-        optioned(py, workers, |options| {
-            Ok(options.voronoi(&delaunay(given)?)?.into())
-        })?
+        delaunay(&points, &simplices, &neighbors, workers)?
     } else {
+        let given = attached(py, || {
+            given(&points, weights.as_ref(), &simplices, &neighbors)
+        })?;
         watched(py, |watch| dual::diagram(given, workers, watch))?
     };
     Ok(Diagram3 {
