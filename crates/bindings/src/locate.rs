@@ -42,7 +42,7 @@ impl Locator2 {
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
     ) -> PyResult<Self> {
-        Plane::new(&points, &simplices, &neighbors, Kept::of).map(Self)
+        Plane::new(&points, &simplices, &neighbors).map(Self)
     }
 
     /// For each query, the first triangle that contains it, or -1.

@@ -1,7 +1,7 @@
 //! Point location on arrays of tetrahedra.
 
 use delone_core::interpolate3::natural;
-use delone_core::locate3::{Kept, coordinates, find, nearest, within};
+use delone_core::locate3::{coordinates, find, nearest, within};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
@@ -36,7 +36,7 @@ impl Locator3 {
         simplices: PyReadonlyArray2<'_, i32>,
         neighbors: PyReadonlyArray2<'_, i32>,
     ) -> PyResult<Self> {
-        Space::new(&points, &simplices, &neighbors, Kept::of).map(Self)
+        Space::new(&points, &simplices, &neighbors).map(Self)
     }
 
     /// For each query, the first tetrahedron that contains it, or -1.

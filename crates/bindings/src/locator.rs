@@ -1,8 +1,7 @@
 //! Triangulations that are kept for many calls: the common part of `Locator2` and `Locator3`.
 
 use delone::{Error, Result};
-use delone_core::arrays::Given;
-use delone_core::locate::{self, Batch, Locator, Walks};
+use delone_core::locate::{self, Batch, Cache, Dimension, Locator};
 use delone_core::locate3;
 use delone_core::watch::Watch;
 use numpy::{Element, PyReadonlyArray2};
@@ -14,27 +13,26 @@ use crate::given::{Held, answered, checked};
 use crate::signals::watched;
 
 /// Arrays that never change, and the core's index over them, such as a tree of starting points.
-pub struct Tiling<K, const D: usize, const N: usize> {
+pub struct Tiling<P: Dimension<D, N>, const D: usize, const N: usize> {
     pub held: Held,
-    kept: K,
+    kept: Cache<P, D, N>,
 }
 
 /// Triangles.
-pub type Plane = Tiling<locate::Kept, 2, 3>;
+pub type Plane = Tiling<locate::Plane, 2, 3>;
 /// Tetrahedra.
-pub type Space = Tiling<locate3::Kept, 3, 4>;
+pub type Space = Tiling<locate3::Space, 3, 4>;
 
-impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
+impl<P: Dimension<D, N>, const D: usize, const N: usize> Tiling<P, D, N> {
     /// Checks the arrays and builds the index.
-    pub fn new<E: Into<Error>>(
+    pub fn new(
         points: &PyReadonlyArray2<'_, f64>,
         simplices: &PyReadonlyArray2<'_, i32>,
         neighbors: &PyReadonlyArray2<'_, i32>,
-        keep: impl FnOnce(&Given<D, N>, &Watch) -> Result<K, E> + Send,
     ) -> PyResult<Self> {
         let py = points.py();
         let given = checked(points, simplices, neighbors).map_err(|e| raise(py, &e))?;
-        let kept = watched(py, |watch| keep(&given, watch))?;
+        let kept = watched(py, |watch| Cache::of(&given, watch))?;
         Ok(Self {
             held: Held::new(points, simplices, neighbors),
             kept,
@@ -46,7 +44,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         &self,
         py: Python<'_>,
         count: usize,
-        work: impl FnOnce(&Locator<K, D, N>, &Watch) -> Result<T, E> + Send,
+        work: impl FnOnce(&Locator<P, D, N>, &Watch) -> Result<T, E> + Send,
     ) -> PyResult<T> {
         let lent = self.held.lend(py)?;
         let given = lent.given().map_err(|e| raise(py, &e))?;
@@ -60,7 +58,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<K, D, N>) -> Result<T, E> + Send,
+        work: impl FnOnce(&Batch<P, D, N>) -> Result<T, E> + Send,
     ) -> PyResult<(T, usize)> {
         let py = xi.py();
         let queries = rows(xi, "xi").map_err(|e| raise(py, &e))?;
@@ -80,7 +78,7 @@ impl<K: Walks<D, N> + Send, const D: usize, const N: usize> Tiling<K, D, N> {
         &self,
         xi: &PyReadonlyArray2<'_, f64>,
         workers: usize,
-        work: impl FnOnce(&Batch<K, D, N>) -> Result<Vec<T>, E> + Send,
+        work: impl FnOnce(&Batch<P, D, N>) -> Result<Vec<T>, E> + Send,
     ) -> PyResult<Column<T>> {
         let (found, _) = self.batch(xi, workers, work)?;
         Ok(column(xi.py(), found))

@@ -1,5 +1,7 @@
 //! Triangulations as arrays: vertices are rows of points, neighbors are simplices or -1 outside.
 //! Simplices are triangles, `N` = 3 corners with `D` = 2 coordinates, or tetrahedra, 4 with 3.
+//! `Side` leads from simplex to simplex by neighbors, never by vertices: so the two sides of a facet
+//! may name different rows with equal coordinates.
 
 /// A given triangulation. Vertices must be rows of `points`, neighbors simplices or -1.
 #[derive(Debug, Clone, Copy)]
@@ -10,6 +12,15 @@ pub struct Given<'a, const D: usize, const N: usize> {
     pub simplices: &'a [[i32; N]],
     /// The simplex opposite each corner, -1 outside.
     pub neighbors: &'a [[i32; N]],
+}
+
+/// A corner of a simplex, and the opposite facet: an edge of a triangle, a face of a tetrahedron.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    /// The simplex.
+    pub simplex: usize,
+    /// The corner, below `N`.
+    pub corner: usize,
 }
 
 /// The corners of the facet opposite each corner of a tetrahedron, from the side of that corner: a
@@ -35,6 +46,36 @@ impl<const D: usize, const N: usize> Given<'_, D, N> {
     pub fn corners(&self, t: usize) -> [[f64; D]; N] {
         self.simplices[t].map(|v| self.point(v))
     }
+
+    /// The vertex at a corner.
+    #[inline]
+    pub fn vertex(&self, side: Side) -> i32 {
+        self.simplices[side.simplex][side.corner]
+    }
+
+    /// The coordinates of the vertex at a corner.
+    #[inline]
+    pub fn at(&self, side: Side) -> [f64; D] {
+        self.point(self.vertex(side))
+    }
+
+    /// The same facet seen from the simplex beyond; `None` at the boundary.
+    #[inline]
+    pub fn beyond(&self, side: Side) -> Option<Side> {
+        let t = self.neighbors[side.simplex][side.corner];
+        if t < 0 {
+            return None;
+        }
+        let back = &self.neighbors[t as usize];
+        let here = side.simplex as i32;
+        // A sum instead of a search, whose branches would be unpredictable.
+        let corner: usize = (1..N).map(|k| k * usize::from(back[k] == here)).sum();
+        Some(Side {
+            simplex: t as usize,
+            // Invalid arrays, in which two facets are shared, must not lead out of range.
+            corner: corner.min(N - 1),
+        })
+    }
 }
 
 /// A computed triangulation: one row per simplex.
@@ -44,4 +85,12 @@ pub struct Arrays<const N: usize> {
     pub simplices: Vec<[i32; N]>,
     /// The simplex opposite each corner, -1 outside.
     pub neighbors: Vec<[i32; N]>,
+}
+
+impl Tetrahedra<'_> {
+    /// The vertices of the face opposite a corner, counterclockwise seen from outside.
+    #[inline]
+    pub fn face(&self, side: Side) -> [i32; 3] {
+        OUTWARD[side.corner].map(|corner| self.vertex(Side { corner, ..side }))
+    }
 }

@@ -91,7 +91,7 @@ fn check(points: &[Point2], simplices: &[[i32; 3]], queries: &[Point2]) {
     }
     for (&q, &t) in queries.iter().zip(&expected) {
         let found = match locator.locate(q).expect("a place") {
-            Some(Located::Inside(place)) => place.triangle as i32,
+            Some(Located::Inside(place)) => place.simplex as i32,
             _ => -1,
         };
         assert_eq!(found, t, "{q:?} alone");

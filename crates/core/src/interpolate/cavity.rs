@@ -12,9 +12,9 @@
 
 use delone_predicates::{Point2, Sign, incircle};
 
-use crate::arrays::Triangles;
+use crate::arrays::{Side, Triangles};
 use crate::error::{Error, Result};
-use crate::locate::{Side, next, prev};
+use crate::locate::{next, prev};
 use crate::watch::Pace;
 
 /// Edges that are closed, by the opposite corner; empty if there are none.
@@ -24,7 +24,7 @@ pub type Barrier<'a> = &'a [[bool; 3]];
 #[inline]
 pub fn is_closed(barrier: Barrier, side: Side) -> bool {
     barrier
-        .get(side.triangle)
+        .get(side.simplex)
         .is_some_and(|row| row[side.corner])
 }
 
@@ -69,7 +69,7 @@ impl Cavity {
         // Pushed in reverse: the edge from slot 0 to slot 1 is popped first.
         for k in [1, 0, 2] {
             let side = Side {
-                triangle: seed,
+                simplex: seed,
                 corner: k,
             };
             self.open.push((side, next(k) as u32, prev(k) as u32));
@@ -81,7 +81,7 @@ impl Cavity {
                 given.beyond(side)
             };
             let Some(there) = beyond else {
-                if side.triangle == seed && on == Some(side.corner) {
+                if side.simplex == seed && on == Some(side.corner) {
                     self.flat = Some(u);
                 }
                 self.ring.push(u);

@@ -16,11 +16,9 @@ use super::Order;
 use super::cavity::{Barrier, is_closed};
 use super::field::Field;
 use super::number::{Jet, Number};
-use crate::arrays::Triangles;
+use crate::arrays::{Side, Triangles};
 use crate::error::Result;
-use crate::locate::{
-    Batch, Located, Output, Place, Side, barycentric, cross, next, prev, seen_from,
-};
+use crate::locate::{Batch, Located, Output, Place, barycentric, cross, next, prev, seen_from};
 
 /// The part of a triangle's cubics that is independent of values and gradients.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +41,7 @@ impl Frame {
         let way = |from: usize, to: usize| [0, 1].map(|k| corners[to][k] - corners[from][k]);
         let across = |k| {
             let side = Side {
-                triangle,
+                simplex: triangle,
                 corner: k,
             };
             let beyond = given.beyond(side).filter(|_| !is_closed(barrier, side));
@@ -51,7 +49,7 @@ impl Frame {
             // midpoint.
             let [xi, xj, xk] = match beyond {
                 Some(there) => {
-                    let x = coordinates(corners, given.point(given.vertex(there)));
+                    let x = coordinates(corners, given.at(there));
                     [x[next(k)], x[prev(k)], x[k]]
                 }
                 None => [0.5, 0.5, 0.0],
@@ -239,7 +237,7 @@ pub fn clough_tocher(
         let Located::Inside(place) = at else {
             return Ok(());
         };
-        let triangle = place.triangle;
+        let triangle = place.simplex;
         if order == Order::Value
             && let Some(corner) = place.site()
         {
@@ -291,7 +289,7 @@ pub fn clough_tocher_weights(batch: &Batch, barrier: Barrier) -> Result<CornerWe
         |last, row, q, at| {
             if let Located::Inside(place) = at {
                 let (w, s) = basis(given, barrier, last, &place, q);
-                triangle.set(row, place.triangle as i32);
+                triangle.set(row, place.simplex as i32);
                 weights.set_all(3 * row, &w);
                 slopes.set_all(6 * row, s.as_flattened());
             }
@@ -318,16 +316,16 @@ fn basis(
         return (weights, [[0.0; 2]; 3]);
     }
     let functions = match last {
-        Some((triangle, functions)) if *triangle == place.triangle => functions,
+        Some((triangle, functions)) if *triangle == place.simplex => functions,
         _ => {
-            let frame = Frame::of(given, barrier, place.triangle);
+            let frame = Frame::of(given, barrier, place.simplex);
             let functions = std::array::from_fn(|f| {
                 let unit = |g| f64::from(u8::from(f == g));
                 let values = std::array::from_fn(&unit);
                 let gradients = std::array::from_fn(|k| [unit(3 + 2 * k), unit(4 + 2 * k)]);
                 Ordinates::of(&frame, values, gradients)
             });
-            &mut last.insert((place.triangle, functions)).1
+            &mut last.insert((place.simplex, functions)).1
         }
     };
     let b = barycentric(given, place, q);

@@ -15,10 +15,10 @@ use super::cavity::Cavity;
 use super::kind::Kind;
 use super::rows::Part;
 use super::weights::Weights;
-use crate::arrays::Triangles;
+use crate::arrays::{Side, Triangles};
 use crate::delaunay2::{self, triangulate};
 use crate::error::Result;
-use crate::locate::{Kept, Located, Locator, Side, barycentric_weights, next, prev};
+use crate::locate::{Kept, Located, Locator, barycentric_weights, next, prev};
 use crate::memory::filled;
 use crate::parallel;
 use crate::watch::{Pace, Watch};
@@ -67,12 +67,12 @@ pub fn leave_one_out(
 ) -> Result<Rows> {
     let n = given.points.len();
     let mut stars = filled(n, None)?;
-    for (triangle, vertices) in given.simplices.iter().enumerate() {
-        if triangle.is_multiple_of(LOT) {
+    for (simplex, vertices) in given.simplices.iter().enumerate() {
+        if simplex.is_multiple_of(LOT) {
             watch.check()?;
         }
         for (corner, &v) in vertices.iter().enumerate() {
-            stars[v as usize] = Some(Side { triangle, corner });
+            stars[v as usize] = Some(Side { simplex, corner });
         }
     }
     let tasks = (0..n).step_by(SHARE).collect();
@@ -275,7 +275,7 @@ impl Hole {
         let name = |slot: i32| names[slot as usize];
         if let Method::Natural(kind) = method {
             let cavity = &mut self.cavity;
-            cavity.find(&given, &[], place.triangle, place.edge(), q, pace)?;
+            cavity.find(&given, &[], place.simplex, place.edge(), q, pace)?;
             if self.weights.compute(kind, cavity, q, pace)? {
                 for (&v, &w) in cavity.vertices.iter().zip(&self.weights.values) {
                     part.entry(name(v), w, [0.0; 2]);
@@ -283,7 +283,7 @@ impl Hole {
             }
         } else {
             let weights = crate::locate::barycentric(&given, &place, q);
-            let corners = given.simplices[place.triangle];
+            let corners = given.simplices[place.simplex];
             for (v, w) in corners.into_iter().zip(weights) {
                 part.entry(name(v), w, [0.0; 2]);
             }

@@ -23,7 +23,7 @@ pub fn linear(batch: &Batch, field: Field, order: Order) -> Result<Vec<f64>> {
                     }
                     Order::Gradient => {
                         for column in 0..field.columns {
-                            let g = gradient(given, &field, place.triangle, column);
+                            let g = gradient(given, &field, place.simplex, column);
                             out.set_all(row * width + 2 * column, &g);
                         }
                     }
@@ -45,7 +45,7 @@ fn value(
     q: Point2,
     mut set: impl FnMut(usize, f64),
 ) {
-    let vertices = given.simplices[place.triangle];
+    let vertices = given.simplices[place.simplex];
     if let Some(corner) = place.site() {
         for (column, &z) in field.row(vertices[corner]).iter().enumerate() {
             set(column, z);

@@ -9,9 +9,9 @@ use super::kind::Kind;
 use super::number::{Jet, Number};
 use super::rows::{Part, Rows};
 use super::weights::Weights;
-use crate::arrays::Triangles;
+use crate::arrays::{Side, Triangles};
 use crate::error::Result;
-use crate::locate::{Batch, Located, Output, Place, Side, barycentric};
+use crate::locate::{Batch, Located, Output, Place, barycentric};
 use crate::watch::Pace;
 
 /// Triangles of cavities between two checks for interruption, besides those before each lot of
@@ -43,7 +43,7 @@ impl<T: Number> Room<T> {
     ) -> Result<()> {
         let edge = place.edge();
         self.cavity
-            .find(given, barrier, place.triangle, edge, q, pace)?;
+            .find(given, barrier, place.simplex, edge, q, pace)?;
         if !self.weights.compute(kind, &self.cavity, q, pace)? {
             let corners = barycentric(given, place, q);
             let slots = self.cavity.points.len();
@@ -66,10 +66,10 @@ pub fn natural(batch: &Batch, kind: Kind, barrier: Barrier) -> Result<(Rows, Vec
         let Located::Inside(place) = at else {
             return Ok(());
         };
-        triangles.set(row, place.triangle as i32);
+        triangles.set(row, place.simplex as i32);
         if let Some(corner) = place.site() {
-            let triangle = place.triangle;
-            part.entry(given.vertex(Side { triangle, corner }), 1.0, [0.0; 2]);
+            let simplex = place.simplex;
+            part.entry(given.vertex(Side { simplex, corner }), 1.0, [0.0; 2]);
         } else {
             room.compute(kind, given, barrier, &place, q, pace)?;
             for (slot, &vertex) in room.cavity.vertices.iter().enumerate() {
@@ -119,7 +119,7 @@ fn sums(
             return Ok(());
         };
         if let Some(corner) = place.site() {
-            let vertex = given.simplices[place.triangle][corner];
+            let vertex = given.simplices[place.simplex][corner];
             out.set_all(row * width, field.row(vertex));
             return Ok(());
         }
@@ -150,7 +150,7 @@ fn slopes(
         };
         if let Some(corner) = place.site() {
             if order == Order::Gradient && kind.is_smooth() {
-                let vertex = given.simplices[place.triangle][corner];
+                let vertex = given.simplices[place.simplex][corner];
                 for column in 0..field.columns {
                     out.set_all(start(row, column), &field.gradient(vertex, column));
                 }

@@ -13,8 +13,8 @@ use std::collections::HashMap;
 
 use delone_predicates::{Point3, Sign, insphere, orient3d};
 
+use crate::arrays::{OUTWARD, Tetrahedra};
 use crate::error::{Error, Result};
-use crate::locate3::{FACES, Tetrahedra};
 use crate::watch::Pace;
 
 /// Up to this length a list is searched linearly; longer ones use a table.
@@ -106,7 +106,7 @@ impl Cavity {
             pace.spend(1)?;
             let t = self.inside.keys[next] as usize;
             next += 1;
-            for (k, face) in FACES.into_iter().enumerate() {
+            for (k, face) in OUTWARD.into_iter().enumerate() {
                 let other = given.neighbors[t][k];
                 if other >= 0 && self.takes(given, other, q) {
                     continue;

@@ -35,10 +35,11 @@ use delone_predicates::{Point3, Sign, orient3d};
 use super::cavity::{Cavity, Face};
 use super::center::{Center, cross, dot, minus, plus, sizes, terms};
 use super::exact;
+use crate::arrays::{Side, Tetrahedra};
 use crate::error::Result;
 use crate::interpolate::{Part, Rows};
 use crate::locate::Output;
-use crate::locate3::{Batch, Located, Place, Side, Tetrahedra, barycentric};
+use crate::locate3::{Batch, Located, Place, barycentric};
 use crate::watch::Pace;
 
 /// Ratio of the size of all terms to their sum above which too many digits are lost: about 1e-13 is

@@ -20,7 +20,7 @@ const LEAST: f64 = 1e-250;
 /// The weights of the corners of the triangle at `place` for `q`: nonnegative, with sum 1.
 #[inline]
 pub fn barycentric(given: &Triangles, place: &Place, q: Point2) -> [f64; 3] {
-    let corners = given.corners(place.triangle);
+    let corners = given.corners(place.simplex);
     weights(corners, place.on, q)
 }
 

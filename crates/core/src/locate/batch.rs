@@ -1,6 +1,8 @@
 //! Batches of point queries in 2-D and 3-D: their order, and their distribution over threads.
 
-use super::{Kept, Locator, Output};
+use super::locator::{Dimension, Located, Locator};
+use super::walker::Walker;
+use super::{Output, Plane};
 use crate::error::Result;
 use crate::memory::with_room;
 use crate::order::order_of;
@@ -18,9 +20,9 @@ const PROBES: usize = 256;
 const GATHER: usize = 1 << 9;
 
 /// The queries of one call; 2-D by default.
-pub struct Batch<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
+pub struct Batch<'a, P: Dimension<D, N> = Plane, const D: usize = 2, const N: usize = 3> {
     /// The triangulation.
-    pub locator: Locator<'a, K, D, N>,
+    pub locator: Locator<'a, P, D, N>,
     /// The points to locate.
     pub queries: &'a [[f64; D]],
     /// The number of threads.
@@ -29,33 +31,22 @@ pub struct Batch<'a, K = Kept, const D: usize = 2, const N: usize = 3> {
     pub watch: &'a Watch<'a>,
 }
 
-/// How a batch goes from query to query, given the cache of a triangulation.
-pub trait Walks<const D: usize, const N: usize>: Sized + Sync {
-    /// The location of a point.
-    type Located;
-
-    /// Returns a function that locates a query, starting from the previous one.
-    fn walker(
-        locator: &Locator<Self, D, N>,
-    ) -> impl FnMut([f64; D]) -> Result<Self::Located> + Send;
-
-    /// The simplex that contains the location, or -1.
-    fn holder(at: &Self::Located) -> i32;
-}
-
-impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
+impl<P: Dimension<D, N>, const D: usize, const N: usize> Batch<'_, P, D, N> {
     /// Locates each finite query, in an order and on threads of its own choice; `visit` gets the
     /// state of its part of the queries, the row, the query and its location. Returns the states.
     pub fn each<S: Send>(
         &self,
         state: impl Fn() -> S + Sync,
-        visit: impl Fn(&mut S, usize, [f64; D], K::Located) -> Result<()> + Sync,
+        visit: impl Fn(&mut S, usize, [f64; D], Located<N>) -> Result<()> + Sync,
     ) -> Result<Vec<S>> {
         if self.locator.given.simplices.is_empty() {
             return Ok(Vec::new());
         }
-        let walker = || (K::walker(&self.locator), state());
-        let ends = self.along(walker, |(go, state), row, q| visit(state, row, q, go(q)?))?;
+        let walker = || (Walker::new(&self.locator), state());
+        let visit = |(walker, state): &mut (Walker<P, D, N>, S), row, q| {
+            visit(state, row, q, walker.go(q)?)
+        };
+        let ends = self.along(walker, visit)?;
         Ok(ends.into_iter().map(|(_, state)| state).collect())
     }
 
@@ -112,14 +103,16 @@ impl<K: Walks<D, N>, const D: usize, const N: usize> Batch<'_, K, D, N> {
 
 /// For each query the first simplex that contains it, boundary included, or -1 if it is outside or
 /// not finite.
-pub fn find<K: Walks<D, N>, const D: usize, const N: usize>(
-    batch: &Batch<K, D, N>,
+pub fn find<P: Dimension<D, N>, const D: usize, const N: usize>(
+    batch: &Batch<P, D, N>,
 ) -> Result<Vec<i32>> {
     let found = Output::<i32>::filled(batch.queries.len(), -1, batch.watch)?;
     batch.each(
         || (),
         |(), row, _, at| {
-            found.set(row, K::holder(&at));
+            if let Located::Inside(place) = at {
+                found.set(row, place.simplex as i32);
+            }
             Ok(())
         },
     )?;

@@ -4,14 +4,14 @@ use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
 use super::boxes::{Boxes, length};
 use super::range::seen_from;
-use super::tiling::{Side, next, prev};
-use crate::arrays::Triangles;
+use super::tiling::prev;
+use crate::arrays::{Given, Side, Triangles};
 use crate::error::{Error, Result};
 use crate::points::Extent;
 use crate::watch::Watch;
 use crate::wide::{lowest, ratio, scaled, sign};
 
-/// Triangles between two checks for interruption.
+/// Simplices between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// The boundary edges of a tiling.
@@ -30,14 +30,7 @@ pub struct Boundary {
 impl Boundary {
     /// Extracts the boundary from the arrays.
     pub fn of(given: &Triangles, watch: &Watch) -> Result<Self> {
-        let mut sides = Vec::new();
-        for (triangle, row) in given.neighbors.iter().enumerate() {
-            if triangle.is_multiple_of(LOT) {
-                watch.check()?;
-            }
-            let open = (0..3).filter(|&k| row[k] < 0);
-            sides.extend(open.map(|corner| Side { triangle, corner }));
-        }
+        let mut sides = outer_sides(given, watch)?;
         let convex = match cycle(given, &sides)? {
             Some(cycle) if is_convex(given, &cycle) => {
                 sides = cycle;
@@ -97,6 +90,22 @@ impl Boundary {
     }
 }
 
+/// The boundary facets of a tiling, ascending.
+pub fn outer_sides<const D: usize, const N: usize>(
+    given: &Given<D, N>,
+    watch: &Watch,
+) -> Result<Vec<Side>> {
+    let mut sides = Vec::new();
+    for (simplex, row) in given.neighbors.iter().enumerate() {
+        if simplex.is_multiple_of(LOT) {
+            watch.check()?;
+        }
+        let open = (0..N).filter(|&k| row[k] < 0);
+        sides.extend(open.map(|corner| Side { simplex, corner }));
+    }
+    Ok(sides)
+}
+
 /// Error of a position along an edge up to which rounding is acceptable.
 const NEAR: f64 = 1e-12;
 
@@ -107,8 +116,7 @@ fn clamp(along: f64) -> f64 {
 
 /// The ends of an edge.
 fn ends(given: &Triangles, side: Side) -> [Point2; 2] {
-    [next(side.corner), prev(side.corner)]
-        .map(|corner| given.point(given.vertex(Side { corner, ..side })))
+    given.ends(side).map(|end| given.at(end))
 }
 
 /// The position of `q` along a boundary edge, 0 at its start and 1 at its end.
@@ -192,12 +200,7 @@ fn cycle(given: &Triangles, sides: &[Side]) -> Result<Option<Vec<Side>>> {
 /// Whether a closed chain never turns right and winds once: then it has exactly one lexicographic
 /// minimum.
 fn is_convex(given: &Triangles, cycle: &[Side]) -> bool {
-    let start = |side: &Side| {
-        given.point(given.vertex(Side {
-            corner: next(side.corner),
-            ..*side
-        }))
-    };
+    let start = |side: &Side| ends(given, *side)[0];
     let n = cycle.len();
     let mut minima = 0;
     for i in 0..n {

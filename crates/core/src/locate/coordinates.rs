@@ -1,6 +1,5 @@
 //! Locates queries with barycentric coordinates; outside, with the nearest point of the boundary.
 
-use super::tiling::{Side, next, prev};
 use super::{Batch, Located, Output, barycentric};
 use crate::error::Result;
 
@@ -32,19 +31,14 @@ pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
     batch.each(
         || (),
         |(), row, q, at| {
-            match at {
-                Located::Inside(place) => {
-                    triangle.set(row, place.triangle as i32);
-                    weights.set_all(3 * row, &barycentric(given, &place, q));
-                }
-                Located::Outside(from) => {
-                    let (side, t) = locator.boundary()?.nearest(given, from, q);
-                    let ends = [next(side.corner), prev(side.corner)];
-                    let ends = ends.map(|corner| given.vertex(Side { corner, ..side }));
-                    beside.set(row, side.triangle as i32);
-                    edge.set_all(2 * row, &ends);
-                    along.set(row, t);
-                }
+            if let Located::Inside(place) = at {
+                triangle.set(row, place.simplex as i32);
+                weights.set_all(3 * row, &barycentric(given, &place, q));
+            } else if let Located::Outside(Some(from)) = at {
+                let (side, t) = locator.boundary()?.nearest(given, from, q);
+                beside.set(row, side.simplex as i32);
+                edge.set_all(2 * row, &given.ends(side).map(|end| given.vertex(end)));
+                along.set(row, t);
             }
             Ok(())
         },

@@ -12,9 +12,8 @@
 use delone_predicates::{Point2, Sign, nearer};
 
 use super::batch::squared;
-use super::tiling::{Side, next, prev};
 use super::{Batch, Locator, Output};
-use crate::arrays::Triangles;
+use crate::arrays::{Side, Triangles};
 use crate::error::Result;
 
 /// Neighbors that a walk tests. Among uniform points it needs about ten, and boxes cost as much as
@@ -65,16 +64,16 @@ impl Walk<'_> {
         if let Some(vertex) = self.walk(start, q, &mut left) {
             return Ok(vertex);
         }
-        if let Some(sites) = self.locator.sites(PATIENCE)? {
+        if let Some(sites) = self.locator.sites_after(PATIENCE)? {
             return Ok(sites.nearest(q, &mut self.hint, nearer));
         }
         let mut left = usize::MAX;
         if let Some(vertex) = self.walk(start, q, &mut left) {
-            self.locator.sites(usize::MAX - left)?;
+            self.locator.sites_after(usize::MAX - left)?;
             return Ok(vertex);
         }
         // Too many neighbors, or too many equally near vertices: use boxes.
-        let sites = self.locator.sites(self.locator.given.points.len())?;
+        let sites = self.locator.sites_after(self.locator.given.points.len())?;
         Ok(sites.map_or(-1, |sites| sites.nearest(q, &mut self.hint, nearer)))
     }
 
@@ -87,7 +86,7 @@ impl Walk<'_> {
             return here;
         }
         Side {
-            triangle: self.locator.near(q),
+            simplex: self.locator.near(q),
             corner: 0,
         }
     }
@@ -96,7 +95,7 @@ impl Walk<'_> {
     /// `left` neighbors.
     fn walk(&mut self, mut best: Side, q: Point2, left: &mut usize) -> Option<i32> {
         let given = &self.locator.given;
-        let at = |side: Side| given.point(given.vertex(side));
+        let at = |side: Side| given.at(side);
         loop {
             let here = at(best);
             let mut closer = None;
@@ -116,7 +115,7 @@ impl Walk<'_> {
                 None => break,
             }
         }
-        let [a, b, _] = given.corners(best.triangle);
+        let [a, b, _] = given.corners(best.simplex);
         (self.here, self.last, self.reach) = (Some(best), q, REACH * squared(a, b));
         if self.ties.is_empty() {
             return Some(given.vertex(best));
@@ -129,8 +128,8 @@ impl Walk<'_> {
 /// twice.
 fn neighbors(given: &Triangles, start: Side, mut visit: impl FnMut(Side) -> bool) {
     given.around(start, |side| {
-        let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
-        visit(u) && (given.neighbors[side.triangle][u.corner] >= 0 || visit(v))
+        let [u, v] = given.ends(side);
+        visit(u) && (given.neighbors[side.simplex][u.corner] >= 0 || visit(v))
     });
 }
 
@@ -144,7 +143,7 @@ fn first_of_ties(
     open: &mut Vec<Side>,
     left: &mut usize,
 ) -> Option<i32> {
-    let here = given.point(given.vertex(start));
+    let here = given.at(start);
     let mut met = vec![given.vertex(start)];
     while let Some(side) = open.pop() {
         let vertex = given.vertex(side);
@@ -153,7 +152,7 @@ fn first_of_ties(
         }
         met.push(vertex);
         neighbors(given, side, |side| {
-            let p = given.point(given.vertex(side));
+            let p = given.at(side);
             if nearer(q, p, here) == Sign::Zero {
                 open.push(side);
             }

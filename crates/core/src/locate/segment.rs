@@ -3,8 +3,8 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::straight::Trace;
-use super::tiling::{Side, next, prev};
-use super::{Located, Locator, Place, Star, is_finite};
+use super::{Located, Locator, Place, is_finite};
+use crate::arrays::Side;
 use crate::error::{Error, Result};
 
 /// The triangles that the segment from `a` to `b` meets in more than a point, in order; if `a`
@@ -26,13 +26,13 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
     }
     let given = &locator.given;
     let mut met = Vec::new();
-    let place = |p| match locator.locate_from(locator.near(p), p, &mut Star::default())? {
-        Located::Inside(place) => Ok(Some(place)),
-        Located::Outside(_) => Ok(None),
+    let place = |p| match locator.locate(p)? {
+        Some(Located::Inside(place)) => Ok(Some(place)),
+        _ => Ok(None),
     };
-    let inside = |Place { triangle, on }, a, b| Trace::from_inside(given, triangle, on, a, b);
+    let inside = |Place { simplex, on }, a, b| Trace::from_inside(given, simplex, on, a, b);
     match (place(a)?, place(b)?) {
-        (Some(start), Some(_)) if a == b => met.push(start.triangle as i32),
+        (Some(start), Some(_)) if a == b => met.push(start.simplex as i32),
         (Some(start), _) => {
             inside(start, a, b).run(|t| met.push(t as i32))?;
         }
@@ -56,8 +56,7 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
 fn entry(locator: &Locator, a: Point2, b: Point2) -> Result<Option<Side>> {
     let given = &locator.given;
     let enters = |side: &&Side| {
-        let [u, v] = [next(side.corner), prev(side.corner)]
-            .map(|corner| given.point(given.vertex(Side { corner, ..**side })));
+        let [u, v] = given.ends(**side).map(|end| given.at(end));
         // a is strictly outside the edge and b strictly inside; u is left of the line.
         orient2d(u, v, a) == Sign::Negative
             && orient2d(u, v, b) == Sign::Positive

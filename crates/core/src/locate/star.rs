@@ -1,33 +1,41 @@
-//! The first of the triangles that contain a point.
+//! The first of the simplices that contain a point.
 //!
-//! A query on an edge or a vertex is in several triangles. The one with the smallest number is the
-//! answer, so it is independent of where a walk came from, and thus of the other queries and the
-//! threads.
+//! A query on a facet, an edge or a vertex is in several simplices. The one with the smallest number
+//! is the answer, so it is independent of where a walk came from, and thus of the other queries and
+//! the threads.
 
-use super::tiling::Side;
-use crate::arrays::Triangles;
+use delone_predicates::Sign;
 
-/// A point in a closed triangle.
+use crate::arrays::{Side, Triangles};
+
+/// A point in a closed simplex; 2-D by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
-    /// The triangle, the first one that contains the point.
-    pub triangle: usize,
-    /// Whether the point is on the edge opposite each corner.
-    pub on: [bool; 3],
+pub struct Place<const N: usize = 3> {
+    /// The simplex, the first one that contains the point.
+    pub simplex: usize,
+    /// Whether the point is on the facet opposite each corner.
+    pub on: [bool; N],
 }
 
-impl Place {
-    /// The corner at which the point is.
+impl<const N: usize> Place<N> {
+    /// The place given by the sides of the facets, none of which is negative.
     #[inline]
-    pub fn site(&self) -> Option<usize> {
-        match self.on {
-            [true, true, _] => Some(2),
-            [true, _, true] => Some(1),
-            [_, true, true] => Some(0),
-            _ => None,
+    pub fn of(simplex: usize, sides: [Sign; N]) -> Self {
+        Self {
+            simplex,
+            on: sides.map(|s| s == Sign::Zero),
         }
     }
 
+    /// The corner at which the point is.
+    #[inline]
+    pub fn site(&self) -> Option<usize> {
+        let off = self.on.iter().filter(|&&on| !on).count();
+        (off == 1).then(|| self.on.iter().position(|&on| !on))?
+    }
+}
+
+impl Place {
     /// The corner opposite the open edge on which the point is.
     pub fn edge(&self) -> Option<usize> {
         match self.on {
@@ -40,73 +48,75 @@ impl Place {
 
     fn at_corner(side: Side) -> Self {
         Self {
-            triangle: side.triangle,
+            simplex: side.simplex,
             on: std::array::from_fn(|k| k != side.corner),
         }
     }
 
     fn on_edge(side: Side) -> Self {
         Self {
-            triangle: side.triangle,
+            simplex: side.simplex,
             on: std::array::from_fn(|k| k == side.corner),
         }
     }
 }
 
-/// The answer for the last vertex: equal queries are consecutive along the curve, and a vertex may
-/// have very many triangles.
-#[derive(Debug, Default)]
-pub struct Star {
-    last: Option<(Side, First)>,
-}
-
-/// The first of the triangles that can be reached around a vertex or an edge.
+/// The first of the simplices that can be reached around a vertex, an edge or a face.
 #[derive(Debug, Clone, Copy)]
-pub struct First {
-    /// The place in that triangle.
-    pub place: Place,
-    /// Whether the point is a boundary vertex: if the boundary is not convex, there may be
-    /// triangles that touch it without being reached.
+pub struct First<const N: usize> {
+    /// The place in that simplex.
+    pub place: Place<N>,
+    /// Whether there may be simplices that contain the point without being reached if the boundary
+    /// is not convex.
     pub open: bool,
 }
 
-impl Star {
-    /// The first of the triangles that contain the point at `place`.
-    #[inline]
-    pub fn first(&mut self, given: &Triangles, place: Place) -> First {
-        if place.on == [false; 3] {
-            return First { place, open: false };
-        }
-        self.first_beside(given, place)
-    }
+/// The answer for the last query that was not inside a simplex: equal queries are consecutive along
+/// the curve, and a vertex may have very many simplices.
+#[derive(Debug, Default)]
+pub struct Star<const N: usize> {
+    last: Option<First<N>>,
+}
 
-    #[inline(never)]
-    fn first_beside(&mut self, given: &Triangles, place: Place) -> First {
-        let triangle = place.triangle;
-        if let Some(corner) = place.edge() {
-            let place = match given.beyond(Side { triangle, corner }) {
-                Some(there) if there.triangle < triangle => Place::on_edge(there),
-                _ => place,
-            };
+impl<const N: usize> Star<N> {
+    /// The first of the simplices that contain the point at `place`, by `around` if it must be
+    /// searched.
+    #[inline]
+    pub fn first(
+        &mut self,
+        place: Place<N>,
+        around: impl FnOnce(Place<N>) -> First<N>,
+    ) -> First<N> {
+        if place.on == [false; N] {
             return First { place, open: false };
         }
-        let Some(corner) = place.site() else {
-            return First { place, open: false };
-        };
-        let here = Side { triangle, corner };
-        if let Some((asked, first)) = self.last
-            && asked == here
-        {
-            return first;
+        // The next walk to this place ends in the simplex found now.
+        match self.last {
+            Some(last) if last.place == place => last,
+            _ => *self.last.insert(around(place)),
         }
-        let mut least = here;
-        let open = given.around(here, |side| {
-            least = least.min(side);
-            true
-        });
-        let place = Place::at_corner(least);
-        // The next walk to this vertex starts in the triangle found now.
-        self.last = Some((least, First { place, open }));
-        First { place, open }
     }
+}
+
+/// The first of the triangles around the edge or the vertex at `place`.
+#[inline(never)]
+pub fn first_around(given: &Triangles, place: Place) -> First<3> {
+    let simplex = place.simplex;
+    if let Some(corner) = place.edge() {
+        let place = match given.beyond(Side { simplex, corner }) {
+            Some(there) if there.simplex < simplex => Place::on_edge(there),
+            _ => place,
+        };
+        return First { place, open: false };
+    }
+    let Some(corner) = place.site() else {
+        return First { place, open: false };
+    };
+    let mut least = Side { simplex, corner };
+    let open = given.around(least, |side| {
+        least = least.min(side);
+        true
+    });
+    let place = Place::at_corner(least);
+    First { place, open }
 }

@@ -8,8 +8,8 @@
 
 use delone_predicates::{Point2, Sign, lexicographic, orient2d};
 
-use super::tiling::{Side, next, prev};
-use crate::arrays::Triangles;
+use super::tiling::{next, prev};
+use crate::arrays::{Side, Triangles};
 use crate::error::{Error, Result};
 
 /// How a trace ends.
@@ -48,7 +48,7 @@ impl<'a> Trace<'a> {
     pub fn from_corner(given: &'a Triangles<'a>, start: Side, b: Point2) -> Self {
         Self {
             given,
-            a: given.point(given.vertex(start)),
+            a: given.at(start),
             b,
             prefer_left: true,
             state: State::Vertex(start),
@@ -72,10 +72,7 @@ impl<'a> Trace<'a> {
             state: State::Within(t),
         };
         let corners = (0..3).filter(|&k| on[k]).collect::<Vec<_>>();
-        let side = |corner| Side {
-            triangle: t,
-            corner,
-        };
+        let side = |corner| Side { simplex: t, corner };
         trace.state = match corners[..] {
             [] => State::Within(t),
             [k] => trace.leave_edge(side(k)),
@@ -94,10 +91,9 @@ impl<'a> Trace<'a> {
             prefer_left: true,
             state: State::Enter(side),
         };
-        for corner in [next(side.corner), prev(side.corner)] {
-            let at = Side { corner, ..side };
-            if trace.side(given.point(given.vertex(at))) == Sign::Zero {
-                trace.state = State::Vertex(at);
+        for end in given.ends(side) {
+            if trace.side(given.at(end)) == Sign::Zero {
+                trace.state = State::Vertex(end);
             }
         }
         trace
@@ -153,10 +149,10 @@ impl<'a> Trace<'a> {
 
     /// The start, on the open edge opposite a corner.
     fn leave_edge(&self, side: Side) -> State {
-        let [u, v] = [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side });
-        let [p, q] = [u, v].map(|s| self.given.point(self.given.vertex(s)));
+        let [u, v] = self.given.ends(side);
+        let [p, q] = [u, v].map(|end| self.given.at(end));
         match orient2d(p, q, self.b) {
-            Sign::Positive => State::Within(side.triangle),
+            Sign::Positive => State::Within(side.simplex),
             Sign::Negative => self.through(side),
             Sign::Zero => {
                 // Along the edge: as if from the end behind.
@@ -175,10 +171,7 @@ impl<'a> Trace<'a> {
         }
         let signs = self.given.corners(t).map(|p| self.side(p));
         for corner in 0..3 {
-            let side = Side {
-                triangle: t,
-                corner,
-            };
+            let side = Side { simplex: t, corner };
             // Counterclockwise from inside, corners right of the line precede those left of it.
             match (signs[corner], signs[next(corner)], signs[prev(corner)]) {
                 (Sign::Zero, Sign::Positive, Sign::Negative) => return State::Vertex(side),
@@ -188,19 +181,19 @@ impl<'a> Trace<'a> {
         }
         // Only in degenerate triangles.
         State::Done(End::Left(Side {
-            triangle: t,
+            simplex: t,
             corner: 0,
         }))
     }
 
     /// Enters the triangle through the open edge opposite the corner, and continues.
     fn cross(&self, side: Side, meet: &mut impl FnMut(usize)) -> State {
-        meet(side.triangle);
-        if self.holds_end(side.triangle) {
-            return State::Done(End::Reached(side.triangle));
+        meet(side.simplex);
+        if self.holds_end(side.simplex) {
+            return State::Done(End::Reached(side.simplex));
         }
         // Seen along the segment, the `next` corner of the edge is on the left.
-        match self.side(self.given.point(self.given.vertex(side))) {
+        match self.side(self.given.at(side)) {
             Sign::Zero => State::Vertex(side),
             Sign::Positive => self.through(Side {
                 corner: next(side.corner),
@@ -215,12 +208,11 @@ impl<'a> Trace<'a> {
 
     /// From a vertex on the segment into the triangle, or along the edge, towards `b`.
     fn leave_vertex(&self, at: Side, meet: &mut impl FnMut(usize)) -> Result<State> {
-        let p = self.given.point(self.given.vertex(at));
+        let p = self.given.at(at);
         let mut found = None;
         let mut rim = at;
         self.given.around(at, |side| {
-            let [u, v] = [next(side.corner), prev(side.corner)]
-                .map(|corner| self.given.point(self.given.vertex(Side { corner, ..side })));
+            let [u, v] = self.given.ends(side).map(|end| self.given.at(end));
             let (right, left) = (orient2d(p, u, self.b), orient2d(p, v, self.b));
             if right == Sign::Negative || left == Sign::Positive {
                 // At the boundary: the edge with b outside, which is left or right of p.
@@ -246,8 +238,8 @@ impl<'a> Trace<'a> {
         };
         if right == Sign::Zero && left == Sign::Zero {
             // The target is this vertex.
-            meet(side.triangle);
-            return Ok(State::Done(End::Reached(side.triangle)));
+            meet(side.simplex);
+            return Ok(State::Done(End::Reached(side.simplex)));
         }
         if right == Sign::Zero {
             let end = Side {
@@ -276,9 +268,9 @@ impl<'a> Trace<'a> {
             };
             return Ok(self.along_edge(beside, p, v, end, meet));
         }
-        meet(side.triangle);
-        if self.holds_end(side.triangle) {
-            return Ok(State::Done(End::Reached(side.triangle)));
+        meet(side.simplex);
+        if self.holds_end(side.simplex) {
+            return Ok(State::Done(End::Reached(side.simplex)));
         }
         Ok(self.through(side))
     }
@@ -299,8 +291,8 @@ impl<'a> Trace<'a> {
             self.given.turn_left(side)
         };
         let beside = match other {
-            Some(other) if is_left != self.prefer_left => other.triangle,
-            _ => side.triangle,
+            Some(other) if is_left != self.prefer_left => other.simplex,
+            _ => side.simplex,
         };
         meet(beside);
         if lexicographic(u, self.b) == lexicographic(p, u) {

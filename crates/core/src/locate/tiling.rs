@@ -1,17 +1,6 @@
-//! Exported arrays as a tiling: steps from triangle to triangle by codes, never by vertex numbers.
-//!
-//! So the two sides of an edge may name different rows with equal coordinates.
+//! The edges of a 2-D tiling, and turns around its vertices.
 
-use crate::arrays::Triangles;
-
-/// A corner of a triangle, and the opposite edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Side {
-    /// The triangle.
-    pub triangle: usize,
-    /// The corner, 0 to 2.
-    pub corner: usize,
-}
+use crate::arrays::{Side, Triangles};
 
 /// The corner after `k`, counterclockwise.
 #[inline]
@@ -25,37 +14,19 @@ pub fn prev(k: usize) -> usize {
     if k == 0 { 2 } else { k - 1 }
 }
 
+/// ```text
+///        a                 the edge from s[next(k)] to s[prev(k)] of one triangle is the edge
+///       / \                from s'[prev(k')] to s'[next(k')] of the one beyond
+///      / k \
+///     b-----c
+///      \ k'/
+///       \ /
+/// ```
 impl Triangles<'_> {
-    /// The vertex at a corner.
+    /// The corners at the ends of the edge opposite a corner, counterclockwise.
     #[inline]
-    pub fn vertex(&self, side: Side) -> i32 {
-        self.simplices[side.triangle][side.corner]
-    }
-
-    /// The same edge seen from the triangle beyond; `None` at the boundary.
-    ///
-    /// ```text
-    ///        a                 the edge from s[next(k)] to s[next(next(k))] of the one
-    ///       / \                is the edge from s'[next(next(k'))] to s'[next(k')] of the other
-    ///      / k \
-    ///     b-----c
-    ///      \ k'/
-    ///       \ /
-    /// ```
-    #[inline]
-    pub fn beyond(&self, side: Side) -> Option<Side> {
-        let t = self.neighbors[side.triangle][side.corner];
-        if t < 0 {
-            return None;
-        }
-        let back = &self.neighbors[t as usize];
-        let here = side.triangle as i32;
-        let corner = usize::from(back[1] == here) + 2 * usize::from(back[2] == here);
-        Some(Side {
-            triangle: t as usize,
-            // Invalid arrays, in which no edge is shared, must not lead out of range.
-            corner: corner.min(2),
-        })
+    pub fn ends(&self, side: Side) -> [Side; 2] {
+        [next(side.corner), prev(side.corner)].map(|corner| Side { corner, ..side })
     }
 
     /// The next triangle counterclockwise around the vertex at a corner.
@@ -98,7 +69,7 @@ impl Triangles<'_> {
             }
             left -= 1;
             now = self.turn_left(side);
-            if now.is_some_and(|side| side.triangle == start.triangle) {
+            if now.is_some_and(|side| side.simplex == start.simplex) {
                 return false;
             }
         }

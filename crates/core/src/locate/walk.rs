@@ -7,20 +7,13 @@
 
 use delone_predicates::{Point2, Sign, orient2d};
 
+use super::locator::{Dimension, Located};
+use super::plane::Plane;
+use super::star::Place;
 use super::straight::{End, Trace};
-use super::tiling::{Side, next, prev};
-use crate::arrays::Triangles;
+use super::tiling::{next, prev};
+use crate::arrays::{Side, Triangles};
 use crate::error::Result;
-
-/// The end of a walk.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Found {
-    /// In a triangle whose closed area contains the point, which is on the edges opposite these
-    /// corners.
-    Inside(usize, [bool; 3]),
-    /// At a boundary edge that has the point strictly outside.
-    Beyond(Side),
-}
 
 /// Steps of the visibility walk before the straight walk takes over: several times what a walk
 /// across a whole mesh of uniform points needs.
@@ -30,47 +23,38 @@ fn budget(triangles: usize) -> usize {
 
 /// Walks from triangle `from` to `q`.
 #[inline]
-pub fn walk(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
+pub fn walk(given: &Triangles, from: usize, q: Point2) -> Result<Located> {
     match visibility(given, from, q, budget(given.simplices.len())) {
         Some(found) => Ok(found),
         None => straight(given, from, q),
     }
 }
 
-/// On which side of the directed edge from `a` to `b` the point is.
-#[inline]
-fn side_of(a: Point2, b: Point2, q: Point2) -> Sign {
-    orient2d(a, b, q)
-}
-
 /// The visibility walk, unless it needs more than `budget` steps.
 #[inline]
-pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> Option<Found> {
-    let [a, b, c] = given.corners(from);
-    let signs = [side_of(b, c, q), side_of(c, a, q), side_of(a, b, q)];
-    let Some(k) = signs.iter().position(|&s| s == Sign::Negative) else {
-        return Some(Found::Inside(from, signs.map(|s| s == Sign::Zero)));
+pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> Option<Located> {
+    let sides = Plane::sides(given, from, q);
+    let Some(corner) = sides.iter().position(|&s| s == Sign::Negative) else {
+        return Some(Located::Inside(Place::of(from, sides)));
     };
     // The walk leaves `at` across the edge from u to v.
-    let mut at = Side {
-        triangle: from,
-        corner: k,
-    };
-    let corners = [a, b, c];
-    let (mut u, mut v) = (corners[next(k)], corners[prev(k)]);
+    let simplex = from;
+    let mut at = Side { simplex, corner };
+    let [mut u, mut v] = given.ends(at).map(|end| given.at(end));
     for _ in 0..budget {
         let Some(side) = given.beyond(at) else {
-            return Some(Found::Beyond(at));
+            return Some(Located::Outside(Some(at)));
         };
-        let w = given.point(given.vertex(side));
+        let w = given.at(side);
         touch(given, side);
-        let (left, right) = (side_of(u, w, q), side_of(w, v, q));
+        let (left, right) = (orient2d(u, w, q), orient2d(w, v, q));
         let turns_left = left == Sign::Negative;
         if !turns_left && right != Sign::Negative {
             let mut on = [false; 3];
             on[next(side.corner)] = left == Sign::Zero;
             on[prev(side.corner)] = right == Sign::Zero;
-            return Some(Found::Inside(side.triangle, on));
+            let simplex = side.simplex;
+            return Some(Located::Inside(Place { simplex, on }));
         }
         // Selections instead of branches, which would be unpredictable.
         at.corner = if turns_left {
@@ -79,7 +63,7 @@ pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> O
             prev(side.corner)
         };
         (u, v) = (select(turns_left, u, w), select(turns_left, w, v));
-        at.triangle = side.triangle;
+        at.simplex = side.simplex;
     }
     None
 }
@@ -90,9 +74,9 @@ pub fn visibility(given: &Triangles, from: usize, q: Point2, budget: usize) -> O
 #[inline]
 fn touch(given: &Triangles, side: Side) {
     let sum = |s: &[i32; 3]| s[0].wrapping_add(s[1]).wrapping_add(s[2]);
-    let here = &given.simplices[side.triangle];
+    let here = &given.simplices[side.simplex];
     for k in [next(side.corner), prev(side.corner)] {
-        let beyond = given.neighbors[side.triangle][k];
+        let beyond = given.neighbors[side.simplex][k];
         if let Some(there) = given.simplices.get(beyond as usize) {
             let shared = sum(here).wrapping_sub(here[k]);
             let far = sum(there).wrapping_sub(shared);
@@ -111,23 +95,12 @@ fn select(first: bool, a: Point2, b: Point2) -> Point2 {
 /// The straight walk from the first corner of a triangle.
 #[cold]
 #[inline(never)]
-pub fn straight(given: &Triangles, from: usize, q: Point2) -> Result<Found> {
-    let mut trace = Trace::from_corner(
-        given,
-        Side {
-            triangle: from,
-            corner: 0,
-        },
-        q,
-    );
-    let end = trace.run(|_| ())?;
+pub fn straight(given: &Triangles, from: usize, q: Point2) -> Result<Located> {
+    let (simplex, corner) = (from, 0);
+    let end = Trace::from_corner(given, Side { simplex, corner }, q).run(|_| ())?;
     Ok(match end {
-        End::Reached(t) => {
-            let [a, b, c] = given.corners(t);
-            let on = [side_of(b, c, q), side_of(c, a, q), side_of(a, b, q)];
-            Found::Inside(t, on.map(|s| s == Sign::Zero))
-        }
-        End::Left(side) => Found::Beyond(side),
+        End::Reached(t) => Located::Inside(Place::of(t, Plane::sides(given, t, q))),
+        End::Left(side) => Located::Outside(Some(side)),
     })
 }
 
@@ -166,7 +139,8 @@ mod tests {
             simplices: &simplices,
             neighbors: &neighbors,
         };
-        let (q, expected) = ([0.1, 0.03], Ok(Found::Inside(0, [false; 3])));
+        let (simplex, on) = (0, [false; 3]);
+        let (q, expected) = ([0.1, 0.03], Ok(Located::Inside(Place { simplex, on })));
         let mut circles = 0;
         for from in 0..simplices.len() {
             circles += usize::from(visibility(&given, from, q, 1000).is_none());

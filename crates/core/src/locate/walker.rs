@@ -1,63 +1,53 @@
-//! Walks from query to query of a 2-D batch.
+//! Walks from query to query of a batch, in 2-D and 3-D.
 
-use delone_predicates::Point2;
-
-use super::batch::{Walks, squared};
-use super::tiling::Side;
-use super::{Kept, Located, Locator, Star};
+use super::batch::squared;
+use super::locator::{Dimension, Located, Locator};
+use super::star::Star;
+use crate::arrays::Side;
 use crate::error::Result;
 
-/// How far a walk goes, in lengths of an edge of the last triangle, squared; beyond that the tree
-/// of starting triangles is cheaper: its depth costs about as much as a dozen triangles.
-const REACH: f64 = 64.0;
+/// The location of the last query: the next walk starts there, or from the tree if it is far away.
+pub struct Walker<'a, P: Dimension<D, N>, const D: usize, const N: usize> {
+    locator: &'a Locator<'a, P, D, N>,
+    star: Star<N>,
+    near: usize,
+    last: [f64; D],
+    reach: f64,
+    /// The boundary facet that has it strictly outside.
+    beyond: Option<Side>,
+}
 
-impl Walks<2, 3> for Kept {
-    type Located = Located;
-
-    fn walker(locator: &Locator) -> impl FnMut(Point2) -> Result<Located> + Send {
-        let mut walker = Walker {
+impl<'a, P: Dimension<D, N>, const D: usize, const N: usize> Walker<'a, P, D, N> {
+    /// Starts from the tree.
+    pub fn new(locator: &'a Locator<'a, P, D, N>) -> Self {
+        Self {
             locator,
             star: Star::default(),
             near: 0,
-            last: [f64::NAN; 2],
+            last: [f64::NAN; D],
             reach: 0.0,
-        };
-        move |q| walker.go(q)
-    }
-
-    #[inline]
-    fn holder(at: &Located) -> i32 {
-        match at {
-            Located::Inside(place) => place.triangle as i32,
-            Located::Outside(_) => -1,
+            beyond: None,
         }
     }
-}
 
-/// The location of the last query; the next walk starts there, or from the tree.
-struct Walker<'a> {
-    locator: &'a Locator<'a>,
-    star: Star,
-    near: usize,
-    last: Point2,
-    reach: f64,
-}
-
-impl Walker<'_> {
+    /// Locates the next query.
     #[inline]
-    fn go(&mut self, q: Point2) -> Result<Located> {
+    pub fn go(&mut self, q: [f64; D]) -> Result<Located<N>> {
+        if P::is_outside(self.locator, self.beyond, q)? {
+            return Ok(Located::Outside(self.beyond));
+        }
         // False for NaN, initially and if squares overflow: then the tree gives the start.
         let close = squared(q, self.last) <= self.reach;
         if !close {
             self.near = self.locator.near(q);
         }
         let at = self.locator.locate_from(self.near, q, &mut self.star)?;
-        self.near = match at {
-            Located::Inside(place) => place.triangle,
-            Located::Outside(Side { triangle, .. }) => triangle,
+        (self.near, self.beyond) = match at {
+            Located::Inside(place) => (place.simplex, None),
+            Located::Outside(side) => (side.map_or(self.near, |side| side.simplex), side),
         };
-        let [a, b, _] = self.locator.given.corners(self.near);
-        (self.last, self.reach) = (q, REACH * squared(a, b));
+        let corners = self.locator.given.corners(self.near);
+        (self.last, self.reach) = (q, P::REACH * squared(corners[0], corners[1]));
         Ok(at)
     }
 }

@@ -12,8 +12,8 @@ use delone_predicates::Point3;
 use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
-use super::star::Place;
-use super::tiling::Tetrahedra;
+use super::Place;
+use crate::arrays::Tetrahedra;
 use crate::wide::{ratio, scaled};
 
 /// Ratio of the magnitude of the products to the volume above which plain floating point does not

@@ -17,9 +17,9 @@ use delone_predicates::{Point3, Sign, orient3d};
 use super::excess;
 use super::face::on_face;
 use super::foot::{Foot, Triangle};
-use super::tiling::{FACES, Side, Tetrahedra};
+use crate::arrays::{OUTWARD, Side, Tetrahedra};
 use crate::error::Result;
-use crate::locate::{Boxes, kept};
+use crate::locate::{Boxes, kept, outer_sides};
 use crate::points::Extent;
 use crate::watch::{Pace, Watch};
 
@@ -49,14 +49,7 @@ pub struct Boundary {
 impl Boundary {
     /// Extracts the boundary from the arrays.
     pub fn of(given: &Tetrahedra, watch: &Watch) -> Result<Self> {
-        let mut sides = Vec::new();
-        let (mut from, count) = (0, given.simplices.len());
-        while from < count {
-            watch.check()?;
-            let to = count.min(from + LOT);
-            sides.extend(given.boundary(from..to));
-            from = to;
-        }
+        let sides = outer_sides(given, watch)?;
         let across = across_edges(given, &sides, watch)?;
         let corners = sides.iter().flat_map(|&side| given.face(side));
         Ok(Self {
@@ -221,16 +214,16 @@ fn across_edges(
     let mut count = 1;
     while let Some(here) = open.pop() {
         let side = sides[here];
-        let [a, b, c] = FACES[side.corner].map(|corner| Side { corner, ..side });
+        let [a, b, c] = OUTWARD[side.corner].map(|corner| Side { corner, ..side });
         for (k, (u, v, w)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
             let (next, steps) = around_edge(given, side, w);
             pace.spend(steps)?;
             let Some(next) = next else {
                 return Ok(None);
             };
-            let [u, v, w] = [u, v, w].map(|s| given.point(given.vertex(s)));
+            let [u, v, w] = [u, v, w].map(|s| given.at(s));
             let shared = given.simplices[side.simplex];
-            for corner in FACES[next.corner] {
+            for corner in OUTWARD[next.corner] {
                 let far = given.vertex(Side { corner, ..next });
                 // Seen from outside, faces are counterclockwise; positive is outside.
                 let beyond = orient3d(u, v, w, given.point(far));

@@ -67,7 +67,9 @@ pub fn coordinates(batch: &Batch) -> Result<Coordinates> {
             if let Located::Inside(place) = at {
                 simplex.set(row, place.simplex as i32);
                 weights.set_all(4 * row, &barycentric(given, &place, q));
-            } else if let Some((side, share)) = locator.nearest_beside(q, last)? {
+            } else if let Some((side, share)) =
+                locator.boundary()?.nearest(given, q, last, locator.watch)?
+            {
                 beside.set(row, side.simplex as i32);
                 face.set_all(3 * row, &given.face(side));
                 shares.set_all(3 * row, &share);

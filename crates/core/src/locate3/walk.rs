@@ -7,17 +7,9 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
-use super::star::Place;
-use super::tiling::{Side, Tetrahedra};
-
-/// The end of a walk.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Found {
-    /// In a tetrahedron, boundary included.
-    Inside(Place),
-    /// At a boundary face that has the point strictly outside.
-    Beyond(Side),
-}
+use super::{Located, Place, Space};
+use crate::arrays::{Side, Tetrahedra};
+use crate::locate::Dimension;
 
 /// Steps before the walk gives up: several times what a walk across a whole mesh of uniform points
 /// needs, which is a multiple of the cube root.
@@ -25,20 +17,18 @@ fn budget(simplices: usize) -> usize {
     256 + 16 * (simplices as f64).cbrt() as usize
 }
 
-/// Walks from tetrahedron `from` to `q`; `None` if the budget is exhausted.
+/// Walks from tetrahedron `from` to `q`; ends outside without a face if the budget is exhausted.
 #[inline]
-pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
-    let signs = given.sides(from, q);
-    let Some(corner) = signs.iter().position(|&s| s == Sign::Negative) else {
-        return Some(Found::Inside(Place::of(from, signs)));
+pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Located {
+    let sides = Space::sides(given, from, q);
+    let Some(corner) = sides.iter().position(|&s| s == Sign::Negative) else {
+        return Located::Inside(Place::of(from, sides));
     };
-    let mut at = Side {
-        simplex: from,
-        corner,
-    };
+    let simplex = from;
+    let mut at = Side { simplex, corner };
     'walk: for _ in 0..budget(given.simplices.len()) {
         let Some(side) = given.beyond(at) else {
-            return Some(Found::Beyond(at));
+            return Located::Outside(Some(at));
         };
         let corners = given.corners(side.simplex);
         // The point is on the inner side of the face through which the walk came.
@@ -54,7 +44,7 @@ pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Option<Found> {
                 continue 'walk;
             }
         }
-        return Some(Found::Inside(Place::of(side.simplex, signs)));
+        return Located::Inside(Place::of(side.simplex, signs));
     }
-    None
+    Located::Outside(None)
 }

@@ -17,9 +17,8 @@ use std::collections::HashMap;
 use delone_predicates::{Sign, orient3d};
 
 use super::power::power_canonical;
-use crate::arrays::Arrays;
+use crate::arrays::{Arrays, OUTWARD};
 use crate::error::{Error, Result};
-use crate::locate3::FACES;
 use crate::regular::{GHOST, NONE, Records, Weighted};
 use crate::watch::Watch;
 
@@ -78,7 +77,7 @@ impl<'a> Insertion<'a> {
     fn insert(&mut self, p: u32) -> Result<()> {
         let sites = self.sites;
         let start = self.mesh.locate(p, |corners, k| {
-            let [a, b, c] = FACES[k].map(|i| corners[i]);
+            let [a, b, c] = OUTWARD[k].map(|i| corners[i]);
             // Strictly beyond the face, which is counterclockwise from there.
             turn(sites, [a, b, c, p]) == Sign::Positive
         })?;
@@ -98,7 +97,7 @@ impl<'a> Insertion<'a> {
         let made: Vec<([u32; 4], u32, u32)> = rim
             .iter()
             .map(|&(t, k)| {
-                let [a, b, c] = FACES[k].map(|i| self.mesh.vertices[t as usize][i]);
+                let [a, b, c] = OUTWARD[k].map(|i| self.mesh.vertices[t as usize][i]);
                 ([p, a, b, c], self.mesh.neighbors[t as usize][k], t)
             })
             .collect();
@@ -161,7 +160,7 @@ fn conflicts(sites: Weighted<3>, mesh: &Records<4>, t: u32, p: u32) -> bool {
     let Some(k) = corners.iter().position(|&v| v == GHOST) else {
         return is_below(sites, corners, p);
     };
-    let [a, b, c] = FACES[k].map(|i| corners[i]);
+    let [a, b, c] = OUTWARD[k].map(|i| corners[i]);
     // From the ghost the face is counterclockwise as seen from inside the hull.
     match turn(sites, [a, b, c, p]) {
         Sign::Zero => {

@@ -4,10 +4,9 @@
 use delone_predicates::{Sign, orient3d};
 
 use super::power::{power_canonical, power_sign};
-use crate::arrays::Tetrahedra;
+use crate::arrays::{OUTWARD, Tetrahedra};
 use crate::delaunay3::validate::{Findings3, examine};
 use crate::error::Result;
-use crate::locate3::FACES;
 use crate::order::space::arrange;
 use crate::points;
 use crate::proof::{Expected, Verdict};
@@ -43,7 +42,7 @@ pub fn validate(given: Tetrahedra, weights: &[f64], watch: &Watch) -> Result<Che
     let mut hidden = Vec::new();
     if faults == Findings3::default() {
         let beyond = |corners: [u32; 4], k: usize, p: u32| {
-            let [a, b, c] = FACES[k].map(|i| at(corners[i]));
+            let [a, b, c] = OUTWARD[k].map(|i| at(corners[i]));
             orient3d(a, b, c, at(p)) == Sign::Positive
         };
         let below = |[a, b, c, d]: [u32; 4], p: u32| {

@@ -1,0 +1,71 @@
+//! What 2-D location has of its own.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::boundary::Boundary;
+use super::locator::{Dimension, Located, Locator};
+use super::sites::Sites;
+use super::star::{First, Place, first_around};
+use super::walk::walk;
+use crate::arrays::Triangles;
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// What is kept of triangles.
+#[derive(Debug)]
+pub struct Plane {
+    /// How many neighbors nearest-vertex queries have tested without finding the answer.
+    strayed: AtomicUsize,
+}
+
+impl Dimension<2, 3> for Plane {
+    type Boundary = Boundary;
+
+    /// The depth of the tree costs about as much as a dozen triangles.
+    const REACH: f64 = 64.0;
+
+    fn of(_: &Triangles) -> Self {
+        Self {
+            strayed: AtomicUsize::new(0),
+        }
+    }
+
+    fn boundary(given: &Triangles, watch: &Watch) -> Result<Boundary> {
+        Boundary::of(given, watch)
+    }
+
+    fn is_convex(boundary: &Boundary) -> bool {
+        boundary.convex
+    }
+
+    #[inline]
+    fn sides(given: &Triangles, t: usize, q: Point2) -> [Sign; 3] {
+        let [a, b, c] = given.corners(t);
+        [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)]
+    }
+
+    #[inline]
+    fn walk(given: &Triangles, from: usize, q: Point2) -> Result<Located> {
+        walk(given, from, q)
+    }
+
+    #[inline]
+    fn first_around(given: &Triangles, place: Place) -> First<3> {
+        first_around(given, place)
+    }
+}
+
+impl<'a> Locator<'a> {
+    /// The vertices in boxes, once queries have tested in vain as many neighbors, now `more` of
+    /// them, as there are points: about the cost of building the boxes.
+    pub(super) fn sites_after(&self, more: usize) -> Result<Option<&'a Sites<2>>> {
+        let strayed = &self.kept.own.strayed;
+        let tested = strayed.fetch_add(more, Ordering::Relaxed) + more;
+        if tested < self.given.points.len() {
+            return Ok(None);
+        }
+        self.sites().map(Some)
+    }
+}
