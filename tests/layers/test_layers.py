@@ -30,7 +30,7 @@ CRATES = ROOT / "crates"
 # the import is and whatever it is for.
 PYTHON: tuple[set[str], ...] = (
     {"_core", "errors", "blocks", "counting", "duplicates"},
-    {"_masks", "atomic", "extras", "georeference"},
+    {"_masks", "atomic", "bounded", "extras", "georeference"},
     {"_arrays"},
     {"_values", "immutable", "predicates"},
     # Rooms that take plain arrays and protocols, and no class.

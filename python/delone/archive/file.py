@@ -14,6 +14,7 @@ import numpy as np
 from delone.archive.checks import ContradictionError, require
 from delone.archive.kinds import KINDS, Kind
 from delone.atomic import replacing
+from delone.bounded import archived, pieces
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -58,12 +59,14 @@ def _path(path: str | os.PathLike[str]) -> Path:
 
 def _parsed(file: IO[bytes], path: Path, kinds: tuple[Kind, ...]) -> dict[str, NDArray[Any]]:
     try:
-        with zipfile.ZipFile(file) as archive:
+        with archived(path, file) as archive:
             kind = _kind(archive, kinds)
             arrays = {name: _array(archive, name, *kind.layout[name]) for name in kind.layout}
             present = [name for name in kind.texts if f"{name}.npy" in archive.namelist()]
             texts = {name: _scalar(archive, name, _LONGEST_TEXT) for name in present}
         kind.check(**arrays)
+    except FileFormatError:
+        raise
     except _DAMAGE as error:
         raise refusal(path, error) from error
     except ContradictionError as error:
@@ -121,12 +124,14 @@ def _array(archive: zipfile.ZipFile, name: str, kind: str, columns: int) -> Any:
         fits = len(shape) == 2 and shape[1] == columns if columns else len(shape) == 1
         axes = f"(n, {columns})" if columns else "(n,)"
         require(fits, f"{name} has shape {shape}, not {axes}")
-        # Reads what is there, whatever the header claims; zipfile compares the checksum.
-        data = file.read()
-    claimed = shape[0] * (columns or 1) * wanted.itemsize
-    require(len(data) == claimed, f"{name} has {len(data)} bytes, its header says {claimed}")
+        claimed = shape[0] * (columns or 1) * wanted.itemsize
+        there = archive.getinfo(f"{name}.npy").file_size - file.tell()
+        require(there == claimed, f"{name} has {there} bytes, its header says {claimed}")
+        # At the end zipfile compares the checksum.
+        data = pieces(file, there)
+    require(len(data) == claimed, f"{name} is cut short")
     native = wanted.newbyteorder("=")
-    return np.frombuffer(data, dtype=wanted).reshape(shape).astype(native, copy=False)
+    return data.view(wanted).reshape(shape).astype(native, copy=False)
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> IO[bytes]:

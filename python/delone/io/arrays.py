@@ -1,8 +1,8 @@
 """Points and triangles in NumPy files, npy and npz.
 
 A header is trusted only if the bytes that it declares exist: its shape is compared with the size of
-the file or of the archive member, and that with the maximum expansion of deflate. Pickled objects
-are never loaded.
+the file or of the archive member, and that with the size of the archive. Pickled objects are never
+loaded.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ import tokenize
 import zipfile
 import zlib
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from delone._arrays import as_points, as_simplices
 from delone._values import as_values
+from delone.bounded import archived, read_array, require_claim
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.errors import FileFormatError, InputError
 from delone.io.heights import split_attributes
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
 
-# Deflate expands one byte to at most 1032; small members also have headers.
-_EXPANSION, _SLACK = 1032, 1 << 16
-
 
 def read_points(
     path: Path,
@@ -51,9 +49,9 @@ def read_points(
             if layer is not None:
                 raise FileFormatError(f"{source}: an npy file has one array and no layers")
             with path.open("rb") as file:
-                _check_claim(file, path.stat().st_size, source)
+                require_claim(file, path.stat().st_size, source)
             return _from_table(np.load(path, mmap_mode="r"), columns, attributes, source)
-        with zipfile.ZipFile(path) as archive:
+        with archived(path) as archive:
             return _from_archive(archive, columns, attributes, layer, source)
 
 
@@ -62,7 +60,7 @@ def read_mesh(path: Path) -> MeshFile:
     source = str(path)
     if is_constrained(path):
         return _kept(path)
-    with _corrupt_is_an_error(source), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(source), archived(path) as archive:
         names = _names(archive)
         if not {"points", "simplices"} <= names:
             raise FileFormatError(f"{source} contains no triangles (arrays points and simplices)")
@@ -77,14 +75,14 @@ def is_constrained(path: Path) -> bool:
     """Return whether a file was written by `ConstrainedDelaunay.save`."""
     if path.suffix.lower() != ".npz":
         return False
-    with _corrupt_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(str(path)), archived(path) as archive:
         return {"points", "simplices", "constrained"} <= _names(archive)
 
 
 def _kept(path: Path) -> MeshFile:
     """Read a constrained triangulation without the triangles that have been removed."""
     mesh = ConstrainedDelaunay.load(path)
-    with _corrupt_is_an_error(str(path)), zipfile.ZipFile(path) as archive:
+    with _corrupt_is_an_error(str(path)), archived(path) as archive:
         z = _member(archive, "z") if "z" in _names(archive) else None
     return MeshFile(
         points=mesh.points,
@@ -262,42 +260,4 @@ def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
         raise FileFormatError(
             f"{archive.filename} has no array {name!r}: {_listed(_names(archive))}"
         ) from None
-    if entry.file_size > _EXPANSION * entry.compress_size + _SLACK:
-        raise FileFormatError(
-            f"{archive.filename}: array {name!r} declares more bytes than the file has"
-        )
-    with archive.open(entry) as file:
-        _check_claim(file, entry.file_size, f"{archive.filename}: array {name!r}")
-    with archive.open(entry) as file:
-        array: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
-    return array
-
-
-def _check_claim(file: IO[bytes], size: int, what: str) -> None:
-    """Compare the shape in a header with the number of bytes that follow."""
-    shape, dtype = _header(file)
-    claimed, there = dtype.itemsize, size - file.tell()
-    for length in shape:  # Python's integers do not overflow
-        claimed *= length
-    if not 0 <= claimed <= there:
-        raise FileFormatError(
-            f"{what} declares shape {shape}, {claimed} bytes, and contains {there}: it is truncated"
-        )
-    # Pickled objects have other sizes; they are rejected later, by name.
-    if claimed < there and not dtype.hasobject:
-        raise FileFormatError(
-            f"{what} declares shape {shape}, {claimed} bytes, and {there - claimed} more follow: "
-            "one array is read, and nothing is silently dropped"
-        )
-
-
-def _header(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[Any]]:
-    version = np.lib.format.read_magic(file)
-    # Version 3 differs from 2 in the encoding of field names only.
-    read = (
-        np.lib.format.read_array_header_1_0
-        if version == (1, 0)
-        else np.lib.format.read_array_header_2_0
-    )
-    shape, _, dtype = read(file)
-    return shape, dtype
+    return read_array(archive, entry, f"{archive.filename}: array {name!r}")

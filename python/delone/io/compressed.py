@@ -10,6 +10,7 @@ import zlib
 from contextlib import contextmanager
 from typing import IO, TYPE_CHECKING, Any
 
+from delone.bounded import EXPANSION, largest
 from delone.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -21,9 +22,6 @@ __all__ = ["SUFFIXES", "Bounded", "corrupt_is_an_error", "opened"]
 _OPENERS: dict[str, Any] = {".gz": gzip.open, ".xz": lzma.open, ".bz2": bz2.open}
 _TORN = (EOFError, gzip.BadGzipFile, lzma.LZMAError, zlib.error)
 SUFFIXES = tuple(_OPENERS)
-# Tables of numbers compress by a factor of 3 to 20, and constant grids by 100. The second limit is
-# what a file of a few bytes may contain in any case.
-_EXPANSION, _ALWAYS = 200, 1 << 26
 
 
 def opened(path: Path) -> IO[bytes]:
@@ -43,7 +41,7 @@ class Bounded(io.RawIOBase):
     def __init__(self, file: IO[bytes], path: Path, *, longest_line: int | None = None) -> None:
         self._file, self._path, self._longest_line = file, path, longest_line
         packed = path.suffix.lower() in SUFFIXES
-        self._most = max(_ALWAYS, _EXPANSION * path.stat().st_size) if packed else None
+        self._most = largest(path.stat().st_size) if packed else None
         self._read = self._line = 0
 
     def readable(self) -> bool:
@@ -57,7 +55,7 @@ class Bounded(io.RawIOBase):
         self._read += len(data)
         if self._most is not None and self._read > self._most:
             raise FileFormatError(
-                f"{self._path} is more than {_EXPANSION} times larger when decompressed, "
+                f"{self._path} is more than {EXPANSION} times larger when decompressed, "
                 f"over {self._most:,} bytes; if this is expected, decompress it first"
             )
         self._look_at_lines(data)

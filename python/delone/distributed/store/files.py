@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone.atomic import FULL
+from delone.bounded import archived, read_array, require_claim
 from delone.errors import FileFormatError, OutputError
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ def _corrupt_is_an_error(path: Path) -> Iterator[None]:
     """Convert errors of reading an array to `FileFormatError`."""
     try:
         yield
+    except FileFormatError:
+        raise
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise FileFormatError(
             f"{path} is truncated: {error}; remove the output folder and start again"
@@ -99,8 +102,11 @@ class Store:
 
     def load(self, name: str, *, mapped: bool = False) -> NDArray[Any]:
         """Read one array, or map it into memory."""
-        with _corrupt_is_an_error(self.path(name)):
-            array: NDArray[Any] = np.load(self.path(name), mmap_mode="r" if mapped else None)
+        path = self.path(name)
+        with _corrupt_is_an_error(path):
+            with path.open("rb") as file:
+                require_claim(file, path.stat().st_size, str(path))
+            array: NDArray[Any] = np.load(path, mmap_mode="r" if mapped else None)
         return array
 
     def save_all(self, name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -110,8 +116,10 @@ class Store:
 
     def load_all(self, name: str, *wanted: str) -> dict[str, NDArray[Any]]:
         """Read arrays by name: some, or all."""
-        with _corrupt_is_an_error(self.path(name)), np.load(self.path(name)) as found:
-            return {key: found[key] for key in wanted or found.files}
+        path = self.path(name)
+        with _corrupt_is_an_error(path), archived(path) as found:
+            entries = {entry.filename.removesuffix(".npy"): entry for entry in found.infolist()}
+            return {key: read_array(found, entries[key], str(path)) for key in wanted or entries}
 
     def note(self, name: str, content: Mapping[str, Any]) -> None:
         """Write a JSON note."""
