@@ -117,3 +117,15 @@ def test_contradictions_are_refused(name: str, change: Any, message: str, path: 
     changed(path, name, change)
     with pytest.raises(FileFormatError, match=message):
         delone.Mesh.load(path)
+
+
+def test_triangles_on_both_sides_of_a_line_are_neighbors(tmp_path: Path) -> None:
+    halved = delone.mesh(
+        ([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])
+    )
+    assert halved.neighbors.tolist().count([-1, -1, -1]) == 0
+    file = tmp_path / "halved.npz"
+    halved.save(file)
+    changed(file, "neighbors", lambda n: np.full_like(n, -1))
+    with pytest.raises(FileFormatError, match="mutual"):
+        delone.Mesh.load(file)

@@ -13,7 +13,13 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
-from delone.plane.topology import among, boundary_edges, boundary_next, edge_keys
+from delone.plane.topology import (
+    among,
+    boundary_edges,
+    boundary_next,
+    edge_keys,
+    unjoined,
+)
 from delone.space.topology import boundary_faces
 
 if TYPE_CHECKING:
@@ -69,6 +75,7 @@ def check_tetrahedra(**arrays: NDArray[Any]) -> None:
     """Check tetrahedra with any boundary, their regions, and the report of their improvement."""
     points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
     _check_simplices(points, simplices, neighbors)
+    _check_joined(simplices, neighbors)
     _check_closed(boundary_faces(simplices, neighbors), len(points))
     require(len(arrays["region"]) == len(simplices), "regions and tetrahedra do not match")
     classes = len(arrays["bounds"]) - 1
@@ -140,6 +147,14 @@ def _check_simplices(
     _check_range("simplices", simplices, 0, len(points))
     _check_range("neighbors", neighbors, -1, len(simplices))
     _check_sound(points, simplices, neighbors)
+
+
+def _check_joined(simplices: NDArray[np.int32], neighbors: NDArray[np.int32]) -> None:
+    """Check that simplices with a common side are neighbors; a convex boundary implies it."""
+    rows = unjoined(simplices, neighbors)
+    if len(rows):
+        kind = "triangle" if simplices.shape[1] == 3 else "tetrahedron"
+        raise ContradictionError(f"{kind} {rows[0]} has neighbors that are not mutual")
 
 
 def _check_closed(boundary: NDArray[np.int32], npoints: int, *, convex: bool = False) -> None:
@@ -255,6 +270,7 @@ def check_mesh(**arrays: NDArray[Any]) -> None:
     points, simplices, neighbors = arrays["points"], arrays["simplices"], arrays["neighbors"]
     n, m, lines = len(points), len(simplices), len(arrays["ends"])
     _check_simplices(points, simplices, neighbors)
+    _check_joined(simplices, neighbors)
     require(arrays["sides"].shape == simplices.shape, "it has no sides of triangles")
     for name, indices, least, end in (
         ("sides", arrays["sides"], -1, lines),

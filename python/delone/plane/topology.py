@@ -30,6 +30,7 @@ __all__ = [
     "half_edges",
     "neighbors",
     "rows_among",
+    "unjoined",
     "vertex_neighbor_vertices",
     "vertex_to_simplex",
 ]
@@ -122,6 +123,16 @@ def neighbors(simplices: Indices, npoints: int) -> Indices:
     partner = order[place]
     found = np.where(keys[partner] == reverse, partner // 3, -1)
     return found.astype(np.int32).reshape(-1, 3)
+
+
+def unjoined(simplices: Indices, neighbors: Indices) -> NDArray[np.int64]:
+    """Return triangles or tetrahedra without a neighbor across a side that two of them share."""
+    t, k = np.nonzero(neighbors < 0)
+    d = simplices.shape[1] - 1
+    side = np.sort(simplices[t][np.arange(d + 1) != k[:, None]].reshape(-1, d), axis=1)
+    order = np.lexsort(side.T)
+    same = (side[order[1:]] == side[order[:-1]]).all(axis=1)
+    return np.unique(np.concatenate((t[order[1:][same]], t[order[:-1][same]])))
 
 
 def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer], npoints: int) -> NDArray[np.int64]:

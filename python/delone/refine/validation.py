@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from delone import _core
-from delone.plane.topology import boundary_edges
+from delone.plane.topology import boundary_edges, unjoined
 from delone.validation import SENTENCES, ValidationReport, not_across
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def validate(
     return MeshValidation(
         orientation=found.orientation,
         edges=found.edges,
-        neighbors=found.neighbors,
+        neighbors=np.union1d(found.neighbors, unjoined(simplices, neighbors)),
         hull=boundary_edges(simplices, np.where(constrained, 0, neighbors)),
         missing=np.flatnonzero(~used),
         delaunay=not_across(found.delaunay, neighbors, constrained),

@@ -9,6 +9,7 @@ import numpy as np
 from delone import _core
 from delone.counting import counted
 from delone.errors import DtypeError
+from delone.plane.topology import unjoined
 from delone.tetmesh.report import CAUSES, COUNTS, ImproveReport
 from delone.triangulation import Triangulation
 from delone.validation import SpaceReport
@@ -126,7 +127,8 @@ class TetMesh(Triangulation):
         SpaceReport
             Truthy if there are no faults: tetrahedra are positively oriented, no oriented face is
             used twice, so that two tetrahedra with a common face lie on its two sides, and
-            neighbors are mutual. Its other fields are empty: the tetrahedra need not be Delaunay.
+            these are neighbors of each other. Its other fields are empty: the tetrahedra need not
+            be Delaunay.
 
         Notes
         -----
@@ -141,7 +143,9 @@ class TetMesh(Triangulation):
         """
         found = _core.validate3(self._points, self._simplices, self._neighbors)
         return TetMeshReport(
-            orientation=found.orientation, facets=found.facets, neighbors=found.neighbors
+            orientation=found.orientation,
+            facets=found.facets,
+            neighbors=np.union1d(found.neighbors, unjoined(self._simplices, self._neighbors)),
         )
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
