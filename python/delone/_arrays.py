@@ -32,6 +32,8 @@ _FLOAT64 = np.dtype(np.float64)
 # Every integer of at most this magnitude is a float64; the next one, 2**53 + 1, is not.
 _LARGEST_EXACT_INTEGER = 2**53
 _LARGEST_INDEX = 2**31 - 1
+# A limit beyond it is none: no call adds more points than an int32 numbers.
+LARGEST_LIMIT = 2**31 - 1
 # More threads only cost memory for stacks: the result does not depend on their number.
 _MOST_WORKERS = 256
 _REFUSED_KINDS = {
@@ -173,6 +175,11 @@ def as_neighbors(
 def as_count(n: int, *, name: str = "n") -> int:
     """Return an integer of at least 0 as a Python integer; booleans are rejected."""
     return _as_integer(n, 0, f"{name} must be an integer of at least 0")
+
+
+def as_limit(n: int, *, name: str) -> int:
+    """Return a count that means "at most", as `as_count`; the core counts in 32 bits."""
+    return min(as_count(n, name=name), LARGEST_LIMIT)
 
 
 def as_number(value: float, *, name: str) -> float:

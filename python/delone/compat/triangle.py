@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_points, as_segments
+from delone._arrays import LARGEST_LIMIT, as_points, as_segments
 from delone.compat.triangle_input import (
     Switches,
     again,
@@ -170,7 +170,7 @@ def _parsed(opts: str) -> Switches:
         elif letter == "a" and number:
             area = float(number)
         elif letter == "S":
-            steiner = int(float(number or 0))
+            steiner = int(min(float(number or 0), LARGEST_LIMIT))
     rest = _SWITCH.sub("", opts).strip()
     if rest:
         raise InputError(f"switches {opts!r} contain {rest!r}, which belongs to no switch")

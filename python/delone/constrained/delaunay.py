@@ -16,8 +16,8 @@ import numpy as np
 from delone import _core, location
 from delone._arrays import (
     as_choice,
-    as_count,
     as_flag,
+    as_limit,
     as_seeds,
     as_segments,
     as_workers,
@@ -473,7 +473,7 @@ def _given(
 def _budget(max_points: int | None) -> int:
     if max_points is None:
         return _MOST_ADDED
-    return min(as_count(max_points, name="max_points"), 2**31 - 1)
+    return as_limit(max_points, name="max_points")
 
 
 def _own(array: Indices, given: ArrayLike) -> Indices:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from delone import _core, location
-from delone._arrays import as_count, as_number, as_workers
+from delone._arrays import as_limit, as_number, as_workers
 from delone.errors import InputError
 from delone.interpolate.base import Interpolator, shaped_derivatives
 from delone.interpolate.hull import Terms, edge_terms
@@ -74,7 +74,7 @@ class Smooth(Interpolator):
     ) -> None:
         self._estimate = chosen("gradients", gradients, GRADIENTS)
         self._tol = as_number(tol, name="tol")
-        self._maxiter = as_count(max_iter, name="max_iter")
+        self._maxiter = as_limit(max_iter, name="max_iter")
         if not self._tol > 0:
             raise InputError(f"tol must be above 0, got {tol}")
         super().__init__(points, values, **options)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count
+from delone._arrays import as_choice, as_limit
 from delone.plane import geometry, quality
 from delone.refine import domains
 from delone.refine.domains import Counts
@@ -43,7 +43,7 @@ _HALVINGS = 3
 def smoothed(mesh: M, max_iter: int, method: str) -> M:
     """Return a mesh whose free points have moved; see ``Mesh.smooth``."""
     as_choice(method, METHODS, name="method")
-    for _ in range(as_count(max_iter, name="max_iter")):
+    for _ in range(as_limit(max_iter, name="max_iter")):
         free = _free(mesh)
         if not free.any():
             break

@@ -12,8 +12,8 @@ import numpy as np
 from delone import _core
 from delone._arrays import (
     as_choice,
-    as_count,
     as_flag,
+    as_limit,
     as_number,
     as_plain_array,
     as_points,
@@ -150,8 +150,7 @@ def improve(
         as_flag(exude, name="exude"),
     )
     flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
-    # The core counts passes in 32 bits; more than that means no limit.
-    passes = min(as_count(max_iter, name="max_iter"), _INDEX_MAX)
+    passes = as_limit(max_iter, name="max_iter")
     if progress is not None and not callable(progress):
         raise DtypeError(f"progress must be callable, got {progress!r}")
     try:

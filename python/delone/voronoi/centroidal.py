@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_number
+from delone._arrays import as_choice, as_limit, as_number
 from delone.errors import DtypeError, InputError
 from delone.immutable import ReadOnly
 from delone.voronoi import outline
@@ -171,7 +171,7 @@ def lloyd(
     """
     if clip is None:
         raise InputError("lloyd needs a clip: without one, some cells have no centroids")
-    max_iter = as_count(max_iter, name="max_iter")
+    max_iter = as_limit(max_iter, name="max_iter")
     tol = None if tol is None else as_number(tol, name="tol")
     if tol is not None and not tol >= 0:
         raise InputError(f"tol must not be negative, got {tol}")
