@@ -18,6 +18,7 @@ from delone.plane.topology import (
     boundary_edges,
     boundary_next,
     edge_keys,
+    half_edges,
     unjoined,
 )
 from delone.space.topology import boundary_faces
@@ -78,12 +79,30 @@ def check_tetrahedra(**arrays: NDArray[Any]) -> None:
     _check_joined(simplices, neighbors)
     _check_closed(boundary_faces(simplices, neighbors), len(points))
     require(len(arrays["region"]) == len(simplices), "regions and tetrahedra do not match")
-    classes = len(arrays["bounds"]) - 1
-    require(len(arrays["before"]) == len(arrays["after"]) == classes, "histograms do not match")
     require(len(arrays["weights"]) == len(points), "weights and points do not match")
+    require((arrays["weights"] >= 0).all(), "weights are not numbers of at least 0")
+    _check_improvement(**arrays)
+
+
+def _check_improvement(**arrays: NDArray[Any]) -> None:
+    """Check the report of an improvement; its angles are not measured again."""
+    angles, counts, bounds = arrays["angles"], arrays["counts"], arrays["bounds"]
+    classes = len(bounds) - 1
+    require(len(arrays["before"]) == len(arrays["after"]) == classes, "histograms do not match")
     require(len(arrays["below"]) == len(arrays["cause"]), "rows and causes do not match")
-    require(len(arrays["angles"]) == 5 and len(arrays["counts"]) == 8, "the report is incomplete")
-    _check_range("below", arrays["below"], 0, len(simplices))
+    require(len(angles) == 5 and len(counts) == 8, "the report is incomplete")
+    # The goal, then the smallest before and after, then the largest before and after.
+    require((angles >= 0).all() and (angles <= 180).all(), "angles has one outside 0 to 180")
+    require((angles[1:3] <= angles[3:]).all(), "angles has a smallest one above the largest")
+    require((bounds >= 0).all() and (bounds[1:] > bounds[:-1]).all(), "bounds are out of order")
+    _check_range("counts", counts, 0, 2**63)
+    require(counts[7] <= 1, "counts does not end with a flag")
+    for name in ("before", "after"):
+        _check_range(name, arrays[name], 0, 2**63)
+    nsimplex = len(arrays["simplices"])
+    require(arrays["after"].sum() == nsimplex, "after does not count all tetrahedra")
+    _check_range("below", arrays["below"], 0, nsimplex)
+    require((np.diff(arrays["below"]) > 0).all(), "below is out of order")
     _check_range("cause", arrays["cause"], 0, 4)
 
 
@@ -228,13 +247,16 @@ def check_constrained(**arrays: NDArray[Any]) -> None:
         ("crossings", arrays["crossings"][:, 2], n),
     ):
         _check_range(name, indices, 0, end)
+    _check_vertices(arrays, ninput)
     seeds = np.concatenate((arrays["holes"], arrays["regions"]))
     require(np.isfinite(seeds).all(), "a seed is not finite")
     geometries, rings, parts = (arrays[name] for name in ("geometries", "rings", "parts"))
     matched = len(geometries) == len(rings) == len(parts) == rows
     require(matched, "geometries and segments do not match")
     require((geometries[rings] >= 0).all(), "the side of a ring has no geometry")
+    _check_range("geometries", geometries, -1, 2**31)
     _check_range("parts", parts, -1, 2**31 - 1)
+    _check_range("labels", arrays["labels"], 0, 2**31)
     require(len(arrays["regions"]) == len(arrays["labels"]), "seeds and labels do not match")
 
 
@@ -263,6 +285,32 @@ def _check_sources(arrays: Mapping[str, NDArray[Any]]) -> None:
     require((np.diff(start) > 0).all(), "a segment has no source")
     require(len(arrays["forward"]) == len(source), "directions of segments are out of range")
     _check_range("source", source, 0, len(arrays["input"]))
+
+
+def _check_vertices(arrays: Mapping[str, NDArray[Any]], ninput: int) -> None:
+    """Check that rows contain the vertices that are listed, and that others were added."""
+    through, crossings = arrays["through"], arrays["crossings"]
+    n = len(arrays["points"])
+    first = np.arange(n)
+    first[arrays["duplicates"][:, 0]] = arrays["duplicates"][:, 1]
+    row = np.repeat(arrays["source"].astype(np.int64), 2)
+    owner = np.repeat(np.arange(len(arrays["segments"])), np.diff(arrays["source_start"]))
+    contained = np.sort(row * n + arrays["segments"][owner].ravel())
+    for name, rows, vertices in (
+        ("through", through[:, 0], through[:, 1]),
+        ("crossings", crossings[:, 0], crossings[:, 2]),
+        ("crossings", crossings[:, 1], crossings[:, 2]),
+    ):
+        keys = rows.astype(np.int64) * n + first[vertices]
+        require(among(keys, contained).all(), f"{name} has a vertex that its row does not contain")
+    require((crossings[:, 0] < crossings[:, 1]).all(), "crossings has a row that crosses itself")
+    known = np.zeros(n, dtype=bool)
+    known[first[crossings[:, 2]]] = True
+    conforming = bool(arrays["options"][3])
+    require(conforming or known[ninput:].all(), "added has a point that is not in crossings")
+    known[ninput:] = True
+    known[first[np.concatenate((arrays["input"].ravel(), through[:, 1]))]] = True
+    require(known[arrays["segments"]].all(), "added lacks a vertex of a segment")
 
 
 def check_mesh(**arrays: NDArray[Any]) -> None:
@@ -300,7 +348,9 @@ def check_mesh(**arrays: NDArray[Any]) -> None:
     vertex = np.zeros(n, dtype=bool)
     vertex[simplices] = True
     require(vertex.all(), "a point is not a vertex")
+    require(arrays["counts"][3] <= 1, "counts does not end with a flag")
     _check_sides(arrays)
+    _check_lines(arrays)
 
 
 def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -318,3 +368,21 @@ def _check_sides(arrays: Mapping[str, NDArray[Any]]) -> None:
     require((other == sides[t, k]).all(), "two triangles disagree about the line between them")
     same = (region[across] == region[t]) | (other >= 0)
     require(same.all(), "a region ends where there is no line")
+
+
+def _check_lines(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Check that subsegments of a line are a path between its ends, over the points on it."""
+    on, ends, sides = arrays["on"], arrays["ends"], arrays["sides"]
+    n = len(arrays["points"])
+    t, k = np.nonzero(sides >= 0)
+    line = sides[t, k]
+    pair = np.sort(np.column_stack(half_edges(arrays["simplices"], t, k)), axis=1)
+    for corner in pair.T:
+        known = (on[corner] == line) | (ends[line] == corner[:, None]).any(axis=1)
+        require(known.all(), "on and ends lack a point of a line")
+    _, once = np.unique(edge_keys(pair[:, 0], pair[:, 1], n), return_index=True)
+    subsegments = np.bincount(line[once], minlength=len(ends))
+    points = np.bincount(on[on >= 0], minlength=len(ends))
+    require((subsegments == points + 1).all(), "on does not match the subsegments of a line")
+    require((arrays["point_source"][on >= 0] < 0).all(), "on has a point of the input")
+    require(arrays["counts"][0] >= (on >= 0).sum(), "counts has fewer points than lie on segments")

@@ -1,0 +1,150 @@
+"""Saved files in which one array is edited: rejected, or every method of what is loaded works."""
+
+from __future__ import annotations
+
+import pickle
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import shapely
+
+import delone
+from delone import FileFormatError, datasets
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+FLAT, SOLID = datasets.duplicates(30), datasets.uniform(20, ndim=3)
+SQUARE = np.array([(0.0, 0), (4, 0), (4, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)])
+SIDES = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)])
+
+MAKE: dict[str, Callable[[], Any]] = {
+    "Delaunay 2-D": lambda: delone.Delaunay(FLAT),
+    "Delaunay 3-D": lambda: delone.Delaunay(SOLID),
+    "ConstrainedDelaunay": lambda: delone.ConstrainedDelaunay(
+        FLAT, [(0, 1), (2, 3), (4, 5)], crossing="split", regions=[(0.5, 0.5, 3)]
+    ),
+    "ConstrainedDelaunay, conforming": lambda: delone.ConstrainedDelaunay(
+        SQUARE, SIDES, conforming=True, holes=[(1.5, 1.5)]
+    ),
+    "from_geometry": lambda: delone.from_geometry(shapely.Polygon(SQUARE[:4], [SQUARE[4:]])),
+    "Mesh": lambda: delone.mesh((SQUARE, SIDES), max_area=0.1, segment_markers=np.arange(8)),
+    "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID), min_angle=60),
+    "RegularTriangulation": lambda: delone.RegularTriangulation(SQUARE, SQUARE[:, 0] / 9),
+    "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(SQUARE, (9, None)),
+    "Voronoi 2-D": lambda: delone.Voronoi(SQUARE, clip="box"),
+    "Voronoi 3-D": lambda: delone.Voronoi(SOLID, clip="box"),
+    "ConvexHull": lambda: delone.ConvexHull(SOLID),
+}
+EDITS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "zeroed": np.zeros_like,
+    "reversed": lambda a: a[::-1].copy(),
+    "shortened": lambda a: a[:-1].copy(),
+    "emptied": lambda a: a[:0].copy(),
+    "shifted": lambda a: np.roll(a, 1, axis=0),
+    "negative": lambda a: -a - 1 if a.dtype.kind in "if" else ~a,
+    "not a number": lambda a: a * np.nan if a.dtype.kind == "f" else a,
+}
+
+
+def edited(path: Path, name: str, edit: Callable[[np.ndarray], np.ndarray]) -> bool:
+    """Edit an array of a file; false if it is as before."""
+    with np.load(path) as archive:
+        arrays = dict(archive)
+    changed = edit(arrays[name])
+    if np.array_equal(changed, arrays[name], equal_nan=changed.dtype.kind == "f"):
+        return False
+    np.savez(path, **arrays | {name: changed})
+    return True
+
+
+def attributes(made: Any) -> dict[str, Any]:
+    """All public attributes that are not methods."""
+    names = [name for name in dir(type(made)) if not name.startswith("_")]
+    values = {name: getattr(made, name) for name in names if hasattr(made, name)}
+    return {name: value for name, value in values.items() if not callable(value)}
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Any, bytes, list]]:
+    found: dict[str, Any] = {}
+
+    def of(name: str) -> Any:
+        if name not in found:
+            made = MAKE[name]()
+            path = tmp_path_factory.mktemp("saved") / "a.npz"
+            made.save(path)
+            with np.load(path) as archive:
+                rows = [each for each in archive.files if archive[each].ndim]
+            found[name] = made, path.read_bytes(), rows
+        return found[name]
+
+    return of
+
+
+@pytest.mark.parametrize("edit", EDITS)
+@pytest.mark.parametrize("name", MAKE)
+def test_each_array_edited(saved, tmp_path: Path, name: str, edit: str) -> None:
+    made, whole, arrays = saved(name)
+    path = tmp_path / "a.npz"
+    for array in arrays:
+        path.write_bytes(whole)
+        if not edited(path, array, EDITS[edit]):
+            continue
+        try:
+            found = type(made).load(path)
+        except FileFormatError:
+            continue
+        if not found.validate():
+            continue
+        if isinstance(found, delone.Mesh):
+            found.coarsen()
+            found.refine(max_area=0.08)
+        # Other points, weights and labels may be right as well.
+        values = attributes(found)
+        assert values.keys() == attributes(made).keys()
+        assert str(values.get("report", found))
+        again = pickle.loads(pickle.dumps(found))
+        assert repr(again) == repr(found)
+
+
+# Edits that leave a triangulation correct and contradict the other arrays, and what is said.
+CONTRADICTIONS: list[tuple[str, str, Callable[[np.ndarray], np.ndarray], str]] = [
+    ("ConstrainedDelaunay", "labels", lambda a: a * 0 - 7, "labels"),
+    ("ConstrainedDelaunay", "geometries", lambda a: a * 0 - 2, "geometries"),
+    ("ConstrainedDelaunay", "crossings", lambda a: a[:0], "crossings"),
+    ("ConstrainedDelaunay", "crossings", np.zeros_like, "crossings"),
+    ("ConstrainedDelaunay", "crossings", lambda a: a[:, [1, 0, 2]], "crossings"),
+    ("ConstrainedDelaunay, conforming", "added", lambda a: a[:0], "added"),
+    ("ConstrainedDelaunay, conforming", "through", lambda a: np.array([[0, 5]], "<i4"), "through"),
+    ("Mesh", "counts", lambda a: a[::-1], "counts"),
+    ("Mesh", "counts", np.zeros_like, "counts"),
+    ("Mesh", "on", lambda a: a * 0 - 1, "on"),
+    ("Mesh", "on", lambda a: np.where(a < 0, 0, a), "on"),
+    ("TetMesh", "angles", lambda a: a * np.nan, "angles"),
+    ("TetMesh", "angles", lambda a: a[::-1], "angles"),
+    ("TetMesh", "counts", lambda a: a * 0 - 5, "counts"),
+    ("TetMesh", "counts", lambda a: a * 0 + 2, "counts"),
+    ("TetMesh", "weights", lambda a: a * np.nan, "weights"),
+    ("TetMesh", "bounds", lambda a: a[::-1], "bounds"),
+    ("TetMesh", "before", lambda a: a - 10**6, "before"),
+    ("TetMesh", "after", lambda a: a + 1, "after"),
+    ("TetMesh", "below", lambda a: a[::-1], "below"),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "case"),
+    [pytest.param(name, case, id=f"{name}-{case[0]}") for name, *case in CONTRADICTIONS],
+)
+def test_arrays_that_contradict_each_other(saved, tmp_path: Path, name: str, case: Any) -> None:
+    array, edit, message = case
+    made, whole, _ = saved(name)
+    path = tmp_path / "a.npz"
+    path.write_bytes(whole)
+    type(made).load(path)
+    assert edited(path, array, edit)
+    with pytest.raises(FileFormatError, match=rf"truncated: .*\b{message}\b"):
+        type(made).load(path)
