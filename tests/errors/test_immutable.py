@@ -82,6 +82,23 @@ def test_duplicates_are_as_immutable(name: str, duplicate: Callable[[Any], Any])
         np.testing.assert_array_equal(again[key], before[key])
 
 
+def everything(thing: Any) -> dict[str, np.ndarray]:
+    """The arrays of `arrays`, and those in tuples and lists."""
+    found = arrays(thing)
+    for name in dir(thing):
+        value = None if name.startswith("_") else getattr(thing, name, None)
+        if isinstance(value, tuple | list):
+            parts = [part for part in value if isinstance(part, np.ndarray)]
+            found |= {f"{name}[{i}]": part for i, part in enumerate(parts)}
+    return found
+
+
+@pytest.mark.parametrize("name", [name for name in MADE if not name.endswith("Error")])
+def test_all_arrays_are_read_only(name: str) -> None:
+    found = everything(MADE[name]())
+    assert [each for each, array in found.items() if array.flags.writeable] == []
+
+
 def test_reports_cannot_be_written_to_at_all() -> None:
     report = pickle.loads(pickle.dumps(delone.mesh(NEEDLE).report))
     with pytest.raises(ValueError, match="read-only"):

@@ -192,9 +192,10 @@ class MeshState(HullTiling):
         return int(np.count_nonzero(self._point_source < 0))
 
     @property
+    @kept
     def constrained(self) -> Bools:
         """Whether the edge opposite each vertex is part of a segment, (m, 3)."""
-        return self._sides >= 0
+        return sealed(self._sides >= 0)
 
     @property
     @kept
@@ -239,22 +240,24 @@ class MeshState(HullTiling):
         return sealed(indptr), sealed(self._source[np.repeat(self._start[line], counts) + offset])
 
     @property
+    @kept
     def segment_markers(self) -> Indices:
         """The marker of each of `segments`, (q,): that of its row, 0 without one.
 
         If geometries are meshed and no markers are given, each ring and line has its own: 1 for the
         first, 2 for the second, and so on.
         """
-        return self._line_markers[self._segment_line]
+        return sealed(self._line_markers[self._segment_line])
 
     @property
+    @kept
     def geometry_of_segment(self) -> Indices:
         """The geometry that each of `segments` came from, (q,); -1 for arrays.
 
         For a segment that several geometries share, the first one. `segment_markers` distinguishes
         the rings of one geometry.
         """
-        return self._line_geometries[self._segment_line]
+        return sealed(self._line_geometries[self._segment_line])
 
     @property
     @kept

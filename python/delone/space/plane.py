@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from delone import _core, predicates
-from delone.immutable import ReadOnly
+from delone.immutable import ReadOnly, sealed
 from delone.plane import topology
 from delone.space.topology import FACES
 
@@ -71,7 +71,7 @@ class PlaneTriangulation(ReadOnly):
     @cached_property
     def convex_hull(self) -> Indices:
         """The edges of the convex hull, (h, 2), each with the triangulation to its left."""
-        return topology.boundary_edges(self.simplices, self.neighbors)
+        return sealed(topology.boundary_edges(self.simplices, self.neighbors))
 
     @cached_property
     def hidden(self) -> Indices:
@@ -79,7 +79,7 @@ class PlaneTriangulation(ReadOnly):
         seen = np.zeros(len(self.points), dtype=bool)
         seen[self.simplices] = True
         seen[self.duplicates[:, 0]] = seen[self.duplicates[:, 1]]
-        return np.flatnonzero(~seen).astype(np.int32)
+        return sealed(np.flatnonzero(~seen).astype(np.int32))
 
     @cached_property
     def circumcenters(self) -> Floats:
@@ -102,8 +102,7 @@ class PlaneTriangulation(ReadOnly):
                 uu, vv = uu + lift[:, 0], vv + lift[:, 1]
             across = np.cross(uu[:, None] * v - vv[:, None] * u, normal)
             offset = across / (2 * (normal * normal).sum(axis=1))[:, None]
-            found: Floats = a + 2 * unit * offset
-        return found
+            return sealed(a + 2 * unit * offset)
 
 
 def plane_of(
