@@ -8,7 +8,14 @@ import zipfile
 import numpy as np
 import pytest
 
-from delone import Delaunay, FileFormatError
+from delone import (
+    ConvexHull,
+    Delaunay,
+    FileFormatError,
+    PeriodicDelaunay,
+    RegularTriangulation,
+    Voronoi,
+)
 from delone.io import read_mesh, read_points, write_mesh
 
 TABLE = np.array([[0, 0, 5.0], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]])
@@ -220,3 +227,28 @@ def test_what_memory_has_no_room_for_is_not_torn(tmp_path, name):
     )
     assert (done.returncode, done.stdout) == (7, "")
     assert done.stderr.startswith(f"delone: {file} needs more memory than is available")
+
+
+@pytest.mark.parametrize("points", [TABLE[:, :2], TABLE])
+def test_a_regular_triangulation_there_and_back(tmp_path, points):
+    mesh = RegularTriangulation(points, np.linspace(0, 0.1, len(points)))
+    write_mesh(tmp_path / "a.npz", mesh)
+    again = read_mesh(tmp_path / "a.npz")
+    assert np.array_equal(again.points, mesh.points)
+    assert np.array_equal(again.simplices, mesh.simplices)
+    assert np.array_equal(again.neighbors, mesh.neighbors)
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (lambda: PeriodicDelaunay(TABLE[:, :2], (99, 99)), "across the periods.*PeriodicDelaunay"),
+        (lambda: ConvexHull(TABLE), r"a surface.*ConvexHull\.load"),
+        (lambda: ConvexHull(TABLE[:, :2]), r"a surface.*ConvexHull\.load"),
+        (lambda: Voronoi(TABLE[:, :2]), r"cells.*Voronoi\.load"),
+    ],
+)
+def test_what_is_no_mesh_says_so(tmp_path, made, message):
+    made().save(tmp_path / "a.npz")
+    with pytest.raises(FileFormatError, match=message):
+        read_mesh(tmp_path / "a.npz")

@@ -23,6 +23,7 @@ from delone.errors import FileFormatError, InputError
 from delone.io.heights import split_attributes
 from delone.io.pointset import PointSet, choose_columns, find_column
 from delone.io.registry import MeshFile
+from delone.regular import RegularTriangulation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -33,6 +34,19 @@ if TYPE_CHECKING:
     from delone.exchange.parts import HasParts
 
 __all__ = ["is_constrained", "read_mesh", "read_points", "require_libraries", "write_mesh"]
+
+# Why a file of a class is not read as a mesh.
+_WITHOUT = {
+    "delone.PeriodicDelaunay": (
+        "is a PeriodicDelaunay: its triangles continue across the periods, so points and rows of "
+        "them do not describe them; read it with PeriodicDelaunay.load"
+    ),
+    "delone.ConvexHull": (
+        "is a ConvexHull: it has a surface, not triangles of a triangulation; read it with "
+        "ConvexHull.load"
+    ),
+    "delone.Voronoi": "is a Voronoi: it has cells, not triangles; read it with Voronoi.load",
+}
 
 
 def read_points(
@@ -63,12 +77,31 @@ def read_mesh(path: Path) -> MeshFile:
     with _corrupt_is_an_error(source), archived(path) as archive:
         names = _names(archive)
         if not {"points", "simplices"} <= names:
-            raise FileFormatError(f"{source} contains no triangles (arrays points and simplices)")
+            return _computed(archive, path)
         points = as_points(_member(archive, "points"), name="points")
         simplices = as_simplices(_member(archive, "simplices"), len(points), points.shape[1])
         neighbors = _member(archive, "neighbors") if "neighbors" in names else None
         z = _member(archive, "z") if "z" in names else None
     return MeshFile(points=points, simplices=simplices, neighbors=neighbors, z=z, source=source)
+
+
+def _computed(archive: zipfile.ZipFile, path: Path) -> MeshFile:
+    """Read the triangles of a class whose file has its input only."""
+    names = _names(archive)
+    # As in "delone.ConvexHull 3-D".
+    kind = str(_member(archive, "format")).split()[0] if "format" in names else ""
+    if kind != "delone.RegularTriangulation":
+        why = _WITHOUT.get(kind, "contains no triangles (arrays points and simplices)")
+        raise FileFormatError(f"{path} {why}")
+    mesh = RegularTriangulation.load(path)
+    z = _member(archive, "z") if "z" in names else None
+    return MeshFile(
+        points=mesh.points,
+        simplices=mesh.simplices,
+        neighbors=mesh.neighbors,
+        z=as_values(z, mesh.npoints),
+        source=str(path),
+    )
 
 
 def is_constrained(path: Path) -> bool:

@@ -360,8 +360,9 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     Parameters
     ----------
     path : str or path-like
-        An npz file that a class of delone saved, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE with
-        its NODE next to it. Tetrahedra are read from npz, VTU and MSH.
+        An npz file of a `Delaunay`, `ConstrainedDelaunay`, `RegularTriangulation`, `Mesh` or
+        `TetMesh`, or VTU, PLY, OBJ, STL, MSH, or Triangle's ELE with its NODE next to it.
+        Tetrahedra are read from npz, VTU and MSH.
 
     Returns
     -------
