@@ -37,6 +37,8 @@ def check_target(path: str | os.PathLike[str]) -> Path:
     """Return the file to be written, behind symbolic links; an OSError if it cannot be written."""
     # A rename would replace the link, not the file that it points to.
     target = Path(os.path.realpath(path))
+    if target.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: the folder {target.parent} does not exist")
     if target.is_dir():

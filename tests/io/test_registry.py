@@ -153,6 +153,17 @@ def test_a_link_stays_a_link(tmp_path):
     assert len(read_points(tmp_path / "real.npz")) == 5
 
 
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege on Windows")
+def test_a_link_to_itself_is_an_error(tmp_path):
+    (tmp_path / "a.npz").symlink_to(tmp_path / "b.npz")
+    (tmp_path / "b.npz").symlink_to(tmp_path / "a.npz")
+    for write in (MESH.save, lambda path: write_mesh(path, MESH)):
+        with pytest.raises(OSError, match="link"):
+            write(tmp_path / "a.npz")
+    assert (tmp_path / "a.npz").is_symlink()
+    assert (tmp_path / "b.npz").is_symlink()
+
+
 def test_nothing_written_is_an_error(tmp_path):
     with pytest.raises(OSError, match="nothing was written"), replacing(tmp_path / "a"):
         pass
