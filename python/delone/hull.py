@@ -45,6 +45,10 @@ class HullReport(ValidationReport):
         Adjacent simplices that do not meet at a convex angle, or not flat within one facet.
     outside : ndarray of int, shape (k,)
         Rows of points outside.
+    vertices : ndarray of int, shape (k,)
+        Rows that are in one of `vertices` and `facets` only.
+    facets : ndarray of int, shape (k,)
+        Facets that are not the polygons of their simplices.
 
     Examples
     --------
@@ -55,12 +59,22 @@ class HullReport(ValidationReport):
 
     concave: NDArray[np.integer] = field(default_factory=no_pairs)
     outside: NDArray[np.integer] = field(default_factory=no_rows)
+    vertices: NDArray[np.integer] = field(default_factory=no_rows)
+    facets: NDArray[np.integer] = field(default_factory=no_rows)
 
     _SUBJECT: ClassVar[str] = "a convex hull"
     _SENTENCES: ClassVar[Mapping[str, tuple[str, str]]] = {
         "neighbors": ("simplex has wrong neighbors", "simplices have wrong neighbors"),
         "concave": ("pair of simplices is not convex", "pairs of simplices are not convex"),
         "outside": ("point is outside", "points are outside"),
+        "vertices": (
+            "row is in one of vertices and facets only",
+            "rows are in one of vertices and facets only",
+        ),
+        "facets": (
+            "facet is not the polygon of its simplices",
+            "facets are not the polygons of their simplices",
+        ),
     }
 
 
@@ -176,7 +190,8 @@ class ConvexHull(Complex):
         -------
         HullReport
             Truthy if there are no faults: neighbors are mutual, adjacent simplices meet at a convex
-            angle or lie in one facet, and no point is outside.
+            angle or lie in one facet, no point is outside, and `vertices` and `facets` are those of
+            the simplices.
 
         Notes
         -----
@@ -207,7 +222,26 @@ class ConvexHull(Complex):
             neighbors=np.flatnonzero(~mutual.all(axis=1)),
             concave=np.column_stack((row[wrong], beside[wrong])),
             outside=np.flatnonzero(tiling.find_simplex(self._points) < 0),
+            vertices=np.setxor1d(self._vertices, self._polygons),
+            facets=self._wrong_facets(),
         )
+
+    def _wrong_facets(self) -> NDArray[np.int64]:
+        """Return the facets whose sides are not those of their simplices against other facets."""
+        tail, size = self._polygons, np.diff(self._starts)
+        facet = np.repeat(np.arange(len(size)), size)
+        if self.ndim == 2:
+            own = np.column_stack((self._facet_of, self._simplices))
+            listed = np.column_stack((facet[::2], tail.reshape(-1, 2)))
+        else:
+            t, k = np.nonzero(self._facet_of[self._neighbors] != self._facet_of[:, None])
+            ends = (self._simplices[t, (k + i) % 3] for i in (1, 2))
+            own = np.column_stack((self._facet_of[t], *ends))
+            head = np.roll(tail, -1)
+            head[self._starts[1:] - 1] = tail[self._starts[:-1]]
+            listed = np.column_stack((facet, tail, head))
+        sides, times = np.unique(np.concatenate((own, listed)), axis=0, return_counts=True)
+        return np.unique(sides[times != 2, 0]).astype(np.int64)
 
     def _saved(self) -> dict[str, NDArray[Any]]:
         return {"points": self._points}

@@ -286,3 +286,31 @@ def test_what_is_refused() -> None:
     for points in (np.zeros((0, 3)), np.zeros((0, 2)), [(1, 1)], [(1, 1, 1)]):
         with pytest.raises(DegenerateInputError):
             ConvexHull(points)
+
+
+CUBE = np.array([(x, y, z) for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
+
+
+@pytest.mark.parametrize("points", [CUBE[:, :2], CUBE, np.vstack((CUBE, CUBE / 2 + 0.25))])
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [
+        ("vertices", "vertices"),
+        ("polygons", "facets"),
+        ("facet_of", "facets"),
+        ("starts", "facets"),
+    ],
+)
+def test_wrong_vertices_and_facets_are_found(points: np.ndarray, name: str, field: str) -> None:
+    hull = ConvexHull(points)
+    assert hull.validate()
+    right = hull._arrays()[name]
+    if name == "starts":
+        wrong = right.copy()
+        wrong[1] += 2 if hull.ndim == 2 else 1
+    else:
+        wrong = right[:-1] if name == "vertices" else np.roll(right, 1)
+    report = ConvexHull._from_arrays(hull._arrays() | {name: wrong}).validate()
+    assert not report
+    assert len(getattr(report, field))
+    assert field in str(report)
