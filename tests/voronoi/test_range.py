@@ -129,6 +129,31 @@ def test_cells_as_small_as_their_rounding_have_valid_polygons() -> None:
         assert shapely.area(cells).sum() == pytest.approx(size, rel=1e-6)
 
 
+TINY = 1.6578092e-316
+CELLS_OF_ULPS = 1e16 + np.array([(0.0, 4), (2, 6), (6, 4), (4, 4), (0, 8)])
+SUBNORMAL_BESIDE_ORDINARY = [
+    [(-TINY, 2 * TINY), (1.9999999999999991, -TINY), (2 * TINY, -2 * TINY)],
+    [(-2 * TINY,) * 2, (0, 2 * TINY), (-2 * TINY, 0.9999999999999996), (2 - 1e-15, 1 + 2**-52)],
+]
+
+
+@pytest.mark.parametrize("points", [CELLS_OF_ULPS, *SUBNORMAL_BESIDE_ORDINARY])
+def test_rings_of_cells_fill_the_box_where_polygons_do_not(points: Any) -> None:
+    points = np.array(points)
+    box = [*points.min(axis=0), *points.max(axis=0)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ThinCellWarning)
+        diagram = Voronoi(points, clip=box)
+        polygons = diagram.polygons()
+    cells = [diagram.cell(row).parts[0][0] for row in range(len(points))]
+    width, height = (Fraction(box[i + 2]) - Fraction(box[i]) for i in (0, 1))
+    assert sum(area(exact(cell)) for cell in cells) == width * height
+    outer = [polygon.exterior.coords[:-1] for polygon in polygons if polygon]
+    assert abs(sum(area(exact(ring)) for ring in outer)) != width * height
+    # A cell of an area that is no double is not thin.
+    assert len(diagram.thin_cells) == (5 if points.min() > 1 else 0)
+
+
 def test_cells_of_a_rounded_circle_are_valid() -> None:
     angle = np.linspace(0, 2 * np.pi, 101)[:-1]
     points = np.column_stack((np.cos(angle), np.sin(angle))) * 0.5e-5 + 180

@@ -146,8 +146,10 @@ class Voronoi(Stored):
     the period a neighbor lies.
 
     With a `clip`, measures, centroids, neighbors and cells are those of the clipped cells; the
-    attributes listed above remain those of the whole diagram. In a 2-D box the exact areas of the
-    polygons sum to that of the box without any rounding.
+    attributes listed above remain those of the whole diagram. In a 2-D box the exact signed areas
+    of the rings of `cell` sum to that of the box without any rounding. `polygons` has these rings
+    where they are valid. Rounded corners make a ring invalid only if the cell is a few units in the
+    last place wide: it is in `thin_cells` then, unless its area is below the range of doubles.
 
     In 3-D, cells whose vertices all lie inside the clip stay as they are; the others are the
     polyhedron, cut by the planes of their neighbors one after the other. An area or a volume beyond
