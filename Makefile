@@ -137,7 +137,7 @@ test: $(STAMPS)/test
 	$(PYTEST) $(if $(SEED),--randomly-seed=$(SEED))
 	$(PYTEST) -p no:randomly --doctest-modules python/delone
 	$(PYTEST) -p no:randomly --doctest-glob='*.rst' docs
-	for example in examples/*.py; do $(BIN)/python $$example || exit 1; done
+	for example in examples/*/*.py; do MPLBACKEND=agg $(BIN)/python $$example || exit 1; done
 
 lint: $(STAMPS)/test
 	cargo fmt --all --check
@@ -185,7 +185,7 @@ fuzz: need
 	fuzz/run.sh $(FUZZ_SECONDS)
 
 clean:
-	rm -rf $(VENV) target demo build dist docs/_build docs/generated
+	rm -rf $(VENV) target demo build dist docs/_build docs/generated docs/gallery
 	rm -rf benchmarks/peers/target fuzz/target .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find python tests docs benchmarks -name __pycache__ -type d -exec rm -rf {} +
 	rm -f python/delone/_core*.so python/delone/_core*.pyd

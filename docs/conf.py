@@ -1,6 +1,12 @@
 """Configuration of the documentation; `make docs` builds it with warnings as errors."""
 
+import sys
 from importlib.metadata import version as installed_version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+import example_files
 
 project = "delone"
 author = "The delone developers"
@@ -8,35 +14,79 @@ copyright = "2026, The delone developers"
 release = installed_version("delone")
 version = release
 
+SITE = "https://delone.readthedocs.io/en/latest/"
+DESCRIPTION = "Exact, canonical and fast Delaunay triangulation: a Python package on a Rust core."
+
 # MathJax comes with the pages, so that they can be read without a network.
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
+    "sphinx.ext.intersphinx",
     "sphinx-mathjax-offline",
     "numpydoc",
     "matplotlib.sphinxext.plot_directive",
+    "sphinx_gallery.gen_gallery",
+    "sphinx_design",
+    "sphinx_copybutton",
+    "sphinxcontrib.bibtex",
+    "sphinxext.opengraph",
+    "picture_texts",
 ]
 templates_path = ["_templates"]
-exclude_patterns = ["_build"]
+# The folder `gallery` also receives notebooks and scripts, which are not pages.
+exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py"]
 default_role = "py:obj"
+# The folders of tutorials and of other packages list what is in them, which may be nothing.
+suppress_warnings = ["toc.empty_glob"]
 nitpicky = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "delone"
+html_baseurl = SITE
 html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_theme_options = {
     "icon_links": [],
     "navigation_with_keys": False,
     "show_toc_level": 2,
+    "header_links_before_dropdown": 8,
+    "navbar_align": "left",
     "footer_start": ["copyright"],
     "footer_end": [],
 }
+# Pages without others beside them.
+html_sidebars = {"index": [], "howto": []}
 
 autosummary_generate = True
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
+
+# Inventories are in the repository (inventories/README.md): a build needs no network.
+intersphinx_mapping = {
+    "python": ("https://docs.python.org/3/", "inventories/python.inv"),
+    "numpy": ("https://numpy.org/doc/stable/", "inventories/numpy.inv"),
+    "scipy": ("https://docs.scipy.org/doc/scipy/", "inventories/scipy.inv"),
+    "shapely": ("https://shapely.readthedocs.io/en/stable/", "inventories/shapely.inv"),
+    "xarray": ("https://docs.xarray.dev/en/stable/", "inventories/xarray.inv"),
+}
+# A reference without a package is one of delone: never to a label of another site by chance.
+intersphinx_disabled_reftypes = ["std:*"]
+
+bibtex_bibfiles = ["references.bib"]
+bibtex_default_style = "plain"
+bibtex_reference_style = "author_year"
+
+ogp_site_url = SITE
+ogp_site_name = "delone"
+ogp_image = "_static/ahn3.png"
+ogp_image_alt = "Lidar points of a town, triangulated and hill-shaded"
+ogp_social_cards = {"enable": False}
+
+# Prompts and output are left out of what is copied.
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
 
 # Pictures are drawn by the code that stands above them, at build time.
 plot_formats = [("png", 120)]
@@ -45,3 +95,27 @@ plot_html_show_source_link = False
 plot_include_source = True
 plot_rcparams = {"figure.figsize": (6.4, 4.2), "savefig.bbox": "tight"}
 plot_apply_rcparams = True
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "subsection_order": [f"../examples/{folder}" for folder in example_files.FOLDERS],
+    "within_subsection_order": "FileNameSortKey",
+    "filename_pattern": r"\.py$",
+    "ignore_pattern": example_files.left_out_pattern(),
+    "backreferences_dir": "gallery/backreferences",
+    "doc_module": ("delone",),
+    "image_scrapers": example_files.scrapers(),
+    "reset_modules": ("matplotlib", "example_files.reset"),
+    "capture_repr": (),
+    "remove_config_comments": True,
+    "show_signature": False,
+    "write_computation_times": False,
+    "download_all_examples": False,
+    "log_level": {"backreference_missing": "debug"},
+}
+
+
+def setup(app):
+    """Say which examples are left out."""
+    app.connect("builder-inited", example_files.report)

@@ -1,0 +1,48 @@
+"""
+A lidar survey in tiles
+=======================
+
+A lidar tile is split into smaller tiles and triangulated in a folder, validated, and rasterized. The same lines work
+for a thousand files, and with a Dask client as ``executor``. The union of the tiles is exactly the triangulation of
+all points.
+
+Install: ``pip install "delone[dask,raster,plot]"``.
+"""
+
+import tempfile
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import rasterio
+
+from delone import Delaunay, distributed
+from delone.datasets import ahn3
+from delone.testing import same_triangles
+
+survey = ahn3()
+points = np.column_stack((survey.points, survey.z))
+
+folder = tempfile.TemporaryDirectory()
+tin = distributed.triangulate(points, Path(folder.name, "ahn3.tin"), tile_points=5000)
+print(tin)
+print(f"{tin.manifest['rounds']} rounds, {tin.manifest['given']:,} points exchanged between tiles")
+
+# %%
+# The triangles are the same as those computed in memory, and each tile is proven correct.
+
+assert same_triangles(tin.simplices(), Delaunay(survey.points).simplices)
+assert tin.validate()
+
+# %%
+# A digital elevation model as a GeoTIFF. There are no seams between the tiles.
+
+with rasterio.open(tin.to_raster(0.5, Path(folder.name, "dem.tif"))) as dem:
+    heights = dem.read(1, masked=True)
+folder.cleanup()
+
+figure, ax = plt.subplots(figsize=(6.4, 5.4), layout="constrained")
+image = ax.imshow(heights, extent=(0, 100, 0, 100))
+figure.colorbar(image, label="height in m")
+ax.set(title="Elevation model from 43 tiles", xlabel="east in m", ylabel="north in m")
+plt.show()
