@@ -39,14 +39,15 @@ NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := --release -E $(EXTRAS) -G bench
 
-.PHONY: help need need-python build demo demo-says wheel test lint docs bench fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel test lint docs linkcheck bench fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo 'make demo    triangulate the lidar tile in examples/data: report, picture, mesh file'
-	@echo 'make test    every test: Rust, Python, doctests, documentation examples, layers'
-	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, and the stub against the built module'
+	@echo 'make test    every test: Rust, Python, doctests, pages, examples, layers'
+	@echo 'make lint    clippy, rustdoc, rustfmt, ruff, mypy, codespell, and the stub against the built module'
 	@echo 'make docs    the documentation, into docs/_build/html'
+	@echo 'make linkcheck  the links of the documentation to other sites (needs a network)'
 	@echo 'make bench   the tables of benchmarks/README.md (BENCH="--n 100000 --runs 3")'
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
@@ -137,7 +138,6 @@ test: $(STAMPS)/test
 	$(PYTEST) $(if $(SEED),--randomly-seed=$(SEED))
 	$(PYTEST) -p no:randomly --doctest-modules python/delone
 	$(PYTEST) -p no:randomly --doctest-glob='*.rst' docs
-	for example in examples/*/*.py; do MPLBACKEND=agg $(BIN)/python $$example || exit 1; done
 
 lint: $(STAMPS)/test
 	cargo fmt --all --check
@@ -145,6 +145,7 @@ lint: $(STAMPS)/test
 	RUSTDOCFLAGS='-D warnings' cargo doc --workspace --exclude delone-bindings --no-deps --quiet
 	cargo fmt --manifest-path benchmarks/peers/Cargo.toml --check
 	cargo clippy --manifest-path benchmarks/peers/Cargo.toml -- -D warnings
+	$(BIN)/codespell
 	$(BIN)/python .github/licenses.py --check
 	$(BIN)/python .github/check_release.py
 	$(BIN)/ruff check .
@@ -154,7 +155,12 @@ lint: $(STAMPS)/test
 
 docs: $(STAMPS)/docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo 'The documentation: $(abspath docs/_build/html/index.html)'
+
+# Needs a network: lists the links to other sites, and fails where one is broken.
+linkcheck: $(STAMPS)/docs
+	$(BIN)/sphinx-build -q -b linkcheck docs docs/_build/linkcheck
 
 # glibc keeps what is freed, for every peer: where a virtual machine takes free memory away, giving it
 # back costs more than a triangulation.

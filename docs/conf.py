@@ -36,9 +36,10 @@ templates_path = ["_templates"]
 # The folder `gallery` also receives notebooks and scripts, which are not pages.
 exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py"]
 default_role = "py:obj"
-# The folders of tutorials and of other packages list what is in them, which may be nothing.
-suppress_warnings = ["toc.empty_glob"]
-nitpicky = False
+# Roles must lead somewhere. Single backticks alone, which docstrings put around the names of arguments,
+# are links where a name is public.
+nitpicky = True
+nitpick_ignore_regex = [("py:obj", r".*")]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "delone"
@@ -110,7 +111,9 @@ sphinx_gallery_conf = {
     "capture_repr": (),
     "remove_config_comments": True,
     "show_signature": False,
+    # Times are those of the machine that built the pages.
     "write_computation_times": False,
+    "min_reported_time": 3600,
     "download_all_examples": False,
     "log_level": {"backreference_missing": "debug"},
 }
