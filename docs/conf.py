@@ -36,9 +36,10 @@ templates_path = ["_templates"]
 # The folder `gallery` also receives notebooks and scripts, which are not pages.
 exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py"]
 default_role = "py:obj"
-# Roles must lead somewhere. Single backticks alone, which docstrings put around the names of arguments,
+# Roles must lead somewhere. Single backticks alone, which docstrings put around names of arguments,
 # are links where a name is public.
 nitpicky = True
+suppress_warnings = example_files.suppressed()
 nitpick_ignore_regex = [("py:obj", r".*")]
 
 html_theme = "pydata_sphinx_theme"

@@ -35,7 +35,7 @@ for library in (SciPyDelaunay, Delaunay):
         assert_delaunay(points, mesh.simplices, canonical=False)
         verdict = "a Delaunay triangulation of all points"
     except AssertionError as error:
-        verdict = str(error).splitlines()[0]
+        verdict = str(error).splitlines()[0].rstrip(":")
     print(f"{name}: {np.count_nonzero(used):,} of {len(points):,} points are vertices; {verdict}")
 
 assert len(lost["delone"]) == 0

@@ -92,7 +92,7 @@ def test_an_example_runs_as_a_script(path: Path, tmp_path: Path) -> None:
     run = subprocess.run(
         [sys.executable, str(path)],
         cwd=tmp_path,
-        env={**os.environ, "MPLBACKEND": "agg"},
+        env={**os.environ, "MPLBACKEND": "agg", "PYVISTA_OFF_SCREEN": "true"},
         capture_output=True,
         text=True,
         check=False,
