@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from delone import Delaunay
@@ -65,6 +65,7 @@ def test_beside_one_site_that_comes_twice_but_for_a_rounding(ndim: int) -> None:
 
 
 @pytest.mark.parametrize("ndim", [2, 3])
+@example(seed=568, on_lattice=True, count=5, exponent=-52, scale=-1)
 @given(
     seed=st.integers(0, 2**32 - 1),
     on_lattice=st.booleans(),

@@ -260,18 +260,17 @@ pub fn local_gradients(
             let near = adjacency.neighbors(v);
             wide.clear();
             wide.extend_from_slice(near);
-            let of_near = || Fit::of(points, unit, v, near, 1);
-            // Neighbors that do not determine a plane need a wider ring, and a further one if all
-            // of them nearly coincide.
-            if degree > 1 || of_near().is_none_or(|plane| !plane.is_steady(least)) {
+            let is_steady = |ring: &[i32]| {
+                Fit::of(points, unit, v, ring, 1).is_some_and(|plane| plane.is_steady(least))
+            };
+            let near_is_steady = is_steady(near);
+            if degree > 1 || !near_is_steady {
                 hubs.widen(v, &mut wide);
             }
-            let is_far = |u: &i32| {
-                let [x, y] = in_unit(points[v], points[*u as usize], unit);
-                x.hypot(y) >= least
-            };
+            // Neighbors that do not determine a plane need a wider ring, and further ones if all of
+            // them nearly coincide, or lie on one line but for those that nearly coincide.
             let mut times = 1;
-            while times < WIDER && wide.len() < WIDE && !wide.iter().any(is_far) {
+            while !near_is_steady && times < WIDER && wide.len() < WIDE && !is_steady(&wide) {
                 hubs.widen(v, &mut wide);
                 times += 1;
             }
