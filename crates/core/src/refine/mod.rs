@@ -21,7 +21,6 @@ mod place;
 mod queue;
 mod shape;
 mod task;
-mod twofold;
 mod work;
 
 use delone_predicates::Point2;

@@ -2,16 +2,21 @@
 //! encroached.
 
 use delone_predicates::Point2;
+use delone_predicates::arithmetic::Pair;
 use num_bigint::BigInt;
 
-use super::twofold::{ERROR, Twofold};
 use crate::wide::{lowest, scaled};
 
 /// Squared cosines with a smaller relative difference are compared exactly: four roundings each.
 const UNSURE: f64 = 1e-14;
 
-/// And again in double-double arithmetic: a dozen roundings, each a hundredth of this.
-const SURE: f64 = 100.0 * ERROR;
+/// And again in double-double arithmetic. Fronts of equilateral triangles meet at 30 degrees up to
+/// the last bit, so at this bound uncertainty is common.
+///
+/// In units of u^2 = 2^-106 (see `Pair`): a dot product errs by 13 of its terms, whose sum is at most
+/// 20 times the cosine, see `is_skinny`; so the square of the cosine errs by 2 * 260 + 9 of itself,
+/// the bound by 2 * 13 + 2 * 9 of itself, and their difference by 4 of both. 2^-96 is 1024 units.
+const SURE: f64 = f64::from_bits((1023 - 96) << 52);
 
 /// The bounds.
 #[derive(Debug, Clone, Copy)]
@@ -124,17 +129,17 @@ impl Shape {
 
     /// Whether the angle at `a`, which is less than a right angle, is too small.
     fn is_skinny(&self, [a, b, c]: [Point2; 3]) -> bool {
-        let between = |p: Point2| [0, 1].map(|k| Twofold::difference(p[k], a[k]));
+        let between = |p: Point2| [0, 1].map(|k| Pair::difference(p[k], a[k]));
         let (u, v) = (between(b), between(c));
-        let dot = |u: [Twofold; 2], v: [Twofold; 2]| u[0].times(v[0]).plus(u[1].times(v[1]));
+        let dot = |u: [Pair; 2], v: [Pair; 2]| u[0] * v[0] + u[1] * v[1];
         // Terms of opposite signs cancel in the dot product, but not below a twentieth of them:
         // then the angle is near a right angle and not tested.
         let cosine = dot(u, v);
-        let bound = dot(u, u).times(dot(v, v)).times(Twofold::of(self.cos2));
-        let over = cosine.times(cosine).minus(bound);
+        let bound = dot(u, u) * dot(v, v) * Pair::difference(self.cos2, 0.0);
+        let over = (cosine.square() - bound).hi;
         // Outside this range the low parts may have underflowed.
-        let within = (1e-200..1e200).contains(&bound.rounded());
-        if within && over.abs() > SURE * bound.rounded() {
+        let within = (1e-200..1e200).contains(&bound.hi);
+        if within && over.abs() > SURE * bound.hi {
             over > 0.0
         } else {
             self.is_skinny_exactly([a, b, c])
