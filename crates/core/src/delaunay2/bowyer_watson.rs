@@ -17,6 +17,7 @@ use super::cavity::Kernel;
 use super::first::first_triangle;
 use crate::error::Result;
 use crate::mesh2::{Code, Patch, triangle};
+use crate::order::Rounds;
 use crate::points::Extent;
 use crate::watch::Watch;
 
@@ -41,14 +42,14 @@ pub fn build(
     watch: &Watch,
 ) -> Result<Option<Code>> {
     let own = &points[block.start as usize..block.end as usize];
-    let Some(first) = first_triangle(own, Rounds::over(block.len() as u32)) else {
+    let Some(first) = first_triangle(own, Rounds::over(block.len() as u32, STRIDES)) else {
         return Ok(None);
     };
     let first = first.map(|v| block.start + v);
     let extent = Extent::of(own.iter().copied());
     let mut kernel = Kernel::start(points, &extent, mesh, first);
     let n = block.len();
-    let mut order = Rounds::over(n as u32)
+    let mut order = Rounds::over(n as u32, STRIDES)
         .map(|i| block.start + i)
         .filter(|v| !first.contains(v));
     let share = BUDGET + BUDGET_DOUBLING * n.ilog2() as usize;
@@ -73,40 +74,6 @@ pub fn build(
         }
     }
     Ok(Some(kernel.ghost()))
-}
-
-/// The numbers below n in rounds of falling strides, each number once.
-struct Rounds {
-    n: u32,
-    round: usize,
-    at: u32,
-}
-
-impl Rounds {
-    fn over(n: u32) -> Self {
-        Self { n, round: 0, at: 0 }
-    }
-}
-
-impl Iterator for Rounds {
-    type Item = u32;
-
-    #[inline]
-    fn next(&mut self) -> Option<u32> {
-        loop {
-            let stride = *STRIDES.get(self.round)?;
-            let i = self.at;
-            if i >= self.n {
-                self.round += 1;
-                self.at = 0;
-                continue;
-            }
-            self.at += stride;
-            if self.round == 0 || !i.is_multiple_of(STRIDES[self.round - 1]) {
-                return Some(i);
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -135,14 +102,5 @@ mod tests {
         };
         assert!(built(&lines(1e-7)).is_none());
         assert!(built(&lines(1e-3)).is_some());
-    }
-
-    #[test]
-    fn rounds_name_each_number_once() {
-        for n in [0, 1, 2, 63, 64, 65, 1000] {
-            let mut all: Vec<u32> = Rounds::over(n).collect();
-            all.sort_unstable();
-            assert_eq!(all, (0..n).collect::<Vec<_>>());
-        }
     }
 }

@@ -20,6 +20,7 @@ use super::walk::walk;
 use crate::error::{Error, Result};
 use crate::memory::filled;
 use crate::mesh2::{Code, Patch, next, prev, triangle};
+use crate::order::random;
 use crate::watch::Watch;
 
 /// Insertions between two checks for interruption.
@@ -58,7 +59,7 @@ pub fn build(
 fn brio(block: Range<u32>) -> Result<Vec<u32>> {
     // One round more for each doubling, so that the first has about one point.
     let last = block.len().max(1).ilog2();
-    let round = |v: u32| last - hash(v - block.start).trailing_zeros().min(last);
+    let round = |v: u32| last - random(v - block.start).trailing_zeros().min(last);
     let mut ends = vec![0u32; last as usize + 2];
     for v in block.clone() {
         ends[round(v) as usize + 1] += 1;
@@ -73,15 +74,6 @@ fn brio(block: Range<u32>) -> Result<Vec<u32>> {
         *at += 1;
     }
     Ok(order)
-}
-
-/// A bijection of the 64-bit numbers whose low bits serve as coins: the finalizer of S. Vigna's
-/// splitmix64, with Stafford's thirteenth set of constants.
-fn hash(i: u32) -> u64 {
-    let h = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let h = (h ^ h >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let h = (h ^ h >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    h ^ h >> 31
 }
 
 /// The infinite corner of some ghost.

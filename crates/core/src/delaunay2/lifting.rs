@@ -54,6 +54,7 @@ use super::first::first_triangle;
 use crate::error::{Error, Result};
 use crate::memory::{filled, with_room, zeroed};
 use crate::mesh2::{Code, Patch, next, prev, triangle};
+use crate::order::random;
 use crate::watch::Watch;
 
 /// Insertions between two checks for interruption.
@@ -103,14 +104,6 @@ fn rounds(block: Range<u32>) -> Result<Vec<u32>> {
         *at += 1;
     }
     Ok(order)
-}
-
-/// The finalizer of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
-fn random(v: u32) -> u64 {
-    let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
 }
 
 /// A new facet, from the inserted point to `vertex` and to that of the next spoke around the point.

@@ -4,9 +4,10 @@ use delone_predicates::{Point3, Sign, orient3d};
 
 use super::cavity::{Kernel, Room};
 use super::dispatch;
-use super::rounds::Rounds;
+use super::rounds::STRIDES;
 use crate::error::Result;
 use crate::mesh3::Mesh3;
+use crate::order::Rounds;
 use crate::points::collinear;
 use crate::watch::Watch;
 
@@ -32,7 +33,7 @@ pub fn build<'a>(
 fn first_tetrahedron(points: &[Point3]) -> Option<[u32; 4]> {
     let n = points.len() as u32;
     let at = |v: u32| points[v as usize];
-    let mut order = Rounds::over(n);
+    let mut order = Rounds::over(n, STRIDES);
     let (a, b) = (order.next()?, order.next()?);
     let c = order.find(|&c| !collinear(at(a), at(b), at(c)))?;
     for d in order {

@@ -8,10 +8,11 @@ use delone_predicates::Point3;
 
 use super::cavity::Kernel;
 use crate::error::Result;
+use crate::order::Rounds;
 use crate::watch::Watch;
 
 /// Strides of the rounds.
-const STRIDES: [u32; 2] = [16, 1];
+pub(super) const STRIDES: [u32; 2] = [16, 1];
 
 /// Records visited between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 16;
@@ -24,7 +25,7 @@ pub(super) fn insert_all(
     first: [u32; 4],
     watch: &Watch,
 ) -> Result<()> {
-    let mut order = Rounds::over(points.len() as u32 - 1).filter(|v| !first.contains(v));
+    let mut order = Rounds::over(points.len() as u32 - 1, STRIDES).filter(|v| !first.contains(v));
     let mut near = 0;
     let mut look_at = WATCH_EVERY;
     let mut next = order.next();
@@ -37,52 +38,4 @@ pub(super) fn insert_all(
         }
     }
     Ok(())
-}
-
-/// The numbers below n in rounds of falling strides, each number once.
-pub struct Rounds {
-    n: u32,
-    round: usize,
-    at: u32,
-}
-
-impl Rounds {
-    pub fn over(n: u32) -> Self {
-        Self { n, round: 0, at: 0 }
-    }
-}
-
-impl Iterator for Rounds {
-    type Item = u32;
-
-    #[inline]
-    fn next(&mut self) -> Option<u32> {
-        loop {
-            let stride = *STRIDES.get(self.round)?;
-            let i = self.at;
-            if i >= self.n {
-                self.round += 1;
-                self.at = 0;
-                continue;
-            }
-            self.at += stride;
-            if self.round == 0 || !i.is_multiple_of(STRIDES[self.round - 1]) {
-                return Some(i);
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rounds_name_each_number_once() {
-        for n in [0, 1, 15, 16, 17, 1000] {
-            let mut all: Vec<u32> = Rounds::over(n).collect();
-            all.sort_unstable();
-            assert_eq!(all, (0..n).collect::<Vec<_>>());
-        }
-    }
 }

@@ -11,7 +11,7 @@ use super::cells::{Cells, Grid};
 use super::insertion::{Facet, Hull, in_line};
 use crate::error::Result;
 use crate::memory::{filled, with_room};
-use crate::order::order_of;
+use crate::order::{order_of, random};
 use crate::watch::Watch;
 
 /// The number of directions whose extreme points are inserted first, on a spiral over the sphere.
@@ -121,14 +121,6 @@ fn rounds(points: &[Point3], rows: Vec<u32>, watch: &Watch) -> Result<Vec<u32>> 
     }
     rounds.into_iter().rev().for_each(|own| last.extend(own));
     Ok(last)
-}
-
-/// The finalizer of G. Steele, D. Lea and C. Flood's "SplitMix" (2014).
-fn random(v: u32) -> u64 {
-    let x = (u64::from(v) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
 }
 
 /// The farthest points in directions all around, up to rounding; any points are valid.

@@ -10,11 +10,13 @@ mod deal;
 mod hilbert;
 mod hilbert3;
 mod radix;
+mod rounds;
 mod rows;
 mod sort;
 pub mod space;
 pub mod space_blocks;
 
 pub use arrange::{Arranged, arrange};
+pub use rounds::{Rounds, random};
 pub use rows::order_of;
 pub use sort::{sort, sort_by};
