@@ -101,7 +101,6 @@ CORE: dict[str, set[str]] = {
     "regular3": {
         "delaunay3",
         "regular",
-        "locate3",
         "order",
         "points",
         "proof",

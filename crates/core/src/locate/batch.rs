@@ -1,6 +1,7 @@
 //! Batches of point queries in 2-D and 3-D: their order, and their distribution over threads.
 
 use super::locator::{Dimension, Located, Locator};
+use super::range::is_finite;
 use super::walker::Walker;
 use super::{Output, Plane};
 use crate::error::Result;
@@ -130,14 +131,4 @@ fn is_in_good_order<const D: usize>(queries: &[[f64; D]]) -> bool {
     let near = 4.0 * side / if D == 2 { n.sqrt() } else { n.cbrt() };
     let is_near = |w: &&[[f64; D]]| (0..D).all(|k| (w[1][k] - w[0][k]).abs() <= near);
     10 * probes().filter(is_near).count() >= 9 * probes().count()
-}
-
-/// Whether all coordinates are finite.
-pub fn is_finite<const D: usize>(q: &[f64; D]) -> bool {
-    q.iter().all(|x| x.is_finite())
-}
-
-/// The square of a distance, rounded.
-pub fn squared<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
-    (0..D).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum()
 }

@@ -5,9 +5,8 @@ use std::sync::OnceLock;
 
 use delone_predicates::Sign;
 
-use super::batch::is_finite;
 use super::boxes::Boxes;
-use super::plane::Plane;
+use super::range::is_finite;
 use super::sites::Sites;
 use super::star::{First, Place, Star};
 use super::start::Start;
@@ -44,8 +43,8 @@ pub trait Dimension<const D: usize, const N: usize>: Sized + Send + Sync {
     /// Whether the simplices fill one convex region.
     fn is_convex(boundary: &Self::Boundary) -> bool;
 
-    /// On which side of the facet opposite each corner `q` is: positive is inside.
-    fn sides(given: &Given<D, N>, t: usize, q: [f64; D]) -> [Sign; N];
+    /// On which side of the facet opposite each corner of a simplex `q` is: positive is inside.
+    fn sides(corners: [[f64; D]; N], q: [f64; D]) -> [Sign; N];
 
     /// Where a walk from simplex `from` to `q` ends: in any simplex that contains it, or at a
     /// boundary facet, or undecided, which is outside without a facet.
@@ -90,8 +89,8 @@ impl<P: Dimension<D, N>, const D: usize, const N: usize> Cache<P, D, N> {
     }
 }
 
-/// A triangulation and its cache; 2-D by default.
-pub struct Locator<'a, P: Dimension<D, N> = Plane, const D: usize = 2, const N: usize = 3> {
+/// A triangulation and its cache.
+pub struct Locator<'a, P: Dimension<D, N>, const D: usize, const N: usize> {
     /// The arrays.
     pub given: Given<'a, D, N>,
     pub(crate) kept: &'a Cache<P, D, N>,
@@ -138,14 +137,17 @@ impl<'a, P: Dimension<D, N>, const D: usize, const N: usize> Locator<'a, P, D, N
     /// Locates `q` by a walk from simplex `from`.
     #[inline]
     pub fn locate_from(&self, from: usize, q: [f64; D], star: &mut Star<N>) -> Result<Located<N>> {
-        let mut found = P::walk(&self.given, from, q)?;
-        if let Located::Inside(place) = found {
-            let first = star.first(place, |place| P::first_around(&self.given, place));
-            found = Located::Inside(first.place);
-            if !first.open {
-                return Ok(found);
+        let found = match P::walk(&self.given, from, q)? {
+            Located::Inside(place) if place.is_interior() => return Ok(Located::Inside(place)),
+            Located::Inside(place) => {
+                let first = star.first(place, |place| P::first_around(&self.given, place));
+                if !first.open {
+                    return Ok(Located::Inside(first.place));
+                }
+                Located::Inside(first.place)
             }
-        }
+            outside => outside,
+        };
         // Unless the boundary is convex, there may be simplices beyond it.
         if found != Located::Outside(None) && self.is_convex()? {
             return Ok(found);
@@ -177,7 +179,7 @@ impl<'a, P: Dimension<D, N>, const D: usize, const N: usize> Locator<'a, P, D, N
         let mut best: Option<Place<N>> = None;
         boxes.around(q, |t| {
             if best.is_none_or(|b| t < b.simplex) {
-                let sides = P::sides(given, t, q);
+                let sides = P::sides(given.corners(t), q);
                 if !sides.contains(&Sign::Negative) {
                     best = Some(Place::of(t, sides));
                 }

@@ -27,7 +27,7 @@ mod walk;
 mod walker;
 
 pub use barycentric::{barycentric, weights as barycentric_weights};
-pub use batch::{Batch, find, is_finite, squared};
+pub use batch::{Batch, find};
 pub use boundary::{Boundary, outer_sides};
 pub use boxes::{Boxes, length};
 pub use coordinates::{Coordinates, coordinates};
@@ -37,7 +37,7 @@ pub use locator::{Cache, Dimension, Located, Locator, kept};
 pub use nearest::nearest;
 pub use output::Output;
 pub use plane::Plane;
-pub use range::{in_unit, longest_side, seen_from, unit_of};
+pub use range::{in_unit, is_finite, longest_side, seen_from, squared, unit_of};
 pub use segment::along;
 pub use sites::Sites;
 pub use star::{First, Place, Star};

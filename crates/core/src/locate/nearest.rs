@@ -11,8 +11,8 @@
 
 use delone_predicates::{Point2, Sign, nearer};
 
-use super::batch::squared;
-use super::{Batch, Locator, Output};
+use super::range::squared;
+use super::{Batch, Locator, Output, Plane};
 use crate::arrays::{Side, Triangles};
 use crate::error::Result;
 
@@ -46,7 +46,7 @@ pub fn nearest(batch: &Batch) -> Result<Vec<i32>> {
 
 /// Answers the queries of a batch one after another.
 struct Walk<'a> {
-    locator: &'a Locator<'a>,
+    locator: &'a Locator<'a, Plane, 2, 3>,
     /// A corner at the nearest vertex of the previous query, and that query.
     here: Option<Side>,
     last: Point2,

@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use delone_predicates::{Point2, Sign, orient2d};
+use delone_predicates::{Point2, Sign};
 
 use super::boundary::Boundary;
 use super::locator::{Dimension, Located, Locator};
 use super::sites::Sites;
 use super::star::{First, Place, first_around};
-use super::walk::walk;
+use super::walk::{sides_of, walk};
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::watch::Watch;
@@ -40,10 +40,9 @@ impl Dimension<2, 3> for Plane {
         boundary.convex
     }
 
-    #[inline]
-    fn sides(given: &Triangles, t: usize, q: Point2) -> [Sign; 3] {
-        let [a, b, c] = given.corners(t);
-        [orient2d(b, c, q), orient2d(c, a, q), orient2d(a, b, q)]
+    #[inline(always)]
+    fn sides(corners: [Point2; 3], q: Point2) -> [Sign; 3] {
+        sides_of(corners, q)
     }
 
     #[inline]
@@ -57,7 +56,7 @@ impl Dimension<2, 3> for Plane {
     }
 }
 
-impl<'a> Locator<'a> {
+impl<'a> Locator<'a, Plane, 2, 3> {
     /// The vertices in boxes, once queries have tested in vain as many neighbors, now `more` of
     /// them, as there are points: about the cost of building the boxes.
     pub(super) fn sites_after(&self, more: usize) -> Result<Option<&'a Sites<2>>> {

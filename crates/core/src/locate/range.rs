@@ -50,6 +50,16 @@ pub fn longest_side<const D: usize>(points: &[[f64; D]], unit: f64) -> f64 {
     sides.into_iter().fold(0.0, f64::max)
 }
 
+/// Whether all coordinates are finite.
+pub fn is_finite<const D: usize>(q: &[f64; D]) -> bool {
+    q.iter().all(|x| x.is_finite())
+}
+
+/// The square of a distance, rounded.
+pub fn squared<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
+    (0..D).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum()
+}
+
 #[inline]
 fn largest<const D: usize>(points: &[[f64; D]]) -> f64 {
     let coordinates = points.as_flattened();

@@ -3,14 +3,14 @@
 use delone_predicates::{Point2, Sign, orient2d};
 
 use super::straight::Trace;
-use super::{Located, Locator, Place, is_finite};
+use super::{Located, Locator, Place, Plane, is_finite};
 use crate::arrays::Side;
 use crate::error::{Error, Result};
 
 /// The triangles that the segment from `a` to `b` meets in more than a point, in order; if `a`
 /// equals `b`, the one that contains it. Of the two triangles beside an edge on the segment the
 /// left one is reported, at the boundary the only one. Parts outside the convex hull are skipped.
-pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
+pub fn along(locator: &Locator<Plane, 2, 3>, a: Point2, b: Point2) -> Result<Vec<i32>> {
     if !is_finite(&a) || !is_finite(&b) {
         return Err(Error::Shape(
             "the ends of the segment must be finite".into(),
@@ -53,7 +53,7 @@ pub fn along(locator: &Locator, a: Point2, b: Point2) -> Result<Vec<i32>> {
 
 /// The boundary edge through which, or through an end of which, the segment between two points
 /// outside enters the hull.
-fn entry(locator: &Locator, a: Point2, b: Point2) -> Result<Option<Side>> {
+fn entry(locator: &Locator<Plane, 2, 3>, a: Point2, b: Point2) -> Result<Option<Side>> {
     let given = &locator.given;
     let enters = |side: &&Side| {
         let [u, v] = given.ends(**side).map(|end| given.at(end));

@@ -27,6 +27,12 @@ impl<const N: usize> Place<N> {
         }
     }
 
+    /// Whether the point is on no facet.
+    #[inline]
+    pub fn is_interior(&self) -> bool {
+        !self.on.iter().any(|&on| on)
+    }
+
     /// The corner at which the point is.
     #[inline]
     pub fn site(&self) -> Option<usize> {
@@ -79,17 +85,14 @@ pub struct Star<const N: usize> {
 }
 
 impl<const N: usize> Star<N> {
-    /// The first of the simplices that contain the point at `place`, by `around` if it must be
-    /// searched.
+    /// The first of the simplices that contain the point at `place`, which is on a facet; by
+    /// `around` if it must be searched.
     #[inline]
     pub fn first(
         &mut self,
         place: Place<N>,
         around: impl FnOnce(Place<N>) -> First<N>,
     ) -> First<N> {
-        if place.on == [false; N] {
-            return First { place, open: false };
-        }
         // The next walk to this place ends in the simplex found now.
         match self.last {
             Some(last) if last.place == place => last,

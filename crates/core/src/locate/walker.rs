@@ -1,7 +1,7 @@
 //! Walks from query to query of a batch, in 2-D and 3-D.
 
-use super::batch::squared;
 use super::locator::{Dimension, Located, Locator};
+use super::range::squared;
 use super::star::Star;
 use crate::arrays::Side;
 use crate::error::Result;

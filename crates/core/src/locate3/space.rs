@@ -4,7 +4,7 @@ use delone_predicates::{Point3, Sign, orient3d};
 
 use super::boundary::Boundary;
 use super::star::first_around;
-use super::walk::walk;
+use super::walk::{sides_of, walk};
 use super::{Located, Locator, Place};
 use crate::arrays::{Side, Tetrahedra};
 use crate::error::Result;
@@ -40,14 +40,8 @@ impl Dimension<3, 4> for Space {
     }
 
     #[inline]
-    fn sides(given: &Tetrahedra, t: usize, q: Point3) -> [Sign; 4] {
-        let [a, b, c, d] = given.corners(t);
-        [
-            orient3d(q, b, c, d),
-            orient3d(a, q, c, d),
-            orient3d(a, b, q, d),
-            orient3d(a, b, c, q),
-        ]
+    fn sides(corners: [Point3; 4], q: Point3) -> [Sign; 4] {
+        sides_of(corners, q)
     }
 
     #[inline]

@@ -7,20 +7,31 @@
 
 use delone_predicates::{Point3, Sign, orient3d};
 
-use super::{Located, Place, Space};
+use super::{Located, Place};
 use crate::arrays::{Side, Tetrahedra};
-use crate::locate::Dimension;
 
 /// Steps before the walk gives up: several times what a walk across a whole mesh of uniform points
-/// needs, which is a multiple of the cube root.
+/// needs, which is a multiple of the cube root; here of a power of two above it, which is found
+/// faster.
 fn budget(simplices: usize) -> usize {
-    256 + 16 * (simplices as f64).cbrt() as usize
+    256 + (16 << ((simplices | 1).ilog2() / 3 + 1))
+}
+
+/// On which side of the face opposite each corner of a tetrahedron `q` is: positive is inside.
+#[inline]
+pub fn sides_of([a, b, c, d]: [Point3; 4], q: Point3) -> [Sign; 4] {
+    [
+        orient3d(q, b, c, d),
+        orient3d(a, q, c, d),
+        orient3d(a, b, q, d),
+        orient3d(a, b, c, q),
+    ]
 }
 
 /// Walks from tetrahedron `from` to `q`; ends outside without a face if the budget is exhausted.
 #[inline]
 pub fn walk(given: &Tetrahedra, from: usize, q: Point3) -> Located {
-    let sides = Space::sides(given, from, q);
+    let sides = sides_of(given.corners(from), q);
     let Some(corner) = sides.iter().position(|&s| s == Sign::Negative) else {
         return Located::Inside(Place::of(from, sides));
     };
