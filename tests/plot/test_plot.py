@@ -277,3 +277,11 @@ def test_files_of_heights_are_shaded_and_fields_are_not(tmp_path):
             pictures.append(pixels(tmp_path / "b.png"))
         assert (pictures[0] == pictures[1]).all() == lit
         assert (pictures[0] == pictures[2]).all() != lit
+
+
+@pytest.mark.parametrize("name", ["a.xyz", "a"])
+def test_files_of_unknown_formats_are_refused(tmp_path, name):
+    with pytest.raises(InputError, match=r"path must end with .*\.png, .*\.svg"):
+        save_picture(tmp_path / name, FIVE)
+    assert not list(tmp_path.iterdir())
+    save_picture(tmp_path / "a.PNG", FIVE, size=3, dpi=50)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError
 from delone.extras import require
 
 if TYPE_CHECKING:
@@ -34,6 +34,11 @@ def new_axes(ax: Any) -> Any:
     """Return the given axes; for None, those of a new pyplot figure."""
     if ax is None:
         _, ax = require("matplotlib.pyplot", extra="plot", what="drawing").subplots()
+    elif not isinstance(ax, require("matplotlib.axes", extra="plot", what="drawing").Axes):
+        raise DtypeError(
+            "ax must be axes of matplotlib, such as plt.gca() or figure.add_subplot(), or None; "
+            f"got {type(ax).__name__}"
+        )
     return ax
 
 
@@ -45,7 +50,7 @@ def require_bounds(low: Floats, high: Floats) -> None:
     if far > _DRAWABLE[1] or near < _DRAWABLE[0]:
         raise InputError(
             "a plot cannot hold coordinates beyond 1e305 or an extent below 1e-305; "
-            "multiply the points by a power of two first, which changes no triangle"
+            "multiply all coordinates by a power of two first, which changes no triangle or cell"
         )
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.errors import InputError
 from delone.extras import require
 
 if TYPE_CHECKING:
@@ -13,10 +14,24 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["add_bar", "scale", "shaded", "show"]
+__all__ = ["add_bar", "as_cmap", "scale", "shaded", "show"]
 
 _LAND = ("#3d6f78", "#7fae93", "#d9dfb4", "#f3e3b3", "#e0a868", "#b9664a", "#8a3b3b")
 _WATER = ("#0b1f4b", "#143f7d", "#2266a3", "#4695c0", "#86c3d4", "#cfe9dc")
+
+
+def as_cmap(cmap: Any) -> Any:
+    """Return a colormap of matplotlib by its name; None for None."""
+    matplotlib = require("matplotlib", extra="plot", what="drawing")
+    colors = require("matplotlib.colors", extra="plot", what="drawing")
+    if cmap is None or isinstance(cmap, colors.Colormap):
+        return cmap
+    if isinstance(cmap, str) and cmap in matplotlib.colormaps:
+        return matplotlib.colormaps[cmap]
+    raise InputError(
+        "cmap must be a Colormap or a name in matplotlib.colormaps, such as 'viridis', or None; "
+        f"got {cmap!r:.60}"
+    )
 
 
 def scale(values: Floats, cmap: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,14 +23,17 @@ if TYPE_CHECKING:
 
 __all__ = ["draw", "image"]
 
+# Suffixes of the formats in which PyVista writes images.
+_FORMATS = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
+
 
 def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any) -> None:
-    """Draw a 3-D plot into a PNG file, without a window.
+    """Draw a 3-D plot into a file, without a window.
 
     Parameters
     ----------
     path : str or path-like
-        The file.
+        The file: PNG, JPEG, BMP or TIFF by its suffix.
     mesh : Simplices or Cells3
         What to draw: anything in 3-D that `plot` draws.
     **options
@@ -38,7 +42,7 @@ def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any)
     Raises
     ------
     InputError
-        As for `plot`, and for anything in 2-D.
+        As for `plot`, and for anything in 2-D; or the suffix is that of another format.
     MissingExtraError
         PyVista is not installed.
 
@@ -57,6 +61,9 @@ def draw(path: str | os.PathLike[str], mesh: Simplices | Cells3, **options: Any)
     ...     file.read_bytes()[1:4]
     b'PNG'
     """
+    suffix = Path(path).suffix
+    if suffix.lower() not in _FORMATS:
+        raise InputError(f"path must end with {', '.join(_FORMATS)}; got {suffix!r}")
     with _drawn(mesh, options) as plotter:
         plotter.screenshot(str(path))
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from delone._values import as_values
 from delone.atomic import replacing
+from delone.errors import InputError
 from delone.extras import require
 from delone.plot.axes import axis_names, figure_size
 from delone.plot.protocols import has, is_quality_mesh
@@ -59,7 +60,7 @@ def save_picture(
     MissingExtraError
         matplotlib is not installed.
     InputError
-        As for `plot`.
+        As for `plot`, or no format that matplotlib writes has the suffix of the file.
     OSError
         The file cannot be written.
 
@@ -91,6 +92,7 @@ def draw_picture(
     **options: Any,
 ) -> None:
     """Draw into the file itself; `save_picture` goes through a temporary file."""
+    _require_format(path.suffix)
     figure_module = require("matplotlib.figure", extra="plot", what="drawing")
     require_flat(mesh)
     require_drawable(mesh, as_values(z, mesh.npoints))
@@ -107,6 +109,14 @@ def draw_picture(
     xlabel, ylabel = axis_names(crs)
     ax.set(xlabel=xlabel, ylabel=ylabel)
     figure.savefig(path, dpi=dpi, facecolor="white")
+
+
+def _require_format(suffix: str) -> None:
+    """Refuse the suffix of a file in no format that matplotlib writes."""
+    bases = require("matplotlib.backend_bases", extra="plot", what="drawing")
+    known = bases.FigureCanvasBase.get_supported_filetypes()
+    if suffix[1:].lower() not in known:
+        raise InputError(f"path must end with .{', .'.join(sorted(known))}; got {suffix!r}")
 
 
 def _numbers(mesh: Triangles) -> str:

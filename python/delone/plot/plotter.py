@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from delone._arrays import as_optional_flag
-from delone.errors import InputError
+from delone.errors import DtypeError, InputError
 from delone.extras import require
 
-__all__ = ["aim", "new_plotter", "quiet"]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["add_points", "aim", "as_pyvista_cmap", "new_plotter", "quiet"]
 
 _SIZE = (900, 760)
+_POINT = "#08306b"
 
 
 def new_plotter(ax: Any, *, off_screen: bool | None) -> Any:
@@ -20,10 +26,34 @@ def new_plotter(ax: Any, *, off_screen: bool | None) -> Any:
     if ax is not None:
         if hidden is not None:
             raise InputError("off_screen is for a new plotter: give it to that of ax")
+        if not isinstance(ax, pyvista.BasePlotter):
+            raise DtypeError(
+                f"ax must be a plotter of PyVista for a 3-D plot, or None; got {type(ax).__name__}"
+            )
         return ax
     plotter = pyvista.Plotter(off_screen=hidden, window_size=list(_SIZE))
     plotter.set_background("white")
     return plotter
+
+
+def as_pyvista_cmap(cmap: Any) -> Any:
+    """Return a colormap that PyVista knows; its name is that in matplotlib or another library."""
+    pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
+    if cmap is None or isinstance(cmap, pyvista.LookupTable):
+        return cmap
+    known = require("pyvista.plotting.colors", extra="pyvista", what="drawing in 3-D")
+    try:
+        return known.get_cmap_safe(cmap)
+    except (ValueError, TypeError, ImportError) as error:
+        raise InputError(
+            "cmap must be a Colormap, a list of colors or the name of a colormap, such as "
+            f"'viridis', got {cmap!r:.60}"
+        ) from error
+
+
+def add_points(plotter: Any, points: NDArray[np.float64]) -> None:
+    """Draw points as small balls."""
+    plotter.add_points(np.array(points), color=_POINT, point_size=6, render_points_as_spheres=True)
 
 
 def quiet() -> Any:

@@ -10,7 +10,7 @@ from delone._arrays import as_flag, as_optional_flag
 from delone.errors import InputError
 from delone.extras import require
 from delone.plot.axes import axis_names, figure_size, new_axes
-from delone.plot.colors import add_bar, scale, shaded, show
+from delone.plot.colors import add_bar, as_cmap, scale, shaded, show
 from delone.plot.shading import Raster, relief
 
 if TYPE_CHECKING:
@@ -83,10 +83,11 @@ def plot_raster(
     1.0
     """
     bar, lit = as_flag(colorbar, name="colorbar"), as_optional_flag(shade, name="shade")
+    colors = as_cmap(cmap)
     if not np.isfinite(values).any():
         raise InputError("the raster has no finite value to draw")
     ax = new_axes(ax)
-    mapped = scale(values, cmap)
+    mapped = scale(values, colors)
     rgba = mapped.to_rgba(values)
     extent = _extent(x, y)
     if lit or (lit is None and not bar):

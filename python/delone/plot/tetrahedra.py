@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_flag, as_number
+from delone._arrays import as_choice, as_flag, as_number, as_plain_array
+from delone._values import as_values
 from delone.errors import InputError
 from delone.extras import require
-from delone.plot.plotter import new_plotter
+from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
 from delone.plot.protocols import has, hint, kind_of
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ __all__ = ["plot"]
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _VTK_TETRA = 10  # the number of this kind of cell
-_FACE, _EDGE, _POINT, _SKIN = "#9ecae1", "#08306b", "#08306b", "#2f6f9f"
+_FACE, _EDGE, _SKIN = "#9ecae1", "#08306b", "#2f6f9f"
 
 
 def plot(
@@ -39,7 +40,7 @@ def plot(
     shrink: float = 1.0,
     below: float | None = None,
     points: bool = False,
-    cmap: str = "viridis",
+    cmap: Any = "viridis",
     colorbar: bool = True,
     off_screen: bool | None = None,
 ) -> Any:
@@ -52,7 +53,8 @@ def plot(
     as_choice(cut, ("none", *_AXES), name="cut")
     dots, bar = as_flag(points, name="points"), as_flag(colorbar, name="colorbar")
     _require_simplices(mesh)
-    if not 0 < shrink <= 1:
+    share, colors = as_number(shrink, name="shrink"), as_pyvista_cmap(cmap)
+    if not 0 < share <= 1:
         raise InputError(f"shrink must be above 0 and at most 1, got {shrink}")
     shown, angles = _in_front(mesh, cut), None
     if below is not None:
@@ -65,17 +67,15 @@ def plot(
     look: dict[str, Any] = {"color": _FACE}
     if chosen is not None:
         name = "values" if values is not None else "smallest dihedral angle in degrees"
-        look = {"scalars": name, "cmap": cmap, "show_scalar_bar": bar}
+        look = {"scalars": name, "cmap": colors, "show_scalar_bar": bar}
     if below is not None and values is None:
         look["clim"] = (0, bound)
     if shown.any():
         grid = _grid(pyvista, mesh, shown)
         _add_values(grid, look.get("scalars"), chosen)
-        _draw_simplices(plotter, grid, shrink, look)
+        _draw_simplices(plotter, grid, share, look)
     if dots:
-        plotter.add_points(
-            np.array(mesh.points), color=_POINT, point_size=6, render_points_as_spheres=True
-        )
+        add_points(plotter, mesh.points)
     return plotter
 
 
@@ -111,14 +111,15 @@ def _chosen(mesh: Simplices, values: ArrayLike | None, shown: NDArray[np.bool_])
     """Return the values of all points or of the simplices shown."""
     if values is None:
         return None
-    array = np.asarray(values, dtype=np.float64)
+    array = as_plain_array(values, "values")
     npoints, nsimplex = len(mesh.points), len(mesh.simplices)
     if array.shape not in ((npoints,), (nsimplex,)):
         raise InputError(
             f"values must be one for each of {npoints} points or {nsimplex} simplices, "
             f"got shape {array.shape}"
         )
-    return array if len(array) == npoints else array[shown]
+    numbers = as_values(array, len(array), name="values")
+    return numbers if numbers is None or len(numbers) == npoints else numbers[shown]
 
 
 def _grid(pyvista: Any, mesh: Simplices, shown: NDArray[np.bool_]) -> Any:

@@ -13,7 +13,7 @@ from delone.extras import require
 from delone.plot import cartography
 from delone.plot.axes import draw_dots, frame, new_axes, pixels, require_bounds, thin
 from delone.plot.circles import bounds_with_circles, draw_circles, require_few
-from delone.plot.colors import add_bar, scale, shaded, show
+from delone.plot.colors import add_bar, as_cmap, scale, shaded, show
 from delone.plot.protocols import hint, kind_of, segmented
 from delone.plot.shading import facet_light, point_density, rasterize, relief
 
@@ -52,7 +52,7 @@ def plot(
         as_flag(flag, name=name)
     dots = as_optional_flag(vertices, name="vertices")
     look: dict[str, Any] = {
-        "cmap": cmap,
+        "cmap": as_cmap(cmap),
         "shade": as_optional_flag(shade, name="shade"),
         "colorbar": as_flag(colorbar, name="colorbar"),
     }
