@@ -121,7 +121,86 @@ def test_coordinates_that_overflow_are_refused() -> None:
         plot(PeriodicDelaunay([(0, 0), (1e307, 1e306)], (1e308, 1e308)), axes())
 
 
+FAR = [(1e300, -1e300), (-1e300, 1e300), (1.7e308, 1.7e308), (-1.7e308, -1.7e308), (0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("points", "options"),
+    [
+        (FAR, {}),
+        (FAR, {"clip": "box"}),
+        ([(0, 0), (1, 1)], {"clip": (-1e308, -1e308, 1e308, 1e308)}),
+        ([(0, 0), (3e-310, 2e-310)], {}),
+        ([(1e300, 1), (1e300, 2), (0, 2e300)], {"periods": (1e306, None)}),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_cells_out_of_range_are_refused_like_triangles(points: Any, options: Any) -> None:
+    with pytest.raises(InputError, match="power of two") as caught:
+        plot(Voronoi(points, **options), axes())
+    assert "clip" not in str(caught.value)
+
+
+@pytest.mark.parametrize("points", [[(1e17, 0)], [(1e17, 0), (1e17, 16)], [(0, 0)]])
+def test_sites_on_a_line_far_away_have_a_window(points: Any) -> None:
+    ax = plot(Voronoi(points), axes())
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert left < points[0][0] < right and low < points[0][1] < high
+    ax.figure.canvas.draw()
+
+
+PLOTTED = [
+    Delaunay(POINTS),
+    RegularTriangulation(POINTS, np.zeros(30)),
+    ConstrainedDelaunay(POINTS, []),
+    delone.mesh(SQUARE),
+    PeriodicDelaunay(POINTS, (1, 1)),
+    ConvexHull(POINTS),
+    Voronoi(POINTS),
+]
+
+
+@pytest.mark.parametrize("mesh", PLOTTED, ids=lambda mesh: type(mesh).__name__)
+@pytest.mark.parametrize("ax", [3, "ax", Figure(), object()], ids=lambda ax: type(ax).__name__)
+def test_anything_but_axes_is_refused(mesh: Any, ax: Any) -> None:
+    wanted = f"ax must be axes of matplotlib.* got {type(ax).__name__}"
+    with pytest.raises(InputError, match=wanted):
+        mesh.plot(ax)
+
+
+def test_histograms_and_rasters_refuse_other_axes() -> None:
+    found = delone.interpolate.grid(POINTS, POINTS[:, 0], shape=(9, 9))
+    mesh = delone.mesh(SQUARE)
+    for draw in (mesh.plot_quality, mesh.quality().plot, found.plot):
+        with pytest.raises(InputError, match="ax must be axes of matplotlib"):
+            draw(3)
+
+
+@pytest.mark.parametrize("cmap", ["nope", 3, ["red", "blue"]])
+def test_unknown_colormaps_are_refused(cmap: Any) -> None:
+    values = POINTS[:, 0]
+    for mesh, options in (
+        (Delaunay(POINTS), {"z": values}),
+        (Delaunay(POINTS), {}),
+        (Voronoi(POINTS), {"values": values}),
+        (delone.interpolate.grid(POINTS, values, shape=(9, 9)), {}),
+    ):
+        with pytest.raises(InputError, match="cmap must be a Colormap"):
+            mesh.plot(axes(), cmap=cmap, **options)
+
+
+def test_values_of_cells_are_numbers_one_for_each_site() -> None:
+    for wrong in (POINTS[:3, 0], ["a"] * 30, POINTS):
+        with pytest.raises(InputError, match=r"^values "):
+            plot(Voronoi(POINTS), axes(), values=wrong)
+    with pytest.raises(InputError, match="linewidth"):
+        plot(Voronoi(POINTS), axes(), linewidth="thick")
+
+
 def test_options_of_other_kinds_are_refused() -> None:
+    for mesh in PLOTTED:
+        with pytest.raises(InputError, match=r"foo is not an option .*; its options are "):
+            plot(mesh, axes(), foo=1)
     for mesh in (Delaunay(POINTS), ConvexHull(POINTS), PeriodicDelaunay(POINTS, (1, 1))):
         with pytest.raises(InputError, match=r"cut is not an option .*; its options are .*title"):
             plot(mesh, axes(), cut="x")

@@ -88,6 +88,49 @@ def test_cells_are_polyhedra() -> None:
     assert (image(diagram) != 255).any()
 
 
+@pytest.mark.parametrize("sites", [4, 5, 9])
+def test_sites_are_drawn_if_no_cell_is_bounded(sites: int) -> None:
+    points = datasets.space.sphere(sites)
+    diagram = Voronoi(points)
+    assert diagram.to_pyvista().n_cells == 0
+    (cloud,) = drawn(diagram)
+    assert np.array_equal(np.unique(cloud.points, axis=0), np.unique(points, axis=0))
+    assert (image(diagram) != 255).any()
+
+
+def test_options_of_pyvista_apply_to_cells() -> None:
+    diagram = Voronoi(datasets.uniform(9, ndim=3), clip="box")
+    (grid,) = drawn(diagram, scalars="volume", cmap=["red", "blue"], opacity=0.5)
+    assert grid.active_scalars_name == "volume"
+    assert len(drawn(diagram, vertex_style="points", show_vertices=True)) == 2
+
+
+@pytest.mark.parametrize("shape", [Delaunay, ConvexHull, Voronoi, "TetMesh"])
+@pytest.mark.parametrize("name", ["z", "foo", "kwargs"])
+def test_unknown_options_are_refused(shape: Any, name: str) -> None:
+    points = datasets.uniform(9, ndim=3)
+    mesh = delone.improve(Delaunay(points)) if shape == "TetMesh" else shape(points)
+    with pytest.raises(InputError, match=f"^{name} is not an option of plotting"):
+        mesh.plot(off_screen=True, **{name: 1})
+    with pytest.raises(InputError, match="cmap must be"):
+        mesh.plot(off_screen=True, cmap="nope")
+    with pytest.raises(InputError, match=r"ax must be a plotter of PyVista.* got int"):
+        mesh.plot(5)
+
+
+def test_values_are_no_option_of_cells() -> None:
+    with pytest.raises(InputError, match=r"values is not an option .* pyvista\.Plotter\.add_mesh"):
+        drawn(Voronoi(datasets.uniform(9, ndim=3)), values=np.arange(9))
+
+
+def test_plotters_and_axes_are_told_apart() -> None:
+    figure = pytest.importorskip("matplotlib.figure").Figure()
+    with pytest.raises(InputError, match=r"ax must be a plotter of PyVista.* got Axes"):
+        plot(solid(), figure.add_subplot())
+    with pytest.raises(InputError, match=r"ax must be axes of matplotlib.* got Plotter"):
+        plot(Delaunay(datasets.uniform(9)), pyvista.Plotter(off_screen=True))
+
+
 @pytest.mark.parametrize("options", [{}, {"cut": "z"}, {"shrink": 0.5}, {"points": True}])
 def test_something_is_drawn(options: dict[str, Any]) -> None:
     mesh = solid()
@@ -101,6 +144,10 @@ def test_files(tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     draw(path, solid(), cut="x")
     assert path.read_bytes().startswith(b"\x89PNG")
+    for name in ("a.xyz", "a"):
+        with pytest.raises(InputError, match=r"path must end with \.png, "):
+            draw(tmp_path / name, solid())
+    assert [each.name for each in tmp_path.iterdir()] == ["a.png"]
 
 
 def test_a_given_plotter_is_drawn_on() -> None:
@@ -118,6 +165,8 @@ def test_a_given_plotter_is_drawn_on() -> None:
     [
         ({"cut": "w"}, "cut"),
         ({"shrink": 0}, "shrink"),
+        ({"shrink": "half"}, "shrink must be a real number"),
+        ({"values": ["a"] * 40}, "values must hold real numbers"),
         ({"values": [1, 2, 3]}, "values"),
         ({"values": np.ones((40, 2))}, "values"),
         ({"z": [1, 2]}, "z is not an option .* values, cut"),

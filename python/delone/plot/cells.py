@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_flag, as_optional_flag
+from delone._arrays import as_flag, as_number, as_optional_flag
+from delone._values import as_values
 from delone.errors import InputError
 from delone.extras import require
-from delone.plot.axes import draw_dots, new_axes, thin
-from delone.plot.plotter import new_plotter
+from delone.plot.axes import draw_dots, new_axes, require_bounds, thin
+from delone.plot.colors import as_cmap
+from delone.plot.plotter import add_points, as_pyvista_cmap, new_plotter
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,8 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["plot_cells2", "plot_cells3"]
 
 _EDGE = "#35506b"
+# Parameters of PyVista's `add_mesh` that are not options here, and options that it does not name.
+_TAKEN = frozenset({"self", "mesh", "kwargs"})
+_UNNAMED = frozenset({"feature_angle", "vertex_color", "vertex_opacity", "vertex_style"})
 # Unbounded cells are drawn as far as this share of the longer side of the box of the sites.
 _MARGIN = 0.1
+# And at least as far as this number of spacings of their coordinates.
+_SPACINGS = 8
 
 
 def plot_cells2(
@@ -40,14 +48,15 @@ def plot_cells2(
     collections = require("matplotlib.collections", extra="plot", what="drawing")
     bar = as_flag(colorbar, name="colorbar")
     dots = as_optional_flag(points, name="points")
-    numbers = None if values is None else np.asarray(values, dtype=np.float64)
-    if numbers is not None and numbers.shape != (diagram.npoints,):
-        raise InputError(f"values has shape {numbers.shape} for {diagram.npoints} points")
+    numbers, colors = as_values(values, diagram.npoints, name="values"), as_cmap(cmap)
+    width = None if linewidth is None else as_number(linewidth, name="linewidth")
     shown = _bounded(diagram)
     sites = np.setdiff1d(shown.duplicate_of, shown.hidden)
     rings = [[ring for part in shown.cell(site).parts for ring in part] for site in sites.tolist()]
-    look: dict[str, Any] = {"facecolors": "none"} if numbers is None else {"cmap": cmap}
-    look["linewidths"] = thin(len(sites)) if linewidth is None else linewidth
+    low, high = _window(shown, rings)
+    require_bounds(low, high)
+    look: dict[str, Any] = {"facecolors": "none"} if numbers is None else {"cmap": colors}
+    look["linewidths"] = thin(len(sites)) if width is None else width
     outlines = [_path(each) for each in rings]
     cells = collections.PathCollection(outlines, edgecolors=_EDGE, **look)
     ax = new_axes(ax)
@@ -57,7 +66,6 @@ def plot_cells2(
         if bar:
             ax.figure.colorbar(cells, ax=ax, shrink=0.75, pad=0.02)
     draw_dots(ax, diagram.points, dots)
-    low, high = _window(shown, rings)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     return ax
 
@@ -68,6 +76,7 @@ def _bounded(diagram: Cells2) -> Cells2:
     if diagram.clip is not None or (periods is not None and None not in periods):
         return diagram
     low, high = _box(diagram)
+    require_bounds(low, high)
     if periods is not None:
         # The period bounds the cells in its direction.
         axis = 0 if periods[1] is None else 1
@@ -83,12 +92,12 @@ def _bounded(diagram: Cells2) -> Cells2:
 def _box(diagram: Cells2) -> tuple[Floats, Floats]:
     """Return the box of the sites, with a margin."""
     low, high = diagram.points.min(axis=0), diagram.points.max(axis=0)
-    extent = float((high - low).max())
-    if diagram.periods is None:
-        margin = _MARGIN * extent or 1.0
-    else:
-        margin = _MARGIN * max(extent, *(each or 0.0 for each in diagram.periods))
-    return low - margin, high + margin
+    with np.errstate(over="ignore"):
+        extent = max(float((high - low).max()), *(each or 0.0 for each in diagram.periods or (0,)))
+        # The box of sites on a line far from the origin has a width, too.
+        least = _SPACINGS * float(np.spacing(np.abs((low, high)).max()))
+        margin = max(_MARGIN * extent or 1.0, least)
+        return low - margin, high + margin
 
 
 def _window(shown: Cells2, rings: list[list[Floats]]) -> tuple[Floats, Floats]:
@@ -116,9 +125,30 @@ def _path(rings: list[Floats]) -> Any:
 def plot_cells3(
     diagram: Cells3, ax: Any = None, *, off_screen: bool | None = None, **options: Any
 ) -> Any:
-    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk, on a plotter of PyVista."""
+    """Draw the bounded cells of a 3-D Voronoi diagram, slightly shrunk, on a plotter of PyVista.
+
+    If no cell is bounded, the sites are drawn.
+    """
+    wanted = _known(options)
     plotter = new_plotter(ax, off_screen=off_screen)
     grid = diagram.to_pyvista()
+    if not grid.n_cells:
+        add_points(plotter, diagram.points)
+        return plotter
     look: dict[str, Any] = {"scalars": "site", "show_edges": True, "ambient": 0.4}
-    plotter.add_mesh(grid.shrink(0.85), **(look | options))
+    plotter.add_mesh(grid.shrink(0.85), **(look | wanted))
     return plotter
+
+
+def _known(options: dict[str, Any]) -> dict[str, Any]:
+    """Return options that `add_mesh` of PyVista takes; refuse others, and unknown colormaps."""
+    pyvista = require("pyvista", extra="pyvista", what="drawing in 3-D")
+    known = (_UNNAMED | set(inspect.signature(pyvista.Plotter.add_mesh).parameters)) - _TAKEN
+    for name in options:
+        if name not in known:
+            raise InputError(
+                f"{name} is not an option of plotting this Voronoi diagram; its options are "
+                "off_screen, and those of pyvista.Plotter.add_mesh, such as scalars, color, cmap "
+                "and opacity"
+            )
+    return options | {"cmap": as_pyvista_cmap(options.get("cmap"))}

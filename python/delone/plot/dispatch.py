@@ -102,7 +102,7 @@ def plot(
     2-D Voronoi diagrams: ``values``, array_like of shape (n,), ``cmap``, ``colorbar``; ``points``,
     the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn in the bounding
     box of the sites, enlarged by a tenth. 3-D Voronoi diagrams: ``off_screen``, and the options of
-    ``pyvista.Plotter.add_mesh``; bounded cells are drawn.
+    ``pyvista.Plotter.add_mesh``; bounded cells are drawn, or the sites if there are none.
 
     Examples
     --------
@@ -125,7 +125,10 @@ def plot(
 
 
 def _require_options(drawer: Callable[..., Any], mesh: Any, options: dict[str, Any]) -> None:
-    """Refuse options that do not exist for this object, and list those that do."""
+    """Refuse options that do not exist for this object, and list those that do.
+
+    A drawer that passes options on to a library checks them itself.
+    """
     parameters = inspect.signature(drawer).parameters.values()
     if any(each.kind is each.VAR_KEYWORD for each in parameters):
         return

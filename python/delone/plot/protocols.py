@@ -171,6 +171,10 @@ class Cells2(Protocol):
 class Cells3(Protocol):
     """A 3-D Voronoi diagram."""
 
+    @property
+    def points(self) -> Floats:
+        """The sites, (n, 3)."""
+
     def to_pyvista(self) -> Any:
         """Return the cells as polyhedra."""
 

@@ -727,7 +727,7 @@ class Voronoi(Stored):
         Notes
         -----
         Without a clip, a 2-D diagram is drawn in the bounding box of the sites, enlarged by a
-        tenth. In 3-D, bounded and clipped cells are drawn.
+        tenth. In 3-D, bounded and clipped cells are drawn, or the sites if there are none.
 
         Examples
         --------
