@@ -180,6 +180,19 @@ def test_segments_are_boundaries_of_scikit_fem() -> None:
     }
 
 
+def test_tags_and_named_boundaries_are_those_of_markers() -> None:
+    pytest.importorskip("meshio")
+    pytest.importorskip("skfem")
+    square = [(0, 0), (6, 0), (6, 6), (0, 6)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)]
+    constrained, marked = delone.ConstrainedDelaunay(*square), delone.mesh(square)
+    solid = delone.improve(delone.Delaunay(tetrahedra().points))
+    for mesh in (constrained, marked, solid):
+        tagged = mesh is marked
+        assert set(TAGS).isdisjoint(mesh.to_meshio().cell_data) is not tagged
+        wanted = {"marker 0"} if tagged else set() if mesh is solid else {"segments"}
+        assert set(mesh.to_skfem().boundaries or {}) == wanted
+
+
 @pytest.mark.parametrize("kind", ["triangle", "surface", "tetra"])
 def test_dolfinx(kind: str) -> None:
     parts = KINDS[kind]()
@@ -252,6 +265,26 @@ def test_geopandas(kind: str) -> None:
     assert (found.geom_type == ("LineString" if kind == "line" else "Polygon")).all()
     assert found.crs == parts.crs
     assert to_geopandas(parts, "EPSG:4326").crs == "EPSG:4326"
+
+
+@pytest.mark.parametrize("kind", ["triangle", "line"])
+def test_geometries_are_made_in_blocks(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between them Ctrl-C is heard."""
+    pytest.importorskip("geopandas")
+    shapely = pytest.importorskip("shapely")
+    parts = KINDS[kind]()
+    whole = to_geopandas(parts)
+    name = "polygons" if kind == "triangle" else "linestrings"
+    make, sizes = getattr(shapely, name), []
+
+    def counted(corners: Any) -> Any:
+        sizes.append(len(corners))
+        return make(corners)
+
+    monkeypatch.setattr(shapely, name, counted)
+    monkeypatch.setattr(delone.blocks, "ROWS", 3)
+    assert to_geopandas(parts).equals(whole)
+    assert sum(sizes) == len(whole) > 3 >= max(sizes)
 
 
 def test_polyhedra() -> None:

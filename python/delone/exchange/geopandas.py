@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from delone.blocks import blocks
 from delone.errors import InputError
 from delone.exchange.parts import parts_of
 from delone.extras import require
@@ -30,8 +31,10 @@ def to_geopandas(mesh: Given, crs: Any = None) -> Any:
     if rows.shape[1] not in (2, 3):
         raise InputError("a table of geometries cannot be made of tetrahedra, only of triangles")
     columns: dict[str, Any] = {f"v{k}": rows[:, k] for k in range(rows.shape[1])}
-    corners = parts.points[rows]
-    shapes = shapely.polygons(corners) if rows.shape[1] == 3 else shapely.linestrings(corners)
+    make = shapely.polygons if rows.shape[1] == 3 else shapely.linestrings
+    shapes = np.empty(len(rows), dtype=object)
+    for block in blocks(len(rows)):
+        shapes[block] = make(parts.points[rows[block]])
     return geopandas.GeoDataFrame(
         columns | dict(parts.of_simplices),
         geometry=shapes,
