@@ -286,8 +286,9 @@ class Complex(Stored):
         Returns
         -------
         meshio.Mesh
-            The simplices, and segments as lines, with regions and markers as values, and again as
-            tags of Gmsh: regions from 1 on, markers as they are. 2-D points get z = 0.
+            The simplices, and segments as lines, with regions and markers as values. Where segments
+            have markers, as those of a `Mesh`, both are tags of Gmsh as well: regions from 1 on,
+            markers as they are. 2-D points get z = 0.
 
         Raises
         ------

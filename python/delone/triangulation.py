@@ -442,8 +442,9 @@ class Triangulation(Complex):
         Returns
         -------
         skfem.MeshTri or skfem.MeshTet
-            With subdomains ``"region 0"`` and so on where there are regions, and boundaries
-            ``"marker 0"`` and so on for segments by their markers.
+            With subdomains ``"region 0"`` and so on where there are regions. Segments are
+            boundaries: ``"marker 0"`` and so on where they have markers, as those of a `Mesh`, else
+            all of them together ``"segments"``.
 
         Raises
         ------
@@ -454,8 +455,10 @@ class Triangulation(Complex):
         --------
         >>> import delone
         >>> square = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)]
-        >>> delone.mesh(square).to_skfem().nelements
-        2
+        >>> list(delone.mesh(square).to_skfem().boundaries)
+        ['marker 0']
+        >>> list(delone.ConstrainedDelaunay(*square).to_skfem().boundaries)
+        ['segments']
         """
         from delone.exchange.skfem import to_skfem
 
