@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from delone import Delaunay, Voronoi
+import delone
+from delone import Delaunay, RegularTriangulation, Voronoi
 from delone.errors import InputError, ShapeError
 from delone.interpolate import CloughTocher, Linear, NaturalNeighbor, Nearest, interpolator
 
@@ -176,6 +177,97 @@ def test_slopes_of_linear() -> None:
     beyond = Linear(points, plane(points), extrapolate="linear")
     assert beyond.gradient((5, 5, 5)) == pytest.approx([1, -2, 3], abs=1e-9)
     assert np.isnan(height.gradient((5, 5, 5))).all()
+
+
+def hollow() -> Any:
+    """A ball with a hole in its middle, with slivers removed: neither convex nor Delaunay."""
+    mesh = Delaunay(uniform(400, 20))
+    away = np.linalg.norm(mesh.points[mesh.simplices].mean(axis=1) - 0.5, axis=1)
+    kept = mesh.simplices[(away > 0.2) & (away < 0.45)]
+    return delone.improve((mesh.points, kept))
+
+
+TILINGS = {
+    "hollow": hollow,
+    "improved": lambda: delone.improve(Delaunay(uniform(200, 21)), min_angle=30),
+    "regular": lambda: RegularTriangulation(uniform(200, 22), uniform(200, 23)[:, 0] / 20),
+}
+
+
+@pytest.mark.parametrize("name", TILINGS)
+def test_other_tilings_are_used_as_they_are(name: str) -> None:
+    mesh = TILINGS[name]()
+    vertices = np.unique(mesh.simplices)
+    values = np.random.default_rng(24).normal(size=(mesh.npoints, 2)) * 1e7
+    height = Linear(mesh, values)
+    assert height.triangulation is mesh
+    assert height(mesh.points[vertices]).tobytes() == values[vertices].tobytes()
+    queries = 1.2 * uniform(3000, 25) - 0.1
+    place = mesh.locate(queries)
+    outside = place.simplex < 0
+    assert 300 < outside.sum() < 2900
+    found = height(queries)
+    assert np.array_equal(np.isnan(found).all(axis=1), outside)
+    corners = values[mesh.simplices[place.simplex]]
+    wanted = np.einsum("ki,kij->kj", place.barycentric, corners)
+    assert np.abs(found - wanted)[~outside].max() < 1e-8
+    assert np.abs(height.weights(queries).apply(values) - found)[~outside].max() < 1e-8
+
+
+@pytest.mark.parametrize("name", TILINGS)
+def test_linear_functions_are_reproduced_on_other_tilings(name: str) -> None:
+    mesh = TILINGS[name]()
+    queries = 1.2 * uniform(3000, 26) - 0.1
+    outside = mesh.find_simplex(queries) < 0
+    height = Linear(mesh, plane(mesh.points), extrapolate="linear")
+    assert np.abs(height(queries) - plane(queries)).max() < 1e-10
+    slopes = height.gradient(queries[~outside])
+    assert np.abs(slopes - [1, -2, 3]).max() < 1e-6
+    near = Linear(mesh, plane(mesh.points), extrapolate="nearest")(queries[outside])
+    assert near == pytest.approx(plane(mesh.locate(queries[outside]).nearest), abs=1e-12)
+    with pytest.raises(InputError, match="outside the hull"):
+        Linear(mesh, plane(mesh.points), extrapolate="raise")(queries)
+
+
+@pytest.mark.parametrize("name", TILINGS)
+def test_nearest_vertices_of_other_tilings(name: str) -> None:
+    mesh = TILINGS[name]()
+    vertices = np.unique(mesh.simplices)
+    assert len(vertices) < mesh.npoints or name == "improved"
+    queries = 1.2 * uniform(500, 27) - 0.1
+    distance = ((queries[:, None] - mesh.points[vertices]) ** 2).sum(axis=2)
+    wanted = vertices[distance.argmin(axis=1)]
+    rows = np.arange(mesh.npoints)
+    assert np.array_equal(Nearest(mesh, rows)(queries), wanted)
+    inside = mesh.find_simplex(queries) >= 0
+    found = Nearest(mesh, rows, extrapolate="nan")(queries)
+    assert np.array_equal(found[inside], wanted[inside])
+    assert np.isnan(found[~inside]).all()
+
+
+@pytest.mark.parametrize("name", TILINGS)
+def test_what_other_tilings_do_not_allow_is_refused(name: str) -> None:
+    mesh = TILINGS[name]()
+    kind = type(mesh).__name__
+    with pytest.raises(InputError, match=f"not a {kind}; `Linear` takes it"):
+        NaturalNeighbor(mesh, kind="laplace")
+    values = plane(mesh.points)
+    values[mesh.simplices[0, 0]] = np.nan
+    with pytest.raises(InputError, match=f"nan='drop' would remove points from a {kind}"):
+        Linear(mesh, values, nan="drop")
+    with pytest.raises(InputError, match=f"nan='drop' would remove points from a {kind}"):
+        Linear(mesh, nan="drop")(mesh.points[:1], values=values)
+    found = Linear(mesh, values, nan="propagate")(mesh.points[mesh.simplices].mean(axis=1))
+    touched = (mesh.simplices == mesh.simplices[0, 0]).any(axis=1)
+    assert np.array_equal(np.isnan(found), touched)
+
+
+def test_weighted_triangulations_do_not_turn_into_plain_ones_in_2d() -> None:
+    points = uniform(50, 28)
+    mesh = RegularTriangulation(points[:, :2], points[:, 2])
+    values = np.where(np.arange(50) == 3, np.nan, 1.0)
+    with pytest.raises(InputError, match="would remove points from a RegularTriangulation"):
+        Linear(mesh, values, nan="drop")
 
 
 def test_shapes_policies_and_fields() -> None:

@@ -60,8 +60,8 @@ class Interpolator:
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is; a periodic one makes the interpolant
-        periodic.
+        Sites. A triangulation of delone is used as it is, if the method allows it; a periodic one
+        makes the interpolant periodic.
     values : array_like, shape (n,) or (n, ...), optional
         Values at the sites.
     extrapolate, duplicates, nan, respect_constraints, workers, planar
@@ -107,7 +107,8 @@ class Interpolator:
             self._check_space(given)
         self._constrained = getattr(given, "constrained", None) is not None
         field = None if values is None else as_field(values, len(self._sites))
-        self._given = given if self._constrained else None
+        # The points alone do not determine any other kind of triangulation.
+        self._given = None if isinstance(given, Delaunay) else given
         self._kept = self._kept_rows(field)
         self._mesh: Triangulation = (
             self._triangulated() if given is None or self._kept is not None else given
@@ -301,9 +302,7 @@ class Interpolator:
     # Implemented by subclasses.
 
     def _check_space(self, given: Triangulation | None) -> None:
-        """Raise for options that are only available in 2-D."""
-        if given is not None and not isinstance(given, Delaunay):
-            raise InputError("in 3-D the sites must be points or a Delaunay triangulation of them")
+        """Raise for what is only available in 2-D."""
 
     def _derived(self, queries: Floats, columns: Floats, order: int) -> Floats:
         """Values (k, c), derivatives (k, c, d) or second ones (k, c, 3); NaN outside."""
@@ -549,6 +548,11 @@ def _own(points: Any) -> Floats:
 
 def _with_only(mesh: Any, kept: Rows) -> Triangulation:
     """A constrained triangulation with some points removed; no constraint may need them."""
+    if not hasattr(mesh, "constrained"):
+        raise InputError(
+            f"nan='drop' would remove points from a {type(mesh).__name__}; choose nan='propagate', "
+            "or pass the points that have values"
+        )
     dropped = np.delete(np.arange(mesh.npoints), kept)
     needed = np.intersect1d(mesh.duplicate_of[dropped], mesh.segments)
     if not hasattr(mesh, "edit") or mesh.nadded or needed.size:

@@ -26,8 +26,9 @@ class Linear(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites. A triangulation of delone is used as it is, constrained ones included. A periodic
-        one, ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
+        Sites. A triangulation of delone is used as it is: constrained and regular ones and, in 3-D,
+        a `TetMesh` as well; its own boundary takes the place of the hull. A periodic one,
+        ``PeriodicDelaunay(points, (360, None))``, makes the interpolant periodic as well.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nan", "nearest", "linear", "raise"}, optional
@@ -38,8 +39,9 @@ class Linear(Interpolator):
         The value of points that coincide but have different values.
     nan : {"raise", "drop", "propagate"}, optional
         How to treat sites whose value is NaN or infinite: raise an error that names them; remove
-        them from the triangulation (an error if a constraint needs them); keep them, so that the
-        triangles at them have no value.
+        them from the triangulation (an error if a constraint needs them, or if a regular
+        triangulation or `TetMesh` is given); keep them, so that the triangles at them have no
+        value.
     respect_constraints : bool, optional
         Accepted for consistency with the other interpolators: triangles never cross constraints.
     workers : int, optional

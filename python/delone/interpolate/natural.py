@@ -134,7 +134,11 @@ class NaturalNeighbor(Smooth):
             )
 
     def _check_space(self, given: Triangulation | None) -> None:
-        super()._check_space(given)
+        if given is not None and not isinstance(given, Delaunay):
+            raise InputError(
+                "in 3-D the sites of natural neighbors must be points or a Delaunay triangulation "
+                f"of them, not a {type(given).__name__}; `Linear` takes it"
+            )
         if self._kind != "laplace":
             refuse(f"kind={self._kind!r}", "choose kind='laplace'")
 

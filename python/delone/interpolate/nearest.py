@@ -29,7 +29,7 @@ class Nearest(Interpolator):
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3), or a triangulation
-        Sites.
+        Sites; of a triangulation of delone, its vertices.
     values : array_like, shape (n,) or (n, ...), optional
         Real or complex values at the sites. Optional if each call passes its own values.
     extrapolate : {"nearest", "nan", "raise"}, optional
