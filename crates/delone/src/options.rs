@@ -145,8 +145,8 @@ impl<'o> Options<'o> {
     }
 
     /// [`mesh`](Self::mesh), [`refine`](Self::refine): the smallest angle in degrees, up to rounding;
-    /// at least 0 and below 60, by default 30. Termination is proven up to about 26 degrees and usual
-    /// up to 33; above, `max_points` often ends the work.
+    /// at least 0 and below 60, by default 30. Refinement usually ends up to 33;
+    /// above, `max_points` often ends the work.
     #[must_use]
     pub fn min_angle(mut self, degrees: f64) -> Self {
         self.min_angle = degrees;

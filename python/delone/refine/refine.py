@@ -67,8 +67,8 @@ def mesh(
         `from_geometry` accepts, with lines and points in them as further edges and vertices.
     min_angle : float, optional
         Lower bound on angles in degrees, from 0 to below 60. Smaller angles remain only where the
-        angles of the input force them. Termination is proven up to 26 degrees and observed in
-        practice up to 33; above that, the limit on points is often reached first.
+        angles of the input force them. Refinement terminates in practice up to 33 degrees; above
+        that, the limit on points is often reached first.
     max_area : float or mapping, optional
         Largest area of a triangle, up to rounding of its area, in the square of the unit of the
         points; or a mapping from regions to areas.
@@ -138,8 +138,9 @@ def mesh(
     -----
     Delaunay refinement (J. Ruppert 1995) with the diametral lenses of L. P. Chew (1993),
     off-centers (A. Üngör 2004), splits at powers of two around sharp corners, and the rule of
-    Miller, Pav and Walkington (2005) for triangles there. It terminates for angles up to 26
-    degrees, in practice up to 33, unless `max_points` stops it earlier. A needle between lines,
+    Miller, Pav and Walkington (2005) for triangles there. It terminates in practice
+    for angles up to 33 degrees (close relatives provably up to 20.7 and 26.6 degrees, see the
+    mathematics page), unless `max_points` stops it earlier. A needle between lines,
     such as a triangle of height h over a side of length 1, takes about 0.5 / h points at 25 degrees
     and 0.1 / h at 5, unless its sides happen to be split alike, as two sides of equal length are:
     then one point may be enough. Needles are refined last. Refinement takes about a microsecond per
