@@ -69,6 +69,14 @@ def test_ply_files_with_faces_and_wishes_for_the_plane(tmp_path, figures):
     assert "triangles" in figures("triangulate", ply(tmp_path / "a.ply", cloud(9)), "--2d")
 
 
+@pytest.mark.parametrize("name", ["triangulate", "info"])
+@pytest.mark.parametrize("told", [["--3d", "--2d"], ["--2d", "--3d"]])
+def test_two_answers_are_refused(tmp_path, command, name, told):
+    code, out, err = command(name, xyz(tmp_path / "a.xyz", cloud()), *told)
+    assert (code, out) == (2, "")
+    assert "--3d and --2d contradict each other" in err
+
+
 def test_what_space_refuses(tmp_path, command):
     flat = xyz(tmp_path / "flat.xyz", cloud()[:, :2])
     code, _, err = command("triangulate", flat, "--3d")

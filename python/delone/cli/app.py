@@ -34,12 +34,15 @@ from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
 from delone.cli.options import (
     Classes,
+    Flat,
     Json,
     Layer,
     MeshOutput,
     Quiet,
+    Solid,
     Workers,
     class_numbers,
+    space_or_plane,
     split,
 )
 from delone.cli.outputs import ready, write_all
@@ -153,14 +156,8 @@ def triangulate(
     max_points: Annotated[
         int | None, typer.Option(help="Maximum number of vertices added to lines and polygons.")
     ] = None,
-    space: Annotated[
-        bool | None,
-        typer.Option(
-            "--3d/--2d",
-            help="Triangulate in 3-D or in 2-D; by default, PLY files that contain only points "
-            "are 3-D point clouds.",
-        ),
-    ] = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
     better: Annotated[
         bool,
         typer.Option("--improve", help="3-D: remove slivers; points inside may move."),
@@ -190,6 +187,7 @@ def triangulate(
     points; with --3d they are the third coordinate, and tetrahedra are written to .vtu, .msh, .npz,
     .xdmf, .inp, .su2 and .png.
     """
+    space = space_or_plane(in_space, in_plane)
     if min_angle is not None and not better:
         raise Failure("--min-angle is the goal of --improve: give --improve as well", Exit.USAGE)
     require_known(crs)
@@ -290,16 +288,12 @@ def info(
     classes: Classes = None,
     columns: Columns = None,
     layer: Layer = None,
-    space: Annotated[
-        bool | None,
-        typer.Option(
-            "--3d/--2d",
-            help="Read points as 3-D or 2-D; as for triangulate.",
-        ),
-    ] = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
     as_json: Json = False,
 ) -> None:
     """Describe the contents of a file without triangulating it."""
+    space = space_or_plane(in_space, in_plane)
     with spinner(as_json) as say:
         say(f"reading {source.name}")
         figures, rows = describe(

@@ -10,7 +10,19 @@ import typer
 from delone.cli.exits import Exit, Failure
 from delone.io import output_suffixes
 
-__all__ = ["Classes", "Json", "Layer", "MeshOutput", "Quiet", "Workers", "class_numbers", "split"]
+__all__ = [
+    "Classes",
+    "Flat",
+    "Json",
+    "Layer",
+    "MeshOutput",
+    "Quiet",
+    "Solid",
+    "Workers",
+    "class_numbers",
+    "space_or_plane",
+    "split",
+]
 
 Classes = Annotated[
     str | None, typer.Option(help="Keep the points of these classes (LAS, LAZ): 2 or 2,6.")
@@ -26,6 +38,16 @@ MeshOutput = Annotated[
     ),
 ]
 Workers = Annotated[int | None, typer.Option(help="Threads; by default one per core.")]
+# Two options, since of a pair of switches the last one counts without a word.
+Solid = Annotated[bool, typer.Option("--3d", help="Take points as 3-D, z as a coordinate.")]
+Flat = Annotated[
+    bool,
+    typer.Option(
+        "--2d",
+        help="Take points as 2-D. By default, PLY files that contain only points are 3-D point "
+        "clouds.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
@@ -33,6 +55,13 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but er
 def split(text: str | None) -> list[str] | None:
     """Return the parts between commas."""
     return None if text is None else [part.strip() for part in text.split(",")]
+
+
+def space_or_plane(solid: bool, flat: bool) -> bool | None:
+    """Return the choice of --3d and --2d: True, False, or None for neither."""
+    if solid and flat:
+        raise Failure("--3d and --2d contradict each other: give one of them", Exit.USAGE)
+    return solid or (False if flat else None)
 
 
 def class_numbers(text: str | None) -> list[int] | None:
