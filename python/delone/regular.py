@@ -237,8 +237,8 @@ def _degenerate(points: Floats, chain: Indices) -> DegenerateInputError:
     distinct = len(np.unique(points + 0.0, axis=0))
     reason = "too few points" if distinct < 3 else "collinear"
     return DegenerateInputError(
-        f"the {counted(distinct, 'distinct point')} span no triangle; `chain` has those that are "
-        f"not hidden, in order",
+        f"the {counted(distinct, 'distinct point')} span no triangle; `error.chain` has those "
+        f"that are not hidden, in order",
         reason=reason,
         chain=chain,
     )

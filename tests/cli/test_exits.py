@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import delone
 from delone import InternalError, __version__
-from delone.cli.exits import MEANINGS, Exit
+from delone.cli.exits import MEANINGS, Exit, as_options
 
 COMMAND = [sys.executable, "-m", "delone"]
 
@@ -267,6 +268,18 @@ def test_output_that_cannot_be_printed_is_no_bug(tmp_path: Path) -> None:
     done = _shell("delone triangulate ü.csv -o c.npz", tmp_path, PYTHONIOENCODING="ascii")
     assert (done.returncode, done.stderr) == (0, "")
     assert "?.csv" in done.stdout
+
+
+def test_attributes_of_exceptions_are_left_to_python(tmp_path, command):
+    np.savetxt(tmp_path / "a.xyz", [(0, 0), (1, 1), (2, 2)])
+    code, _, err = command("triangulate", tmp_path / "a.xyz")
+    assert code == 4
+    assert err.strip().endswith("so there is no triangle")
+    with pytest.raises(delone.DegenerateInputError, match=r"error\.chain"):
+        delone.Delaunay([(0, 0), (1, 1), (2, 2)])
+    # The rest of such a message stays.
+    said = "bad; `error.rows` has them, in order; choose nan='drop'"
+    assert as_options(said) == "bad; choose --nan drop"
 
 
 TABLE = "x,y,z\n# a survey\n0,0,1\n\n1,{},2\n0,1,3\n0,1,4\n"

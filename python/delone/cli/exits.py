@@ -123,6 +123,7 @@ def code_of(error: BaseException) -> Exit:
     return next((code for kind, code in codes if isinstance(error, kind)), Exit.INTERNAL)
 
 
+_ATTRIBUTE = re.compile(r"; `error\.\w+` ha[^;]*")
 _QUOTES = str.maketrans("", "", "'\"")
 _OPTION = re.compile(
     r"""\b(crossing|duplicates|extrapolate|nan)=((?:["'][\w-]+["'](?:, | or )?)+)"""
@@ -130,8 +131,12 @@ _OPTION = re.compile(
 
 
 def as_options(message: str) -> str:
-    """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``."""
-    return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", message)
+    """Rewrite Python arguments in a message as options: ``nan='drop'`` as ``--nan drop``.
+
+    What attributes of the exception have is left out.
+    """
+    plain = _ATTRIBUTE.sub("", message)
+    return _OPTION.sub(lambda found: f"--{found[1]} {found[2].translate(_QUOTES)}", plain)
 
 
 def os_message(error: OSError) -> str:
