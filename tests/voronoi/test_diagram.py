@@ -299,8 +299,9 @@ def test_cells_are_bounded_or_between_two_rays() -> None:
     assert not outer.bounded and outer.parts == ()
     assert outer.vertices.tolist() == [[2.0, 0.0], [0.0, 2.0]]
     assert diagram.cell(-1).site == 4
-    with pytest.raises(IndexError):
-        diagram.cell(5)
+    for row in (5, -6, 10**30, -(10**5000)):
+        with pytest.raises(IndexError, match="no such site: i must be a row, from 0 to 4"):
+            diagram.cell(row)
 
 
 def test_nothing_can_be_changed() -> None:

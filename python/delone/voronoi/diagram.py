@@ -514,7 +514,7 @@ class Voronoi(Stored):
         >>> cell.volume, cell.bounded, len(cell.faces)
         (8.0, False, 6)
         """
-        row = as_site(i)
+        row = as_site(i, self.npoints)
         region, site = int(self.point_region[row]), int(self.duplicate_of[row])
         indptr, indices, sizes = self.neighbors
         beside = slice(indptr[site], indptr[site + 1])

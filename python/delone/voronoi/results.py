@@ -164,9 +164,12 @@ class PolyhedralCell:
     centroid: Floats
 
 
-def as_site(i: Any) -> int:
-    """Return the row of a site as a Python integer, which may be out of range."""
+def as_site(i: Any, count: int) -> int:
+    """Return the row of one of `count` sites, from 0 on; negative ones count from the end."""
     try:
-        return operator.index(i)
+        row = operator.index(i)
     except TypeError:
         raise DtypeError(f"i must be the row of a site, got {i!r:.60}") from None
+    if not -count <= row < count:
+        raise IndexError(f"there is no such site: i must be a row, from 0 to {count - 1}")
+    return row % count
