@@ -26,6 +26,7 @@ __all__ = [
     "CRSWarning",
     "GeographicWarning",
     "as_crs",
+    "as_known_crs",
     "common_crs",
     "crs_of",
     "degrees_in",
@@ -91,6 +92,16 @@ def as_crs(crs: Any, *, name: str = "crs") -> str | None:
     if hasattr(crs, "to_string"):
         return str(crs.to_string())
     raise DtypeError(f"{name} must be a reference system such as 'EPSG:28992', got {crs!r:.60}")
+
+
+def as_known_crs(crs: Any, *, name: str = "crs") -> str | None:
+    """Return a reference system as `as_crs` does; refuse one that pyproj, if there, rejects."""
+    found = as_crs(crs, name=name)
+    if found is None or is_known(found):
+        return found
+    raise InputError(
+        f"{name} must be a reference system such as 'EPSG:28992', and pyproj knows no {crs!r:.60}"
+    )
 
 
 def crs_of(data: Any) -> str | None:

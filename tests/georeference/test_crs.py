@@ -193,3 +193,17 @@ def test_netcdf_is_read_by_gdal(tmp_path: Path) -> None:
         with rasterio.open(tmp_path / "a.nc") as file:
             assert file.crs.to_epsg() == 28992
             assert tuple(file.bounds) == (4, 50, 8, 54)
+
+
+@pytest.mark.parametrize("crs", ["nope", "EPSG:1", 1])
+def test_systems_that_do_not_exist_are_refused(crs: Any) -> None:
+    ring = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
+    with pytest.raises(InputError, match=r"crs must be a reference system .* pyproj knows no"):
+        delone.from_geometry(ring, crs=crs)
+    assert delone.from_geometry(ring, crs=28992).crs == DUTCH
+
+
+def test_without_pyproj_any_name_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(delone.georeference, "_has_pyproj", lambda: False)
+    ring = {"type": "Polygon", "coordinates": [[(0, 0), (1, 0), (1, 1), (0, 0)]]}
+    assert delone.from_geometry(ring, crs="nope").crs == "nope"

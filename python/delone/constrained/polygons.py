@@ -20,7 +20,7 @@ from delone.counting import agreed
 from delone.duplicates import first_rows
 from delone.errors import InputError, NonFiniteError
 from delone.exchange.parts import Parts
-from delone.georeference import as_crs, common_crs, is_geographic, warn_of_degrees
+from delone.georeference import as_known_crs, common_crs, is_geographic, warn_of_degrees
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -82,7 +82,8 @@ def from_geometry(
     Raises
     ------
     InputError
-        An item is not a geometry, or the geometries are in different reference systems.
+        An item is not a geometry, the geometries are in different reference systems, or pyproj is
+        installed and does not know `crs`.
     NonFiniteError
         A coordinate is NaN or infinite; the rows of the error are geometries.
     DegenerateInputError, CrossingSegmentsError, BudgetExceededError
@@ -117,7 +118,7 @@ def from_geometry(
     """
     parts = geodata.parts_of(geometries)
     _require_finite(parts)
-    system = common_crs(geometries) if crs is None else as_crs(crs)
+    system = common_crs(geometries) if crs is None else as_known_crs(crs)
     by = system if system is not None and is_geographic(system) else None
     warn_of_degrees(None, parts.coordinates, planar=planar, name="geometries", by=by)
     points, vertex = _merged(parts.coordinates)
