@@ -53,11 +53,11 @@ if TYPE_CHECKING:
         datasets,
         distributed,
         interpolate,
-        io,
         plot,
         reference,
         testing,
     )
+    from delone import io as io
     from delone.constrained.delaunay import ConstrainedDelaunay
     from delone.constrained.editing import Editing
     from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from delone.voronoi.centroidal import LloydResult, lloyd
     from delone.voronoi.diagram import Voronoi
 
+# Without `io`: after a star import, that name would no longer be the standard library's.
 __all__ = [
     "BudgetExceededError",
     "BusyError",
@@ -120,7 +121,6 @@ __all__ = [
     "from_geometry",
     "improve",
     "interpolate",
-    "io",
     "lawson",
     "lloyd",
     "mesh",

@@ -189,6 +189,11 @@ def test_every_name_of_the_package_is_there() -> None:
         delone.nothing  # noqa: B018
 
 
+def test_a_star_import_hides_no_module_of_the_standard_library() -> None:
+    assert not set(delone.__all__) & set(sys.stdlib_module_names)
+    assert "io" in dir(delone)
+
+
 def test_importing_the_package_imports_numpy_alone() -> None:
     code = """
 import sys, numpy
