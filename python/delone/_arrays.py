@@ -211,6 +211,13 @@ def as_optional_flag(flag: bool | None, *, name: str) -> bool | None:
     raise DtypeError(f"{name} must be True, False or None, got {flag!r:.60}")
 
 
+def as_callback(function: Any, *, name: str) -> Any:
+    """Return a function, or None; anything else raises an error before work is done."""
+    if function is None or callable(function):
+        return function
+    raise DtypeError(f"{name} must be a function or None, got {function!r:.60}")
+
+
 def as_workers(workers: int | None) -> int:
     """Return a number of threads, at least 1 and at most 256; None means one per usable core."""
     if workers is None:

@@ -299,7 +299,27 @@ def test_sizes_are_kept_between_frozen_segments() -> None:
     assert len(mesh.segments) == 4
     assert mesh.areas.max() <= 0.001
     assert not mesh.report.exhausted
-    assert set(mesh.report.cause.tolist()) <= {"frozen"}
+    assert set(mesh.report.cause.tolist()) <= {"fixed"}
+
+
+def test_small_angles_at_fixed_segments_have_that_cause() -> None:
+    thin = [(0, 0), (6, 0), (6, 6), (0, 6), (1, 0.01), (5, 0.01)]
+    mesh = delone.mesh((thin, [*RING, (4, 5)]), fixed=True)
+    assert set(mesh.report.cause.tolist()) == {"fixed"}
+    assert "at fixed segments" in str(mesh.report)
+
+
+def test_what_is_no_function_is_refused_before_the_work() -> None:
+    for call in (
+        lambda: delone.mesh("no domain", progress=3),
+        lambda: delone.mesh((SQUARE, RING)).refine(progress="often"),
+        lambda: delone.lloyd(SQUARE, clip="box", progress=3),
+        lambda: delone.improve(delone.Delaunay(np.eye(4)[:, :3]), progress=3),
+        lambda: delone.interpolate.grid(SQUARE, [0.0] * 4, shape=(2, 2), progress=3),
+        lambda: delone.interpolate.cross_validate(SQUARE, [0.0] * 4, progress=3),
+    ):
+        with pytest.raises(InputError, match="progress must be a function or None"):
+            call()
 
 
 def test_a_budget_ends_the_work_and_is_reported() -> None:

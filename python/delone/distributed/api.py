@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_choice, as_count, as_flag
-from delone.distributed.arguments import as_callback, as_classes, as_names, as_path
+from delone._arrays import as_callback, as_choice, as_count, as_flag
+from delone.distributed.arguments import as_classes, as_names, as_path
 from delone.distributed.read.opened import TiledDelaunay, open
 from delone.distributed.run.costs import Plan, estimate
 from delone.distributed.run.executors import Executor, Processes, Serial

@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from delone._arrays import as_count
 from delone.errors import DtypeError, InputError
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-__all__ = ["as_callback", "as_classes", "as_names", "as_path"]
+__all__ = ["as_classes", "as_names", "as_path"]
 
 
 def as_path(path: Any, *, name: str) -> Path:
@@ -59,11 +56,3 @@ def _sequence(values: Any, wanted: str) -> Sequence[Any]:
     if not isinstance(values, Sequence) or isinstance(values, str | bytes):
         raise DtypeError(f"{wanted}, got {values!r:.60}")
     return values
-
-
-def as_callback(function: Any, *, name: str) -> Callable[..., Any] | None:
-    """Return a function, or None."""
-    if function is None or callable(function):
-        found: Callable[..., Any] | None = function
-        return found
-    raise DtypeError(f"{name} must be callable or None, got {function!r:.60}")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from delone._arrays import as_limit, as_number
+from delone._arrays import as_callback, as_limit, as_number
 from delone.errors import DtypeError, InputError, InternalError, ShapeError
 from delone.plane import geometry, topology
 from delone.refine import domains
@@ -53,7 +53,7 @@ def finer(
         raise InputError(f"ratio must be above 0 and at most 1, got {ratio!r}")
     bound = float(mesh._bound[0]) if min_angle is None else as_min_angle(min_angle)
     budget = MOST_ADDED if max_points is None else as_limit(max_points, name="max_points")
-    limits = Limits(bound, budget, False, progress, mesh._workers)
+    limits = Limits(bound, budget, False, as_callback(progress, name="progress"), mesh._workers)
     domain, counts = mesh._domain(), Counts(*mesh._counts[:3].tolist())
     if marked is not None:
         size_at = _size_function(mesh, _chosen(marked, mesh.nsimplex), ratio)

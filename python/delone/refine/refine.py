@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_flag, as_limit, as_plain_array, as_workers
+from delone._arrays import as_callback, as_count, as_flag, as_limit, as_plain_array, as_workers
 from delone._masks import refuse_masks
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.constrained.polygons import from_geometry
@@ -172,7 +172,7 @@ def mesh(
         as_min_angle(min_angle),
         MOST_ADDED if max_points is None else as_limit(max_points, name="max_points"),
         as_flag(delaunay, name="delaunay"),
-        progress,
+        as_callback(progress, name="progress"),
         workers,
     )
     as_workers(workers)

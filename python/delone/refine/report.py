@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["CAUSES", "MeshReport", "judged", "reported"]
 
-CAUSES = ("corner", "needle", "frozen", "budget", "other")
-_CORNER, _NEEDLE, _FROZEN, _BUDGET, _OTHER = range(5)
+CAUSES = ("corner", "needle", "fixed", "budget", "other")
+_CORNER, _NEEDLE, _FIXED, _BUDGET, _OTHER = range(5)
 # Distances from a corner count as equal if their relative difference is smaller, as in the core.
 _SAME_SHELL = 1e-3
 _SHOWN = 5
@@ -59,8 +59,8 @@ class MeshReport(ReadOnly):
         For each of these, the corner of the input that is responsible, a row of points; -1 if none
         is.
     cause : ndarray of str, shape (k,)
-        For each of these, ``"corner"``, ``"needle"`` (in or next to one of `needles`), ``"frozen"``
-        (a line that must not be split), ``"budget"`` (the limit on points) or ``"other"`` (lines
+        For each of these, ``"corner"``, ``"needle"`` (in or next to one of `needles`), ``"fixed"``
+        (a segment that must not be split), ``"budget"`` (the limit on points) or ``"other"`` (lines
         that are too close to each other for doubles, or points that were removed or moved later).
     needles : ndarray of float64, shape (q, 2)
         A position in each needle that was left as it is, ascending. In a needle, lines are so close
@@ -140,7 +140,7 @@ class MeshReport(ReadOnly):
 _SENTENCES = {
     "corner": "at sharp corners",
     "needle": "in or next to needles",
-    "frozen": "at fixed segments",
+    "fixed": "at fixed segments",
     "budget": "because of the limit on points",
     "other": "for other reasons",
 }
@@ -166,7 +166,7 @@ def reported(
     rows, angles = judged(points, simplices, min_angle)
     corner = _responsible(points, simplices[rows], sides[rows], on, lines)
     # Lines that must not be split also keep vertices away from triangles that do not touch them.
-    rest = _BUDGET if counts[3] else _FROZEN if lines.frozen.any() else _OTHER
+    rest = _BUDGET if counts[3] else _FIXED if lines.frozen.any() else _OTHER
     cause = np.where(corner >= 0, _CORNER, rest)
     positions = np.empty((0, 2))
     if (cause != _CORNER).any() or angles[0] < _THIN:
@@ -176,7 +176,7 @@ def reported(
         near = np.zeros(len(points), dtype=bool)
         near[simplices[needle >= 0]] = True
         # From one bad triangle to the next; few are outside of needles.
-        while (more := (cause >= _FROZEN) & near[simplices[rows]].any(axis=1)).any():
+        while (more := (cause >= _FIXED) & near[simplices[rows]].any(axis=1)).any():
             cause[more] = _NEEDLE
             near[simplices[rows[more]]] = True
         positions = _positions(points, simplices, needle)

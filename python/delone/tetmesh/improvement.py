@@ -11,6 +11,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import (
+    as_callback,
     as_choice,
     as_flag,
     as_limit,
@@ -151,8 +152,7 @@ def improve(
     )
     flips_boundary = as_choice(boundary, BOUNDARIES, name="boundary") == "surface"
     passes = as_limit(max_iter, name="max_iter")
-    if progress is not None and not callable(progress):
-        raise DtypeError(f"progress must be callable, got {progress!r}")
+    as_callback(progress, name="progress")
     try:
         made = _core.improve3(
             points, simplices, labels, held, goal, *kinds, flips_boundary, passes, progress

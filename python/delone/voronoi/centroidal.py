@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from delone._arrays import as_choice, as_limit, as_number
+from delone._arrays import as_callback, as_choice, as_limit, as_number
 from delone.errors import DtypeError, InputError
 from delone.immutable import ReadOnly
 from delone.voronoi import outline
@@ -176,8 +176,7 @@ def lloyd(
     if tol is not None and not tol >= 0:
         raise InputError(f"tol must not be negative, got {tol}")
     for name, function in (("density", density), ("progress", progress)):
-        if function is not None and not callable(function):
-            raise DtypeError(f"{name} must be a function, got {function!r:.60}")
+        as_callback(function, name=name)
     quasi_newton = as_choice(method, _METHODS, name="method") == "l-bfgs"
     diagram = Voronoi(points, clip=clip, workers=workers)
     if diagram.ndim != 2:
