@@ -9,7 +9,7 @@ import pytest
 
 from delone import datasets
 from delone.errors import DtypeError, InputError, NonFiniteError, ShapeError
-from delone.interpolate import cross_validate, interpolator
+from delone.interpolate import cross_validate, grid, interpolator
 from delone.interpolate.methods import METHODS
 
 
@@ -175,6 +175,21 @@ def test_a_site_without_which_there_is_no_area(method: str) -> None:
     )
     assert found.predicted.shape == (6,)
     assert np.isnan(cross_validate(points, np.arange(5.0), method, folds=2).predicted).any()
+
+
+@pytest.mark.parametrize("method", ["linear", "nearest", "sibson1", "clough-tocher"])
+@pytest.mark.parametrize("name", ["foo", "kind"])
+def test_options_that_a_method_does_not_have(method: str, name: str) -> None:
+    points = datasets.uniform(20)
+    calls: tuple[Any, ...] = (
+        lambda **options: cross_validate(points, points[:, 0], method, **options),
+        lambda **options: grid(points, points[:, 0], shape=(2, 2), method=method, **options),
+        lambda **options: interpolator(method, points, points[:, 0], **options),
+    )
+    wanted = rf"{name} is not an option of '{method}'; its options are .*extrapolate"
+    for call in calls:
+        with pytest.raises(InputError, match=wanted):
+            call(**{name: "laplace"})
 
 
 @pytest.mark.parametrize(("seed", "kind"), [("a", DtypeError), (-1, InputError), (1.5, DtypeError)])

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from delone import _core
-from delone._arrays import as_count, as_optional_flag, as_points, as_workers
+from delone._arrays import as_callback, as_count, as_optional_flag, as_points, as_workers
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, DtypeError, InputError
 from delone.georeference import warn_of_degrees
-from delone.interpolate.methods import METHODS, interpolator
+from delone.interpolate.methods import METHODS, interpolator, require_options
 from delone.interpolate.values import (
     DUPLICATES,
     NAN,
@@ -223,11 +223,14 @@ def cross_validate(
     >>> cross_validate(points, 2 * x, "linear", folds=5).rmse.round(9)
     np.float64(0.0)
     """
+    tell = as_callback(progress, name="progress")
     leave_one_out = as_optional_flag(leave_one_out, name="leave_one_out")
     if leave_one_out is None:
         leave_one_out = folds is None
     if leave_one_out == (folds is not None):
         raise InputError("give either folds or leave_one_out=True, not both")
+    if isinstance(interpolator, str) and interpolator in METHODS:
+        require_options(interpolator, options)
     sites = as_points(points, ndim=2)
     warn_of_degrees(points, sites, planar=planar)
     field = as_field(values, len(sites))
@@ -238,7 +241,7 @@ def cross_validate(
         require_finite_values(field)
     mesh = Delaunay(sites[kept], workers=workers)
     merged = field.at(kept).merged(mesh.duplicate_of, chosen("duplicates", duplicates, DUPLICATES))
-    task = _Task(mesh, merged, interpolator, options, workers, progress, leave_one_out)
+    task = _Task(mesh, merged, interpolator, options, workers, tell, leave_one_out)
     rng = _dealer(seed)
     columns = task.left_one_out() if leave_one_out else task.folded(folds or 0, rng)
     predicted = np.full_like(field.columns, np.nan)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import TYPE_CHECKING, Any
 
+from delone.errors import InputError
 from delone.interpolate.clough_tocher import CloughTocher
 from delone.interpolate.linear import Linear
 from delone.interpolate.natural import NaturalNeighbor
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from delone.periodic import PeriodicDelaunay
     from delone.triangulation import Triangulation
 
-__all__ = ["METHODS", "interpolator"]
+__all__ = ["METHODS", "interpolator", "require_options"]
 
 METHODS: Mapping[str, tuple[type[Interpolator], dict[str, Any]]] = {
     "linear": (Linear, {}),
@@ -60,7 +62,7 @@ def interpolator(
     Raises
     ------
     InputError
-        The method is unknown; or the class raises it.
+        The method is unknown, or does not have one of the options; or the class raises it.
 
     Examples
     --------
@@ -69,4 +71,28 @@ def interpolator(
     array(2.)
     """
     kind, fixed = METHODS[chosen("method", method, tuple(METHODS))]
+    require_options(method, options)
     return kind(points, values, **fixed, **options)
+
+
+def require_options(method: str, options: Mapping[str, Any]) -> None:
+    """Raise InputError for an option that a method does not have.
+
+    Parameters
+    ----------
+    method : str
+        A name in `METHODS`.
+    options : mapping
+        What will be passed to its class.
+
+    Raises
+    ------
+    InputError
+        An option is not one of the class, or the method determines it.
+    """
+    kind, fixed = METHODS[method]
+    for name in options:
+        known = [*inspect.signature(kind).parameters][2:]
+        if name not in known or name in fixed:
+            listed = ", ".join(each for each in known if each not in fixed)
+            raise InputError(f"{name} is not an option of {method!r}; its options are {listed}")

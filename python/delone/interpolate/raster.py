@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from delone._arrays import as_count, as_number, as_plain_array
+from delone._arrays import as_callback, as_count, as_number, as_plain_array
 from delone.counting import gigabytes, grouped
 from delone.errors import DtypeError, InputError, ShapeError
 from delone.interpolate.base import Interpolator, as_max_distance
@@ -245,7 +245,7 @@ def grid(
     array([[0., 1., 2.],
            [2., 3., 4.]])
     """
-    limit = as_max_distance(max_distance)
+    limit, tell = as_max_distance(max_distance), as_callback(progress, name="progress")
     if isinstance(points, Interpolator):
         if options or method != "linear":
             raise InputError("method and options cannot be given with an interpolator that exists")
@@ -265,8 +265,8 @@ def grid(
         some = nodes_y[start : start + rows]
         queries = np.stack(np.meshgrid(nodes_x, some), axis=-1)
         found[start : start + rows] = made(queries, values=values, max_distance=limit)
-        if progress is not None:
-            progress(min(1.0, (start + rows) / len(nodes_y)))
+        if tell is not None:
+            tell(min(1.0, (start + rows) / len(nodes_y)))
     return Grid(found, nodes_x, nodes_y)
 
 
