@@ -283,7 +283,7 @@ impl Work<'_> {
         let mut seen = BTreeSet::new();
         while let Some(e) = stack.pop() {
             let ends = [next(e), prev(e)].map(|c| mesh.vertex(c));
-            if ends.contains(&mesh.infinite()) || !seen.insert(triangle(e)) {
+            if ends.contains(&mesh.infinite()) || !seen.insert(e) {
                 continue;
             }
             let [r, s] = ends.map(|v| points[v as usize]);
@@ -518,5 +518,20 @@ mod tests {
         let square = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
         let twice = [[0, 2], [1, 3], [2, 0]];
         assert!(check(&square, &twice).unwrap());
+    }
+
+    #[test]
+    fn a_segment_through_the_pixel_of_a_crossing_behind_another_edge() {
+        let x = 2f64.powi(51);
+        let points = [
+            [7.0, 4.0],
+            [3.0, 0.0],
+            [0.0, 3.0],
+            [0.0, 0.0],
+            [5.0, 3.0],
+            [4.0, 1.0],
+        ];
+        let points = points.map(|p| [p[0] + x, p[1]]);
+        assert!(!check(&points, &[[1, 0], [1, 4], [5, 2]]).unwrap());
     }
 }
