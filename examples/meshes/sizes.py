@@ -1,0 +1,80 @@
+"""
+Mesh sizes by a function: fine near a hole
+==========================================
+
+A plate with a round hole and a slit is meshed with small triangles at the hole and large ones far away. Sizes can be a
+function of position, a raster or a field of another mesh. A histogram of the angles shows the quality.
+
+Install: ``pip install "delone[plot]"``.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import delone
+
+# %%
+# The plate as GeoJSON: an outer ring, then holes. Closing a ring is optional, and its direction has no effect.
+
+angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+hole = np.column_stack((2 + 0.5 * np.cos(angle), 1.5 + 0.5 * np.sin(angle)))
+plate = {
+    "type": "Polygon",
+    "coordinates": [[(0, 0), (6, 0), (6, 3), (0, 3)], hole.tolist()],
+}
+slit = {"type": "LineString", "coordinates": [(4.2, 0.8), (5.0, 2.2)]}
+
+
+def size(points):
+    """Return the edge length: 0.04 at the hole, growing by a quarter of the distance from it."""
+    distance = np.hypot(points[:, 0] - 2, points[:, 1] - 1.5) - 0.5
+    return 0.04 + 0.25 * np.maximum(distance, 0)
+
+
+uniform = delone.mesh([plate, slit], size=0.04)
+graded = delone.mesh([plate, slit], size=size)
+print(f"{uniform.nsimplex:,} triangles of one size, {graded.nsimplex:,} of growing size")
+print(graded.report)
+
+# %%
+# Points can still move to better positions: smoothing raises the common angles, and the bound of 30 degrees remains.
+
+smooth = graded.smooth(10, "odt")
+for name, mesh in (("refined", graded), ("smoothed", smooth)):
+    quality = mesh.quality()
+    print(
+        f"{name}: smallest angle {quality.smallest_angle.min():.1f}, "
+        f"median {np.median(quality.smallest_angle):.1f} degrees"
+    )
+
+# %%
+# Coarsening removes points again where the bound on angles allows it, here in the right half. One call removes no two
+# neighbors; repeat it to remove more.
+
+coarse = uniform
+for _ in range(5):
+    coarse = coarse.coarsen(coarse.points[coarse.simplices, 0].mean(axis=1) > 3)
+print(f"coarser: {uniform.nsimplex:,} to {coarse.nsimplex:,} triangles")
+
+# %%
+# A usual mistake is a size in the wrong unit, for example millimeters for a plate in meters. It is refused before any
+# work is done.
+
+try:
+    delone.mesh([plate, slit], size=lambda points: size(points) / 1000)
+except delone.BudgetExceededError as error:
+    print(error)
+
+# %%
+# The mesh, and the angles before and after smoothing.
+
+figure, axes = plt.subplot_mosaic(
+    [["mesh", "mesh"], ["before", "after"]],
+    figsize=(8, 7.5),
+    height_ratios=[1.5, 1],
+    layout="constrained",
+)
+smooth.plot(axes["mesh"], vertices=False, title=f"{smooth.nsimplex:,} triangles, finer at the hole")
+graded.plot_quality(axes["before"]).set(title="Angles, refined")
+smooth.plot_quality(axes["after"]).set(title="Angles, smoothed")
+plt.show()
