@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
     from delone.constrained.segments import SegmentReport
     from delone.constrained.validation import ConstrainedReport
+    from delone.explorer.widget import explore
     from delone.flips import LawsonResult, lawson
     from delone.hull import ConvexHull
     from delone.periodic import PeriodicDelaunay
@@ -118,6 +119,7 @@ __all__ = [
     "compat",
     "datasets",
     "distributed",
+    "explore",
     "from_geometry",
     "improve",
     "interpolate",
@@ -139,6 +141,7 @@ _MODULES = {
     "datasets",
     "distributed",
     "exchange",
+    "explorer",
     "flips",
     "hull",
     "interpolate",
@@ -168,6 +171,7 @@ _HOMES = {
     "SegmentReport": "constrained.segments",
     "TetMesh": "tetmesh.tetmesh",
     "Voronoi": "voronoi.diagram",
+    "explore": "explorer.widget",
     "from_geometry": "constrained.polygons",
     "improve": "tetmesh.improvement",
     "lawson": "flips",

@@ -136,6 +136,7 @@ PUBLIC_MODULES = (
     "delone.delaunay",
     "delone.distributed",
     "delone.constrained.editing",
+    "delone.explorer.widget",
     "delone.interpolate",
     "delone.io",
     "delone.location",

@@ -47,7 +47,7 @@ PYTHON: tuple[set[str], ...] = (
     {"hull", "periodic", "refine"},
     {"io"},
     {"voronoi", "interpolate"},
-    {"compat", "distributed"},
+    {"compat", "distributed", "explorer"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
     # The package itself re-exports.

@@ -26,7 +26,9 @@ __all__ = ["Browser", "Page", "chromium"]
 PATIENCE = 60.0  # seconds until a browser that does not answer is an error
 # The child of the fork: descriptors 3 and 4 are where Chromium reads and writes.
 _START = (
-    "import os, sys; r, w = map(int, sys.argv[1:3]); r = os.dup(r); w = os.dup(w); "
+    # Both are first copied out of the way: a copy of 3 onto 3 would keep its close-on-exec flag.
+    "import fcntl, os, sys; "
+    "r, w = (fcntl.fcntl(int(n), fcntl.F_DUPFD, 10) for n in sys.argv[1:3]); "
     "os.dup2(r, 3); os.dup2(w, 4); os.execvp(sys.argv[3], sys.argv[3:])"
 )
 

@@ -30,6 +30,7 @@ from delone.cli.exits import (
     reading,
     writing,
 )
+from delone.cli.exploring import explore
 from delone.cli.info import describe
 from delone.cli.meshing import make_mesh
 from delone.cli.options import (
@@ -312,7 +313,10 @@ def info(
 # Called, not used as decorators: the functions above remain plain functions.
 app.callback()(_options)
 _EPILOG = "The table of exit codes is in: delone --help"
-_ON_POINTS = triangulate, check, info, field.interpolate, field.crossval, cells.voronoi, tiles.tile
+_ON_POINTS = (
+    *(triangulate, check, info, explore),
+    *(field.interpolate, field.crossval, cells.voronoi, tiles.tile),
+)
 for _command in _ON_POINTS:
     app.command(epilog=_EPILOG)(naming_lines(_command))
 app.command(epilog=_EPILOG)(tiles.dem)

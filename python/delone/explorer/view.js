@@ -16,9 +16,10 @@ Mesh, the argument of `setMesh`; everything except `points` is optional:
    hull         Int32Array of 2h rows of points: edges of the hull; by default the edges with one
                 triangle
    constrained  Int32Array of 2s rows of points: segments
-   quality      Float32Array of m numbers, colors of layer "quality"; by default smallest angles
+   quality      Float64Array of m numbers, colors of layer "quality"; by default smallest angles
    qualityName  what they are, for texts: "smallest angle"; qualityRange: [low, high] of the colors
-   values       Float32Array of n numbers, such as heights, colors of layer "values"; valuesName
+   values       Float64Array of n numbers, such as heights, colors of layer "values"; NaN for none
+   valuesName   what they are; valuesRange: [low, high] of the colors
 
 Options of the constructor:
 
@@ -33,6 +34,7 @@ Options of the constructor:
    onDrag       makes points movable; called with { vertex, x, y, phase }, where phase is "start",
                 "move" or "end" and vertex a row of `points`. The view moves the point; answer with
                 setMesh(mesh, { keepView: true })
+   onLayers     called with `layers` after a click on a checkbox
    movable      function of a row of `points`: whether that point may be moved; by default all
 
 Methods and attributes:
@@ -43,6 +45,7 @@ Methods and attributes:
    toScreen(x, y), toWorld(px, py)  arrays of two numbers
    pick(px, py)                     { triangle, vertex, x, y } without selecting
    select({ triangle, vertex })     select by numbers; select(null) deselects. `selected` has them
+   say(text)                        show a text below the canvas, which screen readers read
    describe(selected)               the sentence that the live region gets
    draw()                           draw in the next frame; drawNow() draws and returns milliseconds
    stats                            { milliseconds, edges, merged, circles, circlesOff } of the last
@@ -146,7 +149,10 @@ export class MeshView {
       const label = element("label", {}, { display: "inline-flex", gap: "4px" });
       const box = element("input", { type: "checkbox", "data-layer": name });
       box.checked = this.isOn(name);
-      box.addEventListener("change", () => this.setLayers({ [name]: box.checked }));
+      box.addEventListener("change", () => {
+        this.setLayers({ [name]: box.checked });
+        if (this.options.onLayers) this.options.onLayers({ ...this.layers });
+      });
       label.append(box, this.layerName(name));
       this.toolbar.append(label);
       if (name === focused) box.focus();
@@ -181,7 +187,7 @@ export class MeshView {
     this.lastTriangle = 0;
     if (!keepView) {
       this.selected = null;
-      this.status.textContent = "";
+      this.say("");
     }
     const last = this.selected;
     if (last && (last.triangle >= this.mesh.triangles.length / 3 ||
@@ -336,8 +342,12 @@ export class MeshView {
   select(selected) {
     const { triangle = -1, vertex = -1, ...rest } = selected || {};
     this.selected = triangle < 0 && vertex < 0 ? null : { triangle, vertex, ...rest };
-    this.status.textContent = this.describe(this.selected);
+    this.say(this.describe(this.selected));
     this.draw();
+  }
+
+  say(text) {
+    this.status.textContent = text;
   }
 
   idOf(vertex) {
@@ -355,7 +365,8 @@ export class MeshView {
       said.push(`Triangle ${t}: vertices ${corners.join(", ")}; ${this.layerName("quality")} ${quality}.`);
     }
     if (v >= 0) {
-      const value = values ? `; ${this.layerName("values")} ${values[v]}` : "";
+      const known = values && !Number.isNaN(values[v]);
+      const value = known ? `; ${this.layerName("values")} ${values[v]}` : "";
       said.push(`Point ${this.idOf(v)} at (${points[2 * v]}, ${points[2 * v + 1]})${value}.`);
     }
     return said.join(" ");
@@ -364,7 +375,7 @@ export class MeshView {
   picked(px, py) {
     const found = this.pick(px, py);
     this.select(found);
-    if (!this.selected) this.status.textContent = "No triangle here.";
+    if (!this.selected) this.say("No triangle here.");
     if (this.options.onPick) this.options.onPick(found);
   }
 
@@ -398,6 +409,7 @@ export class MeshView {
     on(this.canvas, "blur", () => this.draw());
     on(this.canvas, "wheel", (event) => this.wheeled(event), { passive: false });
     on(matchMedia("(prefers-color-scheme: dark)"), "change", () => this.recolor());
+    on(window, "resize", () => this.draw()); // also where only the size of pixels changes
     this.resized = new ResizeObserver(() => (this.fitted ? this.fit() : this.draw()));
     this.resized.observe(this.canvas);
     this.themed = new MutationObserver(() => this.recolor());
@@ -423,11 +435,14 @@ export class MeshView {
     const [px, py] = this.at(event);
     this.canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, [px, py]);
-    this.press = { px, py, far: false, vertex: -1 };
+    this.press = { px, py, far: false, vertex: -1, grip: [0, 0] };
     const movable = this.options.movable || (() => true);
     if (this.options.onDrag && this.pointers.size === 1) {
       const vertex = this.vertexAt(px, py);
-      if (vertex >= 0 && movable(vertex)) this.press.vertex = vertex;
+      if (vertex >= 0 && movable(vertex)) {
+        const [vx, vy] = this.toScreen(...this.mesh.points.slice(2 * vertex, 2 * vertex + 2));
+        Object.assign(this.press, { vertex, grip: [vx - px, vy - py] });
+      }
     }
   }
 
@@ -462,8 +477,8 @@ export class MeshView {
 
   /* Move the point in a copy of the array, whose owner may share it. */
   dragged(px, py, phase) {
-    const { vertex } = this.press;
-    const [x, y] = this.toWorld(px, py);
+    const { vertex, grip } = this.press;
+    const [x, y] = this.toWorld(px + grip[0], py + grip[1]);
     if (vertex >= this.mesh.points.length / 2) return;
     if (!this.made.moved) {
       this.mesh.points = Float64Array.from(this.mesh.points);

@@ -1,0 +1,166 @@
+"""The function `delone.explore`: a widget for notebooks, made of an exploration and the view."""
+
+from __future__ import annotations
+
+import functools
+import re
+from typing import TYPE_CHECKING, Any
+
+from delone._arrays import as_count
+from delone.errors import DeloneError, InputError
+from delone.explorer import script
+from delone.explorer.state import Exploration
+from delone.extras import require
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+__all__ = ["explore"]
+
+_LAYERS = (
+    *("triangles", "quality", "values", "circles"),
+    *("dual", "hull", "constraints", "points"),
+)
+# In the order in which they need each other.
+_MODULES = ("mesh.js", "colors.js", "paint.js", "view.js", "scene.js", "widget.js")
+
+
+def explore(
+    mesh: Any,
+    *,
+    values: ArrayLike | None = None,
+    quality: str = "smallest_angle",
+    layers: Mapping[str, bool] | None = None,
+    height: int = 480,
+) -> Any:
+    """Show a 2-D mesh as an interactive widget in a notebook.
+
+    Parameters
+    ----------
+    mesh : object or array_like, shape (n, 2)
+        What to show: a 2-D `Delaunay`, `ConstrainedDelaunay`, `Mesh`, `RegularTriangulation`,
+        `PeriodicDelaunay` or `Voronoi`, or points, which are triangulated.
+    values : array_like, shape (n,), optional
+        A number for each point, such as its height, for the layer ``"values"``. NaN for none.
+    quality : {"smallest_angle", "largest_angle", "area", "radius_ratio", "edge_ratio"}, optional
+        What the layer ``"quality"`` shows, an attribute of `Quality`. Angles are in degrees.
+    layers : mapping of str to bool, optional
+        The layers to switch on or off at first: ``"triangles"``, ``"quality"``, ``"values"``,
+        ``"circles"`` (circumcircles), ``"dual"`` (Voronoi diagram), ``"hull"``, ``"constraints"``
+        (segments), ``"points"``.
+    height : int, optional
+        Height in CSS pixels.
+
+    Returns
+    -------
+    anywidget.AnyWidget
+        The widget. ``widget.selected`` is a dictionary with the row of the triangle and the row of
+        the point that were picked, -1 for none, and the coordinates x and y; ``widget.mesh`` is the
+        object that is shown, after points have been moved; ``widget.layers`` the state of the
+        layers, which can be set. ``widget.move(row, x, y)`` moves a point as the mouse does.
+
+    Raises
+    ------
+    MissingExtraError
+        anywidget is not installed (extra ``explore``).
+    InputError
+        `mesh` is 3-D or of another class, or an option has a wrong value.
+    ShapeError, DtypeError
+        `values` is not one real number for each point.
+    DegenerateInputError, NonFiniteError
+        As for `Delaunay`, if `mesh` is points.
+
+    See Also
+    --------
+    delone.plot.plot : Plots that do not move.
+
+    Notes
+    -----
+    Arrays are sent to the notebook as binary buffers, some 150 bytes per point. Moving a point
+    triangulates all points again, with the same options, in this process: some 40 ms for 10,000
+    points. If the point cannot be there, since segments would cross for example, the message is
+    shown and the object stays as it is. Points of a `Mesh`, and points that a triangulation has
+    added to the given ones, cannot be moved. The widget looks; what it shows is rounded to pixels.
+
+    Examples
+    --------
+    >>> from delone import Delaunay, explore
+    >>> widget = explore(Delaunay([(0, 0), (4, 0), (4, 3), (0, 3), (2, 1)]))
+    >>> widget.move(4, 2.5, 1.5)
+    >>> widget.mesh.points[4].tolist()
+    [2.5, 1.5]
+    """
+    chosen = _as_layers(layers)
+    pixels = as_count(height, name="height")
+    if pixels < 1:
+        raise InputError(f"height must be at least 1 pixel, got {height}")
+    require("anywidget", extra="explore", what="exploring in a notebook")
+    state = Exploration(mesh, values=values, quality=quality)
+    return _widget_class()(state, layers=chosen, height=pixels)
+
+
+def _as_layers(layers: Mapping[str, bool] | None) -> dict[str, bool]:
+    chosen = {} if layers is None else dict(layers)
+    for name, on in chosen.items():
+        if name not in _LAYERS:
+            raise InputError(f"{name!r} is not a layer; layers are {', '.join(_LAYERS)}")
+        if not isinstance(on, bool):
+            raise InputError(f"layer {name!r} is switched by True or False; got {on!r}")
+    return chosen
+
+
+def source() -> str:
+    """Return the modules of the view as one, which a widget needs: without their imports."""
+    text = "\n".join(script(name) for name in _MODULES)
+    return re.sub(r"^import \{[^}]*\} from \"\./\w+\.js\";$", "", text, flags=re.MULTILINE)
+
+
+@functools.cache
+def _widget_class() -> Any:
+    """Return the class of widgets, whose base is in an optional library."""
+    anywidget = require("anywidget", extra="explore", what="exploring in a notebook")
+    traitlets = require("traitlets", extra="explore", what="exploring in a notebook")
+
+    class Explorer(anywidget.AnyWidget):  # type: ignore[misc, name-defined]
+        """An interactive view of a 2-D mesh; see `delone.explore`."""
+
+        _esm = source()
+        scene = traitlets.Bytes().tag(sync=True)
+        layers = traitlets.Dict().tag(sync=True)
+        height = traitlets.Int(480).tag(sync=True)
+        selected = traitlets.Dict().tag(sync=True)
+
+        def __init__(self, state: Exploration, **traits: Any) -> None:
+            self._state = state
+            nothing = {"triangle": -1, "vertex": -1, "x": None, "y": None}
+            super().__init__(scene=state.packed(), selected=nothing, **traits)
+            self.on_msg(self._received)
+
+        @property
+        def mesh(self) -> Any:
+            """The object that is shown."""
+            return self._state.mesh
+
+        def move(self, row: int, x: float, y: float) -> None:
+            """Move a point and triangulate again; if that is not possible, raise the error."""
+            self.scene = self._state.move(row, x, y)
+            self.send({"number": "", "error": ""})
+
+        def _received(self, _: Any, content: Any, buffers: Any) -> None:
+            """Answer a message of a view: a point has been moved."""
+            if not isinstance(content, dict) or content.get("kind") != "move":
+                return
+            try:
+                asked = (content.get(name) for name in ("vertex", "x", "y"))
+                self.scene = self._state.move(*asked)
+                error = ""
+            except DeloneError as failed:
+                error = str(failed)
+            self.send({"number": content.get("number"), "error": error})
+
+        def __repr__(self) -> str:
+            return f"<Explorer of {self._state.described()}>"
+
+    return Explorer
