@@ -3,13 +3,13 @@
 export const COLORS = {
   light: {
     paper: "#ffffff", edge: "#5b7083", hull: "#1d2a36", constraint: "#b3372f", circle: "#3f7f4f",
-    dual: "#a0522d", point: "#16202a", selected: "#e08a00",
+    dual: "#a0522d", point: "#16202a", selected: "#b000b8",
     quality: "#8c1d18,#dd7a4a,#f3d9a4,#a9c9dc,#3d6fa5",
     values: "#2b1d5c,#2f5d8c,#2f9585,#8cc152,#f7e34a",
   },
   dark: {
     paper: "#14181c", edge: "#7f93a6", hull: "#e6edf3", constraint: "#ff7b6b", circle: "#77c98a",
-    dual: "#e0a070", point: "#f0f4f8", selected: "#ffb838",
+    dual: "#e0a070", point: "#f0f4f8", selected: "#ff6bff",
     quality: "#d9534a,#c9824f,#8f8560,#5c8fb0,#7fb2e5",
     values: "#4a3a8c,#3a6fa3,#35a893,#9ad05f,#f9ea6b",
   },
