@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from delone import Delaunay, InputError, PeriodicDelaunay
+from delone import ConstrainedDelaunay, Delaunay, InputError, PeriodicDelaunay
 from delone.explorer import script
 from delone.explorer.state import Exploration
 from delone.explorer.widget import source
@@ -112,6 +112,26 @@ def test_picking_among_many_triangles(browser: Browser, server: ExploreServer) -
     stats = page.run(f"{VIEW}.setLayers({{hull: false}}), {VIEW}.drawNow(), {VIEW}.stats")
     assert stats["edges"] + stats["merged"] == len(mesh.edges)
     assert stats["merged"] > stats["edges"] > 0
+
+
+def test_picking_around_holes(browser: Browser, server: ExploreServer) -> None:
+    rings = [(i, i // 4 * 4 + (i + 1) % 4) for i in range(12)]
+    corners = [(0, 0), (9, 0), (9, 9), (0, 9), (2, 2), (4, 2), (4, 7), (2, 7)]
+    corners += [(5, 3), (8, 3), (8, 6), (5, 6)]
+    mesh = ConstrainedDelaunay(corners, rings, holes=[(3, 3), (6, 4)])
+    server.state = Exploration(mesh)
+    page = browser.page(server.address)
+    page.wait(VIEW)
+    assert page.run(f"Array.from({VIEW}.edges.neighbors)") == mesh.neighbors.ravel().tolist()
+    queries = np.random.default_rng(1).uniform(-1, 10, (200, 2))
+    # From each triangle to each place: across holes, too, where the walk ends.
+    code = f"""{json.dumps(queries.tolist())}.map(([x, y]) =>
+        Array.from({{length: {mesh.nsimplex}}}, (_, t) => {{
+            {VIEW}.lastTriangle = t;
+            return {VIEW}.triangleAt(x, y);
+        }}))"""
+    expected = np.broadcast_to(mesh.find_simplex(queries)[:, None], (200, mesh.nsimplex))
+    assert page.run(code) == expected.tolist()
 
 
 def test_only_what_is_in_the_window_is_drawn(server: ExploreServer, page: Page) -> None:
