@@ -150,6 +150,7 @@ def test_a_dragged_point_is_triangulated_by_python(server: ExploreServer, page: 
     row = int(np.argmin(((before - 0.5) ** 2).sum(axis=1)))
     x, y = before[row].tolist()
     start = place(page, x, y)
+    page.run(f"{VIEW}.select({{triangle: 5, vertex: 3}})")
     page.mouse("Moved", *start)
     assert page.run(f"{VIEW}.canvas.style.cursor") == "move"
     page.mouse("Pressed", *start)
@@ -167,6 +168,8 @@ def test_a_dragged_point_is_triangulated_by_python(server: ExploreServer, page: 
     assert np.array_equal(mesh.points, moved)
     shown = page.run(f"Array.from({VIEW}.mesh.triangles)")
     assert shown == Delaunay(moved).simplices.ravel().tolist()
+    # The numbers of triangles are others now, those of points are the same.
+    assert page.run(f"{VIEW}.selected") == {"triangle": -1, "vertex": 3}
     # Dragging anything else pans, and moves no point.
     page.mouse("Pressed", start[0] + 4, 90)
     page.mouse("Moved", start[0] + 90, 120, held=True)

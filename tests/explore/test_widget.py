@@ -62,6 +62,7 @@ def test_picks_come_back(widget: Any) -> None:
 
 def test_a_dragged_point_triangulates_again(widget: Any) -> None:
     before = widget.scene
+    widget.set_state({"selected": {"triangle": 3, "vertex": 2, "x": 0.5, "y": 0.25}})
     message = {"kind": "move", "number": "a-1", "vertex": 4, "x": 0.5, "y": 0.125}
     widget._handle_custom_msg(message, [])
     moved = POINTS.copy()
@@ -69,6 +70,7 @@ def test_a_dragged_point_triangulates_again(widget: Any) -> None:
     assert np.array_equal(widget.mesh.points, moved)
     assert np.array_equal(widget.mesh.simplices, Delaunay(moved).simplices)
     assert widget.scene != before
+    assert widget.selected == {"triangle": -1, "vertex": 2, "x": 0.5, "y": 0.25}
     assert widget.sent == [{"number": "a-1", "error": ""}]
 
 

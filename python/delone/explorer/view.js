@@ -39,7 +39,8 @@ Options of the constructor:
 
 Methods and attributes:
 
-   setMesh(mesh, { keepView })      show other arrays; keepView: neither fit nor deselect
+   setMesh(mesh, { keepView })      show other arrays; keepView: do not fit, and keep a selected
+                                    point, but no triangle: other triangles have its number
    setLayers({ name: boolean })     switch layers; `layers` has the current state
    fit(), zoomBy(factor, px, py), panBy(dx, dy)      in CSS pixels
    toScreen(x, y), toWorld(px, py)  arrays of two numbers
@@ -185,14 +186,13 @@ export class MeshView {
     this.edges = edgesOf(this.mesh.triangles, this.mesh.points.length / 2);
     this.made = {}; // what is computed on first use: circles, quality, colors
     this.lastTriangle = 0;
+    const vertex = keepView && this.selected ? this.selected.vertex : -1;
+    const stays = vertex >= 0 && vertex < this.mesh.points.length / 2;
+    this.selected = stays ? { triangle: -1, vertex } : null;
     if (!keepView) {
-      this.selected = null;
       this.say("");
+      this.fit();
     }
-    const last = this.selected;
-    if (last && (last.triangle >= this.mesh.triangles.length / 3 ||
-                 last.vertex >= this.mesh.points.length / 2)) this.selected = null;
-    if (!keepView) this.fit();
     this.fillToolbar();
     this.draw();
   }

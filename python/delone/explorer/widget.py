@@ -57,9 +57,10 @@ def explore(
     -------
     anywidget.AnyWidget
         The widget. ``widget.selected`` is a dictionary with the row of the triangle and the row of
-        the point that were picked, -1 for none, and the coordinates x and y; ``widget.mesh`` is the
-        object that is shown, after points have been moved; ``widget.layers`` the state of the
-        layers, which can be set. ``widget.move(row, x, y)`` moves a point as the mouse does.
+        the point that were picked, -1 for none, and the coordinates x and y; after a point has
+        moved, triangles have other rows, and none is selected. ``widget.mesh`` is the object that
+        is shown, with the moved points; ``widget.layers`` the state of the layers, which can be
+        set. ``widget.move(row, x, y)`` moves a point as the mouse does.
 
     Raises
     ------
@@ -145,8 +146,13 @@ def _widget_class() -> Any:
 
         def move(self, row: int, x: float, y: float) -> None:
             """Move a point and triangulate again; if that is not possible, raise the error."""
-            self.scene = self._state.move(row, x, y)
+            self._show(self._state.move(row, x, y))
             self.send({"number": "", "error": ""})
+
+        def _show(self, scene: bytes) -> None:
+            """Send a scene with other triangles: the one that was picked has no number there."""
+            self.scene = scene
+            self.selected = self.selected | {"triangle": -1}
 
         def _received(self, _: Any, content: Any, buffers: Any) -> None:
             """Answer a message of a view: a point has been moved."""
@@ -154,7 +160,7 @@ def _widget_class() -> Any:
                 return
             try:
                 asked = (content.get(name) for name in ("vertex", "x", "y"))
-                self.scene = self._state.move(*asked)
+                self._show(self._state.move(*asked))
                 error = ""
             except DeloneError as failed:
                 error = str(failed)
