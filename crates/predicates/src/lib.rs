@@ -53,6 +53,7 @@ mod insphere;
 mod integer;
 mod orient2d;
 mod orient3d;
+pub mod proximity;
 mod range;
 mod sign;
 pub mod sweep;
