@@ -7,8 +7,8 @@
 `Delaunay` triangulates 2-D or 3-D points; `ConstrainedDelaunay` and `from_geometry` also take
 segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
-`interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`, `reference` and
-`compat` have the rest. All errors are subclasses of `DeloneError`.
+`graphs`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`,
+`reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         compat,
         datasets,
         distributed,
+        graphs,
         interpolate,
         plot,
         reference,
@@ -121,6 +122,7 @@ __all__ = [
     "distributed",
     "explore",
     "from_geometry",
+    "graphs",
     "improve",
     "interpolate",
     "lawson",
@@ -143,6 +145,7 @@ _MODULES = {
     "exchange",
     "explorer",
     "flips",
+    "graphs",
     "hull",
     "interpolate",
     "io",

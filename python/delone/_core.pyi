@@ -38,6 +38,8 @@ __all__ = [
     "Triangulation",
     "WeightRows",
     "__version__",
+    "antipodes2",
+    "antipodes3",
     "areas2",
     "around",
     "below2",
@@ -60,34 +62,46 @@ __all__ = [
     "gradients_global2",
     "gradients_local2",
     "gradients_local3",
+    "graph_components",
     "hull2",
     "hull3",
     "improve3",
     "incircle",
+    "influence2",
+    "influence3",
     "insphere",
     "judge2",
+    "knn2",
+    "knn3",
     "lawson2",
     "measures2",
     "measures3",
     "methods2",
     "neighbors2",
+    "not_longer2",
+    "not_longer3",
     "orient2d",
     "orient3d",
     "periodic2",
     "periodic_centers2",
     "pieces2",
     "polygon2",
+    "proximity2",
+    "proximity3",
     "qualities2",
     "qualities3",
     "refine2",
     "regular2",
     "regular3",
     "ring2",
+    "spanning2",
+    "spanning3",
     "touched2",
     "transforms2",
     "transforms3",
     "triangulate2",
     "triangulate3",
+    "urquhart2",
     "validate2",
     "validate3",
     "validate_periodic2",
@@ -851,6 +865,60 @@ def fault3(
     neighbors: NDArray[np.int32],
     workers: int,
 ) -> tuple[str, int] | None: ...
+
+_Adjacency = tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
+
+def graph_components(edges: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
+def proximity2(
+    graph: _Adjacency, name: str, beta: float, closed: bool, workers: int
+) -> NDArray[np.int32]: ...
+def antipodes2(
+    graph: _Adjacency,
+    simplices: NDArray[np.int32] | None,
+    neighbors: NDArray[np.int32] | None,
+    workers: int,
+) -> NDArray[np.int32]: ...
+def spanning2(graph: _Adjacency, workers: int) -> NDArray[np.int32]: ...
+def knn2(
+    points: NDArray[np.float64], k: int, directed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
+def influence2(
+    points: NDArray[np.float64], closed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
+def not_longer2(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    ends: NDArray[np.float64],
+    workers: int,
+) -> NDArray[np.int32]: ...
+def proximity3(
+    graph: _Adjacency, name: str, beta: float, closed: bool, workers: int
+) -> NDArray[np.int32]: ...
+def antipodes3(
+    graph: _Adjacency,
+    simplices: NDArray[np.int32] | None,
+    neighbors: NDArray[np.int32] | None,
+    workers: int,
+) -> NDArray[np.int32]: ...
+def spanning3(graph: _Adjacency, workers: int) -> NDArray[np.int32]: ...
+def knn3(
+    points: NDArray[np.float64], k: int, directed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
+def influence3(
+    points: NDArray[np.float64], closed: bool, workers: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...
+def not_longer3(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    ends: NDArray[np.float64],
+    workers: int,
+) -> NDArray[np.int32]: ...
+def urquhart2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    workers: int,
+) -> NDArray[np.int32]: ...
 def around(
     edges: NDArray[np.int32], npoints: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]: ...

@@ -10,6 +10,7 @@ pub mod delaunay2;
 pub mod delaunay3;
 pub mod distributed;
 pub mod error;
+pub mod graphs;
 pub mod hull;
 pub mod improve;
 pub mod interpolate;

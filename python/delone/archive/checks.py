@@ -13,6 +13,7 @@ import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers
+from delone.duplicates import first_rows
 from delone.plane.topology import (
     among,
     boundary_edges,
@@ -33,6 +34,7 @@ __all__ = [
     "check_constrained",
     "check_delaunay",
     "check_diagram",
+    "check_graph",
     "check_input",
     "check_mesh",
     "check_tetrahedra",
@@ -123,6 +125,26 @@ def check_diagram(**arrays: NDArray[Any]) -> None:
     require(not (len(arrays["box"]) and len(arrays[shape])), "it has two clips")
     if ndim == 3:
         _check_polyhedron(*(arrays[name] for name in ("corners", "starts", "faces", "planes")))
+
+
+def check_graph(
+    points: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    duplicates: NDArray[np.int32],
+    directed: NDArray[np.bool_],
+) -> None:
+    """Check the edges of a graph, and which rows repeat others."""
+    require(np.isfinite(points).all(), "a coordinate is not finite")
+    _check_range("edges", edges, 0, len(points))
+    require(len(directed) == 1, "directed is not one flag")
+    tail, head = edges.T.astype(np.int64)
+    require((tail != head).all(), "an edge joins a point to itself")
+    require(bool(directed[0]) or (tail < head).all(), "an edge has the larger row first")
+    require((np.diff(tail << 32 | head) > 0).all(), "edges are out of order")
+    first = first_rows(points) if len(points) else np.empty(0, dtype=np.int64)
+    rows = np.flatnonzero(first != np.arange(len(points)))
+    expected = np.column_stack((rows, first[rows]))
+    require(np.array_equal(duplicates, expected), "duplicates are not those of points")
 
 
 # The plane of a face contains its corners up to this share of the products that make the sum.

@@ -117,6 +117,17 @@ def _input(
     return Kind(f"delone.{name} {ndim}-D", {"points": ("<f8", ndim)} | further, check)
 
 
+def _graph(ndim: int) -> Kind:
+    """Return the layout of a graph of points."""
+    layout = {
+        "points": ("<f8", ndim),
+        "edges": ("<i4", 2),
+        "duplicates": ("<i4", 2),
+        "directed": ("|b1", 0),
+    }
+    return Kind(f"delone.graphs.Graph {ndim}-D", layout, checks.check_graph, ("kind",))
+
+
 _WEIGHTS, _PERIODS = ("<f8", 0), ("<f8", 0)
 KINDS: Mapping[str, tuple[Kind, ...]] = {
     "Delaunay": (
@@ -155,5 +166,6 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
             planes=("<f8", 4),
         ),
     ),
+    "Graph": (_graph(2), _graph(3)),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
 }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from delone.errors import InputError
 from delone.plot import tetrahedra, triangles
 from delone.plot.cells import plot_cells2, plot_cells3
+from delone.plot.graph import plot_graph2, plot_graph3
 from delone.plot.hull import plot_hull
 from delone.plot.periodic import plot_periodic
 from delone.plot.protocols import hint, kind_of
@@ -15,7 +16,7 @@ from delone.plot.protocols import hint, kind_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from delone.plot.protocols import Cells2, Cells3, Hull2, Periodic, Simplices, Triangles
+    from delone.plot.protocols import Cells2, Cells3, Hull2, Linked, Periodic, Simplices, Triangles
 
 __all__ = ["plot"]
 
@@ -26,22 +27,24 @@ _DRAWERS: dict[str, Callable[..., Any]] = {
     "periodic": plot_periodic,
     "cells2": plot_cells2,
     "cells3": plot_cells3,
+    "graph2": plot_graph2,
+    "graph3": plot_graph3,
 }
 
 
 def plot(
-    mesh: Simplices | Triangles | Hull2 | Periodic | Cells2 | Cells3,
+    mesh: Simplices | Triangles | Hull2 | Periodic | Cells2 | Cells3 | Linked,
     ax: Any = None,
     **options: Any,
 ) -> Any:
-    """Draw a triangulation, mesh, convex hull or Voronoi diagram, in 2-D or 3-D.
+    """Draw a triangulation, mesh, convex hull, Voronoi diagram or graph, in 2-D or 3-D.
 
     Parameters
     ----------
     mesh : object
         What to draw: a `Delaunay`, `RegularTriangulation`, `ConstrainedDelaunay`, `Mesh`,
-        `TetMesh`, `PeriodicDelaunay`, `ConvexHull` or `Voronoi`, or an object with the same
-        attributes.
+        `TetMesh`, `PeriodicDelaunay`, `ConvexHull`, `Voronoi` or `graphs.Graph`, or an object with
+        the same attributes.
     ax : matplotlib Axes or pyvista Plotter, optional
         Where to draw; by default on a new one.
     **options
@@ -103,6 +106,10 @@ def plot(
     the sites, by default up to 2000; ``linewidth``. Without a clip they are drawn in the bounding
     box of the sites, enlarged by a tenth. 3-D Voronoi diagrams: ``off_screen``, and the options of
     ``pyvista.Plotter.add_mesh``; bounded cells are drawn, or the sites if there are none.
+
+    Graphs: ``values``, array_like of shape (m,): color edges by numbers such as ``graph.lengths``;
+    ``cmap``, ``colorbar``; ``color`` and ``linewidth`` of edges; ``vertices``; in 2-D ``title``, in
+    3-D ``off_screen``.
 
     Examples
     --------

@@ -18,6 +18,7 @@ __all__ = [
     "Cells3",
     "Hull2",
     "Hulled",
+    "Linked",
     "Periodic",
     "Segmented",
     "Simplices",
@@ -117,6 +118,22 @@ class Hull2(Protocol):
         """The extreme points, counterclockwise, (v,)."""
 
 
+class Linked(Protocol):
+    """A graph."""
+
+    @property
+    def points(self) -> Floats:
+        """Coordinates, (n, d)."""
+
+    @property
+    def edges(self) -> Indices:
+        """Rows of `points`, (m, 2)."""
+
+    @property
+    def lengths(self) -> Floats:
+        """The lengths of the edges, (m,)."""
+
+
 class Periodic(Protocol):
     """A periodic 2-D triangulation."""
 
@@ -202,6 +219,8 @@ def kind_of(thing: Any) -> str:
     Surfaces of triangles in 3-D are "tetrahedra" as well.
     """
     d, corners = (_columns(thing, name) for name in ("points", "simplices"))
+    if has(thing, "edges", "lengths") and not corners:
+        return {2: "graph2", 3: "graph3"}.get(d, "")
     if has(thing, "ridge_points", "cell"):
         return {2: "cells2", 3: "cells3"}.get(d, "")
     if d == 2 and corners == 3:

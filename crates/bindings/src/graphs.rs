@@ -1,0 +1,252 @@
+//! Proximity graphs as arrays of edges.
+
+use delone::{Error, Result};
+use delone_core::graphs::{self, Neighbors, Region, Skeleton, Tree};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{
+    Column, Table, are_starts, column, each_in_range, flat, in_range, number_rows, rows, table,
+};
+use crate::errors::attached;
+use crate::given::simplices_of;
+use crate::signals::watched;
+
+/// `(edges, duplicates)`.
+type Found = (Table<i32>, Table<i32>);
+
+/// The Delaunay graph of points, as Python has it.
+#[derive(FromPyObject)]
+pub struct Adjacency<'py>(
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray1<'py, i32>,
+    PyReadonlyArray1<'py, i32>,
+);
+
+impl Adjacency<'_> {
+    /// The checked arrays.
+    fn skeleton<const D: usize>(&self) -> Result<Skeleton<'_, D>> {
+        let points: &[[f64; D]] = rows(&self.0, "points")?;
+        let edges = rows(&self.1, "edges")?;
+        let (starts, neighbors) = (flat(&self.2, "starts")?, flat(&self.3, "neighbors")?);
+        in_range(edges, 0, points.len(), "edges")?;
+        each_in_range(neighbors, 0, points.len(), "neighbors")?;
+        are_starts(starts, neighbors.len())?;
+        if starts.len() != points.len() + 1 {
+            return Err(Error::Shape(
+                "starts has one entry per point and an end".into(),
+            ));
+        }
+        Ok(Skeleton {
+            points,
+            edges,
+            starts,
+            neighbors,
+        })
+    }
+}
+
+/// The region of this name.
+fn region(name: &str, beta: f64) -> Result<Region> {
+    let within = beta > 1.0 && beta <= 2.0;
+    match name {
+        "ball" => Ok(Region::Ball),
+        "lune" if within => Ok(Region::Lune(beta)),
+        "circle" if within => Ok(Region::Arcs(beta)),
+        _ => Err(Error::Shape(format!("no region {name} with beta {beta}"))),
+    }
+}
+
+/// The functions of one dimension.
+macro_rules! of_dimension {
+    ($d:literal, $corners:literal, $proximity:ident, $antipodes:ident, $spanning:ident, $knn:ident,
+     $influence:ident, $not_longer:ident) => {
+        /// The Delaunay edges whose region is empty.
+        #[pyfunction]
+        pub fn $proximity(
+            py: Python<'_>,
+            graph: Adjacency<'_>,
+            name: &str,
+            beta: f64,
+            closed: bool,
+            workers: usize,
+        ) -> PyResult<Table<i32>> {
+            let (skeleton, region) =
+                attached(py, || Ok((graph.skeleton::<$d>()?, region(name, beta)?)))?;
+            let found = watched(py, |watch| {
+                let tree = match region {
+                    Region::Lune(_) => Some(Tree::of(skeleton.points, workers, watch)?),
+                    _ => None,
+                };
+                graphs::filter(&skeleton, region, closed, tree.as_ref(), workers, watch)
+            })?;
+            table(py, found)
+        }
+
+        /// The pairs with an empty open diametral ball that are no Delaunay edges.
+        #[pyfunction]
+        #[pyo3(signature = (graph, simplices, neighbors, workers))]
+        pub fn $antipodes(
+            py: Python<'_>,
+            graph: Adjacency<'_>,
+            simplices: Option<PyReadonlyArray2<'_, i32>>,
+            neighbors: Option<PyReadonlyArray2<'_, i32>>,
+            workers: usize,
+        ) -> PyResult<Table<i32>> {
+            let (skeleton, tiling) = attached(py, || {
+                let skeleton = graph.skeleton::<$d>()?;
+                let (Some(simplices), Some(neighbors)) = (&simplices, &neighbors) else {
+                    return Ok((skeleton, None));
+                };
+                let simplices: &[[i32; $corners]] = simplices_of(simplices, skeleton.points.len())?;
+                let neighbors: &[[i32; $corners]] = rows(neighbors, "neighbors")?;
+                in_range(neighbors, -1, simplices.len(), "neighbors")?;
+                if neighbors.len() != simplices.len() {
+                    return Err(Error::Shape("neighbors and simplices do not match".into()));
+                }
+                Ok((skeleton, Some((simplices, neighbors))))
+            })?;
+            let found = watched(py, |watch| {
+                let tree = Tree::of(skeleton.points, workers, watch)?;
+                graphs::antipodes(&skeleton, &tree, tiling, workers, watch)
+            })?;
+            table(py, found)
+        }
+
+        /// The edges of the minimum spanning tree.
+        #[pyfunction]
+        pub fn $spanning(
+            py: Python<'_>,
+            graph: Adjacency<'_>,
+            workers: usize,
+        ) -> PyResult<Table<i32>> {
+            let skeleton = attached(py, || graph.skeleton::<$d>())?;
+            let found = watched(py, |watch| graphs::spanning_tree(&skeleton, workers, watch))?;
+            table(py, found)
+        }
+
+        /// The edges to the k nearest neighbors, and the duplicates.
+        #[pyfunction]
+        pub fn $knn(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            k: usize,
+            directed: bool,
+            workers: usize,
+        ) -> PyResult<Found> {
+            let points: &[[f64; $d]] = attached(py, || rows(&points, "points"))?;
+            let list = if directed {
+                Neighbors::Directed
+            } else {
+                Neighbors::Either
+            };
+            let (edges, duplicates) = watched(py, |watch| {
+                let tree = Tree::of(points, workers, watch)?;
+                let edges = graphs::nearest(&tree, k, list, points.len(), workers, watch)?;
+                Ok::<_, Error>((edges, tree.duplicates))
+            })?;
+            Ok((table(py, edges)?, number_rows(py, &duplicates)?))
+        }
+
+        /// The edges that are not longer than the one between two points.
+        #[pyfunction]
+        pub fn $not_longer(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            edges: PyReadonlyArray2<'_, i32>,
+            ends: PyReadonlyArray2<'_, f64>,
+            workers: usize,
+        ) -> PyResult<Table<i32>> {
+            let (points, edges, ends) = attached(py, || {
+                let points: &[[f64; $d]] = rows(&points, "points")?;
+                let edges: &[[i32; 2]] = rows(&edges, "edges")?;
+                in_range(edges, 0, points.len(), "edges")?;
+                let ends: &[[f64; $d]; 2] = rows(&ends, "ends")?
+                    .try_into()
+                    .map_err(|_| Error::Shape("ends has other than two rows".into()))?;
+                Ok((points, edges, *ends))
+            })?;
+            let found = watched(py, |watch| {
+                graphs::not_longer(points, edges, ends, workers, watch)
+            })?;
+            table(py, found)
+        }
+
+        /// The edges of the sphere of influence graph, and the duplicates.
+        #[pyfunction]
+        pub fn $influence(
+            py: Python<'_>,
+            points: PyReadonlyArray2<'_, f64>,
+            closed: bool,
+            workers: usize,
+        ) -> PyResult<Found> {
+            let points: &[[f64; $d]] = attached(py, || rows(&points, "points"))?;
+            let (edges, duplicates) = watched(py, |watch| {
+                let tree = Tree::of(points, workers, watch)?;
+                let edges = graphs::influence(&tree, closed, points.len(), workers, watch)?;
+                Ok::<_, Error>((edges, tree.duplicates))
+            })?;
+            Ok((table(py, edges)?, number_rows(py, &duplicates)?))
+        }
+    };
+}
+
+of_dimension!(
+    2,
+    3,
+    proximity2,
+    antipodes2,
+    spanning2,
+    knn2,
+    influence2,
+    not_longer2
+);
+of_dimension!(
+    3,
+    4,
+    proximity3,
+    antipodes3,
+    spanning3,
+    knn3,
+    influence3,
+    not_longer3
+);
+
+/// The edges of triangles that are strictly longest in none.
+#[pyfunction]
+pub fn urquhart2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Table<i32>> {
+    let (points, simplices, neighbors) = attached(py, || {
+        let points: &[[f64; 2]] = rows(&points, "points")?;
+        let simplices = simplices_of(&simplices, points.len())?;
+        let neighbors = rows(&neighbors, "neighbors")?;
+        in_range(neighbors, -1, simplices.len(), "neighbors")?;
+        Ok((points, simplices, neighbors))
+    })?;
+    let found = watched(py, |watch| {
+        graphs::urquhart(points, simplices, neighbors, workers, watch)
+    })?;
+    table(py, found)
+}
+
+/// The number of the connected component of each row.
+#[pyfunction]
+pub fn graph_components(
+    py: Python<'_>,
+    edges: PyReadonlyArray2<'_, i32>,
+    npoints: usize,
+) -> PyResult<Column<i32>> {
+    let edges: &[[i32; 2]] = attached(py, || {
+        let edges = rows(&edges, "edges")?;
+        in_range(edges, 0, npoints, "edges")?;
+        Ok(edges)
+    })?;
+    let found = watched(py, |watch| graphs::components(edges, npoints, watch))?;
+    Ok(column(py, found))
+}

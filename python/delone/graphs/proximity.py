@@ -1,0 +1,319 @@
+"""Graphs whose edges have an empty region: filters of the Delaunay graph."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_choice, as_number
+from delone.errors import InputError
+from delone.graphs.graph import Graph
+from delone.graphs.skeleton import joined, skeleton
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.graphs.skeleton import Points, Skeleton
+
+__all__ = ["beta_skeleton", "delaunay_graph", "gabriel", "relative_neighborhood", "urquhart"]
+
+_BOUNDARIES = ("closed", "open")
+
+
+def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool = False) -> Graph:
+    """Return the graph of the Delaunay edges of points.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        Finite coordinates in any unit. A `Delaunay` is used as it is; of any other triangulation or
+        hull, the points are.
+    workers : int, optional
+        Maximum number of threads; by default one per core. The result does not depend on it.
+    planar : bool, optional
+        Treat longitudes and latitudes as coordinates of a plane, without a warning.
+
+    Returns
+    -------
+    Graph
+        The edges of ``Delaunay(points)``. Points on one line are joined to a path, and coplanar 3-D
+        points by the triangulation of their plane. A single point has no edges.
+
+    Raises
+    ------
+    NonFiniteError
+        A coordinate is NaN or infinite.
+    ShapeError, DtypeError
+        `points` is not a real array of shape (n, 2) or (n, 3).
+    InputError
+        `points` is a `PeriodicDelaunay`, or `workers` is not one of its choices.
+
+    See Also
+    --------
+    Graph : Makes a graph of any edges, such as ``Graph(mesh.points, mesh.edges)``.
+
+    Notes
+    -----
+    Two points are neighbors if some circle, or sphere, through both has no point inside (B.
+    Delaunay, 1934). Where more than three points are on such a circle, the edges are those of the
+    canonical triangulation, which depends on coordinates only. Coincident rows are one vertex, the
+    first; the others have no edges and are in ``Graph.duplicates``. O(n log n) time in 2-D.
+
+    Examples
+    --------
+    >>> from delone.graphs import delaunay_graph
+    >>> delaunay_graph([(0, 0), (1, 0), (1, 1), (0, 1)])
+    <Graph of 4 points: Delaunay, 5 edges, 1 component>
+    """
+    base = skeleton(points, workers=workers, planar=planar)
+    return _graph(base, base.edges, "Delaunay", workers)
+
+
+def gabriel(
+    points: Points,
+    *,
+    boundary: str = "closed",
+    workers: int | None = None,
+    planar: bool = False,
+) -> Graph:
+    """Return the Gabriel graph: edges whose diametral circle or sphere is empty.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        As for `delaunay_graph`.
+    boundary : {"closed", "open"}, optional
+        Whether a point on the circle removes the edge. ``"closed"``: it does; this is the
+        definition of Gabriel and Sokal. ``"open"``: only a point inside does.
+    workers, planar : optional
+        As for `delaunay_graph`.
+
+    Returns
+    -------
+    Graph
+        Its edges. Points on one line are joined to a path; a single point has no edges.
+
+    Raises
+    ------
+    InputError
+        `boundary` is not one of its choices; otherwise as for `delaunay_graph`.
+
+    Notes
+    -----
+    Two points a and b are neighbors if no other point sees them under a right or obtuse angle: for
+    no point p is ``(a - p) @ (b - p) <= 0`` (K. R. Gabriel and R. R. Sokal, "A new statistical
+    approach to geographic variation analysis", 1969); with ``"open"``, ``< 0``. The sign is exact.
+
+    The closed graph is part of the Delaunay triangulation and contains the relative neighborhood
+    graph; whether an edge belongs to it is decided by the Delaunay neighbors of one end (see
+    :doc:`/guide/graphs`). The open graph has more edges where points are cocircular: all of a grid
+    and both diagonals of each of its squares, whichever of them the triangulation has. Those that
+    are not Delaunay edges are searched from the corners of cocircular simplices.
+
+    Coincident rows are one vertex, the first; the others have no edges and are in
+    ``Graph.duplicates``. O(n log n) time in 2-D, in 3-D linear in the Delaunay edges after the
+    triangulation; ``"open"`` takes O(log n) more for each cocircular corner of regular sets.
+
+    Examples
+    --------
+    >>> from delone.graphs import gabriel
+    >>> grid = [(x, y) for x in range(30) for y in range(30)]
+    >>> len(gabriel(grid).edges), len(gabriel(grid, boundary="open").edges)
+    (1740, 3422)
+    """
+    closed = as_choice(boundary, _BOUNDARIES, name="boundary") == "closed"
+    base = skeleton(points, workers=workers, planar=planar)
+    return _graph(base, _balls(base, closed=closed), "Gabriel", workers)
+
+
+def relative_neighborhood(
+    points: Points, *, workers: int | None = None, planar: bool = False
+) -> Graph:
+    """Return the relative neighborhood graph: edges without a point nearer to both ends.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        As for `delaunay_graph`.
+    workers, planar : optional
+        As for `delaunay_graph`.
+
+    Returns
+    -------
+    Graph
+        Its edges; connected. Points on one line are joined to a path; a single point has no edges.
+
+    Raises
+    ------
+    InputError
+        As for `delaunay_graph`, as are other errors.
+
+    Notes
+    -----
+    Two points a and b are neighbors if no other point p is nearer to both than they are to each
+    other, ``max(|p - a|, |p - b|) < |a - b|``: the lune between them is empty (G. T. Toussaint, in
+    "Pattern Recognition" 12, 1980). The lune is open: in an
+    equilateral triangle all three edges remain. Squared distances are compared exactly.
+
+    The graph contains the minimum spanning tree and is part of the closed Gabriel and, in 2-D, of
+    the Urquhart graph. A point in the lune need not be a Delaunay neighbor of either end. So after
+    the neighbors, all points are searched in a tree of boxes, of which only those that do not meet
+    both balls are skipped. O(n log n) time in 2-D for points of bounded density.
+
+    Coincident rows are one vertex, the first; the others have no edges and are in
+    ``Graph.duplicates``.
+
+    Examples
+    --------
+    >>> from delone.graphs import relative_neighborhood
+    >>> relative_neighborhood([(0, 0), (2, 0), (1, 1)]).edges
+    array([[0, 2],
+           [1, 2]], dtype=int32)
+    """
+    base = skeleton(points, workers=workers, planar=planar)
+    edges = _filtered(base, "lune", 2.0, closed=False)
+    return _graph(base, edges, "relative neighborhood", workers)
+
+
+def urquhart(points: Points, *, workers: int | None = None, planar: bool = False) -> Graph:
+    """Return the Urquhart graph: Delaunay edges without the longest one of each triangle; 2-D only.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or a triangulation
+        As for `delaunay_graph`.
+    workers, planar : optional
+        As for `delaunay_graph`.
+
+    Returns
+    -------
+    Graph
+        Its edges; connected. Points on one line are joined to a path; a single point has no edges.
+
+    Raises
+    ------
+    InputError
+        The points are 3-D; otherwise as for `delaunay_graph`.
+
+    Notes
+    -----
+    From each Delaunay triangle, the edge that is strictly longer than both others is removed (R. B.
+    Urquhart, in "Electronics Letters" 16, 1980). If two edges are
+    the longest, both remain: so the relative neighborhood graph is always part of this graph.
+    Lengths are compared exactly. With cocircular points, the triangles are those of the canonical
+    triangulation. O(n log n) time, of which the triangulation takes most.
+
+    Coincident rows are one vertex, the first; the others have no edges and are in
+    ``Graph.duplicates``.
+
+    Examples
+    --------
+    >>> from delone.graphs import urquhart
+    >>> urquhart([(0, 0), (4, 0), (4, 3), (0, 3)]).edges
+    array([[0, 1],
+           [0, 3],
+           [1, 2],
+           [2, 3]], dtype=int32)
+    """
+    base = skeleton(points, workers=workers, planar=planar, ndim=2)
+    edges = base.edges
+    if base.simplices is not None and base.beside is not None:
+        edges = _core.urquhart2(base.points, base.simplices, base.beside, base.workers)
+    return _graph(base, edges, "Urquhart", workers)
+
+
+def beta_skeleton(
+    points: Points,
+    beta: float,
+    *,
+    kind: str = "lune",
+    boundary: str = "closed",
+    workers: int | None = None,
+    planar: bool = False,
+) -> Graph:
+    """Return a beta skeleton, for a parameter from 1 to 2.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3), or a triangulation
+        As for `delaunay_graph`.
+    beta : float
+        From 1 to 2, used as the double that it is: the larger, the fewer edges.
+    kind : {"lune", "circle"}, optional
+        The region that must be empty. ``"lune"``: the intersection of two balls with a radius of
+        beta / 2 times the length, through one end each and with centers on the line of the edge.
+        ``"circle"``, 2-D only: the union of the two disks of this radius through both ends.
+    boundary : {"closed", "open"}, optional
+        Whether a point on the outline of the region removes the edge (``"closed"``) or not.
+    workers, planar : optional
+        As for `delaunay_graph`.
+
+    Returns
+    -------
+    Graph
+        Its edges. Points on one line are joined to a path; a single point has no edges.
+
+    Raises
+    ------
+    InputError
+        `beta` is not from 1 to 2, `kind` or `boundary` is not one of its choices, or `kind` is
+        ``"circle"`` in 3-D; otherwise as for `delaunay_graph`.
+
+    Notes
+    -----
+    D. G. Kirkpatrick and J. D. Radke, "A framework for computational morphology", 1985. With beta =
+    1 both kinds are the `gabriel` graph of the same boundary. With beta = 2 the open lune is that
+    of the `relative_neighborhood` graph. Lunes keep the spanning tree, so that graph is connected;
+    circles do not, for beta above 1: `Graph.components` counts the parts.
+
+    Signs are those of integer expressions, also for any double beta. Circles are decided by the
+    neighbors of an edge, lunes by a search in a tree of boxes, as for `relative_neighborhood`.
+    O(n log n) time in 2-D for points of bounded density.
+
+    Coincident rows are one vertex, the first; the others have no edges and are in
+    ``Graph.duplicates``.
+
+    Examples
+    --------
+    >>> from delone.datasets import uniform
+    >>> from delone.graphs import beta_skeleton
+    >>> points = uniform(1000)
+    >>> [len(beta_skeleton(points, beta).edges) for beta in (1, 1.5, 2)]
+    [1935, 1457, 1247]
+    >>> beta_skeleton(points, 1.5, kind="circle").ncomponents > 1
+    True
+    """
+    parameter = as_number(beta, name="beta")
+    if not 1 <= parameter <= 2:
+        raise InputError(f"beta must be a number from 1 to 2, got {beta!r:.60}")
+    as_choice(kind, ("lune", "circle"), name="kind")
+    closed = as_choice(boundary, _BOUNDARIES, name="boundary") == "closed"
+    base = skeleton(points, workers=workers, planar=planar)
+    if kind == "circle" and base.points.shape[1] == 3:
+        raise InputError("kind='circle' is only available in 2-D: use kind='lune'")
+    if parameter == 1:
+        edges = _balls(base, closed=closed)
+    else:
+        edges = _filtered(base, kind, parameter, closed=closed)
+    return _graph(base, edges, f"beta skeleton ({kind}, {parameter:g})", workers)
+
+
+def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
+    """Return the edges whose diametral ball is empty."""
+    edges = _filtered(base, "ball", 1.0, closed=closed)
+    if closed or base.is_chain or not len(edges):
+        return edges
+    core = _core.antipodes2 if base.points.shape[1] == 2 else _core.antipodes3
+    far = core(base.adjacency, base.simplices, base.beside, base.workers)
+    return joined(edges, far) if len(far) else edges
+
+
+def _filtered(base: Skeleton, region: str, beta: float, *, closed: bool) -> NDArray[np.int32]:
+    core = _core.proximity2 if base.points.shape[1] == 2 else _core.proximity3
+    return core(base.adjacency, region, beta, closed, base.workers)
+
+
+def _graph(base: Skeleton, edges: NDArray[np.int32], kind: str, workers: int | None) -> Graph:
+    return Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)
