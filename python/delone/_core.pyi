@@ -96,6 +96,7 @@ __all__ = [
     "ring2",
     "spanning2",
     "spanning3",
+    "spanning_triangles2",
     "touched2",
     "transforms2",
     "transforms3",
@@ -911,6 +912,12 @@ def not_longer3(
     points: NDArray[np.float64],
     edges: NDArray[np.int32],
     ends: NDArray[np.float64],
+    workers: int,
+) -> NDArray[np.int32]: ...
+def spanning_triangles2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
     workers: int,
 ) -> NDArray[np.int32]: ...
 def urquhart2(

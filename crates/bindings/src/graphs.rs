@@ -213,6 +213,24 @@ of_dimension!(
     not_longer3
 );
 
+/// The triangles of points and their neighbors, checked.
+type Triangles<'a> = (&'a [[f64; 2]], &'a [[i32; 3]], &'a [[i32; 3]]);
+
+fn triangles<'a>(
+    points: &'a PyReadonlyArray2<'_, f64>,
+    simplices: &'a PyReadonlyArray2<'_, i32>,
+    neighbors: &'a PyReadonlyArray2<'_, i32>,
+) -> Result<Triangles<'a>> {
+    let points: &[[f64; 2]] = rows(points, "points")?;
+    let simplices: &[[i32; 3]] = simplices_of(simplices, points.len())?;
+    let neighbors = rows(neighbors, "neighbors")?;
+    in_range(neighbors, -1, simplices.len(), "neighbors")?;
+    if neighbors.len() != simplices.len() {
+        return Err(Error::Shape("neighbors and simplices do not match".into()));
+    }
+    Ok((points, simplices, neighbors))
+}
+
 /// The edges of triangles that are strictly longest in none.
 #[pyfunction]
 pub fn urquhart2(
@@ -222,15 +240,27 @@ pub fn urquhart2(
     neighbors: PyReadonlyArray2<'_, i32>,
     workers: usize,
 ) -> PyResult<Table<i32>> {
-    let (points, simplices, neighbors) = attached(py, || {
-        let points: &[[f64; 2]] = rows(&points, "points")?;
-        let simplices = simplices_of(&simplices, points.len())?;
-        let neighbors = rows(&neighbors, "neighbors")?;
-        in_range(neighbors, -1, simplices.len(), "neighbors")?;
-        Ok((points, simplices, neighbors))
-    })?;
+    let (points, simplices, neighbors) =
+        attached(py, || triangles(&points, &simplices, &neighbors))?;
     let found = watched(py, |watch| {
         graphs::urquhart(points, simplices, neighbors, workers, watch)
+    })?;
+    table(py, found)
+}
+
+/// The edges of the minimum spanning tree of triangulated 2-D points.
+#[pyfunction]
+pub fn spanning_triangles2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    workers: usize,
+) -> PyResult<Table<i32>> {
+    let (points, simplices, neighbors) =
+        attached(py, || triangles(&points, &simplices, &neighbors))?;
+    let found = watched(py, |watch| {
+        graphs::spanning_tree_of_triangles(points, simplices, neighbors, workers, watch)
     })?;
     table(py, found)
 }

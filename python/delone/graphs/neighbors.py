@@ -8,6 +8,7 @@ from delone import _core
 from delone._arrays import as_choice, as_count, as_flag, as_workers
 from delone.counting import counted
 from delone.errors import InputError
+from delone.graphs.coincident import repeated
 from delone.graphs.graph import Graph
 from delone.graphs.skeleton import coordinates
 
@@ -50,7 +51,7 @@ def nearest_neighbors(
     Raises
     ------
     InputError
-        `k` is out of range, or `points` is a `PeriodicDelaunay`.
+        `k` is out of range, or `points` is periodic.
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError
@@ -82,7 +83,8 @@ def nearest_neighbors(
     count, one_way = as_count(k, name="k"), as_flag(directed, name="directed")
     own = coordinates(points, ndim=None, planar=planar)
     threads = as_workers(workers)
-    _require_k(count, len(own), 0)
+    if not 1 <= count < len(own):
+        _require_k(count, len(own), len(repeated(own)))
     core = _core.knn2 if own.shape[1] == 2 else _core.knn3
     edges, duplicates = core(own, count, one_way, threads)
     _require_k(count, len(own), len(duplicates))
@@ -118,7 +120,7 @@ def sphere_of_influence(
     Raises
     ------
     InputError
-        `boundary` is not one of its choices, or `points` is a `PeriodicDelaunay`.
+        `boundary` is not one of its choices, or `points` is periodic.
     NonFiniteError
         A coordinate is NaN or infinite.
     ShapeError, DtypeError

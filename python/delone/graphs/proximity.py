@@ -48,7 +48,7 @@ def delaunay_graph(points: Points, *, workers: int | None = None, planar: bool =
     ShapeError, DtypeError
         `points` is not a real array of shape (n, 2) or (n, 3).
     InputError
-        `points` is a `PeriodicDelaunay`, or `workers` is not one of its choices.
+        `points` is periodic, or `workers` is not one of its choices.
 
     See Also
     --------
@@ -218,9 +218,9 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
            [2, 3]], dtype=int32)
     """
     base = skeleton(points, workers=workers, planar=planar, ndim=2)
-    edges = base.edges
-    if base.simplices is not None and base.beside is not None:
-        edges = _core.urquhart2(base.points, base.simplices, base.beside, base.workers)
+    if base.tiling is None:
+        return _graph(base, base.edges, "Urquhart", workers)
+    edges = _core.urquhart2(base.points, *base.tiling, base.workers)
     return _graph(base, edges, "Urquhart", workers)
 
 
@@ -306,7 +306,8 @@ def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
     if closed or base.is_chain or not len(edges):
         return edges
     core = _core.antipodes2 if base.points.shape[1] == 2 else _core.antipodes3
-    far = core(base.adjacency, base.simplices, base.beside, base.workers)
+    simplices, beside = base.tiling or (None, None)
+    far = core(base.adjacency, simplices, beside, base.workers)
     return joined(edges, far) if len(far) else edges
 
 

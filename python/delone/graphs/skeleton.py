@@ -2,66 +2,78 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from delone import _core
 from delone._arrays import as_workers, require_finite
-from delone.complex import Complex
+from delone.complex import Stored
 from delone.delaunay import Delaunay
 from delone.errors import DegenerateInputError, InputError
 from delone.georeference import warn_of_degrees
 from delone.graphs.coincident import repeated
 from delone.immutable import own_copy
-from delone.periodic import PeriodicDelaunay
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
-    Points = ArrayLike | Complex
+    Points = ArrayLike | Stored
 
 __all__ = ["Skeleton", "coordinates", "joined", "skeleton"]
 
 
-class Skeleton(NamedTuple):
-    """The Delaunay edges of distinct points, and what the core needs to filter them."""
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Distinct points and their Delaunay edges, which are listed on first use."""
 
     points: Floats
     duplicates: Indices  # (k, 2): rows that repeat earlier rows, and these
-    edges: Indices
-    starts: Indices
-    neighbors: Indices
-    simplices: Indices | None  # None if the points span less than their dimension
-    beside: Indices | None  # neighbors of simplices
     workers: int
+    mesh: Delaunay | None = None  # None if the points span less than their dimension
+    flat_edges: Indices | None = None  # then these
     is_chain: bool = False  # all points on one line
 
     @property
+    def edges(self) -> Indices:
+        """The edges, each the smaller row first, ascending."""
+        if self.flat_edges is not None:
+            return self.flat_edges
+        assert self.mesh is not None
+        return self.mesh.edges
+
+    @property
     def adjacency(self) -> tuple[Floats, Indices, Indices, Indices]:
-        """What the functions of the core take."""
-        return self.points, self.edges, self.starts, self.neighbors
+        """Points, edges, and the neighbors of rows: what the functions of the core take."""
+        if self.mesh is not None:
+            return self.points, self.edges, *self.mesh.vertex_neighbor_vertices
+        return self.points, self.edges, *_core.around(self.edges, len(self.points))
+
+    @property
+    def tiling(self) -> tuple[Indices, Indices] | None:
+        """Simplices and neighbors, if there are any."""
+        return None if self.mesh is None else (self.mesh.simplices, self.mesh.neighbors)
 
 
 def coordinates(points: Points, *, ndim: int | None, planar: bool) -> Floats:
-    """Return finite points that nobody else can change; of a triangulation or hull, its points."""
-    if isinstance(points, Complex):
-        if isinstance(points, PeriodicDelaunay):
-            raise InputError(
-                "graphs of periodic points are not available: their edges cross the periods; use "
-                "the edges of the PeriodicDelaunay itself"
-            )
-        if ndim not in (None, points.ndim):
-            raise InputError(
-                f"this graph is only available in {ndim}-D, not of {points.ndim}-D points"
-            )
-        return points.points
-    own = own_copy(points, ndim=ndim)
-    warn_of_degrees(points, own, planar=planar)
-    require_finite(own)
-    return own
+    """Return finite points that nobody else can change; of a triangulation or graph, its points."""
+    if not isinstance(points, Stored):
+        own = own_copy(points, ndim=ndim)
+        warn_of_degrees(points, own, planar=planar)
+        require_finite(own)
+        return own
+    if getattr(points, "periods", None) is not None:
+        raise InputError(
+            "graphs of periodic points are not available, since their edges cross the periods; "
+            "PeriodicDelaunay has edges"
+        )
+    held: Floats = getattr(points, "points")  # noqa: B009
+    if ndim not in (None, held.shape[1]):
+        raise InputError(f"this graph is only available in {ndim}-D: points are {held.shape[1]}-D")
+    return held
 
 
 def skeleton(
@@ -73,16 +85,17 @@ def skeleton(
     if isinstance(points, Delaunay):
         return _of_mesh(points, threads)
     if not len(own):
-        return _flat(own, np.empty((0, 2), np.int32), _no_edges(), threads)
+        return Skeleton(own, _no_rows(), threads, flat_edges=_no_rows(), is_chain=True)
     try:
         return _of_mesh(Delaunay(own, workers=workers, planar=True), threads)
     except DegenerateInputError as error:
-        if error.plane is None:
-            chain = _edges(error.chain[:-1], error.chain[1:])
-            return _flat(own, repeated(own), chain, threads, is_chain=True)
         plane = error.plane
+        if plane is None:
+            chain = np.column_stack((error.chain[:-1], error.chain[1:])).astype(np.int32)
+            edges = joined(np.sort(chain, axis=1))
+            return Skeleton(own, repeated(own), threads, flat_edges=edges, is_chain=True)
         edges = _core.edges2(plane.simplices, plane.neighbors, len(own), threads)
-        return _flat(own, plane.duplicates, edges, threads)
+        return Skeleton(own, plane.duplicates, threads, flat_edges=edges)
 
 
 def joined(*edges: Indices) -> Indices:
@@ -92,29 +105,8 @@ def joined(*edges: Indices) -> Indices:
 
 
 def _of_mesh(mesh: Delaunay, threads: int) -> Skeleton:
-    starts, neighbors = mesh.vertex_neighbor_vertices
-    return Skeleton(
-        mesh.points,
-        mesh._duplicates,
-        mesh.edges,
-        starts,
-        neighbors,
-        mesh.simplices,
-        mesh.neighbors,
-        threads,
-    )
+    return Skeleton(mesh.points, mesh._duplicates, threads, mesh=mesh)
 
 
-def _flat(
-    points: Floats, duplicates: Indices, edges: Indices, threads: int, **options: Any
-) -> Skeleton:
-    starts, neighbors = _core.around(edges, len(points))
-    return Skeleton(points, duplicates, edges, starts, neighbors, None, None, threads, **options)
-
-
-def _edges(start: NDArray[np.int64], end: NDArray[np.int64]) -> Indices:
-    return joined(np.sort(np.column_stack((start, end)), axis=1).astype(np.int32))
-
-
-def _no_edges() -> Indices:
+def _no_rows() -> Indices:
     return np.empty((0, 2), dtype=np.int32)

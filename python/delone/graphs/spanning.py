@@ -41,7 +41,7 @@ def minimum_spanning_tree(
     ShapeError, DtypeError
         `points` is not a real array of shape (n, 2) or (n, 3).
     InputError
-        `points` is a `PeriodicDelaunay`, or `workers` is not one of its choices.
+        `points` is periodic, or `workers` is not one of its choices.
 
     See Also
     --------
@@ -66,7 +66,11 @@ def minimum_spanning_tree(
     ([[0, 1], [1, 2], [2, 3]], array([3., 4.]))
     """
     base = skeleton(points, workers=workers, planar=planar)
-    core = _core.spanning2 if base.points.shape[1] == 2 else _core.spanning3
-    edges = core(base.adjacency, base.workers)
+    tiling, ndim = base.tiling, base.points.shape[1]
+    if ndim == 2 and tiling is not None:
+        edges = _core.spanning_triangles2(base.points, *tiling, base.workers)
+    else:
+        core = _core.spanning2 if ndim == 2 else _core.spanning3
+        edges = core(base.adjacency, base.workers)
     kind = "minimum spanning tree"
     return Graph._made(base.points, edges, base.duplicates, kind=kind, workers=workers)

@@ -26,6 +26,6 @@ pub use edges::{Skeleton, not_longer};
 pub use influence::influence;
 pub use nearest::{Neighbors, nearest};
 pub use regions::{Region, filter};
-pub use spanning::spanning_tree;
+pub use spanning::{spanning_tree, spanning_tree_of_triangles};
 pub use tree::{Distinct, Tree};
 pub use urquhart::urquhart;

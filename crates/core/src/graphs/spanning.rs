@@ -12,12 +12,13 @@
 
 use std::cmp::Ordering;
 
-use delone_predicates::Sign;
 use delone_predicates::proximity::shorter;
+use delone_predicates::{Point2, Sign};
 
 use super::components::Sets;
-use super::edges::{SHARE, Skeleton};
+use super::edges::{SHARE, Skeleton, sorted};
 use super::tree::{certainly_above, squared};
+use super::urquhart::filtered;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::order::sort_by;
@@ -41,9 +42,44 @@ pub fn spanning_tree<const D: usize>(
     watch: &Watch,
 ) -> Result<Vec<[i32; 2]>> {
     let edges = skeleton.map(workers, watch, |edge| may_be_in_tree(skeleton, edge))?;
-    let mut items = by_length(skeleton, &edges, workers, watch)?;
-    settle(skeleton, &edges, &mut items, watch)?;
-    let mut sets = Sets::of(skeleton.points.len())?;
+    let chosen = kruskal(skeleton.points, &edges, workers, watch)?;
+    let mut found = with_room(chosen.iter().filter(|&&chosen| chosen).count())?;
+    let kept = edges.iter().zip(&chosen).filter(|(_, chosen)| **chosen);
+    found.extend(kept.map(|(&edge, _)| edge));
+    Ok(found)
+}
+
+/// The same for the triangles of a 2-D triangulation, of which no list of edges is needed.
+pub fn spanning_tree_of_triangles(
+    points: &[Point2],
+    simplices: &[[i32; 3]],
+    neighbors: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<[i32; 2]>> {
+    let at = |v: i32| points[v as usize];
+    let edges = filtered(simplices, neighbors, workers, watch, |[a, b], apex| {
+        let (a, b, p) = (at(a), at(b), at(apex));
+        let length = squared(a, b);
+        !certainly_above(length, squared(a, p)) || !certainly_above(length, squared(b, p))
+    })?;
+    let chosen = kruskal(points, &edges, workers, watch)?;
+    let kept = edges.iter().zip(&chosen).filter(|(_, chosen)| **chosen);
+    let mut found = with_room(points.len())?;
+    found.extend(kept.map(|(&edge, _)| edge));
+    sorted(&found, points.len(), watch)
+}
+
+/// Which edges are in the tree.
+fn kruskal<const D: usize>(
+    points: &[[f64; D]],
+    edges: &[[i32; 2]],
+    workers: usize,
+    watch: &Watch,
+) -> Result<Vec<bool>> {
+    let mut items = by_length(points, edges, workers, watch)?;
+    settle(points, edges, &mut items, watch)?;
+    let mut sets = Sets::of(points.len())?;
     let mut chosen = filled(edges.len(), false)?;
     let mut pace = Pace::new(watch, LOT);
     for &(_, i) in &items {
@@ -51,10 +87,7 @@ pub fn spanning_tree<const D: usize>(
         let [a, b] = edges[i as usize];
         chosen[i as usize] = sets.join(a, b);
     }
-    let mut found = with_room(chosen.iter().filter(|&&chosen| chosen).count())?;
-    let kept = edges.iter().zip(&chosen).filter(|(_, chosen)| **chosen);
-    found.extend(kept.map(|(&edge, _)| edge));
-    Ok(found)
+    Ok(chosen)
 }
 
 /// The edge, unless a neighbor of one end is certainly in its lune.
@@ -71,7 +104,7 @@ fn may_be_in_tree<const D: usize>(skeleton: &Skeleton<D>, edge: [i32; 2]) -> Opt
 
 /// The edges sorted by rounded lengths.
 fn by_length<const D: usize>(
-    skeleton: &Skeleton<D>,
+    points: &[[f64; D]],
     edges: &[[i32; 2]],
     workers: usize,
     watch: &Watch,
@@ -85,7 +118,7 @@ fn by_length<const D: usize>(
         |(first, share): (u32, &mut [Item])| {
             for (i, item) in (first..).zip(share) {
                 let [a, b] = edges[i as usize];
-                *item = (squared(skeleton.at(a), skeleton.at(b)), i);
+                *item = (squared(points[a as usize], points[b as usize]), i);
             }
             Ok(())
         },
@@ -111,11 +144,12 @@ fn by_item(one: &Item, other: &Item) -> Ordering {
 
 /// Puts the edges in order whose rounded lengths are too near to decide.
 fn settle<const D: usize>(
-    skeleton: &Skeleton<D>,
+    points: &[[f64; D]],
     edges: &[[i32; 2]],
     items: &mut [Item],
     watch: &Watch,
 ) -> Result<()> {
+    let point = |v: i32| points[v as usize];
     let mut pace = Pace::new(watch, LOT);
     let mut numbers: Option<Vec<u32>> = None;
     let near = |one: &Item, next: &Item| !certainly_above(next.0, one.0);
@@ -125,15 +159,11 @@ fn settle<const D: usize>(
             continue;
         }
         if run.len() > SHORT && numbers.is_none() {
-            numbers = Some(numbers_of(skeleton.points, watch)?);
+            numbers = Some(numbers_of(points, watch)?);
         }
         let ends = |item: &Item| {
             let [a, b] = edges[item.1 as usize];
-            if skeleton.at(a) <= skeleton.at(b) {
-                [a, b]
-            } else {
-                [b, a]
-            }
+            if point(a) <= point(b) { [a, b] } else { [b, a] }
         };
         let by_ends = |one: &Item, other: &Item| {
             let (one, other) = (ends(one), ends(other));
@@ -141,13 +171,12 @@ fn settle<const D: usize>(
                 let number = |v: i32| numbers[v as usize];
                 return one.map(number).cmp(&other.map(number));
             }
-            let at = |ends: [i32; 2]| ends.map(|v| skeleton.at(v));
+            let at = |ends: [i32; 2]| ends.map(point);
             at(one).partial_cmp(&at(other)).unwrap_or(Ordering::Equal)
         };
         let by_length = |one: &Item, other: &Item| {
             let ([a, b], [c, d]) = (edges[one.1 as usize], edges[other.1 as usize]);
-            let at = |v| skeleton.at(v);
-            match shorter(at(a), at(b), at(c), at(d)) {
+            match shorter(point(a), point(b), point(c), point(d)) {
                 Sign::Positive => Ordering::Less,
                 Sign::Zero => Ordering::Equal,
                 Sign::Negative => Ordering::Greater,

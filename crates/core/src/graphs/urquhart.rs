@@ -21,26 +21,38 @@ pub fn urquhart(
     watch: &Watch,
 ) -> Result<Vec<[i32; 2]>> {
     let at = |v: i32| points[v as usize];
+    let found = filtered(simplices, neighbors, workers, watch, |[a, b], apex| {
+        let longer = |end| shorter(at(apex), at(end), at(a), at(b)) == Sign::Positive;
+        !longer(a) || !longer(b)
+    })?;
+    sorted(&found, points.len(), watch)
+}
+
+/// The edges that remain for all opposite corners, the smaller row first, in no order.
+pub(super) fn filtered(
+    simplices: &[[i32; 3]],
+    neighbors: &[[i32; 3]],
+    workers: usize,
+    watch: &Watch,
+    remains: impl Fn([i32; 2], i32) -> bool + Sync,
+) -> Result<Vec<[i32; 2]>> {
     let shares = (0..simplices.len()).step_by(SHARE).collect();
     let parts = parallel::map_watched(workers, shares, watch, |first| {
         let mut found = Vec::new();
         for t in first..simplices.len().min(first + SHARE) {
             // An edge between two triangles belongs to the later one.
             for k in (0..3).filter(|&k| neighbors[t][k] < t as i32) {
-                let [a, b] = [1, 2].map(|i| simplices[t][(k + i) % 3]);
-                let longest = |apex: i32| {
-                    let longer = |end| shorter(at(apex), at(end), at(a), at(b)) == Sign::Positive;
-                    longer(a) && longer(b)
-                };
+                let edge @ [a, b] = [1, 2].map(|i| simplices[t][(k + i) % 3]);
                 let beyond = usize::try_from(neighbors[t][k])
                     .ok()
                     .and_then(|other| simplices[other].into_iter().find(|&v| v != a && v != b));
-                if !longest(simplices[t][k]) && !beyond.is_some_and(longest) {
+                let mut apexes = std::iter::once(simplices[t][k]).chain(beyond);
+                if apexes.all(|apex| remains(edge, apex)) {
                     push(&mut found, [a.min(b), a.max(b)])?;
                 }
             }
         }
         Ok(found)
     })?;
-    sorted(&joined(&parts)?, points.len(), watch)
+    joined(&parts)
 }
