@@ -25,10 +25,10 @@ from delone.io.vector import attribute_names, write_layer
 if TYPE_CHECKING:
     from delone.io import PointSet
 
-__all__ = ["voronoi"]
+__all__ = ["LAYER_DRIVERS", "voronoi"]
 
-_DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
-_SUFFIXES = (*_DRIVERS, ".parquet")
+LAYER_DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
+_SUFFIXES = (*LAYER_DRIVERS, ".parquet")
 _AREAS = (3, 6)  # shapely's numbers of Polygon and MultiPolygon
 
 
@@ -221,7 +221,7 @@ def write_cells(table: Any, path: Path) -> None:
     if suffix == ".parquet":
         table.to_parquet(path, index=False)
         return
-    options: dict[str, Any] = {"driver": _DRIVERS[suffix], "promote_to_multi": True}
+    options: dict[str, Any] = {"driver": LAYER_DRIVERS[suffix], "promote_to_multi": True}
     if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
         # The index of FlatGeobuf cannot contain empty cells.
         options["SPATIAL_INDEX"] = "NO"

@@ -1,0 +1,264 @@
+"""The command ``graph``: which points of a file are neighbors, as lines."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from delone import __version__, graphs
+from delone.atomic import check_target, replacing
+from delone.cli.cells import LAYER_DRIVERS
+from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
+from delone.cli.options import (
+    Classes,
+    Flat,
+    Json,
+    Layer,
+    Quiet,
+    Solid,
+    Workers,
+    class_numbers,
+    space_or_plane,
+    split,
+)
+from delone.cli.referenced import Crs, Planar, referenced, require_known
+from delone.cli.report import Stopwatch, finite_or_none, peak_memory
+from delone.cli.show import print_json, print_report, spinner
+from delone.cli.solid import is_space
+from delone.extras import require
+from delone.io import input_suffixes, read_points
+from delone.io.vector import write_layer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from delone.graphs import Graph
+    from delone.io import PointSet
+
+__all__ = ["graph"]
+
+_SUFFIXES = (*LAYER_DRIVERS, ".parquet", ".csv", ".npz")
+
+
+class Kind(StrEnum):
+    """The graphs."""
+
+    DELAUNAY = "delaunay"
+    GABRIEL = "gabriel"
+    RELATIVE = "relative-neighborhood"
+    URQUHART = "urquhart"
+    BETA = "beta"
+    TREE = "spanning-tree"
+    NEAREST = "nearest"
+    INFLUENCE = "influence"
+
+
+class Boundary(StrEnum):
+    """Whether points on the outline of a region are in it."""
+
+    CLOSED = "closed"
+    OPEN = "open"
+
+
+class Region(StrEnum):
+    """The regions of beta skeletons."""
+
+    LUNE = "lune"
+    CIRCLE = "circle"
+
+
+# The kinds that have an option.
+_OWN = {
+    "--boundary": (Kind.GABRIEL, Kind.BETA, Kind.INFLUENCE),
+    "--beta": (Kind.BETA,),
+    "--region": (Kind.BETA,),
+    "-k": (Kind.NEAREST,),
+}
+
+
+def graph(
+    source: Annotated[
+        Path, typer.Argument(metavar="INPUT", help="File of points: " + " ".join(input_suffixes()))
+    ],
+    *,
+    kind: Annotated[Kind, typer.Option(help="The graph.")] = Kind.DELAUNAY,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUTPUT",
+            help="File of edges, once or more: " + " ".join(_SUFFIXES),
+        ),
+    ] = None,
+    boundary: Annotated[
+        Boundary | None,
+        typer.Option(
+            help="gabriel, beta, influence: whether points on the outline of a region are in it; "
+            "closed by default."
+        ),
+    ] = None,
+    beta: Annotated[float | None, typer.Option(help="beta: the parameter, from 1 to 2.")] = None,
+    region: Annotated[
+        Region | None, typer.Option(help="beta: the region; lune by default.")
+    ] = None,
+    k: Annotated[int | None, typer.Option("-k", help="nearest: the number of neighbors.")] = None,
+    max_length: Annotated[float | None, typer.Option(help="Remove edges longer than this.")] = None,
+    percentile: Annotated[
+        float | None,
+        typer.Option(help="Remove edges longer than those of this percentile, up to 100."),
+    ] = None,
+    classes: Classes = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Columns of x, y and z, by name or by number from 0."),
+    ] = None,
+    layer: Layer = None,
+    in_space: Solid = False,
+    in_plane: Flat = False,
+    crs: Crs = None,
+    planar: Planar = False,
+    workers: Workers = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute a graph of neighbors, such as a spanning tree, and write its edges as lines."""
+    given = {"--boundary": boundary, "--beta": beta, "--region": region, "-k": k}
+    _require_own(kind, given)
+    if max_length is not None and percentile is not None:
+        raise Failure("--max-length and --percentile: give one of them", Exit.USAGE)
+    space = space_or_plane(in_space, in_plane)
+    require_known(crs)
+    with writing():
+        protect_inputs(output or (), source)
+        for path in output or ():
+            _ready(path)
+    watch = Stopwatch()
+    with spinner(quiet or as_json) as say:
+        say(f"reading {source.name}")
+        with reading(), watch.stage("read"):
+            survey = read_points(
+                source, columns=split(columns), classes=class_numbers(classes), layer=layer
+            )
+            survey = referenced(survey, crs, planar=planar, quiet=quiet)
+        say(f"computing the graph of {len(survey):,} points")
+        points = survey.points
+        if is_space(source, space, survey) and survey.z is not None:
+            points = np.column_stack((survey.points, survey.z))
+        with watch.stage("graph"):
+            found = _MAKE[kind](points, _options(given, workers))
+            if max_length is not None or percentile is not None:
+                found = found.prune(max_length=max_length, percentile=percentile)
+        _write(found, survey, output or [], watch, say)
+    figures: dict[str, Any] = {
+        "delone": __version__,
+        "input": str(source),
+        "crs": survey.crs,
+        "kind": found.kind,
+        "points": found.npoints,
+        "duplicates": len(found.duplicates),
+        "edges": found.nedges,
+        "components": found.ncomponents,
+        "isolated": int((found.degrees == 0).sum()) - len(found.duplicates),
+        "length": finite_or_none(float(found.lengths.sum())),
+        "longest": finite_or_none(float(found.lengths.max(initial=0.0))),
+        "stages": watch.rows(found.npoints),
+        "outputs": [str(path) for path in output or ()],
+        "peak_memory_bytes": peak_memory(),
+    }
+    if as_json:
+        print_json(figures)
+    elif not quiet:
+        _print(figures, str(source))
+
+
+# By kind: the function, with the options that it takes.
+_MAKE: dict[Kind, Callable[[Any, dict[str, Any]], Graph]] = {
+    Kind.DELAUNAY: lambda points, options: graphs.delaunay_graph(points, **options),
+    Kind.GABRIEL: lambda points, options: graphs.gabriel(points, **options),
+    Kind.RELATIVE: lambda points, options: graphs.relative_neighborhood(points, **options),
+    Kind.URQUHART: lambda points, options: graphs.urquhart(points, **options),
+    Kind.BETA: lambda points, options: graphs.beta_skeleton(points, **options),
+    Kind.TREE: lambda points, options: graphs.minimum_spanning_tree(points, **options),
+    Kind.NEAREST: lambda points, options: graphs.nearest_neighbors(points, **options),
+    Kind.INFLUENCE: lambda points, options: graphs.sphere_of_influence(points, **options),
+}
+
+
+def _require_own(kind: Kind, given: dict[str, Any]) -> None:
+    """Refuse options of other kinds, and require those without a default."""
+    for name, value in given.items():
+        if value is not None and kind not in _OWN[name]:
+            kinds = ", ".join(_OWN[name])
+            raise Failure(f"{name} is for --kind {kinds}, not {kind}", Exit.USAGE)
+    if kind is Kind.BETA and given["--beta"] is None:
+        raise Failure("--kind beta needs --beta, a number from 1 to 2", Exit.USAGE)
+    if kind is Kind.NEAREST and given["-k"] is None:
+        raise Failure("--kind nearest needs -k, the number of neighbors", Exit.USAGE)
+
+
+def _options(given: dict[str, Any], workers: int | None) -> dict[str, Any]:
+    """The arguments of a function of `graphs`."""
+    names = {"--boundary": "boundary", "--beta": "beta", "--region": "kind", "-k": "k"}
+    options = {names[name]: value for name, value in given.items() if value is not None}
+    plain = {name: str(x) if isinstance(x, StrEnum) else x for name, x in options.items()}
+    # Notes about degrees have been printed.
+    return plain | {"workers": workers, "planar": True}
+
+
+def _ready(path: Path) -> None:
+    """Check that a file can be written before any work is done."""
+    suffix = path.suffix.lower()
+    if suffix not in _SUFFIXES:
+        raise Failure(f"{path}: edges can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
+    if suffix not in (".csv", ".npz"):
+        require("geopandas", extra="geo", what="writing edges")
+    if suffix == ".parquet":
+        require("pyarrow.parquet", extra="geo", what="writing Parquet files")
+    check_target(path)
+
+
+def _write(
+    found: Graph,
+    survey: PointSet,
+    output: list[Path],
+    watch: Stopwatch,
+    say: Callable[[str], object],
+) -> None:
+    with writing(), ExitStack() as stack:
+        for path in output:
+            say(f"writing {path.name}")
+            with watch.stage(f"write {path.name}"):
+                _write_one(found, survey.crs, stack.enter_context(replacing(path)))
+
+
+def _write_one(found: Graph, crs: str | None, path: Path) -> None:
+    """Write edges in place; the suffix determines the format."""
+    suffix = path.suffix.lower()
+    if suffix == ".npz":
+        found.save(path)
+    elif suffix == ".csv":
+        with path.open("w", encoding="utf-8", newline="\n") as file:
+            file.write("v0,v1,length\n")
+            rows = zip(*found.edges.T.tolist(), found.lengths.tolist(), strict=True)
+            file.writelines(f"{a},{b},{length!r}\n" for a, b, length in rows)
+    elif suffix == ".parquet":
+        found.to_geopandas(crs=crs).to_parquet(path, index=False)
+    else:
+        driver = LAYER_DRIVERS[suffix]
+        write_layer(path, found.to_geopandas(crs=crs), "edges", driver=driver)
+
+
+def _print(figures: dict[str, Any], source: str) -> None:
+    names = ("points", "duplicates", "edges", "components", "isolated")
+    rows = [("graph", figures["kind"])]
+    rows += [(name, f"{figures[name]:,}") for name in names]
+    for name, title in (("length", "total length"), ("longest", "longest edge")):
+        value = figures[name]
+        rows.append((title, "beyond range" if value is None else f"{value:.10g}"))
+    print_report(source, rows, figures)
