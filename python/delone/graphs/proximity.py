@@ -108,7 +108,7 @@ def gabriel(
 
     The closed graph is part of the Delaunay triangulation and contains the relative neighborhood
     graph; whether an edge belongs to it is decided by the Delaunay neighbors of one end (see
-    :doc:`/guide/graphs`). The open graph has more edges where points are cocircular: all of a grid
+    :doc:`/mathematics/graphs`). The open graph has more edges where points are cocircular: all of a grid
     and both diagonals of each of its squares, whichever of them the triangulation has. Those that
     are not Delaunay edges are searched from the corners of cocircular simplices.
 
