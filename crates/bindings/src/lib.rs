@@ -3,7 +3,7 @@
 //!
 //! They use the public crate `delone`, and the core only where that crate has nothing: weights,
 //! periodic sets, tiles, interpolation and location with a shared index, hulls, measures, proofs,
-//! clipped cells, and tetrahedral improvement.
+//! clipped cells, terrain, and tetrahedral improvement.
 
 mod arrays;
 mod consistency;
@@ -27,6 +27,7 @@ mod regular_faults;
 mod results;
 mod signals;
 mod space;
+mod terrain;
 mod triangulation;
 mod voronoi;
 mod voronoi3;
@@ -67,8 +68,13 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<interpolate::NaturalWeights>()?;
     m.add_class::<interpolate::WeightRows>()?;
     m.add_class::<distributed::DeepestPoints>()?;
+    m.add_class::<terrain::ContourLines>()?;
+    m.add_class::<terrain::ContourBands>()?;
     m.add_class::<improve::ImprovedMesh>()?;
     m.add_class::<improve::ImprovementCounts>()?;
+    m.add_function(wrap_pyfunction!(terrain::contour_lines2, m)?)?;
+    m.add_function(wrap_pyfunction!(terrain::contour_bands2, m)?)?;
+    m.add_function(wrap_pyfunction!(terrain::volumes2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::methods2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::triangulate2, m)?)?;
     m.add_function(wrap_pyfunction!(triangulation::validate2, m)?)?;

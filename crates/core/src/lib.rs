@@ -6,6 +6,7 @@
 pub mod arrays;
 pub mod consistency;
 pub mod constrained;
+pub mod contour;
 pub mod delaunay2;
 pub mod delaunay3;
 pub mod distributed;
@@ -22,6 +23,7 @@ pub mod memory;
 pub mod mesh2;
 pub mod mesh3;
 pub mod order;
+pub mod overlay;
 mod parallel;
 pub mod points;
 pub mod proof;

@@ -155,12 +155,18 @@ impl<const D: usize> Boxes<D> {
         }
     }
 
-    /// Calls `visit` on each item whose box contains `q`.
-    pub fn around(&self, q: [f64; D], mut visit: impl FnMut(usize)) {
-        let holds = |e: &Extent<D>| (0..D).all(|k| e.min[k] <= q[k] && q[k] <= e.max[k]);
+    /// Calls `visit` on the items of each lowest box that contains `q`.
+    pub fn around(&self, q: [f64; D], visit: impl FnMut(usize)) {
+        self.meeting(&Extent { min: q, max: q }, visit);
+    }
+
+    /// Calls `visit` on the items of each lowest box that meets `extent`.
+    pub fn meeting(&self, extent: &Extent<D>, mut visit: impl FnMut(usize)) {
+        let meets =
+            |e: &Extent<D>| (0..D).all(|k| e.min[k] <= extent.max[k] && extent.min[k] <= e.max[k]);
         let mut open = vec![(self.levels.len() - 1, 0)];
         while let Some((level, i)) = open.pop() {
-            if !self.levels[level].get(i).is_some_and(holds) {
+            if !self.levels[level].get(i).is_some_and(meets) {
                 continue;
             }
             let children = i * WIDTH..(i + 1) * WIDTH;

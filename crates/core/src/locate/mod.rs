@@ -8,7 +8,7 @@
 mod barycentric;
 mod batch;
 mod boundary;
-mod boxes;
+pub(crate) mod boxes;
 mod coordinates;
 mod cross;
 mod excess;

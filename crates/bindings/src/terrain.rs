@@ -1,0 +1,159 @@
+//! Contours of triangulated surfaces, and volumes between them.
+
+use delone::{Error, Result};
+use delone_core::arrays::Given;
+use delone_core::contour;
+use delone_core::overlay::{self, Other, Surface};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, column, flat, table};
+use crate::errors::attached;
+use crate::given::{checked, unequal};
+use crate::signals::watched;
+
+/// Contour lines as runs of coordinates.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ContourLines {
+    /// Coordinates of all lines, (p, 2). A ring ends with its first point.
+    pub points: Table<f64>,
+    /// The start of each line, and the end of the last, (k + 1,).
+    pub starts: Column<i64>,
+    /// The number of the level of each line, ascending, (k,).
+    pub levels: Column<i32>,
+}
+
+/// Bands between levels as polygons: runs of rings, which are runs of coordinates.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct ContourBands {
+    /// Coordinates of all rings, (p, 2). Each ring ends with its first point.
+    pub points: Table<f64>,
+    /// The start of each ring in the points, and the end of the last, (r + 1,).
+    pub rings: Column<i64>,
+    /// The start of each polygon in the rings, and the end of the last, (k + 1,).
+    pub polygons: Column<i64>,
+    /// The band of each polygon, ascending, (k,).
+    pub bands: Column<i32>,
+}
+
+/// Finite numbers, one for each point.
+fn heights_of<'a>(heights: &'a PyReadonlyArray1<'_, f64>, n: usize) -> Result<&'a [f64]> {
+    let found = flat(heights, "heights")?;
+    if found.len() != n {
+        return Err(unequal());
+    }
+    if found.iter().all(|z| z.is_finite()) {
+        return Ok(found);
+    }
+    Err(Error::Shape("heights must be finite".into()))
+}
+
+/// Ascending finite levels.
+fn levels_of<'a>(levels: &'a PyReadonlyArray1<'_, f64>) -> Result<&'a [f64]> {
+    let found = flat(levels, "levels")?;
+    if found.iter().all(|z| z.is_finite()) && found.is_sorted_by(|a, b| a < b) {
+        return Ok(found);
+    }
+    Err(Error::Shape("levels must be finite and ascending".into()))
+}
+
+/// The contour lines of a surface, with higher ground to their left.
+#[pyfunction]
+pub fn contour_lines2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    heights: PyReadonlyArray1<'_, f64>,
+    levels: PyReadonlyArray1<'_, f64>,
+    limit: usize,
+) -> PyResult<ContourLines> {
+    let (given, heights, levels) = attached(py, || {
+        let given: Given<2, 3> = checked(&points, &simplices, &neighbors)?;
+        let heights = heights_of(&heights, given.points.len())?;
+        Ok((given, heights, levels_of(&levels)?))
+    })?;
+    let found = watched(py, |watch| {
+        contour::lines(given, heights, levels, limit, watch)
+    })?;
+    Ok(ContourLines {
+        points: table(py, found.points)?,
+        starts: column(py, found.starts),
+        levels: column(py, found.levels),
+    })
+}
+
+/// The bands of a surface between levels, below the first and above the last.
+#[pyfunction]
+pub fn contour_bands2(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    simplices: PyReadonlyArray2<'_, i32>,
+    neighbors: PyReadonlyArray2<'_, i32>,
+    heights: PyReadonlyArray1<'_, f64>,
+    levels: PyReadonlyArray1<'_, f64>,
+    limit: usize,
+) -> PyResult<ContourBands> {
+    let (given, heights, levels) = attached(py, || {
+        let given: Given<2, 3> = checked(&points, &simplices, &neighbors)?;
+        let heights = heights_of(&heights, given.points.len())?;
+        Ok((given, heights, levels_of(&levels)?))
+    })?;
+    let found = watched(py, |watch| {
+        contour::bands(given, heights, levels, limit, watch)
+    })?;
+    Ok(ContourBands {
+        points: table(py, found.points)?,
+        rings: column(py, found.rings),
+        polygons: column(py, found.polygons),
+        bands: column(py, found.bands),
+    })
+}
+
+/// A triangulation and, if there are any, the heights of its points.
+#[derive(FromPyObject)]
+pub struct Sheet<'py> {
+    points: PyReadonlyArray2<'py, f64>,
+    simplices: PyReadonlyArray2<'py, i32>,
+    neighbors: PyReadonlyArray2<'py, i32>,
+    heights: PyReadonlyArray1<'py, f64>,
+}
+
+impl Sheet<'_> {
+    fn given(&self) -> Result<Given<'_, 2, 3>> {
+        checked(&self.points, &self.simplices, &self.neighbors)
+    }
+
+    fn surface(&self) -> Result<Surface<'_>> {
+        let given = self.given()?;
+        Ok(Surface {
+            given,
+            heights: heights_of(&self.heights, given.points.len())?,
+        })
+    }
+}
+
+/// For each triangle of a surface: the volumes below it and above it up to another surface or to
+/// the plane z = c + a x + b y, the areas of both, and the area of the overlap.
+#[pyfunction]
+pub fn volumes2(
+    py: Python<'_>,
+    surface: Sheet<'_>,
+    other: Option<Sheet<'_>>,
+    plane: [f64; 3],
+    region: Option<Sheet<'_>>,
+    workers: usize,
+) -> PyResult<[Column<f64>; 5]> {
+    let (surface, other, region) = attached(py, || {
+        let other = match &other {
+            Some(sheet) => Other::Surface(sheet.surface()?),
+            None => Other::Plane(plane),
+        };
+        let region = region.as_ref().map(Sheet::given).transpose()?;
+        Ok((surface.surface()?, other, region))
+    })?;
+    let found = watched(py, |watch| {
+        overlay::volumes(surface, other, region, workers, watch)
+    })?;
+    Ok(found.map(|values| column(py, values)))
+}
