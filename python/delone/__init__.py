@@ -8,6 +8,7 @@
 segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
 `graphs`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`,
+`interpolate`, `terrain`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`,
 `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
         interpolate,
         plot,
         reference,
+        terrain,
         testing,
     )
     from delone import io as io
@@ -131,6 +133,7 @@ __all__ = [
     "plot",
     "predicates",
     "reference",
+    "terrain",
     "testing",
     "triangulate_polygon",
 ]
@@ -154,6 +157,7 @@ _MODULES = {
     "reference",
     "refine",
     "regular",
+    "terrain",
     "testing",
     "tetmesh",
     "voronoi",

@@ -1,7 +1,7 @@
 """The compiled core. All arrays are C-contiguous; inputs must have the dtypes given here."""
 
 from collections.abc import Callable
-from typing import Final, final
+from typing import Final, Protocol, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ __all__ = [
     "ClippedCells2",
     "ClippedCells3",
     "ConstrainedTriangulation",
+    "ContourBands",
+    "ContourLines",
     "CornerWeights",
     "DeepestPoints",
     "Diagram2",
@@ -48,6 +50,8 @@ __all__ = [
     "combine2",
     "components2",
     "constrained2",
+    "contour_bands2",
+    "contour_lines2",
     "deepest2",
     "dihedral_angles3",
     "disks2",
@@ -108,6 +112,7 @@ __all__ = [
     "validate_periodic2",
     "validate_regular2",
     "validate_regular3",
+    "volumes2",
     "volumes3",
     "voronoi2",
     "voronoi3",
@@ -824,6 +829,78 @@ class DeepestPoints:
     def complete(self) -> NDArray[np.bool_]:
         """Whether these are all points in conflict with the triangle, (m,)."""
 
+@final
+class ContourLines:
+    """Contour lines as runs of coordinates."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of all lines, (p, 2). A ring ends with its first point."""
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """The start of each line, and the end of the last, (k + 1,)."""
+    @property
+    def levels(self) -> NDArray[np.int32]:
+        """The number of the level of each line, ascending, (k,)."""
+
+@final
+class ContourBands:
+    """Bands between levels as polygons: runs of rings, which are runs of coordinates."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of all rings, (p, 2). Each ring ends with its first point."""
+    @property
+    def rings(self) -> NDArray[np.int64]:
+        """The start of each ring in the points, and the end of the last, (r + 1,)."""
+    @property
+    def polygons(self) -> NDArray[np.int64]:
+        """The start of each polygon in the rings, and the end of the last, (k + 1,)."""
+    @property
+    def bands(self) -> NDArray[np.int32]:
+        """The band of each polygon, ascending, (k,)."""
+
+class _Sheet(Protocol):
+    """A triangulation and the heights of its points."""
+
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def simplices(self) -> NDArray[np.int32]: ...
+    @property
+    def neighbors(self) -> NDArray[np.int32]: ...
+    @property
+    def heights(self) -> NDArray[np.float64]: ...
+
+def contour_lines2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    heights: NDArray[np.float64],
+    levels: NDArray[np.float64],
+    limit: int,
+) -> ContourLines: ...
+def contour_bands2(
+    points: NDArray[np.float64],
+    simplices: NDArray[np.int32],
+    neighbors: NDArray[np.int32],
+    heights: NDArray[np.float64],
+    levels: NDArray[np.float64],
+    limit: int,
+) -> ContourBands: ...
+def volumes2(
+    surface: _Sheet,
+    other: _Sheet | None,
+    plane: list[float],
+    region: _Sheet | None,
+    workers: int,
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+]: ...
 def methods2() -> list[str]: ...
 def triangulate2(points: NDArray[np.float64], method: str, workers: int) -> Triangulation: ...
 def validate2(

@@ -37,6 +37,7 @@ __all__ = [
     "check_graph",
     "check_input",
     "check_mesh",
+    "check_surface",
     "check_tetrahedra",
     "require",
 ]
@@ -72,6 +73,23 @@ def check_delaunay(
     require(len(cycle) == len(boundary), "the boundary is not one cycle")
     expected = 2 * (n - len(duplicates)) - len(boundary) - 2
     require(m == expected, f"it has {m} triangles, {expected} are expected")
+
+
+def check_surface(**arrays: NDArray[Any]) -> None:
+    """Check triangles with heights that tile a convex hull, of which some are kept, and lines."""
+    points, simplices = arrays["points"], arrays["all_simplices"]
+    none = np.empty((0, 2), dtype=np.int32)
+    check_delaunay(points, simplices, arrays["all_neighbors"], none)
+    require(len(arrays["z"]) == len(points), "heights and points do not match")
+    require(np.isfinite(arrays["z"]).all(), "a height is not finite")
+    require(len(arrays["kept"]) == len(simplices), "kept and triangles do not match")
+    require(arrays["kept"].any(), "it has no triangle")
+    _check_range("breaklines", arrays["breaklines"], 0, len(points))
+    require(len(arrays["soft"]) == len(arrays["breaklines"]), "soft and breaklines do not match")
+    ends = simplices[:, [[1, 2], [2, 0], [0, 1]]]
+    edges = edge_keys(ends[..., 0], ends[..., 1], len(points)).ravel()
+    lines = edge_keys(*arrays["breaklines"].T, len(points))
+    require(among(lines, edges).all(), "a breakline is not an edge")
 
 
 def check_tetrahedra(**arrays: NDArray[Any]) -> None:

@@ -106,6 +106,21 @@ _TET_MESH = Kind(
     checks.check_tetrahedra,
 )
 
+_TIN = Kind(
+    "delone.terrain.TIN",
+    {
+        "points": ("<f8", 2),
+        "z": ("<f8", 0),
+        "all_simplices": ("<i4", 3),
+        "all_neighbors": ("<i4", 3),
+        "kept": ("|b1", 0),
+        "breaklines": ("<i4", 2),
+        "soft": ("|b1", 0),
+    },
+    checks.check_surface,
+    ("crs",),
+)
+
 
 def _input(
     name: str,
@@ -168,4 +183,5 @@ KINDS: Mapping[str, tuple[Kind, ...]] = {
     ),
     "Graph": (_graph(2), _graph(3)),
     "ConvexHull": tuple(_input("ConvexHull", ndim) for ndim in (2, 3)),
+    "TIN": (_TIN,),
 }

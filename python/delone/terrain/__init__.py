@@ -1,0 +1,16 @@
+"""Terrain: triangulated surfaces with breaklines, their contours, profiles and volumes.
+
+>>> from delone.terrain import TIN
+>>> tin = TIN.from_points([(0, 0, 1), (8, 0, 5), (8, 6, 9), (0, 6, 3)])
+>>> tin
+<TIN of 4 points: 2 triangles, heights 1 to 9>
+"""
+
+from __future__ import annotations
+
+from delone.terrain.contouring import Bands, Contours
+from delone.terrain.profiles import Profile, Sight
+from delone.terrain.tin import TIN
+from delone.terrain.volumes import Volume
+
+__all__ = ["TIN", "Bands", "Contours", "Profile", "Sight", "Volume"]

@@ -1,0 +1,283 @@
+"""The construction of a TIN from points and lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone._arrays import as_choice, as_number, as_points, require_finite
+from delone.constrained.delaunay import ConstrainedDelaunay
+from delone.counting import counted
+from delone.delaunay import Delaunay
+from delone.errors import CrossingSegmentsError, InputError, ShapeError
+from delone.georeference import as_known_crs, crs_of, same_crs, warn_of_degrees
+from delone.terrain.heights import POLICIES, Claims, claims_of_lines, resolved
+from delone.terrain.lines import lines_of, rings_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Built", "build", "peeled"]
+
+# The kinds of lines.
+_HARD, _SOFT, _BOUNDARY, _HOLE = range(4)
+
+
+class Built(NamedTuple):
+    """The arrays of a TIN."""
+
+    points: Floats
+    z: Floats
+    simplices: Indices
+    neighbors: Indices
+    kept: Bools
+    segments: Indices
+    soft: Bools
+    crs: str | None
+
+
+class _Lines(NamedTuple):
+    """All lines: their points, segments between them, and the kind of each segment."""
+
+    points: Floats  # (p, 3), heights NaN where there are none
+    segments: Indices  # (s, 2), rows of `points`
+    kinds: NDArray[np.int8]
+    rings: dict[int, list[Floats]]
+
+
+def build(
+    xyz: Any,
+    *,
+    breaklines: Any,
+    soft_breaklines: Any,
+    boundary: Any,
+    holes: Any,
+    max_edge: float | None,
+    duplicates: str,
+    crossing: str,
+    crs: Any,
+    planar: bool,
+    workers: int | None,
+) -> Built:
+    """Triangulate points and lines, and give each vertex a height."""
+    as_choice(duplicates, POLICIES, name="duplicates")
+    as_choice(crossing, POLICIES, name="crossing")
+    points = _points_of(xyz)
+    system = _system(crs, xyz, breaklines, soft_breaklines, boundary, holes)
+    warn_of_degrees(xyz, points[:, :2], planar=planar)
+    lines = _gathered(breaklines, soft_breaklines, boundary, holes)
+    line_heights = _given_or_of_points(lines.points, points, workers)
+    rows = np.concatenate((points[:, :2], lines.points[:, :2]))
+    mesh = ConstrainedDelaunay(
+        rows,
+        lines.segments + len(points),
+        crossing="split",
+        workers=workers,
+        planar=True,
+    )
+    _refuse_crossing_rings(mesh, lines)
+    z = np.concatenate((points[:, 2], line_heights))
+    of_points = Claims(mesh.duplicate_of[: len(points)].astype(np.int64), points[:, 2])
+    heights = resolved(
+        mesh.points,
+        of_points,
+        claims_of_lines(mesh, z, len(points)),
+        duplicates=duplicates,
+        crossing=crossing,
+    )
+    kept = _within(mesh, lines)
+    soft = _is_soft(mesh, lines)
+    if max_edge is not None:
+        limit = as_number(max_edge, name="max_edge")
+        if not limit > 0:
+            raise InputError(f"max_edge must be above 0, got {max_edge!r}")
+        kept = peeled(mesh.points, mesh.simplices, mesh.neighbors, kept, mesh.constrained, limit)
+    return _compact(mesh, heights, kept, soft, system)
+
+
+def _points_of(xyz: Any) -> Floats:
+    """Return points with heights, (n, 3), finite."""
+    z = getattr(xyz, "z", None)
+    if hasattr(xyz, "points") and hasattr(xyz, "attributes"):  # a PointSet
+        if z is None:
+            raise InputError("the points have no heights: name their column (x, y and z)")
+        found = np.column_stack((xyz.points, z))
+    else:
+        found = as_points(xyz, name="xyz")
+        if found.shape[1] != 3:
+            raise ShapeError(f"xyz must have shape (n, 3), got {found.shape}")
+    require_finite(found, name="xyz")
+    return found
+
+
+def _system(crs: Any, *data: Any) -> str | None:
+    """Return the one reference system that is given or declared by data."""
+    found = as_known_crs(crs)
+    for each in data:
+        other = crs_of(each)
+        if other is None:
+            continue
+        if found is not None and not same_crs(found, other):
+            raise InputError(
+                f"points and lines are in {found:.60} and in {other:.60}: transform them"
+            )
+        found = found or other
+    return found
+
+
+def _gathered(breaklines: Any, soft_breaklines: Any, boundary: Any, holes: Any) -> _Lines:
+    given = [
+        lines_of(breaklines, name="breaklines"),
+        lines_of(soft_breaklines, name="soft_breaklines"),
+        rings_of(boundary, name="boundary"),
+        rings_of(holes, name="holes"),
+    ]
+    points: list[Floats] = [np.empty((0, 3))]
+    segments: list[NDArray[np.int64]] = [np.empty((0, 2), dtype=np.int64)]
+    kinds: list[NDArray[np.int8]] = [np.empty(0, dtype=np.int8)]
+    count = 0
+    for kind, lines in enumerate(given):
+        for line in lines:
+            first = count + np.arange(len(line) - 1)
+            segments.append(np.column_stack((first, first + 1)))
+            kinds.append(np.full(len(first), kind, dtype=np.int8))
+            points.append(line)
+            count += len(line)
+    return _Lines(
+        np.concatenate(points),
+        np.concatenate(segments).astype(np.int32),
+        np.concatenate(kinds),
+        {_BOUNDARY: given[_BOUNDARY], _HOLE: given[_HOLE]},
+    )
+
+
+def _given_or_of_points(lines: Floats, points: Floats, workers: int | None) -> Floats:
+    """Return the heights of points of lines; those without are on the surface of the points."""
+    z = lines[:, 2].copy()
+    without = np.flatnonzero(np.isnan(z))
+    if not len(without):
+        return z
+    mesh = Delaunay(np.ascontiguousarray(points[:, :2]), workers=workers, planar=True)
+    place = mesh.locate(np.ascontiguousarray(lines[without, :2]))
+    outside = without[place.simplex < 0]
+    if len(outside):
+        x, y = lines[outside[0], :2]
+        raise InputError(
+            f"{counted(len(outside), 'point')} of lines without heights "
+            f"{'is' if len(outside) == 1 else 'are'} outside of the points, first ({x:.10g}, "
+            f"{y:.10g}): give heights there"
+        )
+    corners = points[:, 2][mesh.simplices[place.simplex]]
+    z[without] = (place.barycentric * corners).sum(axis=1)
+    return z
+
+
+def _refuse_crossing_rings(mesh: ConstrainedDelaunay, lines: _Lines) -> None:
+    """Refuse a boundary or hole that crosses itself or another one."""
+    crossings = mesh.report.crossings
+    ring = lines.kinds >= _BOUNDARY
+    both = ring[crossings[:, 0]] & ring[crossings[:, 1]]
+    if both.any():
+        places = mesh.points[crossings[both, 2]]
+        x, y = places[0]
+        raise CrossingSegmentsError(
+            f"boundary and holes cross at {counted(len(places), 'place')}, first ({x:.10g}, "
+            f"{y:.10g})",
+            pairs=crossings[both, :2],
+            points=places,
+        )
+
+
+def _within(mesh: ConstrainedDelaunay, lines: _Lines) -> Bools:
+    """Which triangles are inside of the boundary and outside of the holes."""
+    if not (lines.rings[_BOUNDARY] or lines.rings[_HOLE]):
+        return np.ones(mesh.nsimplex, dtype=bool)
+    # Rings are segments: a region between segments is inside or outside as a whole, and its largest
+    # triangle decides.
+    largest = np.lexsort((mesh.areas, mesh.region))
+    last = np.flatnonzero(np.diff(mesh.region[largest], append=-1))
+    centers = mesh.points[mesh.simplices[largest[last]]].mean(axis=1)
+    inside = np.ones(len(centers), dtype=bool)
+    if lines.rings[_BOUNDARY]:
+        inside = _odd(centers, lines.rings[_BOUNDARY])
+    for hole in lines.rings[_HOLE]:
+        inside &= ~_odd(centers, [hole])
+    number = np.zeros(int(mesh.region.max()) + 1, dtype=bool)
+    number[mesh.region[largest[last]]] = inside
+    found: Bools = number[mesh.region]
+    return found
+
+
+def _odd(centers: Floats, rings: list[Floats]) -> Bools:
+    """Which points are inside of an odd number of rings."""
+    odd = np.zeros(len(centers), dtype=bool)
+    for ring in rings:
+        a, b = ring[:-1, :2], ring[1:, :2]
+        for i, (x, y) in enumerate(centers):
+            crosses = (a[:, 1] > y) != (b[:, 1] > y)
+            p, q = a[crosses], b[crosses]
+            at = p[:, 0] + (y - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
+            odd[i] ^= bool(np.count_nonzero(at > x) % 2)
+    return odd
+
+
+def _is_soft(mesh: ConstrainedDelaunay, lines: _Lines) -> Bools:
+    """Which subsegments are on soft breaklines only."""
+    start, source = mesh.segment_source
+    hard = np.append(lines.kinds[source] != _SOFT, False)
+    found: Bools = np.add.reduceat(hard, start[:-1]) == 0 if len(start) > 1 else hard[:0]
+    return found
+
+
+def peeled(  # noqa: PLR0917
+    points: Floats,
+    simplices: Indices,
+    neighbors: Indices,
+    kept: Bools,
+    constrained: Bools,
+    limit: float,
+) -> Bools:
+    """Remove triangles from outside as long as their outer edge is longer than `limit`.
+
+    Each round removes at least one triangle, so it ends. Segments are never outer edges of what is
+    removed.
+    """
+    kept = kept.copy()
+    ends = points[simplices[:, [[1, 2], [2, 0], [0, 1]]]]
+    long = np.hypot(*np.moveaxis(ends[:, :, 1] - ends[:, :, 0], -1, 0)) > limit
+    candidates = np.arange(len(simplices))
+    while len(candidates):
+        around = neighbors[candidates]
+        outer = (around < 0) | ~kept[around]
+        gone = candidates[
+            (outer & (long & ~constrained)[candidates]).any(axis=1) & kept[candidates]
+        ]
+        kept[gone] = False
+        around = np.unique(neighbors[gone])
+        candidates = around[(around >= 0) & kept[around]]
+    return kept
+
+
+def _compact(
+    mesh: ConstrainedDelaunay, z: Floats, kept: Bools, soft: Bools, crs: str | None
+) -> Built:
+    """Leave out rows that are duplicates; all others are vertices."""
+    if not kept.any():
+        raise InputError("no triangle is left: max_edge is too small, or the boundary is empty")
+    used = mesh.duplicate_of == np.arange(mesh.npoints)
+    number = np.cumsum(used, dtype=np.int32) - 1
+    return Built(
+        mesh.points[used],
+        z[used],
+        number[mesh.simplices].astype(np.int32),
+        mesh.neighbors.copy(),
+        kept,
+        number[mesh.segments].astype(np.int32),
+        soft,
+        crs,
+    )

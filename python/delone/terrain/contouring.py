@@ -1,0 +1,354 @@
+"""Contour lines and bands of a surface: levels, results and their exports."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
+from delone.counting import counted
+from delone.errors import BudgetExceededError, DtypeError, InputError
+from delone.extras import require
+from delone.immutable import ReadOnly
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.terrain.tin import TIN
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.int64]
+
+__all__ = ["MOST", "Bands", "Contours", "bands", "levels_of", "lines"]
+
+# Points of contours that a call may compute by default: about 3 GB with what is needed beside.
+MOST = 50_000_000
+# Levels that an interval may give.
+_LEVELS = 1_000_000
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contours(ReadOnly):
+    """Contour lines, in the order of their levels.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (p, 2)
+        The points of all lines, one line after the other. A closed line ends with its first point.
+    starts : ndarray of int64, shape (k + 1,)
+        The start of each line in `points`, and the end of the last.
+    level : ndarray of float64, shape (k,)
+        The level of each line.
+    index : ndarray of bool, shape (k,)
+        Whether the line is an index contour.
+    levels : ndarray of float64
+        All levels, also those without lines.
+    crs : str, optional
+        Coordinate reference system.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> hill = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)]
+    >>> found = TIN.from_points(hill).contours(interval=1)
+    >>> found.level.tolist(), found.closed.tolist()
+    ([1.0, 2.0], [True, True])
+    """
+
+    points: Floats
+    starts: Rows
+    level: Floats
+    index: Bools
+    levels: Floats
+    crs: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.level)
+
+    def __repr__(self) -> str:
+        return f"<Contours of {counted(len(self.levels), 'level')}: {counted(len(self), 'line')}>"
+
+    @property
+    def closed(self) -> Bools:
+        """Whether each line is closed, (k,)."""
+        first, last = self.points[self.starts[:-1]], self.points[self.starts[1:] - 1]
+        found: Bools = (first == last).all(axis=1)
+        return found
+
+    def coordinates(self, line: int) -> Floats:
+        """Return the points of a line.
+
+        Parameters
+        ----------
+        line : int
+            Its number.
+
+        Returns
+        -------
+        ndarray of float64, shape (j, 2)
+            The points, with higher ground to the left of the line.
+
+        Examples
+        --------
+        See `TIN.contours`.
+        """
+        return self.points[self.starts[line] : self.starts[line + 1]]
+
+    def to_shapely(self) -> NDArray[Any]:
+        """Return the lines as geometries (extra ``geo``).
+
+        Returns
+        -------
+        ndarray of shapely.LineString, shape (k,)
+            The lines, with the level as third coordinate.
+
+        Raises
+        ------
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.contours([4.0]).to_shapely()[0].wkt
+        'LINESTRING Z (0 2 4, 2 2 4, 4 2 4)'
+        """
+        shapely = require("shapely", extra="geo", what="geometries")
+        z = np.repeat(self.level, np.diff(self.starts))
+        found: NDArray[Any] = shapely.from_ragged_array(
+            shapely.GeometryType.LINESTRING, np.column_stack((self.points, z)), (self.starts,)
+        )
+        return found
+
+    def to_geopandas(self, *, crs: Any = None) -> Any:
+        """Return a table of the lines (extra ``geo``).
+
+        Parameters
+        ----------
+        crs : optional
+            Reference system; by default that of the surface.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each line: ``level``, ``index`` (whether it is an index contour), geometry.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.contours(interval=2).to_geopandas().level.tolist()
+        [2.0, 4.0, 6.0, 8.0]
+        """
+        geopandas = require("geopandas", extra="geo", what="a GeoDataFrame")
+        return geopandas.GeoDataFrame(
+            {"level": self.level, "index": self.index},
+            geometry=self.to_shapely(),
+            crs=crs if crs is not None else self.crs,
+        )
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Plot the lines, index contours wider (extra ``plot``).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Axes to draw on; by default new ones.
+        **options
+            Options of matplotlib's ``LineCollection``, such as ``colors``.
+
+        Returns
+        -------
+        matplotlib Axes
+            The axes.
+
+        Raises
+        ------
+        MissingExtraError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> ax = tin.contours(interval=1).plot()
+        """
+        from delone.plot.lines import plot_lines
+
+        runs = [self.coordinates(k) for k in range(len(self))]
+        return plot_lines(runs, np.where(self.index, 1.2, 0.5), ax, **options)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Bands(ReadOnly):
+    """The areas between contours, in the order of their heights.
+
+    Parameters
+    ----------
+    points : ndarray of float64, shape (p, 2)
+        The points of all rings, one ring after the other. Each ring ends with its first point.
+    rings : ndarray of int64, shape (r + 1,)
+        The start of each ring in `points`, and the end of the last.
+    polygons : ndarray of int64, shape (k + 1,)
+        The start of each polygon in the rings: its outer ring, counter-clockwise, then its holes.
+    low, high : ndarray of float64, shape (k,)
+        The heights between which the surface is there; those of the whole surface below the first
+        level and above the last.
+    crs : str, optional
+        Coordinate reference system.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> hill = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)]
+    >>> found = TIN.from_points(hill).bands([1.5])
+    >>> found.low.tolist(), found.high.tolist()
+    ([0.0, 1.5], [1.5, 3.0])
+    """
+
+    points: Floats
+    rings: Rows
+    polygons: Rows
+    low: Floats
+    high: Floats
+    crs: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+    def __repr__(self) -> str:
+        ranges = len(np.unique(self.low))
+        return f"<Bands of {counted(ranges, 'range')}: {counted(len(self), 'polygon')}>"
+
+    def to_shapely(self) -> NDArray[Any]:
+        """Return the polygons as geometries (extra ``geo``).
+
+        Returns
+        -------
+        ndarray of shapely.Polygon, shape (k,)
+            Valid polygons.
+
+        Raises
+        ------
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> [polygon.area for polygon in tin.bands([2.0]).to_shapely()]
+        [4.0, 12.0]
+        """
+        shapely = require("shapely", extra="geo", what="geometries")
+        found: NDArray[Any] = shapely.from_ragged_array(
+            shapely.GeometryType.POLYGON, self.points, (self.rings, self.polygons)
+        )
+        return found
+
+    def to_geopandas(self, *, crs: Any = None) -> Any:
+        """Return a table of the polygons (extra ``geo``).
+
+        Parameters
+        ----------
+        crs : optional
+            Reference system; by default that of the surface.
+
+        Returns
+        -------
+        geopandas.GeoDataFrame
+            One row for each polygon: ``low``, ``high``, geometry.
+
+        Raises
+        ------
+        MissingExtraError
+            geopandas is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.bands([2.0]).to_geopandas().high.tolist()
+        [2.0, 8.0]
+        """
+        geopandas = require("geopandas", extra="geo", what="a GeoDataFrame")
+        return geopandas.GeoDataFrame(
+            {"low": self.low, "high": self.high},
+            geometry=self.to_shapely(),
+            crs=crs if crs is not None else self.crs,
+        )
+
+
+def levels_of(
+    z: Floats, levels: ArrayLike | None, interval: float | None, base: float, index: int
+) -> tuple[Floats, Bools]:
+    """Return ascending levels, each once, and which are index contours."""
+    if (levels is None) == (interval is None):
+        raise InputError("give either levels or an interval")
+    if interval is None:
+        given = as_plain_array(levels, "levels")
+        if given.dtype.kind not in "iuf":
+            raise DtypeError(f"levels must be real numbers, got dtype {given.dtype}")
+        found = np.unique(given.astype(np.float64))
+        if not np.isfinite(found).all():
+            raise InputError("levels must be finite")
+        return found, np.zeros(len(found), dtype=bool)
+    step, start = as_number(interval, name="interval"), as_number(base, name="base")
+    if not (0 < step < math.inf and math.isfinite(start)):
+        raise InputError(f"interval must be above 0 and base finite, got {interval} and {base}")
+    every = as_count(index, name="index")
+    first, last = (float(each - start) / step for each in (z.min(), z.max()))
+    if not last - first < _LEVELS:
+        raise BudgetExceededError(
+            f"an interval of {step:g} gives {last - first:.3g} levels between the heights "
+            f"{z.min():g} and {z.max():g}; at most {_LEVELS} are possible",
+            limit=_LEVELS,
+            found=LARGEST_LIMIT if not last - first < LARGEST_LIMIT else int(last - first),
+        )
+    numbers = np.arange(math.ceil(first), math.floor(last) + 1)
+    return start + numbers * step, (numbers % every == 0) if every else numbers < numbers[:1]
+
+
+def lines(tin: TIN, levels: Floats, marked: Bools, smooth: int, max_points: int) -> Contours:
+    """Return the contours of a surface."""
+    from delone.terrain.smoothing import smoothed
+
+    rounds = as_count(smooth, name="smooth")
+    made = _core.contour_lines2(*tin._sheet(), levels, as_count(max_points, name="max_points"))
+    points, starts = made.points, made.starts
+    if rounds:
+        points, starts = smoothed(points, starts, tin, rounds)
+    return Contours(
+        points=points,
+        starts=starts,
+        level=levels[made.levels],
+        index=marked[made.levels],
+        levels=levels,
+        crs=tin.crs,
+    )
+
+
+def bands(tin: TIN, levels: Floats, max_points: int) -> Bands:
+    """Return the polygons between contours of a surface."""
+    made = _core.contour_bands2(*tin._sheet(), levels, as_count(max_points, name="max_points"))
+    used = tin.z[np.unique(tin.simplices)]
+    ends = np.concatenate(([used.min()], levels, [used.max()]))
+    return Bands(
+        points=made.points,
+        rings=made.rings,
+        polygons=made.polygons,
+        low=ends[made.bands],
+        high=ends[made.bands + 1],
+        crs=tin.crs,
+    )

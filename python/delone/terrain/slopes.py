@@ -1,0 +1,113 @@
+"""Slope, aspect and brightness of triangles, and rasters of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from delone._arrays import as_choice, as_number
+from delone.errors import InputError
+from delone.interpolate.raster import Grid, raster_nodes, require_memory
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.terrain.tin import TIN
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["aspect", "gradient", "hillshade", "normals", "raster", "slope"]
+
+_WHAT = ("height", "slope", "aspect", "hillshade")
+_LIGHT = ("azimuth", "altitude", "z_factor")
+# Nodes that are located together.
+_BLOCK = 1 << 18
+
+
+def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
+    """Return the gradients of the planes of triangles, (m, 2)."""
+    a, b, c = (points[corner] for corner in simplices.T)
+    low, mid, high = (z[corner] for corner in simplices.T)
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    du, dv = mid - low, high - low
+    twice = ux * vy - uy * vx
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
+    # Level triangles stay level, however thin.
+    found[(du == 0) & (dv == 0)] = 0.0
+    return found
+
+
+def normals(slopes: Floats) -> Floats:
+    """Return the upward unit normals of planes with these gradients."""
+    found = np.column_stack((-slopes, np.ones(len(slopes))))
+    found /= np.linalg.norm(found, axis=1, keepdims=True)
+    return found
+
+
+def slope(slopes: Floats) -> Floats:
+    """Return slopes in degrees."""
+    found: Floats = np.degrees(np.arctan(np.hypot(*slopes.T)))
+    return found
+
+
+def aspect(slopes: Floats) -> Floats:
+    """Return the downhill directions in degrees clockwise from north; NaN if level."""
+    x, y = -slopes.T
+    found = np.degrees(np.arctan2(x, y)) % 360.0
+    return np.where((x == 0) & (y == 0), np.nan, found)
+
+
+def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) -> Floats:
+    """Return the cosines between normals and light, 0 where they face away."""
+    numbers = {
+        name: as_number(value, name=name)
+        for name, value in zip(_LIGHT, (azimuth, altitude, z_factor), strict=True)
+    }
+    for name, value in numbers.items():
+        if not np.isfinite(value):
+            raise InputError(f"{name} must be finite, got {value}")
+    if not 0 <= numbers["altitude"] <= 90:
+        raise InputError(f"altitude must be between 0 and 90 degrees, got {altitude}")
+    around, above = np.radians(numbers["azimuth"]), np.radians(numbers["altitude"])
+    light = np.array(
+        (np.cos(above) * np.sin(around), np.cos(above) * np.cos(around), np.sin(above))
+    )
+    found: Floats = np.clip(normals(slopes * numbers["z_factor"]) @ light, 0.0, 1.0)
+    return found
+
+
+def raster(tin: TIN, what: str, options: dict[str, Any]) -> Grid:
+    """Sample heights, or a measure of triangles, at the centers of cells."""
+    as_choice(what, _WHAT, name="what")
+    light = {name: options.pop(name) for name in _LIGHT if name in options and what == "hillshade"}
+    x, y = _nodes(tin, options)
+    require_memory(len(x), len(y), 1)
+    values = np.empty((len(y), len(x)))
+    of_triangles = None
+    if what != "height":
+        of_triangles = tin.hillshade(**light) if what == "hillshade" else getattr(tin, what)
+    rows = max(1, _BLOCK // len(x))
+    for start in range(0, len(y), rows):
+        nodes = np.stack(np.meshgrid(x, y[start : start + rows]), axis=-1)
+        if of_triangles is None:
+            values[start : start + rows] = tin.heights(nodes)
+            continue
+        simplex = tin.find_simplex(nodes)
+        found = np.where(simplex < 0, np.nan, of_triangles[simplex])
+        values[start : start + rows] = found
+    return Grid(values, x, y)
+
+
+def _nodes(tin: TIN, options: dict[str, Any]) -> tuple[Floats, Floats]:
+    if "x" in options and "y" in options and len(options) == 2:
+        return tuple(np.asarray(options[name], dtype=np.float64) for name in "xy")  # type: ignore[return-value]
+    unknown = set(options) - {"resolution", "shape", "bounds"}
+    if unknown:
+        raise InputError(
+            f"{', '.join(sorted(unknown))}: give resolution, shape and bounds, or x and y"
+        )
+    low, high = tin.min_bound.tolist(), tin.max_bound.tolist()
+    return raster_nodes((low, high), **options)

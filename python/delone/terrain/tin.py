@@ -1,0 +1,756 @@
+"""The class TIN: a triangulated surface with a height at each vertex."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from delone._arrays import as_vectors
+from delone.counting import counted
+from delone.errors import DtypeError, InputError
+from delone.immutable import kept, sealed
+from delone.plane import topology
+from delone.refine.validation import MeshValidation, validate
+from delone.terrain import building, contouring, profiles, slopes, volumes
+from delone.triangulation import HullTiling
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.exchange.parts import Parts
+    from delone.interpolate.raster import Grid
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["TIN"]
+
+
+class _Sheet(NamedTuple):
+    """What the core needs of a surface."""
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    heights: Floats
+
+
+class TIN(HullTiling):
+    """A triangulated irregular network: a surface over triangles, linear in each.
+
+    Create one with `from_points`, `from_raster` or `from_file`.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 2)
+        Horizontal coordinates of the vertices, each once: points, then points of lines, then
+        crossings of lines.
+    z : ndarray of float64, shape (n,)
+        Heights of the vertices.
+    simplices : ndarray of int32, shape (m, 3)
+        The triangles as rows of `points`, counter-clockwise seen from above, without those outside
+        of the boundary, in holes, or removed because of `max_edge`.
+    neighbors : ndarray of int32, shape (m, 3)
+        The triangle across the edge opposite each vertex; -1 outside.
+    breaklines : ndarray of int32, shape (q, 2)
+        The edges on lines: breaklines, boundary and holes.
+    soft : ndarray of bool, shape (q,)
+        Which of these edges are on soft breaklines only.
+
+    Notes
+    -----
+    The triangles are those of a `ConstrainedDelaunay` of points and lines: exact and canonical.
+    Objects are immutable; `save` and `load`, location, measures and exports are those of the other
+    classes. The tiles of ``delone tile`` are for point sets that exceed memory and have no lines: a
+    TIN is one surface in memory.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> corners = [(0, 0, 0), (10, 0, 0), (10, 10, 10), (0, 10, 10)]
+    >>> dike = [(0, 4, 8), (10, 4, 8)]
+    >>> tin = TIN.from_points(corners, breaklines=[dike])
+    >>> tin
+    <TIN of 6 points: 4 triangles, heights 0 to 10>
+    >>> float(tin.heights([5, 2]))
+    4.0
+    """
+
+    __slots__ = (
+        "_all_neighbors",
+        "_all_simplices",
+        "_breaklines",
+        "_crs",
+        "_kept",
+        "_soft",
+        "_z",
+    )
+
+    _ARRAYS: ClassVar[tuple[str, ...]] = (
+        "points",
+        "z",
+        "all_simplices",
+        "all_neighbors",
+        "kept",
+        "breaklines",
+        "soft",
+    )
+
+    _all_neighbors: Indices
+    _all_simplices: Indices
+    _breaklines: Indices
+    _crs: NDArray[np.str_]
+    _kept: Bools
+    _soft: Bools
+    _z: Floats
+
+    def __init__(self, *given: Any, **options: Any) -> None:
+        raise DtypeError("create a TIN with TIN.from_points, from_raster or from_file")
+
+    @classmethod
+    def from_points(
+        cls,
+        xyz: Any,
+        *,
+        breaklines: Any = None,
+        soft_breaklines: Any = None,
+        boundary: Any = None,
+        holes: Any = None,
+        max_edge: float | None = None,
+        duplicates: str = "raise",
+        crossing: str = "raise",
+        crs: Any = None,
+        planar: bool = False,
+        workers: int | None = None,
+    ) -> Self:
+        """Triangulate points with heights, and lines.
+
+        Parameters
+        ----------
+        xyz : array_like, shape (n, 3), or PointSet with heights
+            The points, in one unit of length horizontally; heights in the unit of your choice,
+            preferably the same.
+        breaklines, soft_breaklines : optional
+            Lines that edges follow, such as the edges of roads, dikes and water: geometries of
+            shapely, tables of them, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
+            Points of lines without heights get those of the surface of the points. Both kinds are
+            edges; smoothing does not cut corners of contours at hard ones.
+        boundary, holes : optional
+            Rings or polygons: the surface ends at the boundary, and does not cover holes.
+        max_edge : float, optional
+            Triangles are removed from outside as long as their outer edge is longer than this, up
+            to lines; by default the surface covers the convex hull or the boundary.
+        duplicates : {"raise", "min", "max", "mean"}, optional
+            The height of points with the same x and y and different heights, or of such a point and
+            a line.
+        crossing : {"raise", "min", "max", "mean"}, optional
+            The height where lines with different heights cross or touch.
+        crs : optional
+            Coordinate reference system, as ``"EPSG:28992"``, an EPSG code or a pyproj.CRS; by
+            default that of the data.
+        planar : bool, optional
+            Whether longitudes and latitudes are intentional, without a warning.
+        workers : int, optional
+            Maximum number of threads; by default one per core.
+
+        Returns
+        -------
+        TIN
+            The surface.
+
+        Raises
+        ------
+        ConflictingValuesError
+            Heights differ at a place, and the policy is ``"raise"``; the message has places and
+            heights, and ``error.rows`` rows of `points`. A vertical wall is such a conflict.
+        NonFiniteError
+            A coordinate or height is NaN or infinite.
+        CrossingSegmentsError
+            The boundary or a hole crosses itself or another one.
+        InputError
+            A line without heights leaves the points, data are in different reference systems, no
+            triangle is left, or an option is not one of its choices.
+        DegenerateInputError, ShapeError, DtypeError, MemoryError, KeyboardInterrupt
+            As for `delone.Delaunay`.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> points = [(0, 0, 0), (4, 0, 0), (4, 4, 4), (0, 4, 4)]
+        >>> TIN.from_points(points, holes=[[(1, 1), (2, 1), (2, 2), (1, 2)]]).areas.sum()
+        np.float64(15.0)
+        """
+        made = building.build(
+            xyz,
+            breaklines=breaklines,
+            soft_breaklines=soft_breaklines,
+            boundary=boundary,
+            holes=holes,
+            max_edge=max_edge,
+            duplicates=duplicates,
+            crossing=crossing,
+            crs=crs,
+            planar=planar,
+            workers=workers,
+        )
+        return cls._built(made, workers)
+
+    @classmethod
+    def from_raster(cls, dem: Any, *, crs: Any = None, **options: Any) -> Self:
+        """Triangulate the nodes of a raster of heights.
+
+        Parameters
+        ----------
+        dem : delone.interpolate.Grid or xarray.DataArray
+            Heights at the centers of cells. Cells without a value (NaN) are left out.
+        crs : optional
+            As for `from_points`.
+        **options
+            Further options of `from_points`.
+
+        Returns
+        -------
+        TIN
+            The surface.
+
+        Raises
+        ------
+        InputError
+            `dem` is not a raster with one height in each cell; otherwise as for `from_points`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from delone.interpolate import Grid
+        >>> from delone.terrain import TIN
+        >>> x, y = np.arange(3.0), np.arange(4.0)
+        >>> TIN.from_raster(Grid(np.add.outer(y, x), x, y))
+        <TIN of 12 points: 12 triangles, heights 0 to 5>
+        """
+        values, x, y = _raster(dem)
+        grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
+        return cls.from_points(grid[~np.isnan(grid[:, 2])], crs=crs, **options)
+
+    @classmethod
+    def from_file(
+        cls, path: Any, *, columns: Sequence[str | int] | None = None, **options: Any
+    ) -> Self:
+        r"""Triangulate the points of a file: LAS, LAZ, CSV, GeoPackage and others.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file, of any format of `delone.io.read_points`.
+        columns : sequence of str or int, optional
+            The columns of x, y and z; by default by their names.
+        **options
+            Options of `from_points`.
+
+        Returns
+        -------
+        TIN
+            The surface.
+
+        Raises
+        ------
+        FileFormatError, MissingExtraError, OSError
+            As for `delone.io.read_points`; otherwise as for `from_points`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from delone.terrain import TIN
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder) / "survey.csv"
+        ...     _ = path.write_text("x,y,z\n0,0,1\n4,0,2\n0,4,3\n")
+        ...     TIN.from_file(path)
+        <TIN of 3 points: 1 triangle, heights 1 to 3>
+        """
+        from delone import io
+
+        return cls.from_points(io.read_points(path, columns=columns), **options)
+
+    @classmethod
+    def _built(cls, made: building.Built, workers: int | None) -> Self:
+        return cls._from_arrays(
+            {
+                "points": made.points,
+                "z": made.z,
+                "all_simplices": made.simplices,
+                "all_neighbors": made.neighbors,
+                "kept": made.kept,
+                "breaklines": made.segments,
+                "soft": made.soft,
+                "crs": np.array(made.crs or ""),
+            },
+            workers=workers,
+        )
+
+    def _fill(self, arrays: Any, stages: Any, workers: int | None) -> None:
+        crs = arrays.get("crs", np.array(""))
+        plain = {name: arrays[name] for name in self._ARRAYS}
+        number = np.cumsum(plain["kept"], dtype=np.int32) - 1
+        number = np.append(np.where(plain["kept"], number, -1), -1).astype(np.int32)
+        super()._fill(
+            plain
+            | {
+                "simplices": plain["all_simplices"][plain["kept"]],
+                "neighbors": number[plain["all_neighbors"][plain["kept"]]],
+                "crs": crs,
+            },
+            stages,
+            workers,
+        )
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        return super()._arrays() | ({} if self.crs is None else {"crs": self._crs})
+
+    def _described(self) -> str:
+        low, high = float(self.z.min()), float(self.z.max())
+        return (
+            f"{counted(self.npoints, 'point')}: {counted(self.nsimplex, 'triangle')}, "
+            f"heights {low:.6g} to {high:.6g}"
+        )
+
+    def _tiling(self) -> tuple[Indices, Indices]:
+        return self._all_simplices, self._all_neighbors
+
+    @property
+    @kept
+    def _number(self) -> Indices | None:
+        if self._kept.all():
+            return None
+        number = np.cumsum(self._kept, dtype=np.int32) - 1
+        return np.append(np.where(self._kept, number, -1), -1).astype(np.int32)
+
+    @property
+    def z(self) -> Floats:
+        """Heights of the vertices, (n,)."""
+        return self._z
+
+    @property
+    @kept
+    def xyz(self) -> Floats:
+        """The vertices with their heights, (n, 3)."""
+        return sealed(np.column_stack((self._points, self._z)))
+
+    @property
+    def breaklines(self) -> Indices:
+        """The edges on lines, (q, 2), as rows of `points`."""
+        return self._breaklines
+
+    @property
+    def soft(self) -> Bools:
+        """Which of the breaklines are soft only, (q,)."""
+        return self._soft
+
+    @property
+    def crs(self) -> str | None:
+        """Coordinate reference system, as ``"EPSG:28992"`` or WKT; None if it is unknown."""
+        return str(self._crs) or None
+
+    def _parts(self) -> Parts:
+        from delone.exchange.parts import Parts
+
+        return Parts(
+            self._points,
+            self._simplices,
+            of_points={"z": self._z},
+            segments=self._breaklines,
+            crs=self.crs,
+        )
+
+    def _sheet(self) -> _Sheet:
+        return _Sheet(self._points, self._simplices, self._neighbors, self._z)
+
+    @property
+    @kept
+    def gradient(self) -> Floats:
+        """The change of height per unit in x and in y of each triangle, (m, 2)."""
+        return sealed(slopes.gradient(self._points, self._z, self._simplices))
+
+    @property
+    @kept
+    def normals(self) -> Floats:
+        """Upward unit normals of the triangles, (m, 3)."""
+        return sealed(slopes.normals(self.gradient))
+
+    @property
+    @kept
+    def slope(self) -> Floats:
+        """Slope of each triangle in degrees, (m,): 0 is level, 90 vertical."""
+        return sealed(slopes.slope(self.gradient))
+
+    @property
+    @kept
+    def aspect(self) -> Floats:
+        """The direction in which each triangle faces, (m,): degrees clockwise from north.
+
+        North is the direction of y. NaN where the triangle is level.
+        """
+        return sealed(slopes.aspect(self.gradient))
+
+    def hillshade(
+        self, *, azimuth: float = 315.0, altitude: float = 45.0, z_factor: float = 1.0
+    ) -> Floats:
+        """Compute the brightness of each triangle under a distant light.
+
+        Parameters
+        ----------
+        azimuth : float, optional
+            Direction of the light, in degrees clockwise from north.
+        altitude : float, optional
+            Angle of the light above the horizon, in degrees.
+        z_factor : float, optional
+            Factor of heights: exaggeration, or the unit of heights in units of coordinates.
+
+        Returns
+        -------
+        ndarray of float64, shape (m,)
+            0 for triangles that face away from the light, 1 for those that face it.
+
+        Raises
+        ------
+        InputError
+            An angle is not finite, or `altitude` is not between 0 and 90.
+
+        Notes
+        -----
+        The cosine of the angle between normal and light (Lambert), as in GDAL's ``gdaldem
+        hillshade``, which scales it to 1 to 255. Shadows are not cast.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> TIN.from_points([(0, 0, 0), (1, 0, 0), (0, 1, 0)]).hillshade(altitude=90)
+        array([1.])
+        """
+        return slopes.hillshade(self.gradient, azimuth, altitude, z_factor)
+
+    def heights(self, xy: ArrayLike) -> Floats:
+        """Return heights of the surface.
+
+        Parameters
+        ----------
+        xy : array_like, shape (..., 2)
+            Positions.
+
+        Returns
+        -------
+        ndarray of float64, shape (...)
+            Heights: exactly those of the vertices there; NaN outside, and at NaN.
+
+        Raises
+        ------
+        ShapeError, DtypeError
+            `xy` is not a real array of shape (..., 2).
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 1), (4, 0, 5), (0, 4, 9)])
+        >>> tin.heights([(1, 1), (0, 4), (5, 5)])
+        array([ 4.,  9., nan])
+        """
+        place = self.locate(as_vectors(xy, 2, name="xy"))
+        inside = place.simplex >= 0
+        corners = self._z[self._simplices[np.where(inside, place.simplex, 0)]]
+        found = np.where(inside, (place.barycentric * corners).sum(axis=-1), np.nan)
+        return np.asarray(found)
+
+    def contours(
+        self,
+        levels: ArrayLike | None = None,
+        *,
+        interval: float | None = None,
+        base: float = 0.0,
+        index: int = 5,
+        smooth: int = 0,
+        max_points: int = contouring.MOST,
+    ) -> contouring.Contours:
+        """Compute contour lines.
+
+        Parameters
+        ----------
+        levels : array_like, shape (k,), optional
+            Heights of the contours.
+        interval : float, optional
+            Distance of levels, instead of `levels`: all multiples of it, from `base` on, that the
+            surface reaches.
+        base : float, optional
+            A level from which `interval` counts.
+        index : int, optional
+            With an interval, each `index`-th multiple is marked as an index contour.
+        smooth : int, optional
+            Rounds of corner cutting, at most 5; 0 keeps contours straight in each triangle.
+            Smoothed lines do not cross: where they would, corners remain.
+        max_points : int, optional
+            Maximum number of points of all contours.
+
+        Returns
+        -------
+        Contours
+            Lines that end at the outline or are closed, with higher ground to their left.
+
+        Raises
+        ------
+        InputError
+            Levels are not finite, or not exactly one of `levels` and `interval` is given.
+        BudgetExceededError
+            There would be more than `max_points` points; raised before they are computed.
+
+        Notes
+        -----
+        A vertex is above a level if its height is at least the level, exactly. So lines join, end
+        at the outline only, and those of one level enclose those of the next, also on plateaus and
+        saddles and where vertices are exactly at a level. Loops without an area, around a vertex
+        or ridge exactly at a level, are left out. Coordinates are rounded once; where rounding
+        would make lines cross, points are merged. Lines may touch at points.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> found = tin.contours(interval=3)
+        >>> found
+        <Contours of 3 levels: 2 lines>
+        >>> found.level.tolist(), found.coordinates(1).tolist()
+        ([3.0, 6.0], [[0.0, 3.0], [3.0, 3.0], [4.0, 3.0]])
+        """
+        wanted, marked = contouring.levels_of(self._z, levels, interval, base, index)
+        return contouring.lines(self, wanted, marked, smooth, max_points)
+
+    def bands(
+        self,
+        levels: ArrayLike | None = None,
+        *,
+        interval: float | None = None,
+        base: float = 0.0,
+        max_points: int = contouring.MOST,
+    ) -> contouring.Bands:
+        """Compute the areas between contours as polygons.
+
+        Parameters
+        ----------
+        levels, interval, base, max_points
+            As for `contours`.
+
+        Returns
+        -------
+        Bands
+            Valid polygons with holes that tile the surface, also below the lowest level and above
+            the highest one. Adjacent ones share their vertices bit for bit.
+
+        Raises
+        ------
+        InputError, BudgetExceededError
+            As for `contours`.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.bands([4.0])
+        <Bands of 2 ranges: 2 polygons>
+        """
+        wanted, _ = contouring.levels_of(self._z, levels, interval, base, 1)
+        return contouring.bands(self, wanted, max_points)
+
+    def profile(self, line: Any) -> profiles.Profile:
+        """Compute the heights along a line.
+
+        Parameters
+        ----------
+        line : array_like, shape (k, 2), or shapely.LineString
+            The line.
+
+        Returns
+        -------
+        Profile
+            Distances and heights at the points of the line and wherever it crosses an edge.
+
+        Raises
+        ------
+        InputError
+            `line` is not one line of at least two points.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> found = tin.profile([(2, 1), (2, 4)])
+        >>> found.distance.tolist(), found.z.tolist()
+        ([0.0, 1.0, 3.0], [2.0, 4.0, 8.0])
+        """
+        return profiles.profile(self, line)
+
+    def drape(self, geometry: Any) -> Any:
+        """Put a geometry onto the surface (extra ``geo``).
+
+        Parameters
+        ----------
+        geometry : shapely geometry
+            Points, lines, polygons, or collections of them.
+
+        Returns
+        -------
+        shapely geometry
+            The same with heights, and with a further point wherever an edge of the surface is
+            crossed.
+
+        Raises
+        ------
+        InputError
+            A part of it is outside of the surface; the message has the first such point.
+        MissingExtraError
+            shapely is not installed.
+
+        Examples
+        --------
+        >>> import shapely
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)])
+        >>> tin.drape(shapely.LineString([(2, 1), (2, 4)])).wkt
+        'LINESTRING Z (2 1 2, 2 2 4, 2 4 8)'
+        """
+        return profiles.drape(self, geometry)
+
+    def line_of_sight(
+        self, a: ArrayLike, b: ArrayLike, *, height: float = 0.0, target: float = 0.0
+    ) -> profiles.Sight:
+        """Find out whether one point of the surface is visible from another.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (2,)
+            The positions of the observer and of the target.
+        height, target : float, optional
+            Their heights above the surface.
+
+        Returns
+        -------
+        Sight
+            Truthy if nothing of the surface is above the line of sight; otherwise it has the first
+            obstruction. The earth is flat.
+
+        Raises
+        ------
+        InputError
+            A position is outside of the surface.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)])
+        >>> bool(tin.line_of_sight((0, 2), (4, 2), height=1))
+        False
+        >>> bool(tin.line_of_sight((0, 2), (4, 2), height=4, target=4))
+        True
+        """
+        return profiles.sight(self, a, b, height, target)
+
+    def volume(self, other: Any, *, region: Any = None) -> volumes.Volume:
+        """Compute the volume between this surface and a plane or another surface.
+
+        Parameters
+        ----------
+        other : float, triple of float, or TIN
+            A height; a plane (a, b, c) of the heights c + a x + b y; or the surface that is to be
+            reached.
+        region : optional
+            Polygons or rings to which the volume is limited.
+
+        Returns
+        -------
+        Volume
+            Cut (this surface above `other`), fill (below) and their areas, where both are defined.
+
+        Raises
+        ------
+        InputError
+            The surfaces are in different reference systems, or `other` is none of these.
+
+        Notes
+        -----
+        The sum of prisms over the intersections of the triangles of both surfaces, split where the
+        surfaces cross: correct up to rounding. About linear in the number of intersections.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> ground = TIN.from_points([(0, 0, 2), (4, 0, 2), (4, 4, 2), (0, 4, 2)])
+        >>> found = ground.volume(1.0, region=[[(0, 0), (2, 0), (2, 2), (0, 2)]])
+        >>> found.cut, found.fill, found.area
+        (4.0, 0.0, 4.0)
+        """
+        return volumes.volume(self, other, region)
+
+    def raster(self, what: str = "height", **options: Any) -> Grid:
+        """Sample the surface on a raster.
+
+        Parameters
+        ----------
+        what : {"height", "slope", "aspect", "hillshade"}, optional
+            The values: heights at the centers of cells, or the measure of the triangle there.
+        **options
+            ``resolution``, ``shape``, ``x``, ``y`` and ``bounds`` as for `delone.interpolate.grid`;
+            for ``"hillshade"`` those of `hillshade`.
+
+        Returns
+        -------
+        Grid
+            Values, NaN outside of the surface.
+
+        Raises
+        ------
+        InputError
+            `what` is not one of its choices; otherwise as for `delone.interpolate.grid`.
+        MemoryError
+            The raster does not fit into free memory.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> tin = TIN.from_points([(0, 0, 0), (4, 0, 4), (4, 4, 4), (0, 4, 0)])
+        >>> tin.raster("slope", resolution=2).values
+        array([[45., 45.],
+               [45., 45.]])
+        """
+        return slopes.raster(self, what, options)
+
+    def validate(self) -> MeshValidation:
+        """Prove that the triangles are a canonical constrained Delaunay triangulation.
+
+        Returns
+        -------
+        MeshValidation
+            Truthy if there are no faults. Triangles outside of the boundary are checked as well.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> bool(TIN.from_points([(0, 0, 1), (4, 0, 5), (0, 4, 9)]).validate())
+        True
+        """
+        ends = self._all_simplices[:, [[1, 2], [2, 0], [0, 1]]]
+        keys = topology.edge_keys(ends[..., 0], ends[..., 1], self.npoints)
+        lines = topology.edge_keys(*self._breaklines.T, self.npoints)
+        constrained = np.isin(keys, lines) | (self._all_neighbors < 0)
+        return validate(self._points, self._all_simplices, self._all_neighbors, constrained)
+
+
+def _raster(dem: Any) -> tuple[Floats, Floats, Floats]:
+    """Return values, x and y of a raster."""
+    if all(hasattr(dem, name) for name in ("values", "x", "y")):
+        values, x, y = (np.asarray(each, dtype=np.float64) for each in (dem.values, dem.x, dem.y))
+        if values.ndim == 2 and values.shape == (len(y), len(x)):
+            return values, x, y
+    raise InputError(
+        "a raster must have one height in each cell, and the attributes values, x and y: a "
+        f"delone.interpolate.Grid or an xarray.DataArray with these coordinates, got {dem!r:.60}"
+    )

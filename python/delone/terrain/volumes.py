@@ -1,0 +1,147 @@
+"""Volumes between a surface and a plane or another surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_number, as_workers
+from delone.constrained.polygons import from_geometry
+from delone.errors import InputError
+from delone.georeference import same_crs
+from delone.immutable import ReadOnly
+from delone.terrain.lines import rings_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from delone.terrain.tin import TIN
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Volume", "volume"]
+
+
+class _Region(NamedTuple):
+    """The triangles of a region, as the core takes surfaces."""
+
+    points: Floats
+    simplices: Indices
+    neighbors: Indices
+    heights: Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Volume(ReadOnly):
+    """The volume between a surface and what is to be reached.
+
+    Parameters
+    ----------
+    cut, fill : float
+        The volumes where the surface is above and below: what is to be removed and added.
+    cut_area, fill_area : float
+        The horizontal areas where that is so.
+    area : float
+        The area where both are defined, including where they are equal.
+    of_triangles : ndarray of float64, shape (m, 5)
+        The same five numbers for each triangle of the surface, for maps.
+
+    Examples
+    --------
+    >>> from delone.terrain import TIN
+    >>> slope = TIN.from_points([(0, 0, 0), (4, 0, 4), (4, 2, 4), (0, 2, 0)])
+    >>> slope.volume(2)
+    <Volume: cut 4, fill 4, net 0, area 8>
+    """
+
+    cut: float
+    fill: float
+    cut_area: float
+    fill_area: float
+    area: float
+    of_triangles: Floats
+
+    @property
+    def net(self) -> float:
+        """Fill minus cut: what has to be brought in, or, if negative, taken away."""
+        return self.fill - self.cut
+
+    def __repr__(self) -> str:
+        numbers = {name: getattr(self, name) for name in ("cut", "fill", "net", "area")}
+        return "<Volume: " + ", ".join(f"{name} {n:.6g}" for name, n in numbers.items()) + ">"
+
+    @property
+    def mean_height(self) -> Floats:
+        """The mean height of what is to be added in each triangle, negative for cut, (m,).
+
+        NaN where a triangle has no part in the volume.
+        """
+        cut, fill, _, _, area = self.of_triangles.T
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.where(area > 0, (fill - cut) / area, np.nan)
+
+
+def volume(tin: TIN, other: Any, region: Any) -> Volume:
+    """Return the volume between a surface and `other`."""
+    plane, surface = [0.0, 0.0, 0.0], None
+    if hasattr(other, "_sheet"):
+        surface = other._sheet()
+        if tin.crs and other.crs and not same_crs(tin.crs, other.crs):
+            raise InputError(
+                f"the surfaces are in {tin.crs:.60} and in {other.crs:.60}: transform one of them"
+            )
+    else:
+        plane = _plane(other)
+    found = _core.volumes2(tin._sheet(), surface, plane, _region(region), as_workers(tin.workers))
+    of_triangles = np.column_stack(found)
+    # Correctly rounded sums: independent of the order of the triangles.
+    cut, fill, cut_area, fill_area, area = map(math.fsum, found)
+    return Volume(
+        cut=cut,
+        fill=fill,
+        cut_area=cut_area,
+        fill_area=fill_area,
+        area=area,
+        of_triangles=of_triangles,
+    )
+
+
+def _plane(other: Any) -> list[float]:
+    """Return a plane by its slopes and its height at the origin."""
+    try:
+        numbers = [as_number(each, name="other") for each in other]
+    except TypeError:
+        numbers = [0.0, 0.0, as_number(other, name="other")]
+    if len(numbers) != 3 or not np.isfinite(numbers).all():
+        raise InputError(
+            f"other must be a TIN, a height, or a plane (a, b, c), finite; got {other!r:.60}"
+        )
+    return numbers
+
+
+def _region(region: Any) -> _Region | None:
+    """Return the triangles inside of polygons."""
+    if region is None:
+        return None
+    polygons = region
+    if not (hasattr(region, "geom_type") or hasattr(region, "geometry")):
+        if hasattr(region, "geometries"):
+            polygons = region.geometries
+        elif not all(hasattr(each, "geom_type") for each in np.atleast_1d(_objects(region))):
+            polygons = [
+                {"type": "Polygon", "coordinates": [ring[:, :2].tolist()]}
+                for ring in rings_of(region, name="region")
+            ]
+    mesh = from_geometry(polygons, boundary="polygons", crossing="split", planar=True)
+    return _Region(mesh.points, mesh.simplices, mesh.neighbors, np.zeros(mesh.npoints))
+
+
+def _objects(region: Any) -> NDArray[Any]:
+    found = np.empty(len(region), dtype=object)
+    found[:] = list(region)
+    return found
