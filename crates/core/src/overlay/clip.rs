@@ -5,7 +5,7 @@ use crate::Point2;
 use crate::points::Extent;
 
 /// A triangle cut by two others has nine corners at most.
-const MOST: usize = 12;
+pub const MOST: usize = 10;
 
 /// A convex polygon, counterclockwise, relative to an origin.
 #[derive(Clone, Copy)]
@@ -15,6 +15,11 @@ pub struct Polygon {
 }
 
 impl Polygon {
+    const EMPTY: Self = Self {
+        corners: [[0.0; 2]; MOST],
+        len: 0,
+    };
+
     /// A triangle.
     pub fn triangle(corners: [Point2; 3], origin: Point2) -> Self {
         let mut polygon = Self {
@@ -32,43 +37,37 @@ impl Polygon {
         &self.corners[..self.len]
     }
 
-    /// Whether nothing is left.
-    pub fn is_empty(&self) -> bool {
-        self.len < 3
-    }
-
     /// The box around it.
     pub fn extent(&self) -> Extent<2> {
         Extent::of(self.corners().iter().copied())
     }
 
-    /// The part in a triangle.
-    pub fn clipped(&self, triangle: [Point2; 3], origin: Point2) -> Self {
-        let [a, b, c] = triangle.map(|p| relative(p, origin));
-        let mut found = *self;
-        for (a, b) in [(a, b), (b, c), (c, a)] {
-            found = found.left_of(a, b);
-            if found.is_empty() {
-                break;
-            }
+    /// The part in a triangle; `None` if it has no area.
+    #[inline]
+    pub fn clipped(&self, &[a, b, c]: &[Point2; 3]) -> Option<Self> {
+        let lines = [(a, b), (b, c), (c, a)].map(|(a, b)| Line::new(a, b));
+        // Most triangles whose boxes meet are on different sides of one of these lines.
+        let beyond = |line: &Line| self.corners().iter().all(|&p| line.side(p) <= 0.0);
+        if lines.iter().any(beyond) {
+            return None;
         }
-        found
+        let (mut found, mut other) = (Self::EMPTY, Self::EMPTY);
+        self.cut(&lines[0], &mut found);
+        found.cut(&lines[1], &mut other);
+        other.cut(&lines[2], &mut found);
+        (found.len >= 3).then_some(found)
     }
 
-    /// The part to the left of a line.
-    fn left_of(&self, a: Point2, b: Point2) -> Self {
-        let [x, y] = relative(b, a);
-        let side = |p: Point2| x * (p[1] - a[1]) - y * (p[0] - a[0]);
-        let mut found = Self {
-            corners: [[0.0; 2]; MOST],
-            len: 0,
-        };
+    /// Writes the part to the left of a line.
+    #[inline]
+    fn cut(&self, line: &Line, found: &mut Self) {
+        found.len = 0;
         let Some(&last) = self.corners().last() else {
-            return found;
+            return;
         };
-        let (mut from, mut before) = (last, side(last));
+        let (mut from, mut before) = (last, line.side(last));
         for &to in self.corners() {
-            let after = side(to);
+            let after = line.side(to);
             if (before > 0.0 && after < 0.0) || (before < 0.0 && after > 0.0) {
                 let share = before / (before - after);
                 found.push(std::array::from_fn(|k| from[k] + share * (to[k] - from[k])));
@@ -78,7 +77,6 @@ impl Polygon {
             }
             (from, before) = (to, after);
         }
-        found
     }
 
     fn push(&mut self, corner: Point2) {
@@ -90,13 +88,58 @@ impl Polygon {
     }
 }
 
-/// Whether a triangle is on one side of a box.
-pub fn apart(extent: &Extent<2>, triangle: [Point2; 3], origin: Point2) -> bool {
-    let corners = triangle.map(|p| relative(p, origin));
-    (0..2).any(|k| {
-        corners.iter().all(|p| p[k] <= extent.min[k])
-            || corners.iter().all(|p| p[k] >= extent.max[k])
-    })
+/// A directed line.
+struct Line {
+    at: Point2,
+    along: Point2,
+}
+
+impl Line {
+    fn new(a: Point2, b: Point2) -> Self {
+        Self {
+            at: a,
+            along: relative(b, a),
+        }
+    }
+
+    /// Above zero to the left.
+    #[inline]
+    fn side(&self, p: Point2) -> f64 {
+        let [x, y] = relative(p, self.at);
+        self.along[0] * y - self.along[1] * x
+    }
+}
+
+/// A triangle that may overlap others, relative to an origin.
+pub struct Candidate {
+    /// Its corners, counterclockwise.
+    pub corners: [Point2; 3],
+    extent: Extent<2>,
+}
+
+impl Candidate {
+    /// A triangle.
+    pub fn new(corners: [Point2; 3], origin: Point2) -> Self {
+        let corners = corners.map(|p| relative(p, origin));
+        Self {
+            corners,
+            extent: Extent::of(corners),
+        }
+    }
+
+    /// A box relative to the origin.
+    pub fn extent_of(extent: &Extent<2>, origin: Point2) -> Extent<2> {
+        Extent {
+            min: relative(extent.min, origin),
+            max: relative(extent.max, origin),
+        }
+    }
+
+    /// Whether its box has an area in common with another one.
+    #[inline]
+    pub fn meets(&self, other: &Extent<2>) -> bool {
+        (0..2).all(|k| self.extent.min[k] < other.max[k] && other.min[k] < self.extent.max[k])
+    }
 }
 
 fn relative(p: Point2, origin: Point2) -> Point2 {

@@ -2,7 +2,7 @@
 //!
 //! Triangles are intersected in pairs. Over each intersection both surfaces are linear, so the volume
 //! between them is that of prisms, which are split where the surfaces cross. The results are
-//! measures and rounded; coordinates are relative to the triangle, so that large coordinates lose
+//! measures and rounded; coordinates are relative to a point nearby, so that large coordinates lose
 //! nothing.
 //!
 //! Triangles are processed in groups along the curve; a tree of boxes finds the triangles of the
@@ -16,19 +16,21 @@ use crate::Point2;
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::boxes::Boxes;
-use crate::memory::{push, zeroed};
+use crate::memory::{push, with_room, zeroed};
 use crate::order::order_of;
 use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
 
-use clip::Polygon;
+use clip::{Candidate, Polygon};
 use prism::{Linear, Sums};
 
 /// Triangles that look for overlaps together.
-const GROUP: usize = 8;
+const GROUP: usize = 16;
 /// Groups per task.
-const SHARE: usize = 1 << 9;
+const SHARE: usize = 1 << 8;
+/// Candidates between two checks for interruption.
+const WATCH_EVERY: usize = 1 << 12;
 
 /// A triangulated surface.
 #[derive(Clone, Copy)]
@@ -109,43 +111,85 @@ struct Work<'a> {
     within: Option<Boxes<2>>,
 }
 
+/// What may overlap the triangles of a group, relative to an origin near them.
+struct Near {
+    origin: Point2,
+    /// Triangles of the region.
+    within: Vec<Candidate>,
+    /// Triangles of the other surface, and its heights over them.
+    over: Vec<(Candidate, Linear)>,
+}
+
 impl Work<'_> {
     /// The results of the triangles of a task.
     fn rows(&self, order: &[u32], watch: &Watch) -> Result<Vec<[f64; 5]>> {
-        let mut rows = Vec::new();
-        let (mut over, mut within) = (Vec::new(), Vec::new());
+        let mut rows = with_room(order.len())?;
+        let mut near = Near {
+            origin: [0.0; 2],
+            within: Vec::new(),
+            over: Vec::new(),
+        };
         for group in order.chunks(GROUP) {
-            let corners = group
-                .iter()
-                .flat_map(|&t| self.surface.given.corners(t as usize));
-            let extent = Extent::of(corners);
-            overlapping(self.over.as_ref(), &extent, &mut over, watch)?;
-            overlapping(self.within.as_ref(), &extent, &mut within, watch)?;
+            watch.check()?;
+            self.look_around(group, &mut near)?;
             for &t in group {
-                push(&mut rows, self.row(t as usize, &over, &within, watch)?)?;
+                rows.push(self.row(t as usize, &near, watch)?);
             }
         }
         Ok(rows)
     }
 
-    /// The results of a triangle, given what may overlap it.
-    fn row(&self, t: usize, over: &[u32], within: &[u32], watch: &Watch) -> Result<[f64; 5]> {
+    /// Finds what may overlap the triangles of a group.
+    fn look_around(&self, group: &[u32], near: &mut Near) -> Result<()> {
+        let corners = |t: &u32| self.surface.given.corners(*t as usize);
+        let extent = Extent::of(group.iter().flat_map(corners));
+        near.origin = corners(&group[0])[0];
+        let origin = near.origin;
+        let around = Candidate::extent_of(&extent, origin);
+        near.within.clear();
+        near.over.clear();
+        let mut end = Ok(());
+        if let (Some(region), Some(boxes)) = (self.region, &self.within) {
+            boxes.meeting(&extent, |t| {
+                if end.is_ok() {
+                    end = push(&mut near.within, Candidate::new(region.corners(t), origin));
+                }
+            });
+        }
+        if let (Other::Surface(other), Some(boxes)) = (self.other, &self.over) {
+            boxes.meeting(&extent, |t| {
+                if end.is_ok() {
+                    let corners = other.given.corners(t);
+                    let candidate = Candidate::new(corners, origin);
+                    if candidate.meets(&around) {
+                        let linear = Linear::over(corners, other.heights_of(t), origin);
+                        end = push(&mut near.over, (candidate, linear));
+                    }
+                }
+            });
+        }
+        end
+    }
+
+    /// The results of a triangle.
+    fn row(&self, t: usize, near: &Near, watch: &Watch) -> Result<[f64; 5]> {
         let corners = self.surface.given.corners(t);
-        let origin = corners[0];
-        let whole = Polygon::triangle(corners, origin);
-        let below = Linear::over(corners, self.heights(self.surface, t), origin);
+        let whole = Polygon::triangle(corners, near.origin);
+        let below = Linear::over(corners, self.surface.heights_of(t), near.origin);
         let mut sums = Sums::default();
-        let Some(region) = self.region else {
-            self.add(&whole, &below, origin, over, &mut sums, watch)?;
+        if self.region.is_none() {
+            self.add(&whole, &below, near, &mut sums, watch)?;
             return Ok(sums.row());
-        };
-        for (i, &r) in within.iter().enumerate() {
-            if i % 4096 == 4095 {
+        }
+        let extent = whole.extent();
+        for (i, candidate) in near.within.iter().enumerate() {
+            if i % WATCH_EVERY == WATCH_EVERY - 1 {
                 watch.check()?;
             }
-            let part = whole.clipped(region.corners(r as usize), origin);
-            if !part.is_empty() {
-                self.add(&part, &below, origin, over, &mut sums, watch)?;
+            if candidate.meets(&extent)
+                && let Some(part) = whole.clipped(&candidate.corners)
+            {
+                self.add(&part, &below, near, &mut sums, watch)?;
             }
         }
         Ok(sums.row())
@@ -156,50 +200,31 @@ impl Work<'_> {
         &self,
         part: &Polygon,
         below: &Linear,
-        origin: Point2,
-        over: &[u32],
+        near: &Near,
         sums: &mut Sums,
         watch: &Watch,
     ) -> Result<()> {
-        match self.other {
-            Other::Plane(plane) => sums.add(part, below, &Linear::plane(plane, origin)),
-            Other::Surface(other) => {
-                let extent = part.extent();
-                for (i, &u) in over.iter().enumerate() {
-                    if i % 4096 == 4095 {
-                        watch.check()?;
-                    }
-                    let corners = other.given.corners(u as usize);
-                    if clip::apart(&extent, corners, origin) {
-                        continue;
-                    }
-                    let common = part.clipped(corners, origin);
-                    if !common.is_empty() {
-                        let above = Linear::over(corners, self.heights(other, u as usize), origin);
-                        sums.add(&common, below, &above);
-                    }
-                }
+        if let Other::Plane(plane) = self.other {
+            sums.add(part, below, &Linear::plane(plane, near.origin));
+            return Ok(());
+        }
+        let extent = part.extent();
+        for (i, (candidate, above)) in near.over.iter().enumerate() {
+            if i % WATCH_EVERY == WATCH_EVERY - 1 {
+                watch.check()?;
+            }
+            if candidate.meets(&extent)
+                && let Some(common) = part.clipped(&candidate.corners)
+            {
+                sums.add(&common, below, above);
             }
         }
         Ok(())
     }
-
-    fn heights(&self, surface: Surface, t: usize) -> [f64; 3] {
-        surface.given.simplices[t].map(|v| surface.heights[v as usize])
-    }
 }
 
-/// Lists the triangles whose boxes meet `extent`.
-fn overlapping(
-    boxes: Option<&Boxes<2>>,
-    extent: &Extent<2>,
-    found: &mut Vec<u32>,
-    watch: &Watch,
-) -> Result<()> {
-    found.clear();
-    watch.check()?;
-    if let Some(boxes) = boxes {
-        boxes.meeting(extent, |t| found.push(t as u32));
+impl Surface<'_> {
+    fn heights_of(&self, t: usize) -> [f64; 3] {
+        self.given.simplices[t].map(|v| self.heights[v as usize])
     }
-    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Volumes between two linear functions over a convex polygon.
 
-use super::clip::Polygon;
+use super::clip::{MOST, Polygon};
 use crate::Point2;
 
 /// A linear function over a triangle, relative to an origin.
@@ -79,26 +79,42 @@ impl Sums {
     /// Adds what is between two surfaces over a polygon.
     pub fn add(&mut self, over: &Polygon, first: &Linear, second: &Linear) {
         let corners = over.corners();
-        let difference = |p: Point2| (p, second.value(p) - first.value(p));
-        let apex = difference(corners[0]);
-        let mut last = difference(corners[1]);
-        for &corner in &corners[2..] {
-            let next = difference(corner);
-            self.triangle([apex, last, next]);
-            last = next;
+        let apex = corners[0];
+        let mut differences = [0.0; MOST];
+        let mut signs = [false; 2];
+        for (difference, &p) in differences.iter_mut().zip(corners) {
+            *difference = second.value(p) - first.value(p);
+            signs[0] |= *difference < 0.0;
+            signs[1] |= *difference > 0.0;
+        }
+        for k in 1..corners.len() - 1 {
+            let [b, c] = [corners[k], corners[k + 1]];
+            let twice = (b[0] - apex[0]) * (c[1] - apex[1]) - (b[1] - apex[1]) * (c[0] - apex[0]);
+            // Rounding may turn a polygon that is nearly flat.
+            let area = twice.max(0.0) / 2.0;
+            let values = [differences[0], differences[k], differences[k + 1]];
+            self.area += area;
+            if signs == [true, true] {
+                self.split(area, values);
+                continue;
+            }
+            let volume = area * (values[0] + values[1] + values[2]) / 3.0;
+            if signs[1] {
+                self.fill += volume;
+                self.fill_area += area;
+            } else if signs[0] {
+                self.cut -= volume;
+                self.cut_area += area;
+            }
         }
     }
 
-    fn triangle(&mut self, corners: [(Point2, f64); 3]) {
-        let [(a, d), (b, e), (c, f)] = corners;
-        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        // Rounding may turn a polygon that is nearly flat.
-        let area = twice.max(0.0) / 2.0;
-        self.area += area;
-        let (volume, share) = positive([d, e, f]);
+    /// Adds a triangle in which the surfaces may cross.
+    fn split(&mut self, area: f64, values: [f64; 3]) {
+        let (volume, share) = positive(values);
         self.fill += area * volume;
         self.fill_area += area * share;
-        let (volume, share) = positive([-d, -e, -f]);
+        let (volume, share) = positive(values.map(|value| -value));
         self.cut += area * volume;
         self.cut_area += area * share;
     }
