@@ -872,22 +872,8 @@ class _Sheet(Protocol):
     @property
     def heights(self) -> NDArray[np.float64]: ...
 
-def contour_lines2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    heights: NDArray[np.float64],
-    levels: NDArray[np.float64],
-    limit: int,
-) -> ContourLines: ...
-def contour_bands2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    heights: NDArray[np.float64],
-    levels: NDArray[np.float64],
-    limit: int,
-) -> ContourBands: ...
+def contour_lines2(surface: _Sheet, levels: NDArray[np.float64], limit: int) -> ContourLines: ...
+def contour_bands2(surface: _Sheet, levels: NDArray[np.float64], limit: int) -> ContourBands: ...
 def volumes2(
     surface: _Sheet,
     other: _Sheet | None,

@@ -20,7 +20,7 @@ import pytest
 from delone import Delaunay, Mesh, OutputError, Voronoi, mesh
 from delone.atomic import replacing
 from delone.cli import run
-from delone.cli.cells import write_cells
+from delone.cli.tables import write_table
 from delone.distributed import triangulate
 from delone.distributed.store.files import Store
 from delone.interpolate import grid
@@ -41,7 +41,7 @@ Write = Callable[[Path], None]
 def _cells(file: Path) -> None:
     table = Voronoi(POINTS).to_geopandas({"site": np.arange(len(POINTS))})
     with replacing(file) as beside:
-        write_cells(table, beside)
+        write_table(table, beside, layer="cells", multi=True)
 
 
 def _writers() -> Iterator[tuple[str, str, Write]]:

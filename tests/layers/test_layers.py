@@ -48,6 +48,7 @@ PYTHON: tuple[set[str], ...] = (
     {"graphs", "io"},
     {"voronoi", "interpolate"},
     {"compat", "distributed", "explorer"},
+    {"compat", "distributed", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
     # The package itself re-exports.
@@ -118,6 +119,8 @@ CORE: dict[str, set[str]] = {
         "delone_predicates",
     }
     | GROUND,
+    "contour": {"delone_predicates"} | GROUND,
+    "overlay": {"locate", "order", "parallel", "points", "delone_predicates"} | GROUND,
     "interpolate": {"locate", "delaunay2", "parallel", "wide", "delone_predicates"} | GROUND,
     "interpolate3": {"interpolate", "locate", "locate3", "parallel", "wide", "delone_predicates"}
     | GROUND,
@@ -135,6 +138,7 @@ BINDINGS = {
     "consistency",
     "constrained::components",
     "constrained::simple_ring",
+    "contour",
     "delaunay2::lawson",
     "delaunay2::validate",
     "delaunay3::validate",
@@ -149,6 +153,7 @@ BINDINGS = {
     "measure",
     "memory",
     "mesh2::import",
+    "overlay",
     "refine::judge",
     "regular",
     "regular3",

@@ -61,20 +61,13 @@ fn levels_of<'a>(levels: &'a PyReadonlyArray1<'_, f64>) -> Result<&'a [f64]> {
 #[pyfunction]
 pub fn contour_lines2(
     py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    heights: PyReadonlyArray1<'_, f64>,
+    surface: Sheet<'_>,
     levels: PyReadonlyArray1<'_, f64>,
     limit: usize,
 ) -> PyResult<ContourLines> {
-    let (given, heights, levels) = attached(py, || {
-        let given: Given<2, 3> = checked(&points, &simplices, &neighbors)?;
-        let heights = heights_of(&heights, given.points.len())?;
-        Ok((given, heights, levels_of(&levels)?))
-    })?;
+    let (surface, levels) = attached(py, || Ok((surface.surface()?, levels_of(&levels)?)))?;
     let found = watched(py, |watch| {
-        contour::lines(given, heights, levels, limit, watch)
+        contour::lines(surface.given, surface.heights, levels, limit, watch)
     })?;
     Ok(ContourLines {
         points: table(py, found.points)?,
@@ -87,20 +80,13 @@ pub fn contour_lines2(
 #[pyfunction]
 pub fn contour_bands2(
     py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
-    heights: PyReadonlyArray1<'_, f64>,
+    surface: Sheet<'_>,
     levels: PyReadonlyArray1<'_, f64>,
     limit: usize,
 ) -> PyResult<ContourBands> {
-    let (given, heights, levels) = attached(py, || {
-        let given: Given<2, 3> = checked(&points, &simplices, &neighbors)?;
-        let heights = heights_of(&heights, given.points.len())?;
-        Ok((given, heights, levels_of(&levels)?))
-    })?;
+    let (surface, levels) = attached(py, || Ok((surface.surface()?, levels_of(&levels)?)))?;
     let found = watched(py, |watch| {
-        contour::bands(given, heights, levels, limit, watch)
+        contour::bands(surface.given, surface.heights, levels, limit, watch)
     })?;
     Ok(ContourBands {
         points: table(py, found.points)?,

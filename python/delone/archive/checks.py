@@ -88,7 +88,8 @@ def check_surface(**arrays: NDArray[Any]) -> None:
     require(len(arrays["soft"]) == len(arrays["breaklines"]), "soft and breaklines do not match")
     ends = simplices[:, [[1, 2], [2, 0], [0, 1]]]
     edges = edge_keys(ends[..., 0], ends[..., 1], len(points)).ravel()
-    lines = edge_keys(*arrays["breaklines"].T, len(points))
+    a, b = arrays["breaklines"].T
+    lines = edge_keys(a, b, len(points))
     require(among(lines, edges).all(), "a breakline is not an edge")
 
 

@@ -16,6 +16,7 @@ import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
 from delone.cli import cells, field, graph, tiles
+from delone.cli import cells, field, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
@@ -323,6 +324,15 @@ _ON_POINTS = (
     field.interpolate,
     field.crossval,
     cells.voronoi,
+    triangulate,
+    check,
+    info,
+    field.interpolate,
+    field.crossval,
+    cells.voronoi,
+    terrain.contours,
+    terrain.profile,
+    terrain.volume,
     tiles.tile,
 )
 for _command in _ON_POINTS:

@@ -10,25 +10,24 @@ import numpy as np
 import typer
 
 from delone import Voronoi, __version__
-from delone.atomic import check_target, replacing
+from delone.atomic import replacing
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import Json, Layer, Quiet, Workers, split
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
+from delone.cli.tables import TABLE_SUFFIXES, ready_table, write_table
 from delone.errors import DegenerateInputError, FileFormatError, InputError, NonFiniteError
 from delone.extras import require
 from delone.io import input_suffixes, read_geometries, read_points
 from delone.io.gdal import DRIVERS
-from delone.io.vector import attribute_names, write_layer
+from delone.io.vector import attribute_names
 
 if TYPE_CHECKING:
     from delone.io import PointSet
 
-__all__ = ["LAYER_DRIVERS", "voronoi"]
+__all__ = ["voronoi"]
 
-LAYER_DRIVERS = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".fgb": "FlatGeobuf"}
-_SUFFIXES = (*LAYER_DRIVERS, ".parquet")
 _AREAS = (3, 6)  # shapely's numbers of Polygon and MultiPolygon
 
 
@@ -43,7 +42,7 @@ def voronoi(
             "--output",
             "-o",
             metavar="OUTPUT",
-            help="File of cells, once or more: " + " ".join(_SUFFIXES),
+            help="File of cells, once or more: " + " ".join(TABLE_SUFFIXES),
         ),
     ] = None,
     clip: Annotated[
@@ -73,7 +72,7 @@ def voronoi(
     with writing():
         protect_inputs(output or (), source, Path(clip))
         for path in output or ():
-            _ready(path)
+            ready_table(path, "cells")
     watch = Stopwatch()
     with spinner(quiet or as_json) as say:
         say(f"reading {source.name}")
@@ -115,16 +114,6 @@ def _print(figures: dict[str, Any], source: str) -> None:
     if figures["area"] is not None:
         rows.append(("area", f"{figures['area']:.10g}"))
     print_report(source, rows, figures)
-
-
-def _ready(path: Path) -> None:
-    """Check that a file can be written before any work is done."""
-    if path.suffix.lower() not in _SUFFIXES:
-        raise Failure(f"{path}: cells can only be written to {' '.join(_SUFFIXES)}", Exit.USAGE)
-    require("geopandas", extra="geo", what="writing cells")
-    if path.suffix.lower() == ".parquet":
-        require("pyarrow.parquet", extra="geo", what="writing Parquet files")
-    check_target(path)
 
 
 def _sites(
@@ -212,17 +201,5 @@ def _write(diagram: Voronoi, sites: PointSet, output: list[Path], watch: Stopwat
         table = diagram.to_geopandas(carried, crs=sites.crs)
         for path in output:
             with watch.stage(f"write {path.name}"):
-                write_cells(table, stack.enter_context(replacing(path)))
-
-
-def write_cells(table: Any, path: Path) -> None:
-    """Write the table of `Voronoi.to_geopandas` in place; the suffix determines the format."""
-    suffix = path.suffix.lower()
-    if suffix == ".parquet":
-        table.to_parquet(path, index=False)
-        return
-    options: dict[str, Any] = {"driver": LAYER_DRIVERS[suffix], "promote_to_multi": True}
-    if suffix == ".fgb" and (table.geometry.isna() | table.geometry.is_empty).any():
-        # The index of FlatGeobuf cannot contain empty cells.
-        options["SPATIAL_INDEX"] = "NO"
-    write_layer(path, table, "cells", **options)
+                target = stack.enter_context(replacing(path))
+                write_table(table, target, layer="cells", multi=True)

@@ -12,7 +12,6 @@ import typer
 
 from delone import __version__, graphs
 from delone.atomic import check_target, replacing
-from delone.cli.cells import LAYER_DRIVERS
 from delone.cli.exits import Exit, Failure, protect_inputs, reading, writing
 from delone.cli.options import (
     Classes,
@@ -29,10 +28,10 @@ from delone.cli.options import (
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
+from delone.cli.tables import TABLE_SUFFIXES, write_table
 from delone.cli.solid import is_space
 from delone.extras import require
 from delone.io import input_suffixes, read_points
-from delone.io.vector import write_layer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = ["graph"]
 
-_SUFFIXES = (*LAYER_DRIVERS, ".parquet", ".csv", ".npz")
+_SUFFIXES = (*TABLE_SUFFIXES, ".csv", ".npz")
 
 
 class Kind(StrEnum):
@@ -247,11 +246,8 @@ def _write_one(found: Graph, crs: str | None, path: Path) -> None:
             file.write("v0,v1,length\n")
             rows = zip(*found.edges.T.tolist(), found.lengths.tolist(), strict=True)
             file.writelines(f"{a},{b},{length!r}\n" for a, b, length in rows)
-    elif suffix == ".parquet":
-        found.to_geopandas(crs=crs).to_parquet(path, index=False)
     else:
-        driver = LAYER_DRIVERS[suffix]
-        write_layer(path, found.to_geopandas(crs=crs), "edges", driver=driver)
+        write_table(found.to_geopandas(crs=crs), path, layer="edges")
 
 
 def _print(figures: dict[str, Any], source: str) -> None:

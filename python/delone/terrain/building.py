@@ -9,14 +9,18 @@ import numpy as np
 from delone._arrays import as_choice, as_number, as_points, require_finite
 from delone.constrained.delaunay import ConstrainedDelaunay
 from delone.counting import counted
-from delone.delaunay import Delaunay
 from delone.errors import CrossingSegmentsError, InputError, ShapeError
 from delone.georeference import as_known_crs, crs_of, same_crs, warn_of_degrees
 from delone.terrain.heights import POLICIES, Claims, claims_of_lines, resolved
 from delone.terrain.lines import lines_of, rings_of
+from delone.terrain.profiles import profile
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
+
+    from delone.terrain.surface import Surface
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -63,15 +67,28 @@ def build(
     crs: Any,
     planar: bool,
     workers: int | None,
+    surface_of: Callable[[Floats], Surface],
 ) -> Built:
-    """Triangulate points and lines, and give each vertex a height."""
+    """Triangulate points and lines, and give each vertex a height.
+
+    `surface_of` returns the surface of points alone, for lines without heights.
+    """
     as_choice(duplicates, POLICIES, name="duplicates")
     as_choice(crossing, POLICIES, name="crossing")
     points = _points_of(xyz)
     system = _system(crs, xyz, breaklines, soft_breaklines, boundary, holes)
     warn_of_degrees(xyz, points[:, :2], planar=planar)
-    lines = _gathered(breaklines, soft_breaklines, boundary, holes)
-    line_heights = _given_or_of_points(lines.points, points, workers)
+    lines = _gathered(
+        [
+            lines_of(breaklines, name="breaklines"),
+            lines_of(soft_breaklines, name="soft_breaklines"),
+            rings_of(boundary, name="boundary"),
+            rings_of(holes, name="holes"),
+        ],
+        points,
+        surface_of,
+    )
+    _refuse_crossing_rings(lines)
     rows = np.concatenate((points[:, :2], lines.points[:, :2]))
     mesh = ConstrainedDelaunay(
         rows,
@@ -80,8 +97,7 @@ def build(
         workers=workers,
         planar=True,
     )
-    _refuse_crossing_rings(mesh, lines)
-    z = np.concatenate((points[:, 2], line_heights))
+    z = np.concatenate((points[:, 2], lines.points[:, 2]))
     of_points = Claims(mesh.duplicate_of[: len(points)].astype(np.int64), points[:, 2])
     heights = resolved(
         mesh.points,
@@ -130,67 +146,74 @@ def _system(crs: Any, *data: Any) -> str | None:
     return found
 
 
-def _gathered(breaklines: Any, soft_breaklines: Any, boundary: Any, holes: Any) -> _Lines:
-    given = [
-        lines_of(breaklines, name="breaklines"),
-        lines_of(soft_breaklines, name="soft_breaklines"),
-        rings_of(boundary, name="boundary"),
-        rings_of(holes, name="holes"),
-    ]
-    points: list[Floats] = [np.empty((0, 3))]
+def _gathered(
+    given: list[list[Floats]], points: Floats, surface_of: Callable[[Floats], Surface]
+) -> _Lines:
+    """Gather the lines of each kind, and put those without heights onto the points."""
+    parts: list[Floats] = [np.empty((0, 3))]
     segments: list[NDArray[np.int64]] = [np.empty((0, 2), dtype=np.int64)]
     kinds: list[NDArray[np.int8]] = [np.empty(0, dtype=np.int8)]
     count = 0
+    ground: Surface | None = None
     for kind, lines in enumerate(given):
         for line in lines:
-            first = count + np.arange(len(line) - 1)
-            segments.append(np.column_stack((first, first + 1)))
-            kinds.append(np.full(len(first), kind, dtype=np.int8))
-            points.append(line)
-            count += len(line)
+            found = [line]
+            if np.isnan(line[:, 2]).any():
+                ground = ground or surface_of(points)
+                found = _on_ground(line, ground, outside=kind >= _BOUNDARY)
+            for part in found:
+                first = count + np.arange(len(part) - 1)
+                segments.append(np.column_stack((first, first + 1)))
+                kinds.append(np.full(len(first), kind, dtype=np.int8))
+                parts.append(part)
+                count += len(part)
     return _Lines(
-        np.concatenate(points),
+        np.concatenate(parts),
         np.concatenate(segments).astype(np.int32),
         np.concatenate(kinds),
         {_BOUNDARY: given[_BOUNDARY], _HOLE: given[_HOLE]},
     )
 
 
-def _given_or_of_points(lines: Floats, points: Floats, workers: int | None) -> Floats:
-    """Return the heights of points of lines; those without are on the surface of the points."""
-    z = lines[:, 2].copy()
-    without = np.flatnonzero(np.isnan(z))
-    if not len(without):
-        return z
-    mesh = Delaunay(np.ascontiguousarray(points[:, :2]), workers=workers, planar=True)
-    place = mesh.locate(np.ascontiguousarray(lines[without, :2]))
-    outside = without[place.simplex < 0]
-    if len(outside):
-        x, y = lines[outside[0], :2]
+def _on_ground(line: Floats, ground: Surface, *, outside: bool) -> list[Floats]:
+    """Return a line with heights: its parts on the surface of the points, if it has none itself.
+
+    Unless parts `outside` of that surface may be left out, they are an error.
+    """
+    places, without = np.ascontiguousarray(line[:, :2]), np.isnan(line[:, 2])
+    z = np.where(without, ground.heights(places), line[:, 2])
+    if not without.all() and not np.isnan(z).any():
+        return [np.column_stack((places, z))]
+    found = profile(ground, places)
+    off = np.isnan(found.z)
+    if not outside and (off.any() or np.isnan(z).any()):
+        x, y = places[np.isnan(z)][0] if np.isnan(z).any() else found.points[off][0]
         raise InputError(
-            f"{counted(len(outside), 'point')} of lines without heights "
-            f"{'is' if len(outside) == 1 else 'are'} outside of the points, first ({x:.10g}, "
-            f"{y:.10g}): give heights there"
+            f"a line without heights is outside of the points at ({x:.10g}, {y:.10g}): give it "
+            "heights there"
         )
-    corners = points[:, 2][mesh.simplices[place.simplex]]
-    z[without] = (place.barycentric * corners).sum(axis=1)
-    return z
+    table = np.column_stack((found.points, found.z))
+    parts = [part[~np.isnan(part[:, 2])] for part in np.split(table, np.flatnonzero(off))]
+    return [part for part in parts if len(part) > 1]
 
 
-def _refuse_crossing_rings(mesh: ConstrainedDelaunay, lines: _Lines) -> None:
+def _refuse_crossing_rings(lines: _Lines) -> None:
     """Refuse a boundary or hole that crosses itself or another one."""
-    crossings = mesh.report.crossings
-    ring = lines.kinds >= _BOUNDARY
-    both = ring[crossings[:, 0]] & ring[crossings[:, 1]]
-    if both.any():
-        places = mesh.points[crossings[both, 2]]
-        x, y = places[0]
+    rings = [ring[:, :2] for kind in (_BOUNDARY, _HOLE) for ring in lines.rings[kind]]
+    if not rings:
+        return
+    ends = np.cumsum([len(ring) for ring in rings]) - 1
+    row = np.delete(np.arange(ends[-1] + 1), ends)
+    try:
+        ConstrainedDelaunay(np.concatenate(rings), np.column_stack((row, row + 1)), planar=True)
+    except CrossingSegmentsError as error:
+        x, y = error.points[0]
         raise CrossingSegmentsError(
-            f"boundary and holes cross at {counted(len(places), 'place')}, first ({x:.10g}, "
+            f"boundary and holes cross at {counted(len(error.points), 'place')}, first ({x:.10g}, "
             f"{y:.10g})",
-            pairs=crossings[both, :2],
-            points=places,
-        )
+            pairs=error.pairs,
+            points=error.points,
+        ) from error
 
 
 def _within(mesh: ConstrainedDelaunay, lines: _Lines) -> Bools:
@@ -270,7 +293,7 @@ def _compact(
     if not kept.any():
         raise InputError("no triangle is left: max_edge is too small, or the boundary is empty")
     used = mesh.duplicate_of == np.arange(mesh.npoints)
-    number = np.cumsum(used, dtype=np.int32) - 1
+    number = np.asarray(np.cumsum(used) - 1, dtype=np.int32)
     return Built(
         mesh.points[used],
         z[used],

@@ -18,7 +18,7 @@ from delone.immutable import ReadOnly
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.terrain.tin import TIN
+    from delone.terrain.surface import Surface
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -317,15 +317,16 @@ def levels_of(
             found=LARGEST_LIMIT if not last - first < LARGEST_LIMIT else int(last - first),
         )
     numbers = np.arange(math.ceil(first), math.floor(last) + 1)
-    return start + numbers * step, (numbers % every == 0) if every else numbers < numbers[:1]
+    marked = numbers % every == 0 if every else np.zeros(len(numbers), dtype=bool)
+    return np.asarray(start + numbers * step, dtype=np.float64), np.asarray(marked)
 
 
-def lines(tin: TIN, levels: Floats, marked: Bools, smooth: int, max_points: int) -> Contours:
+def lines(tin: Surface, levels: Floats, marked: Bools, smooth: int, max_points: int) -> Contours:
     """Return the contours of a surface."""
     from delone.terrain.smoothing import smoothed
 
     rounds = as_count(smooth, name="smooth")
-    made = _core.contour_lines2(*tin._sheet(), levels, as_count(max_points, name="max_points"))
+    made = _core.contour_lines2(tin._sheet(), levels, as_count(max_points, name="max_points"))
     points, starts = made.points, made.starts
     if rounds:
         points, starts = smoothed(points, starts, tin, rounds)
@@ -339,9 +340,9 @@ def lines(tin: TIN, levels: Floats, marked: Bools, smooth: int, max_points: int)
     )
 
 
-def bands(tin: TIN, levels: Floats, max_points: int) -> Bands:
+def bands(tin: Surface, levels: Floats, max_points: int) -> Bands:
     """Return the polygons between contours of a surface."""
-    made = _core.contour_bands2(*tin._sheet(), levels, as_count(max_points, name="max_points"))
+    made = _core.contour_bands2(tin._sheet(), levels, as_count(max_points, name="max_points"))
     used = tin.z[np.unique(tin.simplices)]
     ends = np.concatenate(([used.min()], levels, [used.max()]))
     return Bands(

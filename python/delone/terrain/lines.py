@@ -75,13 +75,14 @@ def _each(given: Any, name: str) -> Iterator[Floats]:
 
 
 def _is_line(given: Any) -> bool:
-    """Whether a sequence is one line: its items are sequences of numbers."""
-    if not isinstance(given, list | tuple) or not given:
+    """Whether a sequence is one line: its items are points."""
+    if not isinstance(given, list | tuple) or not given or hasattr(given[0], "geom_type"):
         return False
-    first = given[0]
-    return isinstance(first, list | tuple) and all(
-        isinstance(x, int | float | np.number) for x in first
-    )
+    try:
+        first = np.asarray(given[0], dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    return first.ndim == 1
 
 
 def _of_array(array: NDArray[Any], name: str) -> Floats:

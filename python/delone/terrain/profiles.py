@@ -16,7 +16,7 @@ from delone.terrain.lines import line_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from delone.terrain.tin import TIN
+    from delone.terrain.surface import Surface
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -128,7 +128,7 @@ class _Part(NamedTuple):
     z: Floats
 
 
-def profile(tin: TIN, line: Any) -> Profile:
+def profile(tin: Surface, line: Any) -> Profile:
     """Return the heights along a line."""
     points = line_of(line, name="line")
     lengths = np.hypot(*np.diff(points, axis=0).T)
@@ -153,7 +153,7 @@ def profile(tin: TIN, line: Any) -> Profile:
     return Profile(distance=table[:, 0].copy(), z=table[:, 1].copy(), points=table[:, 2:].copy())
 
 
-def _parts(tin: TIN, a: Floats, b: Floats) -> list[_Part]:
+def _parts(tin: Surface, a: Floats, b: Floats) -> list[_Part]:
     """Return the parts of a segment that are on the surface."""
     if (a == b).all():
         z = tin.heights(a[None])
@@ -177,7 +177,7 @@ def _parts(tin: TIN, a: Floats, b: Floats) -> list[_Part]:
     return parts
 
 
-def _crossings(tin: TIN, met: Indices, a: Floats, b: Floats) -> tuple[_Part, _Part]:
+def _crossings(tin: Surface, met: Indices, a: Floats, b: Floats) -> tuple[_Part, _Part]:
     """Return where a segment enters and leaves triangles that it meets."""
     corners = tin.simplices[met]
     # The edge opposite each corner, from the smaller row on: both triangles compute the same.
@@ -213,7 +213,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
     return found
 
 
-def drape(tin: TIN, geometry: Any) -> Any:
+def drape(tin: Surface, geometry: Any) -> Any:
     """Return a geometry with the heights of the surface."""
     shapely = require("shapely", extra="geo", what="geometries")
     if not hasattr(geometry, "geom_type"):
@@ -232,7 +232,7 @@ def drape(tin: TIN, geometry: Any) -> Any:
     return type(geometry)(_draped(tin, geometry))
 
 
-def _draped(tin: TIN, line: Any) -> Floats:
+def _draped(tin: Surface, line: Any) -> Floats:
     places = np.asarray(line.coords)[:, :2]
     _on(tin.heights(places), places)
     found = profile(tin, places)
@@ -249,7 +249,7 @@ def _on(z: Floats, places: Floats) -> Floats:
     return z
 
 
-def sight(tin: TIN, a: ArrayLike, b: ArrayLike, height: float, target: float) -> Sight:
+def sight(tin: Surface, a: ArrayLike, b: ArrayLike, height: float, target: float) -> Sight:
     """Return whether a target is visible from an observer."""
     ends = []
     for name, place in (("a", a), ("b", b)):

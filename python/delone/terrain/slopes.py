@@ -13,7 +13,7 @@ from delone.interpolate.raster import Grid, raster_nodes, require_memory
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.terrain.tin import TIN
+    from delone.terrain.surface import Surface
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -34,7 +34,7 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
     du, dv = mid - low, high - low
     twice = ux * vy - uy * vx
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
+        found: Floats = np.column_stack((du * vy - dv * uy, dv * ux - du * vx)) / twice[:, None]
     # Level triangles stay level, however thin.
     found[(du == 0) & (dv == 0)] = 0.0
     return found
@@ -43,8 +43,8 @@ def gradient(points: Floats, z: Floats, simplices: Indices) -> Floats:
 def normals(slopes: Floats) -> Floats:
     """Return the upward unit normals of planes with these gradients."""
     found = np.column_stack((-slopes, np.ones(len(slopes))))
-    found /= np.linalg.norm(found, axis=1, keepdims=True)
-    return found
+    shares: Floats = found / np.linalg.norm(found, axis=1, keepdims=True)
+    return shares
 
 
 def slope(slopes: Floats) -> Floats:
@@ -79,10 +79,13 @@ def hillshade(slopes: Floats, azimuth: float, altitude: float, z_factor: float) 
     return found
 
 
-def raster(tin: TIN, what: str, options: dict[str, Any]) -> Grid:
+def raster(tin: Surface, what: str, options: dict[str, Any]) -> Grid:
     """Sample heights, or a measure of triangles, at the centers of cells."""
     as_choice(what, _WHAT, name="what")
-    light = {name: options.pop(name) for name in _LIGHT if name in options and what == "hillshade"}
+    light = {"azimuth": 315.0, "altitude": 45.0, "z_factor": 1.0}
+    for name in _LIGHT:
+        if name in options and what == "hillshade":
+            light[name] = options.pop(name)
     x, y = _nodes(tin, options)
     require_memory(len(x), len(y), 1)
     values = np.empty((len(y), len(x)))
@@ -101,7 +104,7 @@ def raster(tin: TIN, what: str, options: dict[str, Any]) -> Grid:
     return Grid(values, x, y)
 
 
-def _nodes(tin: TIN, options: dict[str, Any]) -> tuple[Floats, Floats]:
+def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
     if "x" in options and "y" in options and len(options) == 2:
         return tuple(np.asarray(options[name], dtype=np.float64) for name in "xy")  # type: ignore[return-value]
     unknown = set(options) - {"resolution", "shape", "bounds"}

@@ -19,7 +19,7 @@ from delone.errors import CrossingSegmentsError, InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.terrain.tin import TIN
+    from delone.terrain.surface import Surface
 
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
@@ -31,15 +31,14 @@ _MOST_ROUNDS = 5
 _SHARE = 0.25
 
 
-def smoothed(points: Floats, starts: Rows, tin: TIN, rounds: int) -> tuple[Floats, Rows]:
+def smoothed(points: Floats, starts: Rows, tin: Surface, rounds: int) -> tuple[Floats, Rows]:
     """Return lines with corners cut `rounds` times, and their starts."""
     if rounds > _MOST_ROUNDS:
         raise InputError(f"smooth must be at most {_MOST_ROUNDS}, got {rounds}")
     if not len(points):
         return points, starts
-    sharp = _on_hard_lines(points, tin)
-    sharp |= _repeated(points, starts)
-    while True:
+    sharp = np.array(_on_hard_lines(points, tin) | _repeated(points, starts))
+    while True:  # each pass restores a corner
         cut, begin, corner = _cut(points, starts, sharp, rounds)
         crossing = _crossing(cut, begin)
         if not len(crossing):
@@ -54,7 +53,7 @@ def smoothed(points: Floats, starts: Rows, tin: TIN, rounds: int) -> tuple[Float
         sharp[beside] = True
 
 
-def _on_hard_lines(points: Floats, tin: TIN) -> Bools:
+def _on_hard_lines(points: Floats, tin: Surface) -> Bools:
     """Which points are on breaklines that are not soft, up to rounding."""
     hard = tin.breaklines[~tin.soft]
     if not len(hard):

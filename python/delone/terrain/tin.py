@@ -137,10 +137,12 @@ class TIN(HullTiling):
         breaklines, soft_breaklines : optional
             Lines that edges follow, such as the edges of roads, dikes and water: geometries of
             shapely, tables of them, a `delone.io.GeometrySet`, or arrays of shape (k, 2) or (k, 3).
-            Points of lines without heights get those of the surface of the points. Both kinds are
-            edges; smoothing does not cut corners of contours at hard ones.
+            Lines without heights follow the surface of the points; single points of a line without
+            one are on it. Both kinds are edges; smoothing does not cut corners of contours at hard
+            ones.
         boundary, holes : optional
-            Rings or polygons: the surface ends at the boundary, and does not cover holes.
+            Rings or polygons: the surface ends at the boundary, and does not cover holes. Where
+            they leave the points, the surface ends there.
         max_edge : float, optional
             Triangles are removed from outside as long as their outer edge is longer than this, up
             to lines; by default the surface covers the convex hull or the boundary.
@@ -196,6 +198,9 @@ class TIN(HullTiling):
             crs=crs,
             planar=planar,
             workers=workers,
+            surface_of=lambda points: cls.from_points(
+                points, duplicates=duplicates, planar=True, workers=workers
+            ),
         )
         return cls._built(made, workers)
 
@@ -739,7 +744,8 @@ class TIN(HullTiling):
         """
         ends = self._all_simplices[:, [[1, 2], [2, 0], [0, 1]]]
         keys = topology.edge_keys(ends[..., 0], ends[..., 1], self.npoints)
-        lines = topology.edge_keys(*self._breaklines.T, self.npoints)
+        a, b = self._breaklines.T
+        lines = topology.edge_keys(a, b, self.npoints)
         constrained = np.isin(keys, lines) | (self._all_neighbors < 0)
         return validate(self._points, self._all_simplices, self._all_neighbors, constrained)
 

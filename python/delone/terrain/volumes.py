@@ -19,7 +19,7 @@ from delone.terrain.lines import rings_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from delone.terrain.tin import TIN
+    from delone.terrain.surface import Surface
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
@@ -86,7 +86,7 @@ class Volume(ReadOnly):
             return np.where(area > 0, (fill - cut) / area, np.nan)
 
 
-def volume(tin: TIN, other: Any, region: Any) -> Volume:
+def volume(tin: Surface, other: Any, region: Any) -> Volume:
     """Return the volume between a surface and `other`."""
     plane, surface = [0.0, 0.0, 0.0], None
     if hasattr(other, "_sheet"):

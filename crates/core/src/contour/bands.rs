@@ -12,11 +12,11 @@ use super::lines::rotate;
 use super::link::{Edge, Linker, is_counterclockwise};
 use super::nodes::{Crossed, Nodes};
 use super::untangle::untangle;
-use crate::Point2;
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::memory::{filled, make_room, push, with_room};
 use crate::watch::Watch;
+use delone_predicates::Point2;
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;

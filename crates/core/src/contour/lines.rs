@@ -5,11 +5,11 @@ use delone_predicates::lexicographic;
 use super::link::{Edge, Linker, first_of};
 use super::nodes::Nodes;
 use super::untangle::untangle;
-use crate::Point2;
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::memory::{filled, make_room, push, with_room};
 use crate::watch::Watch;
+use delone_predicates::Point2;
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;

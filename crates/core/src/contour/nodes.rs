@@ -4,11 +4,11 @@
 //! ascending along each edge. Places that were found to be at the same position are united; `find`
 //! returns the representative.
 
-use crate::Point2;
 use crate::arrays::Triangles;
 use crate::error::{Crowd, Error, Result};
 use crate::memory::{filled, with_room};
 use crate::watch::Watch;
+use delone_predicates::Point2;
 
 /// Triangles between two checks for interruption.
 const WATCH_EVERY: usize = 1 << 14;

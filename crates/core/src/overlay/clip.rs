@@ -1,8 +1,8 @@
 //! Convex polygons, cut by triangles: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon
 //! clipping", Communications of the ACM 17 (1974).
 
-use crate::Point2;
 use crate::points::Extent;
+use delone_predicates::Point2;
 
 /// A triangle cut by two others has nine corners at most.
 pub const MOST: usize = 10;

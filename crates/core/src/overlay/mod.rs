@@ -12,7 +12,6 @@
 mod clip;
 mod prism;
 
-use crate::Point2;
 use crate::arrays::Triangles;
 use crate::error::Result;
 use crate::locate::boxes::Boxes;
@@ -21,6 +20,7 @@ use crate::order::order_of;
 use crate::parallel;
 use crate::points::Extent;
 use crate::watch::Watch;
+use delone_predicates::Point2;
 
 use clip::{Candidate, Polygon};
 use prism::{Linear, Sums};

@@ -1,7 +1,7 @@
 //! Volumes between two linear functions over a convex polygon.
 
 use super::clip::{MOST, Polygon};
-use crate::Point2;
+use delone_predicates::Point2;
 
 /// A linear function over a triangle, relative to an origin.
 pub struct Linear {

@@ -1,0 +1,117 @@
+"""What functions of terrain need of a surface: the class TIN has it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Bools = NDArray[np.bool_]
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+
+__all__ = ["Located", "Sheet", "Surface"]
+
+
+class Sheet(Protocol):
+    """The arrays that the core takes."""
+
+    @property
+    def points(self) -> Floats:
+        """Vertices, (n, 2)."""
+
+    @property
+    def simplices(self) -> Indices:
+        """Triangles, (m, 3)."""
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex, (m, 3)."""
+
+    @property
+    def heights(self) -> Floats:
+        """Heights of the vertices, (n,)."""
+
+
+class Located(Protocol):
+    """Where points lie."""
+
+    @property
+    def simplex(self) -> Indices:
+        """The triangle of each point, -1 outside."""
+
+    @property
+    def barycentric(self) -> Floats:
+        """The weights of its corners."""
+
+
+class Surface(Protocol):
+    """A triangulated surface."""
+
+    @property
+    def points(self) -> Floats:
+        """Vertices, (n, 2)."""
+
+    @property
+    def npoints(self) -> int:
+        """Number of vertices."""
+
+    @property
+    def z(self) -> Floats:
+        """Heights of the vertices, (n,)."""
+
+    @property
+    def simplices(self) -> Indices:
+        """Triangles, (m, 3)."""
+
+    @property
+    def breaklines(self) -> Indices:
+        """Edges on lines, (q, 2)."""
+
+    @property
+    def soft(self) -> Bools:
+        """Which of them are soft, (q,)."""
+
+    @property
+    def crs(self) -> str | None:
+        """Coordinate reference system."""
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads."""
+
+    @property
+    def min_bound(self) -> Floats:
+        """The least coordinates."""
+
+    @property
+    def max_bound(self) -> Floats:
+        """The greatest coordinates."""
+
+    @property
+    def slope(self) -> Floats:
+        """Slopes of the triangles."""
+
+    @property
+    def aspect(self) -> Floats:
+        """Directions that the triangles face."""
+
+    def _sheet(self) -> Sheet:
+        """The arrays that the core takes."""
+
+    def heights(self, xy: ArrayLike) -> Floats:
+        """Heights at positions."""
+
+    def hillshade(self, *, azimuth: float, altitude: float, z_factor: float) -> Floats:
+        """Brightness of the triangles."""
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """The triangles at positions."""
+
+    def locate(self, xi: ArrayLike) -> Located:
+        """Triangles and weights at positions."""
+
+    def walk(self, a: ArrayLike, b: ArrayLike) -> Indices:
+        """The triangles along a segment."""

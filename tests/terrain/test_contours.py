@@ -1,0 +1,228 @@
+"""Contours and bands: closed, simple, never crossing, and a tiling; decided by fractions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from delone import BudgetExceededError, InputError
+from delone.interpolate import Grid
+from delone.terrain import TIN
+
+shapely = pytest.importorskip("shapely")
+
+
+def lattice(side: int, seed: int, high: int = 4) -> TIN:
+    """A raster of small integers: plateaus, saddles and vertices at every level."""
+    x = np.arange(float(side))
+    z = np.random.default_rng(seed).integers(0, high, (side, side)).astype(float)
+    return TIN.from_raster(Grid(z, x, x))
+
+
+def scattered(seed: int, needles: float | None = None) -> TIN:
+    """Random points; `needles` adds points on a strip of that height."""
+    rng = np.random.default_rng(seed)
+    xy = rng.random((60, 2)) * [3, 2]
+    if needles is not None:
+        strip = rng.random((30, 2)) * [1, needles] + 1
+        xy = np.concatenate((xy, strip, [(0, 0), (3, 0), (3, 2), (0, 2)]))
+    z = rng.integers(0, 6, len(xy)) * 1.0 if seed % 2 else rng.random(len(xy)) * 5
+    return TIN.from_points(np.column_stack((xy, z)), duplicates="max")
+
+
+def orientation(a, b, c):
+    (ax, ay), (bx, by), (cx, cy) = ([Fraction(x) for x in p] for p in (a, b, c))
+    turn = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return (turn > 0) - (turn < 0)
+
+
+def cross(s, t):
+    """Whether two segments have a point in common other than a common end."""
+    (a, b), (c, d) = s, t
+    for k in range(2):
+        if max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]):
+            return False
+    common = {a, b} & {c, d}
+    sides = orientation(a, b, c), orientation(a, b, d), orientation(c, d, a), orientation(c, d, b)
+    if common:
+        (p,) = common
+        (q,), (r,) = {a, b} - common, {c, d} - common
+        return sides[0] == sides[1] == 0 and (q > p) == (r > p)
+    return sides[0] * sides[1] <= 0 and sides[2] * sides[3] <= 0
+
+
+def segments_of(points, starts):
+    rows = [[tuple(p) for p in points[i:j].tolist()] for i, j in pairwise(starts)]
+    return [segment for row in rows for segment in pairwise(row)]
+
+
+def assert_nothing_crosses(segments):
+    order = sorted(segments, key=lambda s: min(s[0][0], s[1][0]))
+    for i, s in enumerate(order):
+        right = max(s[0][0], s[1][0])
+        for t in order[i + 1 :]:
+            if min(t[0][0], t[1][0]) > right:
+                break
+            assert not cross(s, t), (s, t)
+
+
+SURFACES = [
+    *(pytest.param(lattice(side, seed), id=f"{side}x{side}-{seed}")
+      for side in (2, 3, 4, 5, 7) for seed in range(12)),
+    *(pytest.param(scattered(seed), id=f"scattered-{seed}") for seed in range(6)),
+    *(pytest.param(scattered(seed, needles), id=f"needles-{needles}-{seed}")
+      for needles in (3e-16, 1e-15, 1e-12) for seed in range(6)),
+]  # fmt: skip
+LEVELS = [0.5, 1, 2, 2.75, 3, 4]
+
+
+@pytest.mark.parametrize("tin", SURFACES)
+def test_contours_are_simple_and_never_cross(tin):
+    found = tin.contours(LEVELS)
+    lines = [found.coordinates(k) for k in range(len(found))]
+    for line in lines:
+        rows = [tuple(p) for p in line.tolist()]
+        closed = rows[0] == rows[-1]
+        assert len(set(rows)) == len(rows) - closed
+        assert len(rows) >= (4 if closed else 2)
+    segments = segments_of(found.points, found.starts)
+    assert len(set(segments)) == len(segments)
+    assert_nothing_crosses(segments)
+
+
+@pytest.mark.parametrize("tin", SURFACES)
+def test_open_contours_end_at_the_outline(tin):
+    found = tin.contours(LEVELS)
+    outline = shapely.multilinestrings(tin.points[tin.boundary])
+    for k in np.flatnonzero(~found.closed):
+        ends = found.coordinates(k)[[0, -1]]
+        assert (shapely.distance(shapely.points(ends), outline) < 1e-12).all()
+
+
+@pytest.mark.parametrize("tin", SURFACES)
+def test_bands_tile_the_surface_by_their_shared_vertices(tin):
+    found = tin.bands(LEVELS)
+    assert shapely.is_valid(found.to_shapely()).all()
+    sides = Counter(segments_of(found.points, found.rings))
+    assert set(sides.values()) == {1}
+    # A side without a reverse is on the outline. What the rings enclose is what these enclose.
+    rim = [s for s in sides if s[::-1] not in sides]
+
+    def twice_area(edges):
+        return sum(
+            Fraction(a[0]) * Fraction(b[1]) - Fraction(a[1]) * Fraction(b[0]) for a, b in edges
+        )
+
+    assert twice_area(sides) == twice_area(rim)
+    vertices = {tuple(p) for p in tin.points[tin.boundary].reshape(-1, 2).tolist()}
+    assert vertices <= {p for side in rim for p in side}
+    # Sides within are contours.
+    contours = tin.contours(LEVELS)
+    lines = {frozenset(s) for s in segments_of(contours.points, contours.starts)}
+    assert {frozenset(s) for s in sides if s[::-1] in sides} <= lines
+
+
+@pytest.mark.parametrize("tin", SURFACES[::3])
+def test_heights_in_bands_are_between_their_levels(tin):
+    found = tin.bands(LEVELS)
+    inner = shapely.point_on_surface(found.to_shapely())
+    z = tin.heights(shapely.get_coordinates(inner))
+    wide = shapely.area(found.to_shapely()) > 1e-9
+    assert ((z >= found.low - 1e-9) & (z <= found.high + 1e-9))[wide].all()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_contours_do_not_depend_on_the_order_of_points(seed):
+    rng = np.random.default_rng(seed)
+    xyz = np.column_stack((rng.random((200, 2)), rng.integers(0, 5, 200)))
+    one = TIN.from_points(xyz).contours(LEVELS)
+    other = TIN.from_points(xyz[rng.permutation(200)]).contours(LEVELS)
+    assert np.array_equal(one.points, other.points)
+    assert np.array_equal(one.starts, other.starts)
+    scaled = TIN.from_points(xyz * 2.0**40).contours(np.array(LEVELS) * 2.0**40)
+    assert np.array_equal(one.points * 2.0**40, scaled.points)
+
+
+def test_higher_ground_is_to_the_left():
+    hill = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)]
+    up, down = (TIN.from_points([(x, y, sign * z) for x, y, z in hill]) for sign in (1, -1))
+    assert shapely.is_ccw(shapely.linearrings(up.contours([1.0]).points))
+    assert not shapely.is_ccw(shapely.linearrings(down.contours([-1.0]).points))
+
+
+@pytest.mark.parametrize(
+    ("heights", "count"),
+    [
+        # A peak exactly at the level collapses; so does a ridge, and a plateau does not.
+        ({12: 1.0}, 0),
+        ({11: 1.0, 12: 1.0}, 0),
+        ({6: 1.0, 7: 1.0, 11: 1.0, 12: 1.0}, 1),
+        # Two plateaus that touch at a vertex are two rings, also around the other diagonal.
+        (dict.fromkeys((7, 8, 11, 12, 13, 16, 17), 1.0), 2),
+        (dict.fromkeys((6, 7, 11, 12, 13, 17, 18), 1.0), 1),
+    ],
+)
+def test_vertices_at_the_level(heights, count):
+    x = np.arange(5.0)
+    z = np.zeros(25)
+    z[list(heights)] = list(heights.values())
+    found = TIN.from_raster(Grid(z.reshape(5, 5), x, x)).contours([1.0])
+    assert len(found) == count
+    assert found.closed.all()
+
+
+def test_levels_of_an_interval():
+    tin = TIN.from_points([(0, 0, -1.2), (1, 0, 2.6), (0, 1, 1)])
+    found = tin.contours(interval=0.5, base=0.1, index=2)
+    assert found.levels == pytest.approx([-0.9, -0.4, 0.1, 0.6, 1.1, 1.6, 2.1, 2.6])
+    assert set(found.level[found.index]) == {-0.9, 0.1, 1.1, 2.1}
+
+
+def test_too_many_levels_are_refused_before_the_work():
+    tin = TIN.from_points([(0, 0, 0), (1, 0, 1e9), (0, 1, 1)])
+    with pytest.raises(BudgetExceededError, match=r"1e\+09 levels"):
+        tin.contours(interval=1)
+    with pytest.raises(BudgetExceededError) as caught:
+        tin.contours(interval=1e4, max_points=1000)
+    # Two edges, of 100,001 levels each.
+    assert caught.value.found == 200_000
+    with pytest.raises(InputError, match="either levels or an interval"):
+        tin.contours()
+    with pytest.raises(InputError, match="finite"):
+        tin.contours([0.0, np.nan])
+
+
+@pytest.mark.parametrize("rounds", [1, 2, 3, 5])
+@pytest.mark.parametrize("seed", range(8))
+def test_smoothed_contours_do_not_cross(seed, rounds):
+    tin = lattice(5, seed)
+    plain, smooth = tin.contours(interval=0.5), tin.contours(interval=0.5, smooth=rounds)
+    assert len(smooth) == len(plain)
+    assert len(smooth.points) > len(plain.points)
+    assert np.array_equal(smooth.closed, plain.closed)
+    assert shapely.is_simple(smooth.to_shapely()).all()
+    assert_nothing_crosses(segments_of(smooth.points, smooth.starts))
+
+
+def test_smoothing_keeps_corners_at_hard_breaklines():
+    z = [(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)]
+    dike = [(0, 2, 6), (4, 2, 5)]
+    hard = TIN.from_points(z, breaklines=[dike]).contours([5.5], smooth=2)
+    soft = TIN.from_points(z, soft_breaklines=[dike]).contours([5.5], smooth=2)
+    assert [2.0, 2.0] in hard.points.tolist()
+    assert [2.0, 2.0] not in soft.points.tolist()
+
+
+def test_contours_skip_holes_and_bays():
+    x = np.arange(9.0)
+    grid = np.array([(i, j, i) for i in x for j in x])
+    tin = TIN.from_points(grid, holes=[[(2.5, 2.5), (5.5, 2.5), (5.5, 5.5), (2.5, 5.5)]])
+    found = tin.contours([4.25])
+    assert len(found) == 2
+    assert tin.contours([1.5]).points[:, 0] == pytest.approx(1.5)
+    bands = tin.bands([4.25])
+    assert shapely.area(bands.to_shapely()).sum() == pytest.approx(64 - 9)

@@ -1,0 +1,240 @@
+"""The class TIN: what becomes of points, lines and heights; slopes, profiles and files."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from delone import ConflictingValuesError, CrossingSegmentsError, InputError, NonFiniteError
+from delone.interpolate import Grid
+from delone.terrain import TIN
+
+SQUARE = [(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)]
+
+
+def random_tin(seed: int = 0, **options) -> TIN:
+    return TIN.from_points(np.random.default_rng(seed).random((300, 3)), **options)
+
+
+def test_breaklines_are_edges_with_their_heights():
+    tin = TIN.from_points(SQUARE, breaklines=[[(1, 2, 9), (3, 2, 5)]])
+    assert tin.heights((2, 2)) == 7
+    ends = {frozenset(map(tuple, tin.points[row].tolist())) for row in tin.breaklines}
+    assert ends == {frozenset({(1.0, 2.0), (3.0, 2.0)})}
+    assert tin.validate()
+
+
+def test_lines_without_heights_are_on_the_points():
+    tin = TIN.from_points(SQUARE, breaklines=[np.array([(1.0, 1), (3.0, 3)])])
+    assert tin.heights([(1, 1), (2, 2), (3, 3)]).tolist() == [2, 4, 6]
+    with pytest.raises(InputError, match=r"without heights is outside of the points at \("):
+        TIN.from_points(SQUARE, breaklines=[[(1, 1), (5, 1)]])
+
+
+@pytest.mark.parametrize(("policy", "z"), [("min", 3), ("max", 5), ("mean", 4)])
+def test_conflicts_at_crossings(policy, z):
+    lines = [[(1, 1, 3), (3, 3, 3)], [(1, 3, 5), (3, 1, 5)]]
+    with pytest.raises(ConflictingValuesError, match=r"at 1 place: \(2, 2\): 3 to 5.*crossing="):
+        TIN.from_points(SQUARE, breaklines=lines)
+    assert TIN.from_points(SQUARE, breaklines=lines, crossing=policy).heights((2, 2)) == z
+    same = [[(1, 1, 2), (3, 3, 6)], [(1, 3, 6), (3, 1, 2)]]
+    assert TIN.from_points(SQUARE, breaklines=same).heights((2, 2)) == 4
+
+
+def test_conflicts_where_a_line_passes_through_another_one_or_a_point():
+    with pytest.raises(ConflictingValuesError, match=r"lines .*\(2, 2\)"):
+        TIN.from_points(SQUARE, breaklines=[[(1, 2, 0), (3, 2, 0)], [(2, 2, 1), (2, 3, 1)]])
+    points = [*SQUARE, (2, 2, 1)]
+    with pytest.raises(ConflictingValuesError, match=r"a line and a point .*\(2, 2\): 0 to 1"):
+        TIN.from_points(points, breaklines=[[(1, 2, 0), (3, 2, 0)]])
+
+
+@pytest.mark.parametrize(("policy", "z"), [("min", 1), ("max", 4), ("mean", 2)])
+def test_duplicates_with_different_heights(policy, z):
+    points = [*SQUARE, (2, 1, 1), (2, 1, 4), (2, 1, 1)]
+    with pytest.raises(ConflictingValuesError, match=r"points .*\(2, 1\): 1 to 4") as caught:
+        TIN.from_points(points)
+    assert caught.value.rows.tolist() == [[4, 4]]
+    tin = TIN.from_points(points, duplicates=policy)
+    assert tin.npoints == 5 and tin.heights((2, 1)) == z
+
+
+def test_walls_are_conflicts():
+    with pytest.raises(ConflictingValuesError, match=r"\(2, 1\): 0 to 3"):
+        TIN.from_points(SQUARE, breaklines=[[(2, 1, 0), (2, 1, 3)]])
+
+
+def test_bad_heights_are_named():
+    with pytest.raises(NonFiniteError, match="xyz: 1 of 4 rows holds NaN"):
+        TIN.from_points([*SQUARE[:3], (0, 4, np.nan)])
+    with pytest.raises(NonFiniteError, match="breaklines"):
+        TIN.from_points(SQUARE, breaklines=[np.array([(1, 1, np.inf), (2, 2, 0)])])
+
+
+def test_boundary_holes_and_outer_edges():
+    x = np.arange(9.0)
+    grid = np.array([(i, j, 0.0) for i in x for j in x])
+    ring = [(0.5, 0.5), (7.5, 0.5), (7.5, 7.5), (0.5, 7.5)]
+    hole = [(2.5, 2.5), (5.5, 2.5), (5.5, 5.5), (2.5, 5.5)]
+    tin = TIN.from_points(grid, boundary=[ring], holes=[hole])
+    assert tin.areas.sum() == 49 - 9
+    assert np.isnan(tin.heights([(4, 4), (0.2, 0.2)])).all()
+    assert tin.validate()
+    # The bay between two towers of points: two corners of it have short outer edges.
+    bay = grid[(grid[:, 1] < 2) | (np.abs(grid[:, 0] - 4) > 2)]
+    assert TIN.from_points(bay).areas.sum() == 64
+    assert TIN.from_points(bay, max_edge=1.5).areas.sum() == 64 - 6 * 7 + 1
+    line = [(1, 5, 0), (7, 5, 0)]
+    kept = TIN.from_points(bay, max_edge=1.5, breaklines=[line])
+    assert kept.areas.sum() == 64 - 6 * 3
+    bowtie = [(1, 1), (7, 7), (7, 1), (1, 7)]
+    with pytest.raises(CrossingSegmentsError, match=r"cross at 1 place, first \(4, 4\)"):
+        TIN.from_points(grid, boundary=[bowtie])
+    with pytest.raises(InputError, match="no triangle is left"):
+        TIN.from_points(grid, max_edge=0.1)
+
+
+def test_rasters_leave_out_cells_without_values():
+    values = np.arange(12.0).reshape(3, 4)
+    values[0, 0] = np.nan
+    tin = TIN.from_raster(Grid(values, np.arange(4.0), np.arange(3.0)))
+    assert tin.npoints == 11
+    assert tin.heights((2, 1)) == 6
+    with pytest.raises(InputError, match="a raster must have"):
+        TIN.from_raster(values)
+
+
+def test_slopes_of_planes():
+    for a, b in [(0.0, 0.0), (1.0, 0.0), (0.0, -2.0), (-0.5, 0.25)]:
+        xy = np.random.default_rng(1).random((50, 2))
+        tin = TIN.from_points(np.column_stack((xy, a * xy[:, 0] + b * xy[:, 1])))
+        assert tin.gradient == pytest.approx(np.tile([a, b], (tin.nsimplex, 1)), abs=1e-9)
+        assert tin.slope == pytest.approx(np.degrees(np.arctan(np.hypot(a, b))), abs=1e-7)
+        if (a, b) == (0, 0):
+            assert np.isnan(tin.aspect).all()
+            continue
+        downhill = np.degrees(np.arctan2(-a, -b)) % 360
+        assert np.cos(np.radians(tin.aspect - downhill)) == pytest.approx(1)
+        assert tin.normals @ [a, b, -1] == pytest.approx(-np.sqrt(1 + a * a + b * b))
+
+
+@pytest.mark.parametrize(("azimuth", "altitude", "z_factor"), [(315, 45, 1), (100, 30, 2.5)])
+def test_hillshade_is_that_of_gdal(azimuth, altitude, z_factor):
+    tin = random_tin()
+    # The formula of gdaldem: cos(zenith) cos(slope) + sin(zenith) sin(slope) cos(azimuth - aspect).
+    x, y = (tin.gradient * z_factor).T
+    zenith, slope = np.radians(90 - altitude), np.arctan(np.hypot(x, y))
+    aspect = np.arctan2(-x, -y)
+    shade = np.cos(zenith) * np.cos(slope)
+    shade += np.sin(zenith) * np.sin(slope) * np.cos(np.radians(azimuth) - aspect)
+    found = tin.hillshade(azimuth=azimuth, altitude=altitude, z_factor=z_factor)
+    assert found == pytest.approx(np.clip(shade, 0, 1))
+
+
+def test_rasters_sample_the_surface():
+    tin = random_tin()
+    for what in ("height", "slope", "aspect", "hillshade"):
+        found = tin.raster(what, shape=(30, 20))
+        assert found.values.shape == (20, 30)
+        node = np.array([found.x[7], found.y[11]])
+        expected = tin.heights(node)
+        if what != "height":
+            column = tin.hillshade() if what == "hillshade" else getattr(tin, what)
+            expected = column[tin.find_simplex(node)]
+        assert found.values[11, 7] == expected
+    with pytest.raises(InputError, match="what must be"):
+        tin.raster("color", shape=(2, 2))
+
+
+def exact_profile(tin, a, b):
+    """The shares of a segment where it meets edges, and the heights there, by fractions."""
+    a, b = ([Fraction(x) for x in p] for p in (a, b))
+    found = {}
+    for p, q in tin.edges:
+        (px, py), (qx, qy) = ([Fraction(x) for x in tin.points[v].tolist()] for v in (p, q))
+        dx, dy = b[0] - a[0], b[1] - a[1]
+        ex, ey = qx - px, qy - py
+        turn = dx * ey - dy * ex
+        if not turn:
+            continue
+        share = ((px - a[0]) * ey - (py - a[1]) * ex) / turn
+        along = ((px - a[0]) * dy - (py - a[1]) * dx) / turn
+        if 0 < share < 1 and 0 <= along <= 1:
+            low, high = Fraction(float(tin.z[p])), Fraction(float(tin.z[q]))
+            found[share] = low + along * (high - low)
+    return sorted(found.items())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_profiles_have_every_crossing(seed):
+    tin = random_tin(seed)
+    rng = np.random.default_rng(seed)
+    a, b = rng.random((2, 2)) * 0.4 + [[0.1, 0.1], [0.5, 0.5]]
+    found = tin.profile([a, b])
+    expected = exact_profile(tin, a.tolist(), b.tolist())
+    length = float(np.hypot(*(b - a)))
+    assert found.distance[1:-1] == pytest.approx([float(s) * length for s, _ in expected])
+    assert found.z[1:-1] == pytest.approx([float(z) for _, z in expected], abs=1e-9)
+    assert found.z[[0, -1]] == pytest.approx(tin.heights([a, b]))
+
+
+def test_profiles_through_vertices_along_edges_and_over_holes():
+    x = np.arange(7.0)
+    grid = np.array([(i, j, i * i + j) for i in x for j in x])
+    along = TIN.from_points(grid).profile([(0, 3), (6, 3)])
+    assert along.distance.tolist() == x.tolist()
+    assert along.z.tolist() == (x * x + 3).tolist()
+    hole = [(1.5, 1.5), (4.5, 1.5), (4.5, 4.5), (1.5, 4.5)]
+    tin = TIN.from_points(grid, holes=[hole])
+    found = tin.profile([(-1, 3), (8, 3)])
+    assert np.isnan(found.z).sum() == 1
+    gap = int(np.flatnonzero(np.isnan(found.z))[0])
+    assert found.distance[[0, gap - 1, gap + 1, -1]].tolist() == [1, 2.5, 5.5, 7]
+    assert len(tin.profile([(10, 10), (11, 10)])) == 0
+
+
+def test_bent_lines_have_no_repeated_points():
+    found = TIN.from_points(SQUARE).profile([(1, 0.5), (3, 0.5), (3, 2)])
+    assert (np.diff(found.distance) > 0).all()
+    assert found.distance[-1] == 3.5
+
+
+def test_geometries_on_the_surface():
+    shapely = pytest.importorskip("shapely")
+    tin = TIN.from_points(SQUARE)
+    ring = tin.drape(shapely.box(1, 1, 3, 3))
+    assert ring.has_z and shapely.force_2d(ring).equals(shapely.box(1, 1, 3, 3))
+    assert all(z == 2 * y for _, y, z in ring.exterior.coords)
+    both = shapely.GeometryCollection([shapely.Point(1, 2), shapely.LineString([(0, 0), (4, 0)])])
+    assert shapely.get_coordinates(tin.drape(both), include_z=True)[:, 2].tolist()[0] == 4
+    with pytest.raises(InputError, match=r"\(5, 1\) is outside of the surface"):
+        tin.drape(shapely.LineString([(1, 1), (5, 1)]))
+
+
+def test_lines_of_sight():
+    hill = TIN.from_points([(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)])
+    assert not hill.line_of_sight((0, 2), (4, 2), height=1.7)
+    # Over the summit, exactly and by a little.
+    assert hill.line_of_sight((0, 2), (4, 2), height=3, target=3)
+    assert not hill.line_of_sight((0, 2), (4, 2), height=2.99, target=3)
+    assert hill.line_of_sight((1, 2), (1, 2))
+    assert hill.line_of_sight((0, 2), (2, 2))
+    with pytest.raises(InputError, match="outside"):
+        hill.line_of_sight((0, 2), (9, 2))
+
+
+def test_files_and_systems(tmp_path):
+    tin = random_tin(crs=28992, breaklines=[[(0.2, 0.2), (0.8, 0.7)]], max_edge=0.2)
+    tin.save(tmp_path / "a.npz")
+    again = TIN.load(tmp_path / "a.npz")
+    for name in ("xyz", "simplices", "neighbors", "breaklines", "soft"):
+        assert np.array_equal(getattr(again, name), getattr(tin, name))
+    assert again.crs == "EPSG:28992" and again.validate()
+    assert again.contours(interval=0.1).crs == "EPSG:28992"
+
+
+def test_only_the_class_methods_make_a_surface():
+    with pytest.raises(TypeError, match="from_points"):
+        TIN(SQUARE)
