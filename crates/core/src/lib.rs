@@ -16,6 +16,7 @@ pub mod hull;
 pub mod improve;
 pub mod interpolate;
 pub mod interpolate3;
+pub mod live;
 pub mod locate;
 pub mod locate3;
 pub mod measure;

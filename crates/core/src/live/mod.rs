@@ -1,0 +1,3 @@
+//! Live triangulations: points are inserted, removed and moved, and every state is canonical.
+
+pub mod chunks;
