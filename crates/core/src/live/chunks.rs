@@ -130,13 +130,6 @@ impl<T: Copy> Chunks<T> {
         Ok(())
     }
 
-    /// Replaces all items. What snapshots hold stays theirs.
-    pub fn replace(&mut self, items: Vec<T>) -> Result<()> {
-        let marked = filled(items.len().div_ceil(Self::SIZE), true)?;
-        (self.items, self.marked) = (items, marked);
-        Ok(())
-    }
-
     /// The present items as a snapshot. Refused memory and interruption change nothing.
     pub fn image(&mut self, watch: &Watch) -> Result<Image<T>> {
         let mut pace = Pace::new(watch, LOT);
@@ -171,11 +164,15 @@ impl<T: Copy> Chunks<T> {
         Ok(self.last.clone())
     }
 
+    /// Reserves the memory for [`Self::restore`], which does not fail then.
+    pub fn make_room(&mut self, image: &Image<T>) -> Result<()> {
+        self.reserve(image.len.saturating_sub(self.items.len()))
+    }
+
     /// Makes the items those of `image`, a snapshot of this array or of any other. Only chunks that
     /// differ are copied. If memory is refused, nothing has changed.
     pub fn restore(&mut self, image: &Image<T>) -> Result<()> {
-        let more = image.len.saturating_sub(self.items.len());
-        self.reserve(more)?;
+        self.make_room(image)?;
         let common = image.len.min(self.items.len()).div_ceil(Self::SIZE);
         let mut from = common;
         for c in 0..common {
@@ -342,13 +339,12 @@ mod tests {
     }
 
     #[test]
-    fn a_replaced_array_can_be_restored() {
-        let mut array = array(3 * SIZE);
-        let before = image(&mut array);
-        array.replace(vec![9; SIZE + 1]).unwrap();
-        assert_eq!(image(&mut array).to_vec().unwrap(), vec![9; SIZE + 1]);
-        array.restore(&before).unwrap();
-        assert!(array.items().iter().copied().eq(0..3 * SIZE as u32));
+    fn a_snapshot_can_be_restored_to_another_array() {
+        let before = image(&mut array(3 * SIZE));
+        let mut other = Chunks::of(vec![9; SIZE + 1]).unwrap();
+        assert_eq!(image(&mut other).to_vec().unwrap(), vec![9; SIZE + 1]);
+        other.restore(&before).unwrap();
+        assert!(other.items().iter().copied().eq(0..3 * SIZE as u32));
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub use range::{in_unit, is_finite, longest_side, seen_from, squared, unit_of};
 pub use segment::along;
 pub use sites::Sites;
 pub use star::{First, Place, Star};
+pub(crate) use start::Start;
 pub use tiling::{next, prev};
 
 /// What is cached between calls for one triangulation.

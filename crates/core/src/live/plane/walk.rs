@@ -1,0 +1,126 @@
+//! Where a point is: a start that is near, and a visibility walk (see `delaunay2::walk`).
+
+use delone_predicates::{Point2, Sign, orient2d};
+
+use super::mesh::{INFINITE, Mesh};
+use crate::error::Result;
+use crate::live::rows::NONE;
+use crate::locate::{Start, squared};
+use crate::mesh2::{next, prev, triangle};
+use crate::watch::Watch;
+
+/// How far a walk goes from the last triangle, in lengths of its edge, squared, before a start is
+/// looked up.
+const REACH: f64 = 100.0;
+
+/// Vertices per node of the tree of starting points.
+const SHARE: usize = 8;
+
+/// Where a point is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// At a vertex.
+    At(u32),
+    /// In a triangle or on its edge, or strictly outside of the hull edge of a ghost.
+    In(u32),
+}
+
+impl Mesh {
+    /// Where `q` is, by a walk from the last triangle or from one that is nearer.
+    #[inline]
+    pub fn place(&mut self, q: Point2, watch: &Watch) -> Result<Place> {
+        let t = self.find(q, watch)?;
+        let here = self.corners(t).into_iter().find(|&v| self.at(v) == q);
+        Ok(here.map_or(Place::In(t), Place::At))
+    }
+
+    /// The triangle whose closed area contains `q`, or a ghost with `q` strictly outside of its hull
+    /// edge.
+    #[inline]
+    pub fn find(&mut self, q: Point2, watch: &Watch) -> Result<u32> {
+        let [u, v, w] = self.corners(self.last);
+        let edge = if u == INFINITE {
+            [v, w]
+        } else if v == INFINITE {
+            [w, u]
+        } else {
+            [u, v]
+        };
+        let [a, b] = edge.map(|v| self.at(v));
+        let far = squared(q, a) > REACH * squared(a, b);
+        let from = if far { self.jump(q, watch)? } else { self.last };
+        let before = self.work;
+        self.last = self.walk(from, q);
+        if far && self.jump.is_none() {
+            self.strolled += self.work - before;
+        }
+        Ok(self.last)
+    }
+
+    /// A triangle near `q`, by a tree of starting points, which is built when long walks have cost as
+    /// much.
+    fn jump(&mut self, q: Point2, watch: &Watch) -> Result<u32> {
+        if self.jump.as_ref().is_some_and(|jump| self.work > jump.1) {
+            self.jump = None;
+        }
+        // Not the vertex at infinity.
+        let sites = &self.sites.items()[1..];
+        if self.jump.is_none() {
+            if self.strolled < sites.len() / SHARE {
+                return Ok(self.last);
+            }
+            let start = Start::of(sites.len(), |i| sites[i].at, watch)?;
+            // Most of its vertices are still there after so much work.
+            self.jump = Some((start, self.work + 8 * sites.len()));
+            self.strolled = 0;
+        }
+        let near = self
+            .jump
+            .as_ref()
+            .map(|(start, _)| sites[start.near(q)].near);
+        let near = near.filter(|&near| near != NONE);
+        Ok(near.map_or(self.last, triangle))
+    }
+
+    /// The same by a visibility walk from triangle `from`.
+    #[inline]
+    fn walk(&mut self, from: u32, q: Point2) -> u32 {
+        let beyond = |mesh: &Self, e: u32| {
+            let [a, b] = [next(e), prev(e)].map(|c| mesh.at(mesh.vertex(c)));
+            orient2d(a, b, q) == Sign::Negative
+        };
+        let mut e = 8 * from;
+        if let Some(k) = self.corners(from).iter().position(|&v| v == INFINITE) {
+            let outer = 8 * from + k as u32;
+            let [a, b] = [next(outer), prev(outer)].map(|c| self.at(self.vertex(c)));
+            if orient2d(a, b, q) == Sign::Positive {
+                return from;
+            }
+            e = self.opposite(outer);
+        }
+        if beyond(self, e) {
+            e = self.opposite(e);
+            if self.vertex(e) == INFINITE {
+                return triangle(e);
+            }
+        }
+        let mut steps = 1;
+        let found = loop {
+            // The walk came across e; two edges are left to test.
+            let across = if beyond(self, next(e)) {
+                self.opposite(next(e))
+            } else if beyond(self, prev(e)) {
+                self.opposite(prev(e))
+            } else {
+                break triangle(e);
+            };
+            if self.vertex(across) == INFINITE {
+                break triangle(across);
+            }
+            e = across;
+            steps += 1;
+        };
+        self.work += steps;
+        found
+    }
+}
