@@ -34,3 +34,4 @@
 pub mod chunks;
 pub mod plane;
 pub mod rows;
+pub mod space;

@@ -1,0 +1,487 @@
+//! Edits of batches of points: all or nothing.
+
+use std::ops::Range;
+
+use delone_predicates::{Point3, lexicographic, orient3d};
+
+use super::mesh::Mesh;
+use super::remove::Removed;
+use super::walk::Place;
+use super::{Space, build};
+use crate::error::{Error, Result};
+use crate::live::rows::NONE;
+use crate::memory::{filled, make_room, push, with_room};
+use crate::order::{order_of, sort};
+use crate::points::{self, LIMIT3, collinear};
+use crate::watch::{IDLE, Pace, Watch};
+
+/// A batch of more than this share of the vertices, and more points than this, is a rebuild.
+const SHARE_INSERTED: usize = 3;
+const SHARE_REMOVED: usize = 3;
+const SHARE_MOVED: usize = 1;
+const FEW: usize = 64;
+
+/// Points between two checks for interruption.
+const LOT: usize = 1 << 10;
+
+/// Tetrahedra that an edit may visit on average, for each doubling of the number of points; a batch
+/// that needs more, such as one on lines that nearly coincide, is a rebuild.
+const BUDGET: usize = 16;
+
+/// How a batch ends that has not failed.
+enum Outcome {
+    /// It is done.
+    Done,
+    /// A rebuild is cheaper, or needed because there is no tetrahedron.
+    Rebuild,
+}
+
+/// A row, its vertex, and its point, in the order in which they are edited.
+type Move = (u32, u32, Point3);
+
+impl Space {
+    /// Inserts points and returns their rows. On any error nothing has changed.
+    pub fn insert(
+        &mut self,
+        input: &[Point3],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<Range<usize>> {
+        points::scan(input)?;
+        let found = self.mesh.sites.len() + input.len();
+        if found > LIMIT3 {
+            let limit = LIMIT3;
+            return Err(Error::TooMany { found, limit });
+        }
+        let first = self.rows.total();
+        self.rows.reserve(input.len())?;
+        if let [p] = *input {
+            return self.insert_one(p.map(|x| x + 0.0), watch);
+        }
+        if input.is_empty() {
+            return Ok(first..first);
+        }
+        if self.is_incremental(input.len(), SHARE_INSERTED) {
+            let mut targets = filled(input.len(), NONE)?;
+            let mut made = with_room(input.len())?;
+            let done = self.insert_along(input, &mut targets, &mut made, watch);
+            let done = match done {
+                Ok(Outcome::Rebuild) => self.rebuild_with(input, workers, watch),
+                Ok(Outcome::Done) => {
+                    self.attach_all(&targets)?;
+                    return Ok(first..first + input.len());
+                }
+                Err(error) => Err(error),
+            };
+            if done.is_err() {
+                for &v in made.iter().rev() {
+                    self.mesh.unlink(v, true, &mut Pace::new(&IDLE, LOT))?;
+                    self.mesh.free_site(v);
+                }
+            }
+            done?;
+        } else {
+            self.rebuild_with(input, workers, watch)?;
+        }
+        Ok(first..first + input.len())
+    }
+
+    /// Whether a batch is edited point by point.
+    fn is_incremental(&self, count: usize, share: usize) -> bool {
+        !self.mesh.is_flat() && (count <= FEW || count <= self.vertices() / share)
+    }
+
+    /// Inserts one point.
+    fn insert_one(&mut self, p: Point3, watch: &Watch) -> Result<Range<usize>> {
+        let row = self.rows.total();
+        if self.mesh.is_flat() && !self.insert_flat(p)? {
+            self.rebuild_with(&[p], 1, watch)?;
+        } else if !self.mesh.is_flat() {
+            let target = match self.mesh.place(p, watch)? {
+                Place::At(v) => v,
+                Place::In(t) => self.create(p, t, &mut Pace::new(watch, LOT))?,
+            };
+            self.attach_all(&[target])?;
+        }
+        Ok(row..row + 1)
+    }
+
+    /// Inserts a vertex at `p`, which is in tetrahedron or ghost `t`.
+    fn create(&mut self, p: Point3, t: u32, pace: &mut Pace) -> Result<u32> {
+        let v = self.mesh.take_site(p)?;
+        if let Err(error) = self.mesh.insert(v, t, pace) {
+            self.mesh.free_site(v);
+            return Err(error);
+        }
+        Ok(v)
+    }
+
+    /// Inserts a point where there is no tetrahedron; `false` if there will be one.
+    fn insert_flat(&mut self, p: Point3) -> Result<bool> {
+        if !self.is_in_plane(p) {
+            return Ok(false);
+        }
+        let place = self
+            .flat
+            .binary_search_by(|&v| lexicographic(self.mesh.at(v), p));
+        let target = match place {
+            Ok(i) => self.flat[i],
+            Err(i) => {
+                make_room(&mut self.flat, 1)?;
+                let v = self.mesh.take_site(p)?;
+                self.flat.insert(i, v);
+                self.mesh.counts.vertices += 1;
+                v
+            }
+        };
+        self.attach_all(&[target])?;
+        Ok(true)
+    }
+
+    /// Whether all points, which are in one plane, are in one plane with `p`.
+    fn is_in_plane(&self, p: Point3) -> bool {
+        let at = |v: u32| self.mesh.at(v);
+        let [a, ref middle @ .., b] = self.flat[..] else {
+            return true;
+        };
+        let third = middle.iter().find(|&&v| !collinear(at(a), at(b), at(v)));
+        third.is_none_or(|&c| orient3d(at(a), at(b), at(c), p).is_zero())
+    }
+
+    /// Inserts points along the curve: the vertex of each goes to `targets`, new ones to `made`.
+    fn insert_along(
+        &mut self,
+        input: &[Point3],
+        targets: &mut [u32],
+        made: &mut Vec<u32>,
+        watch: &Watch,
+    ) -> Result<Outcome> {
+        self.mesh.sites.reserve(input.len())?;
+        self.mesh.records.reserve(7 * input.len())?;
+        let mut pace = Pace::new(watch, LOT);
+        let mut budget = self.budget(input.len());
+        for part in order_of(input, 1, watch)? {
+            for i in part {
+                pace.spend(1)?;
+                let p = input[i as usize].map(|x| x + 0.0);
+                targets[i as usize] = match self.mesh.place(p, watch)? {
+                    Place::At(v) => v,
+                    Place::In(t) => {
+                        let v = self.create(p, t, &mut pace)?;
+                        made.push(v);
+                        v
+                    }
+                };
+                if self.is_exceeded(&mut budget) {
+                    return Ok(Outcome::Rebuild);
+                }
+            }
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// The work for a batch, and the work so far.
+    fn budget(&self, count: usize) -> (usize, usize) {
+        let share = BUDGET * (self.vertices() + count).ilog2() as usize;
+        (share * (count / 8 + LOT), self.mesh.work)
+    }
+
+    /// Whether the budget, which grows with each point, is exceeded.
+    fn is_exceeded(&self, (budget, before): &mut (usize, usize)) -> bool {
+        *budget += BUDGET * self.vertices().max(2).ilog2() as usize;
+        self.mesh.work - *before > *budget
+    }
+
+    /// Appends rows at these vertices; room is reserved.
+    fn attach_all(&mut self, targets: &[u32]) -> Result<()> {
+        for &v in targets {
+            let row = self.rows.push()?;
+            self.attach(row, v);
+        }
+        Ok(())
+    }
+
+    fn attach(&mut self, row: u32, v: u32) {
+        let head = self.rows.attach(row, v, self.mesh.sites[v as usize].head);
+        self.mesh.sites.get_mut(v as usize).head = head;
+    }
+
+    fn detach(&mut self, row: u32, v: u32) {
+        let head = self.rows.detach(row, self.mesh.sites[v as usize].head);
+        self.mesh.sites.get_mut(v as usize).head = head;
+    }
+
+    /// Replaces the triangulation by that of its points and of these.
+    fn rebuild_with(&mut self, more: &[Point3], workers: usize, watch: &Watch) -> Result<()> {
+        let total = self.rows.total();
+        let mut rows = with_room(self.len() + more.len())?;
+        let mut points = with_room(self.len() + more.len())?;
+        for (row, v) in self.rows.iter() {
+            rows.push(row);
+            points.push(self.mesh.at(v));
+        }
+        rows.extend(total as u32..(total + more.len()) as u32);
+        points.extend_from_slice(more);
+        self.rebuild(&points, &rows, total + more.len(), workers, watch)
+    }
+
+    /// Replaces the triangulation by that of `points` at `rows`.
+    fn rebuild(
+        &mut self,
+        points: &[Point3],
+        rows: &[u32],
+        total: usize,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        let made = build::built(points, rows, total, workers, watch)?;
+        (self.mesh, self.rows, self.flat) = made;
+        Ok(())
+    }
+
+    /// The vertices of `rows` that are there, each with its row, in the order of the vertices, which is
+    /// that of the curve if most of them were built at once. A row that is gone, or named twice, is an
+    /// error.
+    fn by_vertex(&self, rows: &[i64], watch: &Watch) -> Result<Vec<(u32, u32)>> {
+        let mut pairs = with_room(rows.len())?;
+        for &row in rows {
+            match self.rows.vertex(row) {
+                Some(v) => pairs.push((v, row as u32)),
+                None => return Err(Error::Shape(format!("row {row} is not there"))),
+            }
+        }
+        sort(&mut pairs, watch)?;
+        match pairs.windows(2).find(|w| w[0] == w[1]) {
+            Some(w) => Err(Error::Shape(format!("row {} is named twice", w[0].1))),
+            None => Ok(pairs),
+        }
+    }
+
+    /// Removes rows. On any error nothing has changed.
+    pub fn remove(&mut self, rows: &[i64], workers: usize, watch: &Watch) -> Result<()> {
+        let pairs = self.by_vertex(rows, watch)?;
+        let mut lost = with_room(pairs.len())?;
+        for group in pairs.chunk_by(|a, b| a.0 == b.0) {
+            let v = group[0].0;
+            if self
+                .rows
+                .has_rows(self.mesh.sites[v as usize].head, group.len())
+            {
+                lost.push(v);
+            } else {
+                self.mesh.rename(v)?;
+            }
+        }
+        if lost.is_empty() || self.is_incremental(lost.len(), SHARE_REMOVED) {
+            let mut done = 0;
+            let outcome = match self.unlink_all(&lost, &mut done, watch) {
+                Ok(Outcome::Done) => {
+                    for &(v, row) in &pairs {
+                        self.detach(row, v);
+                    }
+                    for &v in &lost {
+                        self.mesh.free_site(v);
+                    }
+                    return Ok(());
+                }
+                Ok(Outcome::Rebuild) => self.rebuild_without(&pairs, workers, watch),
+                Err(error) => Err(error),
+            };
+            if outcome.is_err() {
+                for &v in lost[..done].iter().rev() {
+                    relink(&mut self.mesh, v)?;
+                }
+            }
+            return outcome;
+        }
+        self.rebuild_without(&pairs, workers, watch)
+    }
+
+    /// Removes vertices from the mesh, and counts those that are done.
+    fn unlink_all(&mut self, lost: &[u32], done: &mut usize, watch: &Watch) -> Result<Outcome> {
+        let mut pace = Pace::new(watch, LOT);
+        for &v in lost {
+            pace.spend(1)?;
+            match self.mesh.unlink(v, false, &mut pace)? {
+                Removed::Done => *done += 1,
+                Removed::Flat | Removed::Hub => return Ok(Outcome::Rebuild),
+            }
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Replaces the triangulation by that of its points without these rows.
+    fn rebuild_without(
+        &mut self,
+        pairs: &[(u32, u32)],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        let mut gone = with_room(pairs.len())?;
+        gone.extend(pairs.iter().map(|pair| pair.1));
+        sort(&mut gone, watch)?;
+        let mut gone = gone.into_iter().peekable();
+        let mut rows = with_room(self.len())?;
+        let mut points = with_room(self.len())?;
+        for (row, v) in self.rows.iter() {
+            if gone.next_if_eq(&row).is_none() {
+                rows.push(row);
+                points.push(self.mesh.at(v));
+            }
+        }
+        self.rebuild(&points, &rows, self.rows.total(), workers, watch)
+    }
+
+    /// Moves rows to new points. On any error nothing has changed.
+    pub fn relocate(
+        &mut self,
+        rows: &[i64],
+        input: &[Point3],
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        points::scan(input)?;
+        if rows.len() != input.len() {
+            let (rows, points) = (rows.len(), input.len());
+            let message = format!("{rows} rows cannot move to {points} points");
+            return Err(Error::Shape(message));
+        }
+        let mut moves: Vec<Move> = with_room(rows.len())?;
+        if let ([row], [p]) = (rows, input) {
+            let (v, row) = self.by_vertex(&[*row], watch)?[0];
+            moves.push((v, row, p.map(|x| x + 0.0)));
+        } else {
+            let mut order: Vec<(i64, u32)> = with_room(rows.len())?;
+            order.extend(rows.iter().copied().zip(0u32..));
+            sort(&mut order, watch)?;
+            for (v, row) in self.by_vertex(rows, watch)? {
+                let i = order.partition_point(|&(other, _)| other < i64::from(row));
+                let p = input[order[i].1 as usize];
+                moves.push((v, row, p.map(|x| x + 0.0)));
+            }
+        }
+        let old = match self.is_incremental(moves.len(), SHARE_MOVED) {
+            false => return self.rebuild_moved(moves, workers, watch),
+            true => with_room(moves.len())?,
+        };
+        self.relocate_all(moves, old, workers, watch)
+    }
+
+    /// Moves rows one after another; `old` has room for their old points.
+    fn relocate_all(
+        &mut self,
+        moves: Vec<Move>,
+        mut old: Vec<(u32, Point3)>,
+        workers: usize,
+        watch: &Watch,
+    ) -> Result<()> {
+        let mut pace = Pace::new(watch, LOT);
+        let mut budget = self.budget(moves.len());
+        let mut outcome = Ok(Outcome::Done);
+        for &(_, row, p) in &moves {
+            let before = self.point(row);
+            outcome = pace
+                .spend(1)
+                .and_then(|()| self.relocate_one(row, p, watch));
+            if !matches!(outcome, Ok(Outcome::Done)) {
+                break;
+            }
+            old.push((row, before));
+            if self.is_exceeded(&mut budget) {
+                outcome = Ok(Outcome::Rebuild);
+                break;
+            }
+        }
+        let done = match outcome {
+            Ok(Outcome::Done) => return Ok(()),
+            Ok(Outcome::Rebuild) => self.rebuild_moved(moves, workers, watch),
+            Err(error) => Err(error),
+        };
+        if done.is_err() {
+            for &(row, p) in old.iter().rev() {
+                self.relocate_one(row, p, &IDLE)?;
+            }
+        }
+        done
+    }
+
+    /// The point of a row that is there.
+    fn point(&self, row: u32) -> Point3 {
+        let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
+        self.mesh.at(v)
+    }
+
+    /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed.
+    fn relocate_one(&mut self, row: u32, p: Point3, watch: &Watch) -> Result<Outcome> {
+        let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
+        let before = self.mesh.at(v);
+        if before == p {
+            return Ok(Outcome::Done);
+        }
+        if !self.rows.is_single(row) {
+            self.mesh.rename(v)?;
+            let target = match self.mesh.place(p, watch)? {
+                Place::At(w) => {
+                    self.mesh.rename(w)?;
+                    w
+                }
+                Place::In(t) => self.create(p, t, &mut Pace::new(watch, LOT))?,
+            };
+            self.detach(row, v);
+            self.attach(row, target);
+            return Ok(Outcome::Done);
+        }
+        if self.mesh.shift(v, p)? {
+            return Ok(Outcome::Done);
+        }
+        if self.mesh.unlink(v, false, &mut Pace::new(watch, LOT))? != Removed::Done {
+            return Ok(Outcome::Rebuild);
+        }
+        let placed = match self.mesh.place(p, watch) {
+            Ok(Place::At(w)) => match self.mesh.rename(w) {
+                Ok(()) => {
+                    self.detach(row, v);
+                    self.mesh.free_site(v);
+                    self.attach(row, w);
+                    return Ok(Outcome::Done);
+                }
+                Err(error) => Err(error),
+            },
+            Ok(Place::In(t)) => {
+                self.mesh.sites.get_mut(v as usize).at = p;
+                self.mesh.insert(v, t, &mut Pace::new(watch, LOT))
+            }
+            Err(error) => Err(error),
+        };
+        if let Err(error) = placed {
+            self.mesh.sites.get_mut(v as usize).at = before;
+            relink(&mut self.mesh, v)?;
+            return Err(error);
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Replaces the triangulation by that of its points after these moves.
+    fn rebuild_moved(&mut self, moves: Vec<Move>, workers: usize, watch: &Watch) -> Result<()> {
+        let mut moved = moves;
+        let by_row = |a: &Move, b: &Move| a.1.cmp(&b.1);
+        crate::order::sort_by(&mut moved, watch, by_row)?;
+        let mut moved = moved.into_iter().peekable();
+        let mut rows = with_room(self.len())?;
+        let mut points = with_room(self.len())?;
+        for (row, v) in self.rows.iter() {
+            push(&mut rows, row)?;
+            let own = moved.next_if(|each| each.1 == row);
+            points.push(own.map_or_else(|| self.mesh.at(v), |each| each.2));
+        }
+        self.rebuild(&points, &rows, self.rows.total(), workers, watch)
+    }
+}
+
+/// Inserts a vertex again that was removed from the mesh, at the coordinates of its site.
+fn relink(mesh: &mut Mesh, v: u32) -> Result<()> {
+    match mesh.place(mesh.at(v), &IDLE)? {
+        Place::In(t) => mesh.insert(v, t, &mut Pace::new(&IDLE, LOT)),
+        Place::At(_) => Err(Error::Internal("a removed vertex is still there".into())),
+    }
+}

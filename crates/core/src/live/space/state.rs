@@ -1,0 +1,181 @@
+//! Snapshots of a live triangulation, and what has changed since the last look.
+
+use delone_predicates::lexicographic;
+
+use super::Space;
+use super::mesh::{Counts, FREE, INFINITE, Record, Site};
+use crate::error::Result;
+use crate::live::chunks::Image;
+use crate::live::rows::{NONE, RowsImage};
+use crate::memory::{push, with_room};
+use crate::order::{sort, sort_by};
+use crate::watch::{Pace, Watch};
+
+/// Records between two checks for interruption.
+const LOT: usize = 1 << 16;
+
+/// A snapshot. It never changes, and shares memory with others and with the triangulation.
+#[derive(Debug, Clone)]
+pub struct State {
+    records: Image<Record>,
+    sites: Image<Site>,
+    rows: RowsImage,
+    counts: Counts,
+}
+
+/// Tetrahedra, as rows, that went and came. Each begins with its two smallest rows; lists are ascending.
+#[derive(Debug, Default)]
+pub struct Changes {
+    /// Tetrahedra that are not there anymore.
+    pub gone: Vec<[i64; 4]>,
+    /// Tetrahedra that were not there.
+    pub new: Vec<[i64; 4]>,
+}
+
+impl State {
+    /// Bytes that are not shared with `other`.
+    pub fn own_bytes(&self, other: &Self) -> usize {
+        self.records.own_bytes(&other.records)
+            + self.sites.own_bytes(&other.sites)
+            + self.rows.own_bytes(&other.rows)
+    }
+}
+
+impl Space {
+    /// The present state: the cost is that of what has changed since the last snapshot.
+    pub fn state(&mut self, watch: &Watch) -> Result<State> {
+        Ok(State {
+            records: self.mesh.records.image(watch)?,
+            sites: self.mesh.sites.image(watch)?,
+            rows: self.rows.image(watch)?,
+            counts: self.mesh.counts,
+        })
+    }
+
+    /// Restores a state, of this triangulation or of any other. Rows that were inserted since are gone,
+    /// and their numbers are not used again.
+    pub fn restore(&mut self, state: &State, watch: &Watch) -> Result<()> {
+        let mut flat = Vec::new();
+        if state.counts.tetrahedra == 0 {
+            let sites = state.sites.to_vec()?;
+            flat = with_room(sites.len())?;
+            let used = |v: &u32| sites[*v as usize].at[0].is_finite();
+            flat.extend((1..sites.len() as u32).filter(used));
+            let mut free = state.counts.site;
+            let mut gone = with_room(sites.len())?;
+            while free != NONE {
+                gone.push(free);
+                free = sites[free as usize].head;
+            }
+            gone.sort_unstable();
+            flat.retain(|v| gone.binary_search(v).is_err());
+            let at = |v: u32| sites[v as usize].at;
+            sort_by(&mut flat, watch, |&u, &v| lexicographic(at(u), at(v)))?;
+        }
+        let total = self.rows.total();
+        self.mesh.records.make_room(&state.records)?;
+        self.mesh.sites.make_room(&state.sites)?;
+        self.rows.make_room(&state.rows)?;
+        self.rows.reserve(total.saturating_sub(self.rows.total()))?;
+        self.mesh.records.restore(&state.records)?;
+        self.mesh.sites.restore(&state.sites)?;
+        self.rows.restore(&state.rows)?;
+        for _ in self.rows.total()..total {
+            self.rows.push()?;
+        }
+        self.mesh.counts = state.counts;
+        self.flat = flat;
+        self.mesh.jump = None;
+        let near = self.mesh.sites[INFINITE as usize].near;
+        self.mesh.last = if near == NONE { 0 } else { near };
+        Ok(())
+    }
+
+    /// The tetrahedra that went and came since the last call; in the first call all are new.
+    pub fn changes(&mut self, watch: &Watch) -> Result<Changes> {
+        let state = self.state(watch)?;
+        let found = match &self.seen {
+            Some(seen) => self.since(seen, watch)?,
+            None => Changes {
+                gone: Vec::new(),
+                new: self.named(watch)?,
+            },
+        };
+        self.seen = Some(state);
+        Ok(found)
+    }
+
+    /// All tetrahedra as rows.
+    fn named(&self, watch: &Watch) -> Result<Vec<[i64; 4]>> {
+        let mut all = with_room(self.tetrahedra())?;
+        let mut pace = Pace::new(watch, LOT);
+        for &record in self.mesh.records.items() {
+            pace.spend(1)?;
+            all.extend(named(record, |v| self.mesh.sites[v as usize].head));
+        }
+        sort(&mut all, watch)?;
+        Ok(all)
+    }
+
+    /// What has changed since a state.
+    fn since(&self, seen: &State, watch: &Watch) -> Result<Changes> {
+        let (mut old, mut new) = (Vec::new(), Vec::new());
+        let mut pace = Pace::new(watch, LOT);
+        for i in self.mesh.records.changed(&seen.records).flatten() {
+            pace.spend(1)?;
+            let before = seen.records.get(i);
+            let head = |v: u32| seen.sites.get(v as usize).map_or(NONE, |site| site.head);
+            if let Some(t) = before.and_then(|record| named(record, head)) {
+                push(&mut old, t)?;
+            }
+            let now = self.mesh.records.items().get(i);
+            if let Some(t) = now.and_then(|&r| named(r, |v| self.mesh.sites[v as usize].head)) {
+                push(&mut new, t)?;
+            }
+        }
+        sort(&mut old, watch)?;
+        sort(&mut new, watch)?;
+        Ok(Changes {
+            gone: without(&old, &new)?,
+            new: without(&new, &old)?,
+        })
+    }
+}
+
+/// A tetrahedron by the rows of its vertices; `None` for ghosts and free records. Of the positively
+/// oriented orders, the first is taken: ascending, or with the last two exchanged.
+fn named(record: Record, head: impl Fn(u32) -> u32) -> Option<[i64; 4]> {
+    let [a, b, c, d, ..] = record;
+    if d == FREE || [a, b, c, d].contains(&INFINITE) {
+        return None;
+    }
+    let mut rows = [a, b, c, d].map(|v| i64::from(head(v)));
+    let mut odd = false;
+    for i in 1..4 {
+        for j in (1..=i).rev() {
+            if rows[j - 1] > rows[j] {
+                rows.swap(j - 1, j);
+                odd = !odd;
+            }
+        }
+    }
+    if odd {
+        rows.swap(2, 3);
+    }
+    Some(rows)
+}
+
+/// The items of one sorted list that are not in another one.
+fn without(list: &[[i64; 4]], other: &[[i64; 4]]) -> Result<Vec<[i64; 4]>> {
+    let mut left = Vec::new();
+    let mut at = 0;
+    for item in list {
+        while other.get(at).is_some_and(|o| o < item) {
+            at += 1;
+        }
+        if other.get(at) != Some(item) {
+            push(&mut left, *item)?;
+        }
+    }
+    Ok(left)
+}
