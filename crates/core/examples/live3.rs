@@ -39,6 +39,8 @@ fn main() {
         let (each, share) = (1e6 * seconds / m as f64, 100.0 * seconds / build);
         println!("{name:16} {each:8.1} us each, {share:6.2} % of a build");
     };
+    let step = (n / m.max(1)).max(3) as i64;
+    let spread = |from: i64| -> Vec<i64> { (0..m as i64).map(|i| i * step + from).collect() };
     let more = scattered(m, 2);
     let insert = |live: &mut Space, points: &[Point3]| {
         live.insert(points, 1, &watch).expect("insertion");
@@ -51,15 +53,15 @@ fn main() {
         "insert, single",
         timed(|| singles.chunks(1).for_each(|p| insert(&mut live, p))).1,
     );
-    let rows: Vec<i64> = (0..m as i64).map(|i| i * 7919 % n as i64).collect();
+    let rows = spread(0);
     let remove = |live: &mut Space, rows: &[i64]| live.remove(rows, 1, &watch).expect("removal");
     report("remove, batch", timed(|| remove(&mut live, &rows)).1);
-    let rows: Vec<i64> = (0..m as i64).map(|i| (i * 7919 + 1) % n as i64).collect();
+    let rows = spread(1);
     report(
         "remove, single",
         timed(|| rows.chunks(1).for_each(|r| remove(&mut live, r))).1,
     );
-    let near: Vec<i64> = (0..m as i64).map(|i| (i * 7919 + 2) % n as i64).collect();
+    let near = spread(2);
     let step = 0.02 / (n as f64).cbrt();
     for (name, step) in [("move, a little", step), ("move, an edge", 50.0 * step)] {
         let moved = |row: &i64, d: Point3| {

@@ -177,7 +177,7 @@ fn picked(rows: &[i64], at: impl Iterator<Item = usize>) -> Vec<i64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
     #[test]
     fn every_edit_equals_a_fresh_build((points, edits) in edits()) {
         let mut twin = Twin::new(&points);
@@ -230,10 +230,10 @@ fn batches_in_a_large_set_equal_a_fresh_build() {
     let mut twin = Twin::new(&scattered(8_000, 1));
     twin.insert(&scattered(1200, 2));
     twin.agree();
-    let rows: Vec<i64> = (0..9_200).step_by(9).collect();
+    let rows: Vec<i64> = (0..9_200).step_by(12).collect();
     twin.remove(&rows);
     twin.agree();
-    let rows = picked(&twin.rows(), (0..2000).map(|i| i * 7919));
+    let rows = picked(&twin.rows(), (0..700).map(|i| i * 7919));
     let points: Vec<Point3> = rows
         .iter()
         .zip(scattered(rows.len(), 3))
@@ -259,6 +259,10 @@ fn batches_in_a_large_set_equal_a_fresh_build() {
     }
     // Beyond the share that is edited point by point.
     twin.insert(&scattered(8_000, 5));
+    twin.agree();
+    let rows = picked(&twin.rows(), (0..4000).map(|i| i * 7919));
+    let points = scattered(rows.len(), 6);
+    twin.relocate(&rows, &points);
     twin.agree();
     let rows = picked(&twin.rows(), (0..12_000).map(|i| i * 7919));
     twin.remove(&rows);
@@ -339,11 +343,11 @@ fn layers_and_lattices_are_removed_point_by_point() {
 
 #[test]
 fn an_interrupted_batch_changes_nothing() {
-    let mut twin = Twin::new(&scattered(12_000, 1));
+    let mut twin = Twin::new(&scattered(5_000, 1));
     twin.agree();
-    let rows: Vec<i64> = (0..12_000).step_by(5).collect();
+    let rows: Vec<i64> = (0..5_000).step_by(13).collect();
     let moved: Vec<Point3> = scattered(rows.len(), 8);
-    let more = scattered(2400, 4);
+    let more = scattered(1000, 4);
     let asked = AtomicUsize::new(0);
     let mut interrupted = 0;
     for after in 0..40 {
