@@ -383,7 +383,7 @@ impl Space {
             let before = self.point(row);
             outcome = pace
                 .spend(1)
-                .and_then(|()| self.relocate_one(row, p, watch));
+                .and_then(|()| self.relocate_one(row, p, false, watch));
             if !matches!(outcome, Ok(Outcome::Done)) {
                 break;
             }
@@ -400,7 +400,7 @@ impl Space {
         };
         if done.is_err() {
             for &(row, p) in old.iter().rev() {
-                self.relocate_one(row, p, &IDLE)?;
+                self.relocate_one(row, p, true, &IDLE)?;
             }
         }
         done
@@ -412,8 +412,15 @@ impl Space {
         self.mesh.at(v)
     }
 
-    /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed.
-    fn relocate_one(&mut self, row: u32, p: Point3, watch: &Watch) -> Result<Outcome> {
+    /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed. With `always`,
+    /// high degrees are no reason to rebuild.
+    fn relocate_one(
+        &mut self,
+        row: u32,
+        p: Point3,
+        always: bool,
+        watch: &Watch,
+    ) -> Result<Outcome> {
         let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
         let before = self.mesh.at(v);
         if before == p {
@@ -435,7 +442,7 @@ impl Space {
         if self.mesh.shift(v, p)? {
             return Ok(Outcome::Done);
         }
-        if self.mesh.unlink(v, false, &mut Pace::new(watch, LOT))? != Removed::Done {
+        if self.mesh.unlink(v, always, &mut Pace::new(watch, LOT))? != Removed::Done {
             return Ok(Outcome::Rebuild);
         }
         let placed = match self.mesh.place(p, watch) {
