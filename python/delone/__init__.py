@@ -35,6 +35,7 @@ from delone.errors import (
     DeloneError,
     DtypeError,
     FileFormatError,
+    HandleError,
     InputError,
     InternalError,
     LimitError,
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from delone.constrained.segments import SegmentReport
     from delone.constrained.validation import ConstrainedReport
     from delone.explorer.widget import explore
+    from delone.dynamic.dynamic import Dynamic
     from delone.flips import LawsonResult, lawson
     from delone.hull import ConvexHull
     from delone.periodic import PeriodicDelaunay
@@ -94,9 +96,11 @@ __all__ = [
     "Delaunay",
     "DeloneError",
     "DtypeError",
+    "Dynamic",
     "Editing",
     "FileFormatError",
     "GeographicWarning",
+    "HandleError",
     "ImproveReport",
     "InputError",
     "InternalError",
@@ -145,6 +149,7 @@ _MODULES = {
     "constrained",
     "datasets",
     "distributed",
+    "dynamic",
     "exchange",
     "explorer",
     "flips",
@@ -166,6 +171,7 @@ _HOMES = {
     "ConstrainedDelaunay": "constrained.delaunay",
     "ConstrainedReport": "constrained.validation",
     "ConvexHull": "hull",
+    "Dynamic": "dynamic.dynamic",
     "Editing": "constrained.editing",
     "ImproveReport": "tetmesh.report",
     "LawsonResult": "flips",

@@ -26,6 +26,9 @@ __all__ = [
     "ImprovedMesh",
     "ImprovementCounts",
     "JudgedTriangles",
+    "Live2",
+    "LiveArrays2",
+    "LiveState2",
     "Location2",
     "Location3",
     "Locator2",
@@ -1069,6 +1072,59 @@ def within2(
 def deepest2(
     points: NDArray[np.float64], corners: NDArray[np.float64], most: int, workers: int
 ) -> DeepestPoints: ...
+
+@final
+class Live2:
+    """A 2-D Delaunay triangulation that is edited."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        handles: NDArray[np.int64] | None,
+        total: int,
+        workers: int,
+    ) -> Live2: ...
+    def counts(self) -> list[int]: ...
+    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]: ...
+    def remove(self, handles: NDArray[np.int64], workers: int) -> None: ...
+    def relocate(
+        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
+    ) -> None: ...
+    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
+    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
+    def arrays(self) -> LiveArrays2: ...
+    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
+    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]: ...
+    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+    def state(self) -> LiveState2: ...
+    def restore(self, state: LiveState2) -> None: ...
+
+@final
+class LiveArrays2:
+    """The present triangulation."""
+
+    @property
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of the points, ascending, (n,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The points, (n, 2)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Triangles as rows of these, (m, 3)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The triangle opposite each vertex, -1 outside, (m, 3)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
+
+@final
+class LiveState2:
+    """A state of a `Live2`, which never changes."""
+
+    def open(self) -> Live2: ...
+    def own_bytes(self, other: LiveState2) -> int: ...
 
 @final
 class Locator2:

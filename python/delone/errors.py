@@ -26,6 +26,7 @@ __all__ = [
     "DeloneError",
     "DtypeError",
     "FileFormatError",
+    "HandleError",
     "InputError",
     "InternalError",
     "LimitError",
@@ -426,6 +427,44 @@ class InternalError(DeloneError, RuntimeError):
     def __init__(self, message: str = "an internal check failed") -> None:
         # Unpickling calls the constructor with the complete text, which must not grow again.
         super().__init__(message if self.REQUEST in message else f"{message}. {self.REQUEST}")
+
+
+class HandleError(DeloneError, KeyError):
+    """Handles name no points of a `Dynamic`, or one of them twice; also a KeyError.
+
+    Parameters
+    ----------
+    message : str
+        The message.
+    handles : array_like of int, optional
+        The handles.
+
+    Attributes
+    ----------
+    handles : ndarray of int64
+        The handles that are gone or never were, or those that are named twice.
+
+    Examples
+    --------
+    >>> import delone
+    >>> live = delone.Dynamic([(0, 0), (1, 0), (0, 1)])
+    >>> try:
+    ...     live.remove([1, 7])
+    ... except KeyError as error:
+    ...     print(error, error.handles)
+    handle 7 is not there [7]
+    """
+
+    handles: NDArray[np.int64]
+
+    def __init__(self, message: str = "a handle is not there", *, handles: ArrayLike = ()) -> None:
+        super().__init__(message)
+        self.handles = np.array(handles, dtype=np.int64).reshape(-1)
+        self.handles.flags.writeable = False
+
+    def __str__(self) -> str:
+        # A KeyError would show the message in quotes.
+        return str(self.args[0])
 
 
 class FileFormatError(DeloneError, ValueError):

@@ -16,6 +16,7 @@ mod hull;
 mod improve;
 mod interpolate;
 mod lawson;
+mod live;
 mod locate;
 mod locate3;
 mod locator;
@@ -52,6 +53,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<regular_faults::PeriodicFaults>()?;
     m.add_class::<hull::Hull3>()?;
     m.add_class::<lawson::FlippedTriangulation>()?;
+    m.add_class::<live::Live2>()?;
+    m.add_class::<live::LiveState2>()?;
+    m.add_class::<live::LiveArrays2>()?;
     m.add_class::<constrained::ConstrainedTriangulation>()?;
     m.add_class::<refine::RefinedMesh>()?;
     m.add_class::<refine::JudgedTriangles>()?;

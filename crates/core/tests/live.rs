@@ -366,11 +366,11 @@ fn queries_find_the_triangle_and_the_nearest_row() {
             continue;
         }
         inside += 1;
-        for axis in 0..2 {
+        for (axis, x) in q.iter().enumerate() {
             let sum: f64 = (0..3)
                 .map(|i| corners.weights[k][i] * at(corners.rows[k][i])[axis])
                 .sum();
-            assert!((sum - q[axis]).abs() < 1e-12);
+            assert!((sum - x).abs() < 1e-12);
         }
     }
     assert!((200..300).contains(&inside));

@@ -333,7 +333,8 @@ mod tests {
         assert_eq!(second.own_bytes(&first), CHUNK + lists);
         let changed: Vec<_> = array.changed(&first).collect();
         let chunk = 2 * GROUP * SIZE + SIZE;
-        assert_eq!(changed, [chunk..chunk + SIZE]);
+        assert_eq!(changed.len(), 1);
+        assert_eq!(changed[0], chunk..chunk + SIZE);
         assert_eq!(array.changed(&second).count(), 0);
         assert_eq!(image(&mut array).own_bytes(&second), 8 * 4);
     }

@@ -5,11 +5,14 @@
 
 use super::chunks::{Chunks, Image};
 use crate::error::{Error, Result};
-use crate::memory::{filled, with_room};
+use crate::memory::with_room;
 use crate::watch::Watch;
 
 /// No row, or no vertex.
 pub const NONE: u32 = u32::MAX;
+
+/// The share of room that is left for insertions.
+const SPARE: usize = 3;
 
 /// A row.
 #[derive(Debug, Clone, Copy)]
@@ -42,8 +45,11 @@ pub struct RowsImage {
 impl Rows {
     /// `total` rows that are at no vertex.
     pub fn gone(total: usize) -> Result<Self> {
+        // Untouched room for the next batches costs nothing.
+        let mut rows = with_room(total + total / SPARE)?;
+        rows.resize(total, GONE);
         Ok(Self {
-            rows: Chunks::of(filled(total, GONE)?)?,
+            rows: Chunks::of(rows)?,
             live: 0,
         })
     }

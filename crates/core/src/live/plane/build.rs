@@ -7,13 +7,16 @@ use crate::delaunay2::{Built, Clock, Method, mesh};
 use crate::error::{Error, Result};
 use crate::live::chunks::Chunks;
 use crate::live::rows::{NONE, Rows};
-use crate::memory::with_room;
-use crate::mesh2::Code;
+use crate::memory::{filled, with_room};
+use crate::mesh2::{Code, triangle};
 use crate::order::sort_by;
 use crate::watch::{Pace, Watch};
 
 /// Triangles, or rows, between two checks for interruption.
 const LOT: usize = 1 << 16;
+
+/// The share of room that is left for insertions.
+const SPARE: usize = 3;
 
 /// The vertex at infinity.
 const AT_INFINITY: Site = Site {
@@ -86,7 +89,7 @@ fn imported(built: Built, rows: &[u32], total: usize, watch: &Watch) -> Result<(
     let mut mesh = built.mesh;
     let count = built.rows.len();
     let used = 2 * count as u32 - 2;
-    let mut sites = with_room(count + 1)?;
+    let mut sites = with_room(count + 1 + count / SPARE)?;
     sites.push(AT_INFINITY);
     let mut own = Rows::gone(total)?;
     for (v, &first) in built.rows.iter().enumerate() {
@@ -106,23 +109,47 @@ fn imported(built: Built, rows: &[u32], total: usize, watch: &Watch) -> Result<(
             own.attach(rows[row as usize], v, head);
         }
     }
-    let mut records: Vec<Record> = with_room(used as usize)?;
-    let mut ghosts = 0;
     let patch = mesh.resume(used);
+    let corner = |v: u32| {
+        if v == patch.infinite() {
+            INFINITE
+        } else {
+            v + 1
+        }
+    };
+    // Triangles in the order of their smallest vertices, which is that of the curve: a place is a few
+    // chunks and a few lines of the cache then.
+    let least = |t: u32| patch.corners(t).into_iter().min().unwrap_or_default() as usize;
+    let mut start = filled(count + 1, 0u32)?;
     for t in 0..used {
         pace.spend(1)?;
-        let mut record = *patch.record(t);
-        (record[3], record[7]) = (0, 0);
-        for (k, v) in record[..3].iter_mut().enumerate() {
-            *v = if *v == patch.infinite() {
-                INFINITE
-            } else {
-                *v + 1
-            };
-            ghosts += u32::from(*v == INFINITE);
-            sites[*v as usize].near = 8 * t as Code + k as Code;
+        start[least(t) + 1] += 1;
+    }
+    for v in 0..count {
+        start[v + 1] += start[v];
+    }
+    let mut place = with_room(used as usize)?;
+    for t in 0..used {
+        pace.spend(1)?;
+        let at = &mut start[least(t)];
+        place.push(*at);
+        *at += 1;
+    }
+    // Untouched room for the next batches costs nothing.
+    let mut records: Vec<Record> = with_room(used as usize + used as usize / SPARE)?;
+    records.resize(used as usize, [0; 8]);
+    let mut ghosts = 0;
+    for (t, &at) in (0u32..).zip(&place) {
+        pace.spend(1)?;
+        let [u, v, w] = patch.corners(t);
+        let [a, b, c] = [corner(u), corner(v), corner(w)];
+        ghosts += u32::from([a, b, c].contains(&INFINITE));
+        let [e, f, g] = patch.opposites(t);
+        let moved = |e: Code| 8 * place[triangle(e) as usize] + (e & 3);
+        records[at as usize] = [a, b, c, 0, moved(e), moved(f), moved(g), 0];
+        for (e, v) in (8 * at..).zip([a, b, c]) {
+            sites[v as usize].near = e;
         }
-        records.push(record);
     }
     let counts = Counts {
         vertices: count as u32,

@@ -21,6 +21,9 @@ const SHARE_REMOVED: usize = 3;
 const SHARE_MOVED: usize = 1;
 const FEW: usize = 64;
 
+/// A batch of more than this share of the vertices needs no tree of starting points.
+const DENSE: usize = 64;
+
 /// Points between two checks for interruption.
 const LOT: usize = 1 << 10;
 
@@ -64,7 +67,11 @@ impl Plane {
         if self.is_incremental(input.len(), SHARE_INSERTED) {
             let mut targets = filled(input.len(), NONE)?;
             let mut made = with_room(input.len())?;
+            // Along the curve, the last triangle is near.
+            let is_dense = input.len() > self.vertices() / DENSE;
+            self.mesh.strolled = if is_dense { isize::MIN / 2 } else { 0 };
             let done = self.insert_along(input, &mut targets, &mut made, watch);
+            self.mesh.strolled = 0;
             let done = match done {
                 Ok(Outcome::Rebuild) => self.rebuild_with(input, workers, watch),
                 Ok(Outcome::Done) => {

@@ -54,7 +54,7 @@ impl Mesh {
             //         p
             add(self, triangle(across))?;
             let w = self.vertex(across);
-            let [wv, uw] = [prev(across), next(across)].map(|e| self.opposite(e));
+            let [wv, uw] = [self.opposite(prev(across)), self.opposite(next(across))];
             push(&mut self.stack, (wv, w))?;
             push(&mut self.stack, (uw, start))?;
         }

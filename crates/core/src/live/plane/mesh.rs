@@ -59,8 +59,8 @@ pub struct Mesh {
     pub work: usize,
     /// A tree of starting points for walks, and the work when it is out of date.
     pub jump: Option<(Start<2>, usize)>,
-    /// Steps of long walks since there is no tree.
-    pub strolled: usize,
+    /// Steps of long walks since there is no tree; far below zero where there shall be none.
+    pub strolled: isize,
     /// Edges of a cavity or of a hole, each by the code beyond it and the vertex where it starts.
     pub rim: Vec<(Code, u32)>,
     /// Edges to be tested.
@@ -186,9 +186,9 @@ impl Mesh {
     /// Sets the head of a vertex. As its triangles are named by heads, a new one marks them.
     pub fn set_head(&mut self, v: u32, head: u32) {
         let site = self.sites.get_mut(v as usize);
-        let changed = std::mem::replace(&mut site.head, head) != head;
+        let old = std::mem::replace(&mut site.head, head);
         let near = site.near;
-        if !changed || near == NONE {
+        if [head, NONE].contains(&old) || [near, head].contains(&NONE) {
             return;
         }
         let mut corner = near;
@@ -218,10 +218,10 @@ impl Mesh {
         } else if w == INFINITE {
             [u, v]
         } else {
-            let [a, b, c] = [u, v, w].map(|v| self.at(v));
+            let [a, b, c] = [self.at(u), self.at(v), self.at(w)];
             return incircle_canonical(a, b, c, p) == Sign::Positive;
         };
-        let [a, b] = edge.map(|v| self.at(v));
+        let [a, b] = [self.at(edge[0]), self.at(edge[1])];
         // The outside is on the left of the hull edge of a ghost.
         match orient2d(a, b, p) {
             Sign::Positive => true,

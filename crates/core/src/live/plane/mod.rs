@@ -95,6 +95,11 @@ impl Plane {
         self.rows.vertex(row).is_some()
     }
 
+    /// Triangles visited so far; for measurements.
+    pub fn work(&self) -> usize {
+        self.mesh.work
+    }
+
     /// Checks the data structure; for tests.
     pub fn check(&self) -> std::result::Result<(), String> {
         self.mesh.check()?;

@@ -119,7 +119,7 @@ impl Mesh {
             let i = self.apex(start, end)?;
             let t = self.dead[made];
             made += 1;
-            let [(ab, a), (bc, b), (_, c)] = [start, start + 1, i].map(|i| self.rim[i]);
+            let [(ab, a), (bc, b), (_, c)] = [self.rim[start], self.rim[start + 1], self.rim[i]];
             ghosts += u32::from(c == INFINITE);
             *self.records.get_mut(t as usize) = [a, b, c, 0, 0, 0, 0, 0];
             self.link(8 * t + 2, ab);
@@ -159,7 +159,7 @@ impl Mesh {
         if end == start + 3 {
             return Ok(start + 2);
         }
-        let [a, b] = [start, start + 1].map(|i| self.at(self.rim[i].1));
+        let [a, b] = [self.at(self.rim[start].1), self.at(self.rim[start + 1].1)];
         let mut best = None;
         for i in start + 2..end {
             let v = self.rim[i].1;

@@ -14,7 +14,7 @@ impl Mesh {
         self.gather(v)?;
         let k = self.rim.len();
         for i in 0..k {
-            let [a, b] = [i, (i + 1) % k].map(|i| self.rim[i].1);
+            let [a, b] = [self.rim[i].1, self.rim[(i + 1) % k].1];
             // At the vertex at infinity the orientation is zero.
             if orient2d(p, self.at(a), self.at(b)) != Sign::Positive {
                 return Ok(false);
@@ -61,11 +61,12 @@ impl Mesh {
     /// Whether the perturbed circle of the triangle of `e` contains the corner beyond it.
     fn must_flip(&self, e: Code) -> bool {
         let o = self.opposite(e);
-        let [u, v, p, q] = [next(e), prev(e), e, o].map(|c| self.vertex(c));
+        let [u, v] = [self.vertex(next(e)), self.vertex(prev(e))];
+        let [p, q] = [self.vertex(e), self.vertex(o)];
         if p == INFINITE || q == INFINITE || u == INFINITE || v == INFINITE {
             return false;
         }
-        let [a, b, c, d] = [u, v, p, q].map(|v| self.at(v));
+        let [a, b, c, d] = [self.at(u), self.at(v), self.at(p), self.at(q)];
         incircle_canonical(a, b, c, d) == Sign::Positive
     }
 

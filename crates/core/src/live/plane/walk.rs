@@ -16,6 +16,12 @@ const REACH: f64 = 100.0;
 /// Vertices per node of the tree of starting points.
 const SHARE: usize = 8;
 
+/// Vertices beside that of a node that are tried, too.
+const BESIDE: usize = 2;
+
+/// How much work for each vertex a tree lasts.
+const LASTING: usize = 4;
+
 /// Where a point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
@@ -46,13 +52,13 @@ impl Mesh {
         } else {
             [u, v]
         };
-        let [a, b] = edge.map(|v| self.at(v));
+        let [a, b] = [self.at(edge[0]), self.at(edge[1])];
         let far = squared(q, a) > REACH * squared(a, b);
         let from = if far { self.jump(q, watch)? } else { self.last };
         let before = self.work;
         self.last = self.walk(from, q);
         if far && self.jump.is_none() {
-            self.strolled += self.work - before;
+            self.strolled += (self.work - before) as isize;
         }
         Ok(self.last)
     }
@@ -66,27 +72,36 @@ impl Mesh {
         // Not the vertex at infinity.
         let sites = &self.sites.items()[1..];
         if self.jump.is_none() {
-            if self.strolled < sites.len() / SHARE {
+            if self.strolled < (sites.len() / SHARE) as isize {
                 return Ok(self.last);
             }
             let start = Start::of(sites.len(), |i| sites[i].at, watch)?;
             // Most of its vertices are still there after so much work.
-            self.jump = Some((start, self.work + 8 * sites.len()));
+            self.jump = Some((start, self.work + LASTING * sites.len()));
             self.strolled = 0;
         }
-        let near = self
-            .jump
-            .as_ref()
-            .map(|(start, _)| sites[start.near(q)].near);
-        let near = near.filter(|&near| near != NONE);
-        Ok(near.map_or(self.last, triangle))
+        let Some((start, _)) = &self.jump else {
+            return Ok(self.last);
+        };
+        // The vertex may have gone, and another one may have its place. Most of those beside it have
+        // been along the curve since the triangulation was built.
+        let i = start.near(q);
+        let beside = &sites[i.saturating_sub(BESIDE)..sites.len().min(i + BESIDE + 1)];
+        let mut best = (self.last, f64::INFINITY);
+        for site in beside.iter().filter(|site| site.near != NONE) {
+            let distance = squared(q, site.at);
+            if distance < best.1 {
+                best = (triangle(site.near), distance);
+            }
+        }
+        Ok(best.0)
     }
 
     /// The same by a visibility walk from triangle `from`.
     #[inline]
     fn walk(&mut self, from: u32, q: Point2) -> u32 {
         let beyond = |mesh: &Self, e: u32| {
-            let [a, b] = [next(e), prev(e)].map(|c| mesh.at(mesh.vertex(c)));
+            let [a, b] = [mesh.at(mesh.vertex(next(e))), mesh.at(mesh.vertex(prev(e)))];
             orient2d(a, b, q) == Sign::Negative
         };
         let mut e = 8 * from;

@@ -1,0 +1,649 @@
+"""The class Dynamic: a Delaunay triangulation whose points are inserted, removed and moved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from delone import _core
+from delone._arrays import as_plain_array, as_points, as_vectors, as_workers
+from delone.complex import Complex
+from delone.counting import counted
+from delone.delaunay import Delaunay
+from delone.dynamic.results import Changes, Snapshot
+from delone.errors import DtypeError, HandleError, ShapeError
+from delone.immutable import own_copy, sealed
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from delone.location import Location
+    from delone.validation import ValidationReport
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.int32]
+    Handles = NDArray[np.int64]
+
+__all__ = ["Dynamic"]
+
+# Fewer points are edited with the GIL, so that nobody can change them meanwhile.
+_FEW = 16
+
+
+class Dynamic:
+    """A 2-D Delaunay triangulation whose points are inserted, removed and moved.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2), or triangulation, optional
+        Finite coordinates, as for `Delaunay`, or a 2-D triangulation, whose points are taken. By
+        default none. Their handles are 0 to n - 1.
+    workers : int, optional
+        Maximum number of threads where the points are triangulated at once; by default one per
+        core. The result does not depend on it.
+
+    Raises
+    ------
+    NonFiniteError, ShapeError, DtypeError
+        As for `Delaunay`.
+    LimitError
+        There are more than 2**28 points, or 2**32 - 2 handles have been given.
+    MemoryError
+        There is not enough memory.
+
+    See Also
+    --------
+    Delaunay : A triangulation that never changes.
+
+    Notes
+    -----
+    After each edit the simplices are those of a new `Delaunay` of the same points, exactly: ties
+    are broken by coordinates, so a set of points has one triangulation, whatever edits led to it.
+
+    A *handle* is an int64 that names a point for as long as it is there, wherever it moves; it is
+    never used again, not even after `restore`. Rows of `points` are in ascending order of handles,
+    so rows change when points are removed, and handles do not. Each point has its own handle: of
+    points with the same coordinates, the one with the smallest handle is the vertex, and another
+    one takes its place when it goes (`duplicates`).
+
+    Points of which fewer than three are distinct, or that all lie on one line, have no simplex;
+    they stay, and simplices come back with the point that makes it possible.
+
+    An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
+    changed. Edits from several threads take turns.
+
+    An insertion takes a walk from the last edit, or from a tree of starting points, and time in
+    proportion to the triangles that it replaces (A. Bowyer; D. F. Watson, both 1981). A removal
+    fills the star of the point with triangles of its k neighbors in O(k^2), or triangulates all
+    points again where that is cheaper. A point that moves within its star stays in place, and
+    flips (C. L. Lawson, 1977) restore the triangulation. Batches are sorted along a space-filling
+    curve, and large ones triangulate all points again. Arrays such as `simplices` are made on
+    first use after an edit, in linear time. A handle takes 12 bytes for good.
+
+    Examples
+    --------
+    >>> from delone import Dynamic
+    >>> live = Dynamic([(0, 0), (4, 0), (4, 3), (0, 3)])
+    >>> center, = live.insert([(2, 1)])
+    >>> live
+    <Dynamic of 5 points: 4 triangles>
+    >>> live.move([center], [(1, 1)])
+    >>> live.remove([1])
+    >>> live.handles
+    array([0, 2, 3, 4])
+    >>> live.freeze()
+    <Delaunay of 4 points: 3 triangles>
+    """
+
+    __slots__ = ("__weakref__", "_core", "_edit", "_present", "_workers")
+
+    _core: _core.Live2
+    # An object of its own for each state, and the arrays of the state when they were made.
+    _edit: object
+    _present: tuple[object, _core.LiveArrays2] | None
+    _workers: int | None
+
+    def __init__(
+        self, points: ArrayLike | Complex | None = None, *, workers: int | None = None
+    ) -> None:
+        if points is None:
+            points = np.empty((0, 2))
+        own = own_copy(points.points if isinstance(points, Complex) else points)
+        core = _core.Live2(own, None, 0, as_workers(workers))
+        self._begin(core, workers)
+
+    def _begin(self, core: _core.Live2, workers: int | None) -> None:
+        self._core = core
+        self._workers = workers
+        self._edit = object()
+        self._present = None
+
+    @classmethod
+    def _of(cls, core: _core.Live2, workers: int | None) -> Self:
+        made = cls.__new__(cls)
+        made._begin(core, workers)
+        return made
+
+    @classmethod
+    def _again(cls, points: Floats, handles: Handles, total: int, workers: int | None) -> Self:
+        """Return the triangulation of a pickle."""
+        return cls._of(_core.Live2(points, handles, total, as_workers(workers)), workers)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        handles, points = self._core.points()
+        return type(self)._again, (points, handles, self._core.counts()[3], self._workers)
+
+    def __copy__(self) -> Self:
+        return self._of(self._core.state().open(), self._workers)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.__copy__()
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return self._core.counts()[0]
+
+    def __contains__(self, handle: object) -> bool:
+        """Return whether the point with this handle is there."""
+        if isinstance(handle, bool) or not isinstance(handle, int | np.integer):
+            return False
+        if not 0 <= handle < self._core.counts()[3]:
+            return False
+        gone, _ = self._core.faults(np.array([handle], dtype=np.int64))
+        return len(gone) == 0
+
+    def __repr__(self) -> str:
+        npoints, vertices, triangles, _ = self._core.counts()
+        points = counted(npoints, "point")
+        if npoints > vertices:
+            points += f" ({counted(npoints - vertices, 'duplicate')})"
+        return f"<{type(self).__name__} of {points}: {counted(triangles, 'triangle')}>"
+
+    # Edits.
+
+    def insert(self, points: ArrayLike) -> Handles:
+        """Insert points.
+
+        Parameters
+        ----------
+        points : array_like, shape (k, 2)
+            Finite coordinates. A point that is there already becomes a duplicate.
+
+        Returns
+        -------
+        ndarray of int64, shape (k,)
+            Their handles, ascending.
+
+        Raises
+        ------
+        NonFiniteError, ShapeError, DtypeError, LimitError, MemoryError
+            As for the constructor; nothing has changed.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1)])
+        >>> live.insert([(1, 1), (0, 0)])
+        array([3, 4])
+        >>> live.duplicates
+        array([[4, 0]])
+        """
+        made = self._core.insert(_own(points), self._threads(points))
+        self._edit = object()
+        return made
+
+    def remove(self, handles: ArrayLike) -> None:
+        """Remove points.
+
+        Parameters
+        ----------
+        handles : array_like of int, shape (k,)
+            Their handles, each once.
+
+        Raises
+        ------
+        HandleError
+            A handle is not there, or is named twice; nothing has changed.
+        DtypeError
+            `handles` are not integers.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+        >>> live.remove([0])
+        >>> live.simplices
+        array([[0, 2, 1]], dtype=int32)
+        """
+        own = _as_handles(handles)
+        try:
+            self._core.remove(own, self._threads(own))
+        except ShapeError:
+            self._refuse(own)
+            raise
+        self._edit = object()
+
+    def move(self, handles: ArrayLike, points: ArrayLike) -> None:
+        """Move points, all at once.
+
+        Parameters
+        ----------
+        handles : array_like of int, shape (k,)
+            Their handles, each once.
+        points : array_like, shape (k, 2)
+            Where they move. Points that meet others become duplicates.
+
+        Raises
+        ------
+        HandleError
+            A handle is not there, or is named twice; nothing has changed.
+        NonFiniteError, ShapeError, DtypeError
+            As for the constructor, or there are not as many points as handles.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+        >>> live.move([0, 3], [(1, 1), (0, 0)])
+        >>> live.points[0]
+        array([1., 1.])
+        """
+        own, places = _as_handles(handles), _own(points)
+        try:
+            self._core.relocate(own, places, self._threads(own))
+        except ShapeError:
+            self._refuse(own)
+            raise
+        self._edit = object()
+
+    def _threads(self, items: Any) -> int:
+        if self._workers is None and (not hasattr(items, "__len__") or len(items) <= _FEW):
+            return 1
+        return as_workers(self._workers)
+
+    def _refuse(self, handles: Handles) -> None:
+        gone, twice = self._core.faults(handles)
+        if len(gone):
+            names = ", ".join(map(str, gone[:5].tolist())) + (", ..." if len(gone) > 5 else "")
+            verb = "is" if len(gone) == 1 else "are"
+            noun = "handle" if len(gone) == 1 else "handles"
+            raise HandleError(f"{noun} {names} {verb} not there", handles=gone)
+        if len(twice):
+            raise HandleError(f"handle {twice[0]} is named twice", handles=twice)
+
+    # States.
+
+    def snapshot(self) -> Snapshot:
+        """Return the present state, to be restored later.
+
+        Returns
+        -------
+        Snapshot
+            The state. Any number of threads may use it.
+
+        Notes
+        -----
+        Time and memory are those of what has changed since the last snapshot; the first one copies
+        everything.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (1, 0), (0, 1), (1, 1)])
+        >>> full = live.snapshot()
+        >>> live.remove([0, 1])
+        >>> removed = live.snapshot()
+        >>> live.restore(full)
+        >>> len(live)
+        4
+        >>> live.restore(removed)
+        >>> len(live)
+        2
+        """
+        return Snapshot(self._core.state())
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Return to a state.
+
+        Parameters
+        ----------
+        snapshot : Snapshot
+            A state of this triangulation, or of another one, whose points and handles this one
+            takes over.
+
+        Raises
+        ------
+        DtypeError
+            `snapshot` is not a `Snapshot`.
+
+        Notes
+        -----
+        Handles given since the snapshot are gone, and are not given again. Time is that of what
+        has changed in between.
+
+        Examples
+        --------
+        See `snapshot`.
+        """
+        if not isinstance(snapshot, Snapshot):
+            raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
+        self._core.restore(snapshot._state)
+        self._edit = object()
+
+    def changes(self) -> Changes:
+        """Return the simplices that went and came since the last call.
+
+        Returns
+        -------
+        Changes
+            Simplices as handles. In the first call all are new.
+
+        Notes
+        -----
+        Time is that of what has changed, except in the first call.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (0, 4), (9, 9)])
+        >>> _ = live.changes()
+        >>> live.remove([0])
+        >>> live.changes().gone
+        array([[0, 1, 2]])
+        """
+        gone, new = self._core.changes()
+        return Changes(gone, new)
+
+    def freeze(self) -> Delaunay:
+        """Return the present triangulation as an object that never changes.
+
+        Returns
+        -------
+        Delaunay
+            Equal to ``Delaunay(live.points)`` up to the order of the simplices, in linear time.
+
+        Raises
+        ------
+        DegenerateInputError
+            There is no simplex.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> bool(Dynamic([(0, 0), (1, 0), (0, 1)]).freeze().validate())
+        True
+        """
+        made = self._arrays()
+        if not len(made.simplices):
+            return Delaunay(made.points, workers=self._workers, planar=True)
+        arrays = {
+            "points": made.points,
+            "simplices": made.simplices,
+            "neighbors": made.neighbors,
+            "duplicates": made.duplicates,
+        }
+        return Delaunay._from_arrays(arrays, (), self._workers)
+
+    def validate(self) -> ValidationReport:
+        """Prove that this is the canonical Delaunay triangulation, or list the faults.
+
+        Returns
+        -------
+        ValidationReport
+            That of `freeze`.
+
+        Raises
+        ------
+        DegenerateInputError
+            There is no simplex to validate.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> print(Dynamic([(0, 0), (1, 0), (0, 1)]).validate())
+        a canonical Delaunay triangulation
+        """
+        return self.freeze().validate()
+
+    # The present arrays.
+
+    def _arrays(self) -> _core.LiveArrays2:
+        """Return the arrays of the present state, made once after each edit."""
+        edit, present = self._edit, self._present
+        if present is None or present[0] is not edit:
+            made = self._core.arrays()
+            for array in (made.handles, made.points, made.simplices, made.neighbors):
+                sealed(array)
+            sealed(made.duplicates)
+            present = (edit, made)
+            self._present = present
+        return present[1]
+
+    @property
+    def points(self) -> Floats:
+        """The coordinates, (n, 2), in ascending order of handles."""
+        return self._arrays().points
+
+    @property
+    def handles(self) -> Handles:
+        """The handles of the rows of `points`, ascending, (n,)."""
+        return self._arrays().handles
+
+    @property
+    def simplices(self) -> Indices:
+        """The triangles as rows of `points`, counter-clockwise, (m, 3)."""
+        return self._arrays().simplices
+
+    @property
+    def neighbors(self) -> Indices:
+        """The triangle opposite each vertex, (m, 3); -1 outside."""
+        return self._arrays().neighbors
+
+    @property
+    def duplicates(self) -> Handles:
+        """Handles of duplicates, and the vertex of each, (k, 2): the smallest handle there."""
+        made = self._arrays()
+        return sealed(made.handles[made.duplicates])
+
+    @property
+    def ndim(self) -> int:
+        """The number of coordinates."""
+        return 2
+
+    @property
+    def npoints(self) -> int:
+        """The number of points, duplicates included."""
+        return self._core.counts()[0]
+
+    @property
+    def nsimplex(self) -> int:
+        """The number of simplices; 0 if all points are on one line."""
+        return self._core.counts()[2]
+
+    @property
+    def workers(self) -> int | None:
+        """Maximum number of threads; None for one per core. The result does not depend on it."""
+        return self._workers
+
+    # Queries.
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """Find the simplices that contain points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate. NaN and infinity are outside.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Rows of `simplices`, the first one if there are several; -1 outside.
+
+        Notes
+        -----
+        The arrays are made again after an edit; `corners` and `interpolate` do without.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (2, 2)])
+        array([ 0, -1], dtype=int32)
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        if self.nsimplex == 0:
+            return np.full(queries.shape[:-1], -1, dtype=np.int32)
+        return self.freeze().find_simplex(queries)
+
+    def locate(self, xi: ArrayLike) -> Location:
+        """Locate points: simplices, barycentric weights, nearest points of the boundary.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate.
+
+        Returns
+        -------
+        Location
+            Its `simplex` and `beside` are rows of `simplices`, its `facet` rows of `points`.
+
+        Raises
+        ------
+        DegenerateInputError
+            There is no simplex.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (4, 0), (0, 4)]).locate((1, 2)).barycentric.max()
+        np.float64(0.5)
+        """
+        return self.freeze().locate(xi)
+
+    def corners(self, xi: ArrayLike) -> tuple[Handles, Floats]:
+        """Return corners and weights of the simplices that contain points.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points to locate.
+
+        Returns
+        -------
+        handles : ndarray of int64, shape (..., 3)
+            The handles of the corners of a simplex with the point inside or on its boundary; -1
+            outside.
+        weights : ndarray of float64, shape (..., 3)
+            Their barycentric weights; NaN outside.
+
+        Notes
+        -----
+        By a walk in the present state, without arrays: cheap between edits.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> handles, weights = Dynamic([(0, 0), (4, 0), (0, 4)]).corners((1, 2))
+        >>> sorted(zip(handles.tolist(), weights.tolist(), strict=True))
+        [(0, 0.25), (1, 0.25), (2, 0.5)]
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, 2))
+        handles, weights = self._core.corners(flat)
+        shape = (*queries.shape[:-1], 3)
+        return handles.reshape(shape), weights.reshape(shape)
+
+    def nearest(self, xi: ArrayLike) -> Handles:
+        """Find the points that are nearest to others.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Points, inside or outside.
+
+        Returns
+        -------
+        ndarray of int64, shape (...)
+            The handle of the nearest point, the smallest if there are several; -1 if a coordinate
+            is NaN or infinite, or there is no point.
+
+        Notes
+        -----
+        Exact, by a walk in the present state, without arrays: cheap between edits.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> Dynamic([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (0.5, 0.5)])
+        array([1, 0])
+        """
+        queries = as_vectors(xi, 2, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, 2))
+        return self._core.nearest(flat).reshape(queries.shape[:-1])
+
+    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Floats:
+        """Interpolate values linearly in the present simplices.
+
+        Parameters
+        ----------
+        values : array_like, shape (n, ...)
+            A value for each row of `points`; of duplicates, that of the vertex counts.
+        xi : array_like, shape (..., 2)
+            Where to interpolate.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., ...)
+            The values; NaN outside.
+
+        Raises
+        ------
+        ShapeError
+            There are not as many values as points.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (4, 0), (0, 4)])
+        >>> live.remove([0])
+        >>> _ = live.insert([(4, 4)])
+        >>> live.interpolate(live.points.sum(axis=1), (3, 3))
+        array(6.)
+        """
+        given = np.asarray(values, dtype=np.float64)
+        own = self.handles
+        if given.ndim == 0 or len(given) != len(own):
+            raise ShapeError(f"values must have {len(own)} rows, one per point, got {given.shape}")
+        corners, weights = self.corners(xi)
+        if not len(own):
+            return np.full((*corners.shape[:-1], *given.shape[1:]), np.nan)
+        rows = np.searchsorted(own, corners).clip(max=len(own) - 1)
+        shares = weights.reshape(*weights.shape, *(1,) * (given.ndim - 1))
+        found = (shares * given[rows]).sum(axis=weights.ndim - 1)
+        return np.asarray(found)
+
+
+def _own(points: ArrayLike) -> Floats:
+    """Return points that nobody changes while the core runs."""
+    array = as_points(points, ndim=2)
+    return array if len(array) <= _FEW else own_copy(points)
+
+
+def _as_handles(handles: ArrayLike) -> Handles:
+    """Return handles as a contiguous array."""
+    array = as_plain_array(handles, "handles")
+    if array.size == 0:
+        return np.empty(0, dtype=np.int64)
+    if array.dtype.kind not in "iu":
+        raise DtypeError(f"handles must be integers, got dtype {array.dtype}")
+    if array.ndim != 1:
+        raise ShapeError(f"handles must have shape (k,), got {array.shape}")
+    if array.dtype.kind == "u" and int(array.max()) >= 2**63:
+        raise DtypeError("handles must be below 2**63")
+    return (
+        np.array(array, dtype=np.int64)
+        if len(array) > _FEW
+        else np.ascontiguousarray(array, dtype=np.int64)
+    )

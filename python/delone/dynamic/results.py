@@ -1,0 +1,102 @@
+"""What a live triangulation returns: changes since the last look, and snapshots."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from delone import _core
+
+__all__ = ["Changes", "Snapshot"]
+
+
+class Changes(NamedTuple):
+    """The simplices that went and came.
+
+    Parameters
+    ----------
+    gone : ndarray of int64, shape (k, d + 1)
+        Simplices that are not there anymore, as handles.
+    new : ndarray of int64, shape (k, d + 1)
+        Simplices that were not there, as handles.
+
+    Notes
+    -----
+    Each begins with its smallest handle and is positively oriented; rows are ascending. A simplex
+    whose vertices moved, but are still joined, is in neither.
+
+    Examples
+    --------
+    >>> from delone import Dynamic
+    >>> live = Dynamic([(0, 0), (2, 0), (0, 2)])
+    >>> live.changes().new
+    array([[0, 1, 2]])
+    >>> _ = live.insert([(2, 2)])
+    >>> live.changes().new
+    array([[0, 1, 3],
+           [0, 3, 2]])
+    """
+
+    gone: NDArray[np.int64]
+    new: NDArray[np.int64]
+
+
+class Snapshot:
+    """A state of a `Dynamic`, for `Dynamic.restore`; it never changes.
+
+    Parameters
+    ----------
+    state : object
+        What the core returns; snapshots are made by `Dynamic.snapshot`.
+
+    Notes
+    -----
+    Snapshots share with each other what has not changed between them.
+
+    Examples
+    --------
+    >>> from delone import Dynamic
+    >>> live = Dynamic([(0, 0), (2, 0), (0, 2)])
+    >>> before = live.snapshot()
+    >>> _ = live.insert([(2, 2)])
+    >>> live.restore(before)
+    >>> live
+    <Dynamic of 3 points: 1 triangle>
+    """
+
+    __slots__ = ("_state",)
+
+    def __init__(self, state: _core.LiveState2) -> None:
+        self._state = state
+
+    def bytes_beyond(self, other: Snapshot) -> int:
+        """Return how much memory this snapshot needs in addition to another one.
+
+        Parameters
+        ----------
+        other : Snapshot
+            The other snapshot.
+
+        Returns
+        -------
+        int
+            Bytes that the two do not share.
+
+        Examples
+        --------
+        >>> from delone import Dynamic
+        >>> live = Dynamic([(0, 0), (2, 0), (0, 2)])
+        >>> before = live.snapshot()
+        >>> live.snapshot().bytes_beyond(before) < 100
+        True
+        """
+        return self._state.own_bytes(other._state)
+
+    def __copy__(self) -> Snapshot:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Snapshot:
+        return self
