@@ -26,7 +26,7 @@ mesh = delone.Delaunay(points)
 print(mesh, f"heights from {z.min():.2f} to {z.max():.2f} m")
 
 # %%
-# Heights of lidar points scatter by a few centimeters. On flat ground contour lines follow that scatter, which is a usual
+# Heights of lidar points scatter by a few centimeters. On flat ground contour lines follow that scatter, a usual
 # mistake. So each height becomes the mean of the point and its neighbors in the triangulation, a few times.
 
 indptr, indices = mesh.vertex_neighbor_vertices
