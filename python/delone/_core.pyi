@@ -87,6 +87,7 @@ __all__ = [
     "neighbors2",
     "not_longer2",
     "not_longer3",
+    "of_triangles2",
     "orient2d",
     "orient3d",
     "periodic2",
@@ -109,7 +110,6 @@ __all__ = [
     "transforms3",
     "triangulate2",
     "triangulate3",
-    "urquhart2",
     "validate2",
     "validate3",
     "validate_periodic2",
@@ -933,6 +933,7 @@ def fault3(
     workers: int,
 ) -> tuple[str, int] | None: ...
 
+_Tiling = tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]
 _Adjacency = tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
 
 def graph_components(edges: NDArray[np.int32], npoints: int) -> NDArray[np.int32]: ...
@@ -980,17 +981,9 @@ def not_longer3(
     ends: NDArray[np.float64],
     workers: int,
 ) -> NDArray[np.int32]: ...
-def spanning_triangles2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
-) -> NDArray[np.int32]: ...
-def urquhart2(
-    points: NDArray[np.float64],
-    simplices: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    workers: int,
+def spanning_triangles2(tiling: _Tiling, workers: int) -> NDArray[np.int32]: ...
+def of_triangles2(
+    tiling: _Tiling, name: str, beta: float, closed: bool, workers: int
 ) -> NDArray[np.int32]: ...
 def around(
     edges: NDArray[np.int32], npoints: int

@@ -1,7 +1,7 @@
 //! Proximity graphs as arrays of edges.
 
 use delone::{Error, Result};
-use delone_core::graphs::{self, Neighbors, Region, Skeleton, Tree};
+use delone_core::graphs::{self, Neighbors, Region, Rule, Skeleton, Tree};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -213,37 +213,51 @@ of_dimension!(
     not_longer3
 );
 
-/// The triangles of points and their neighbors, checked.
+/// Points, triangles and their neighbors, as Python has them.
+#[derive(FromPyObject)]
+pub struct Tiling<'py>(
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, i32>,
+    PyReadonlyArray2<'py, i32>,
+);
+
+/// The checked arrays.
 type Triangles<'a> = (&'a [[f64; 2]], &'a [[i32; 3]], &'a [[i32; 3]]);
 
-fn triangles<'a>(
-    points: &'a PyReadonlyArray2<'_, f64>,
-    simplices: &'a PyReadonlyArray2<'_, i32>,
-    neighbors: &'a PyReadonlyArray2<'_, i32>,
-) -> Result<Triangles<'a>> {
-    let points: &[[f64; 2]] = rows(points, "points")?;
-    let simplices: &[[i32; 3]] = simplices_of(simplices, points.len())?;
-    let neighbors = rows(neighbors, "neighbors")?;
-    in_range(neighbors, -1, simplices.len(), "neighbors")?;
-    if neighbors.len() != simplices.len() {
-        return Err(Error::Shape("neighbors and simplices do not match".into()));
+impl Tiling<'_> {
+    fn triangles(&self) -> Result<Triangles<'_>> {
+        let points: &[[f64; 2]] = rows(&self.0, "points")?;
+        let simplices: &[[i32; 3]] = simplices_of(&self.1, points.len())?;
+        let neighbors = rows(&self.2, "neighbors")?;
+        in_range(neighbors, -1, simplices.len(), "neighbors")?;
+        if neighbors.len() != simplices.len() {
+            return Err(Error::Shape("neighbors and simplices do not match".into()));
+        }
+        Ok((points, simplices, neighbors))
     }
-    Ok((points, simplices, neighbors))
 }
 
-/// The edges of triangles that are strictly longest in none.
+/// The edges of triangles that no opposite corner removes, by the name of a rule.
 #[pyfunction]
-pub fn urquhart2(
+pub fn of_triangles2(
     py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
+    tiling: Tiling<'_>,
+    name: &str,
+    beta: f64,
+    closed: bool,
     workers: usize,
 ) -> PyResult<Table<i32>> {
-    let (points, simplices, neighbors) =
-        attached(py, || triangles(&points, &simplices, &neighbors))?;
+    let ((points, simplices, neighbors), rule) = attached(py, || {
+        let rule = match (name, beta > 1.0 && beta <= 2.0) {
+            ("longest", _) => Rule::Longest,
+            ("ball", _) => Rule::Ball { closed },
+            ("circle", true) => Rule::Arcs { beta, closed },
+            _ => return Err(Error::Shape(format!("no rule {name} with beta {beta}"))),
+        };
+        Ok((tiling.triangles()?, rule))
+    })?;
     let found = watched(py, |watch| {
-        graphs::urquhart(points, simplices, neighbors, workers, watch)
+        graphs::of_triangles(points, simplices, neighbors, rule, workers, watch)
     })?;
     table(py, found)
 }
@@ -252,13 +266,10 @@ pub fn urquhart2(
 #[pyfunction]
 pub fn spanning_triangles2(
     py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    simplices: PyReadonlyArray2<'_, i32>,
-    neighbors: PyReadonlyArray2<'_, i32>,
+    tiling: Tiling<'_>,
     workers: usize,
 ) -> PyResult<Table<i32>> {
-    let (points, simplices, neighbors) =
-        attached(py, || triangles(&points, &simplices, &neighbors))?;
+    let (points, simplices, neighbors) = attached(py, || tiling.triangles())?;
     let found = watched(py, |watch| {
         graphs::spanning_tree_of_triangles(points, simplices, neighbors, workers, watch)
     })?;

@@ -128,7 +128,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(graphs::antipodes3, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::spanning2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::spanning3, m)?)?;
-    m.add_function(wrap_pyfunction!(graphs::urquhart2, m)?)?;
+    m.add_function(wrap_pyfunction!(graphs::of_triangles2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::spanning_triangles2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::knn2, m)?)?;
     m.add_function(wrap_pyfunction!(graphs::knn3, m)?)?;

@@ -107,10 +107,11 @@ def gabriel(
     approach to geographic variation analysis", 1969); with ``"open"``, ``< 0``. The sign is exact.
 
     The closed graph is part of the Delaunay triangulation and contains the relative neighborhood
-    graph; whether an edge belongs to it is decided by the Delaunay neighbors of one end (see
-    :doc:`/mathematics/graphs`). The open graph has more edges where points are cocircular: all of a grid
-    and both diagonals of each of its squares, whichever of them the triangulation has. Those that
-    are not Delaunay edges are searched from the corners of cocircular simplices.
+    graph; whether an edge belongs to it is decided by the Delaunay neighbors of one end, in 2-D by
+    the opposite corners of its triangles (see :doc:`/mathematics/graphs`). The open graph has more
+    edges where points are cocircular: all of a grid and both diagonals of each of its squares,
+    whichever of them the triangulation has. Those that are not Delaunay edges are searched from the
+    corners of cocircular simplices.
 
     Coincident rows are one vertex, the first; the others have no edges and are in
     ``Graph.duplicates``. O(n log n) time in 2-D, in 3-D linear in the Delaunay edges after the
@@ -220,7 +221,8 @@ def urquhart(points: Points, *, workers: int | None = None, planar: bool = False
     base = skeleton(points, workers=workers, planar=planar, ndim=2)
     if base.tiling is None:
         return _graph(base, base.edges, "Urquhart", workers)
-    edges = _core.urquhart2(base.points, *base.tiling, base.workers)
+    tiling = base.points, *base.tiling
+    edges = _core.of_triangles2(tiling, "longest", 1.0, False, base.workers)
     return _graph(base, edges, "Urquhart", workers)
 
 
@@ -312,8 +314,13 @@ def _balls(base: Skeleton, *, closed: bool) -> NDArray[np.int32]:
 
 
 def _filtered(base: Skeleton, region: str, beta: float, *, closed: bool) -> NDArray[np.int32]:
-    core = _core.proximity2 if base.points.shape[1] == 2 else _core.proximity3
-    return core(base.adjacency, region, beta, closed, base.workers)
+    """Return the Delaunay edges whose region is empty."""
+    if base.points.shape[1] == 3:
+        return _core.proximity3(base.adjacency, region, beta, closed, base.workers)
+    if region == "lune" or base.tiling is None:
+        return _core.proximity2(base.adjacency, region, beta, closed, base.workers)
+    tiling = base.points, *base.tiling
+    return _core.of_triangles2(tiling, region, beta, closed, base.workers)
 
 
 def _graph(base: Skeleton, edges: NDArray[np.int32], kind: str, workers: int | None) -> Graph:

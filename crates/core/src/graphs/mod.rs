@@ -2,7 +2,8 @@
 //!
 //! Gabriel graphs, relative neighborhood graphs and beta skeletons are filters of the Delaunay
 //! graph (`regions`); what they need beyond the neighbors of a vertex is found in a tree of boxes
-//! (`tree`). Spanning trees (`spanning`) and Urquhart graphs (`urquhart`) are inside it, too.
+//! (`tree`). In 2-D, `triangles` has the filters that need no more than the triangles, Urquhart graphs
+//! among them. Spanning trees (`spanning`) are inside the Delaunay graph, too.
 //! `antipodes` has the edges of open Gabriel graphs that are not in the triangulation, `nearest`
 //! the k nearest neighbors, and `influence` spheres of influence; these need no triangulation.
 //!
@@ -18,7 +19,7 @@ mod nearest;
 mod regions;
 mod spanning;
 mod tree;
-mod urquhart;
+mod triangles;
 
 pub use antipodes::antipodes;
 pub use components::components;
@@ -28,4 +29,4 @@ pub use nearest::{Neighbors, nearest};
 pub use regions::{Region, filter};
 pub use spanning::{spanning_tree, spanning_tree_of_triangles};
 pub use tree::{Distinct, Tree};
-pub use urquhart::urquhart;
+pub use triangles::{Rule, of_triangles};

@@ -73,7 +73,7 @@ pub fn filter<const D: usize>(
 
 /// Whether a point with this sign is in an open or closed region.
 #[inline]
-fn blocks(sign: Sign, closed: bool) -> bool {
+pub(super) fn blocks(sign: Sign, closed: bool) -> bool {
     sign == Sign::Positive || closed && sign == Sign::Zero
 }
 

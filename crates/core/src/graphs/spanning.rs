@@ -18,7 +18,7 @@ use delone_predicates::{Point2, Sign};
 use super::components::Sets;
 use super::edges::{SHARE, Skeleton, sorted};
 use super::tree::{certainly_above, squared};
-use super::urquhart::filtered;
+use super::triangles::filtered;
 use crate::error::Result;
 use crate::memory::{filled, with_room};
 use crate::order::sort_by;
@@ -57,11 +57,14 @@ pub fn spanning_tree_of_triangles(
     workers: usize,
     watch: &Watch,
 ) -> Result<Vec<[i32; 2]>> {
-    let at = |v: i32| points[v as usize];
-    let edges = filtered(simplices, neighbors, workers, watch, |[a, b], apex| {
-        let (a, b, p) = (at(a), at(b), at(apex));
-        let length = squared(a, b);
-        !certainly_above(length, squared(a, p)) || !certainly_above(length, squared(b, p))
+    let edges = filtered(simplices, neighbors, workers, watch, |corners| {
+        let [a, b, c] = corners.map(|v| points[v as usize]);
+        let lengths = [squared(b, c), squared(c, a), squared(a, b)];
+        let is_longest = |&k: &usize| {
+            let others = [lengths[(k + 1) % 3], lengths[(k + 2) % 3]];
+            others.iter().all(|&x| certainly_above(lengths[k], x))
+        };
+        (0..3).find(is_longest).map_or(0, |k| 1 << k)
     })?;
     let chosen = kruskal(points, &edges, workers, watch)?;
     let kept = edges.iter().zip(&chosen).filter(|(_, chosen)| **chosen);
