@@ -29,6 +29,7 @@ CASES = [
     errors.InternalError("m"),
     errors.OutputError("m"),
     errors.FileFormatError("m"),
+    errors.HandleError("m", handles=[4, 9]),
     errors.MissingExtraError("m", extra="las"),
 ]
 
@@ -69,6 +70,7 @@ def test_constructs_from_a_message_alone(error: errors.DeloneError) -> None:
         (errors.InternalError, RuntimeError),
         (errors.OutputError, OSError),
         (errors.FileFormatError, ValueError),
+        (errors.HandleError, KeyError),
         (errors.MissingExtraError, ImportError),
     ],
 )

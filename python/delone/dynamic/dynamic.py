@@ -96,9 +96,9 @@ class Dynamic:
     <Delaunay of 4 points: 3 triangles>
     """
 
-    __slots__ = ("__weakref__", "_core", "_edit", "_present", "_workers")
+    __slots__ = ("__weakref__", "_edit", "_live", "_present", "_workers")
 
-    _core: _core.Live2
+    _live: _core.Live2
     # An object of its own for each state, and the arrays of the state when they were made.
     _edit: object
     _present: tuple[object, _core.LiveArrays2] | None
@@ -114,7 +114,7 @@ class Dynamic:
         self._begin(core, workers)
 
     def _begin(self, core: _core.Live2, workers: int | None) -> None:
-        self._core = core
+        self._live = core
         self._workers = workers
         self._edit = object()
         self._present = None
@@ -131,30 +131,30 @@ class Dynamic:
         return cls._of(_core.Live2(points, handles, total, as_workers(workers)), workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        handles, points = self._core.points()
-        return type(self)._again, (points, handles, self._core.counts()[3], self._workers)
+        handles, points = self._live.points()
+        return type(self)._again, (points, handles, self._live.counts()[3], self._workers)
 
     def __copy__(self) -> Self:
-        return self._of(self._core.state().open(), self._workers)
+        return self._of(self._live.state().open(), self._workers)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self.__copy__()
 
     def __len__(self) -> int:
         """Return the number of points."""
-        return self._core.counts()[0]
+        return self._live.counts()[0]
 
     def __contains__(self, handle: object) -> bool:
         """Return whether the point with this handle is there."""
         if isinstance(handle, bool) or not isinstance(handle, int | np.integer):
             return False
-        if not 0 <= handle < self._core.counts()[3]:
+        if not 0 <= handle < self._live.counts()[3]:
             return False
-        gone, _ = self._core.faults(np.array([handle], dtype=np.int64))
+        gone, _ = self._live.faults(np.array([handle], dtype=np.int64))
         return len(gone) == 0
 
     def __repr__(self) -> str:
-        npoints, vertices, triangles, _ = self._core.counts()
+        npoints, vertices, triangles, _ = self._live.counts()
         points = counted(npoints, "point")
         if npoints > vertices:
             points += f" ({counted(npoints - vertices, 'duplicate')})"
@@ -189,7 +189,7 @@ class Dynamic:
         >>> live.duplicates
         array([[4, 0]])
         """
-        made = self._core.insert(_own(points), self._threads(points))
+        made = self._live.insert(_own(points), self._threads(points))
         self._edit = object()
         return made
 
@@ -218,7 +218,7 @@ class Dynamic:
         """
         own = _as_handles(handles)
         try:
-            self._core.remove(own, self._threads(own))
+            self._live.remove(own, self._threads(own))
         except ShapeError:
             self._refuse(own)
             raise
@@ -251,7 +251,7 @@ class Dynamic:
         """
         own, places = _as_handles(handles), _own(points)
         try:
-            self._core.relocate(own, places, self._threads(own))
+            self._live.relocate(own, places, self._threads(own))
         except ShapeError:
             self._refuse(own)
             raise
@@ -263,7 +263,7 @@ class Dynamic:
         return as_workers(self._workers)
 
     def _refuse(self, handles: Handles) -> None:
-        gone, twice = self._core.faults(handles)
+        gone, twice = self._live.faults(handles)
         if len(gone):
             names = ", ".join(map(str, gone[:5].tolist())) + (", ..." if len(gone) > 5 else "")
             verb = "is" if len(gone) == 1 else "are"
@@ -301,7 +301,7 @@ class Dynamic:
         >>> len(live)
         2
         """
-        return Snapshot(self._core.state())
+        return Snapshot(self._live.state())
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a state.
@@ -328,7 +328,7 @@ class Dynamic:
         """
         if not isinstance(snapshot, Snapshot):
             raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
-        self._core.restore(snapshot._state)
+        self._live.restore(snapshot._state)
         self._edit = object()
 
     def changes(self) -> Changes:
@@ -352,7 +352,7 @@ class Dynamic:
         >>> live.changes().gone
         array([[0, 1, 2]])
         """
-        gone, new = self._core.changes()
+        gone, new = self._live.changes()
         return Changes(gone, new)
 
     def freeze(self) -> Delaunay:
@@ -412,7 +412,7 @@ class Dynamic:
         """Return the arrays of the present state, made once after each edit."""
         edit, present = self._edit, self._present
         if present is None or present[0] is not edit:
-            made = self._core.arrays()
+            made = self._live.arrays()
             for array in (made.handles, made.points, made.simplices, made.neighbors):
                 sealed(array)
             sealed(made.duplicates)
@@ -454,12 +454,12 @@ class Dynamic:
     @property
     def npoints(self) -> int:
         """The number of points, duplicates included."""
-        return self._core.counts()[0]
+        return self._live.counts()[0]
 
     @property
     def nsimplex(self) -> int:
         """The number of simplices; 0 if all points are on one line."""
-        return self._core.counts()[2]
+        return self._live.counts()[2]
 
     @property
     def workers(self) -> int | None:
@@ -551,7 +551,7 @@ class Dynamic:
         """
         queries = as_vectors(xi, 2, name="xi")
         flat = np.ascontiguousarray(queries.reshape(-1, 2))
-        handles, weights = self._core.corners(flat)
+        handles, weights = self._live.corners(flat)
         shape = (*queries.shape[:-1], 3)
         return handles.reshape(shape), weights.reshape(shape)
 
@@ -581,7 +581,7 @@ class Dynamic:
         """
         queries = as_vectors(xi, 2, name="xi")
         flat = np.ascontiguousarray(queries.reshape(-1, 2))
-        return self._core.nearest(flat).reshape(queries.shape[:-1])
+        return self._live.nearest(flat).reshape(queries.shape[:-1])
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Floats:
         """Interpolate values linearly in the present simplices.
