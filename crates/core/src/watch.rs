@@ -1,9 +1,16 @@
 //! Interruption: long loops check every few thousand steps whether the caller wants to stop.
 
+use std::time::Instant;
+
 use crate::error::{Error, Result};
 
 fn never() -> bool {
     false
+}
+
+/// The time; None in WebAssembly, where the clock of the standard library panics.
+pub(crate) fn now() -> Option<Instant> {
+    (!cfg!(target_family = "wasm")).then(Instant::now)
 }
 
 /// A watch that never interrupts; it is static.

@@ -11,7 +11,7 @@ use crate::arrays::Arrays;
 use crate::error::Result;
 use crate::mesh2::{Code, Mesh2, Patch, export};
 use crate::order::{Arranged, arrange};
-use crate::watch::Watch;
+use crate::watch::{Watch, now};
 use crate::{parallel, points};
 
 /// How a triangulation is built; all methods give the same triangles.
@@ -241,7 +241,8 @@ fn has_many_ties(own: &[Point2]) -> bool {
 /// Times the stages one after the other.
 #[derive(Debug)]
 pub struct Clock {
-    last: Instant,
+    /// None where the platform has no clock.
+    last: Option<Instant>,
     /// The stages so far.
     pub stages: Vec<Stage>,
 }
@@ -250,16 +251,17 @@ impl Clock {
     /// A clock that starts now.
     pub fn start() -> Self {
         Self {
-            last: Instant::now(),
+            last: now(),
             stages: Vec::with_capacity(4),
         }
     }
 
     /// Ends the stage `name`.
     pub fn lap(&mut self, name: &'static str) {
-        let now = Instant::now();
-        self.stages
-            .push((name, now - std::mem::replace(&mut self.last, now)));
+        let now = now();
+        let before = std::mem::replace(&mut self.last, now);
+        let took = now.zip(before).map_or(Duration::ZERO, |(n, b)| n - b);
+        self.stages.push((name, took));
     }
 }
 

@@ -17,7 +17,7 @@ use crate::memory::{is_plausible, with_room};
 use crate::mesh3::{LIMIT, Mesh3, Records};
 use crate::order::space::{Arranged3, Extent3, Room3, arrange, arrange_rows};
 use crate::order::space_blocks::{Cuts3, split};
-use crate::watch::Watch;
+use crate::watch::{Watch, now};
 use crate::{parallel, points};
 
 /// Sizes of blocks.
@@ -340,22 +340,24 @@ fn check_memory(room: usize) -> Result<()> {
 
 /// Times the stages one after the other.
 struct Clock {
-    last: Instant,
+    /// None where the platform has no clock.
+    last: Option<Instant>,
     stages: Vec<Stage>,
 }
 
 impl Clock {
     fn start() -> Self {
         Self {
-            last: Instant::now(),
+            last: now(),
             stages: Vec::with_capacity(8),
         }
     }
 
     fn lap(&mut self, name: &'static str) {
-        let now = Instant::now();
-        self.stages
-            .push((name, now - std::mem::replace(&mut self.last, now)));
+        let now = now();
+        let before = std::mem::replace(&mut self.last, now);
+        let took = now.zip(before).map_or(Duration::ZERO, |(n, b)| n - b);
+        self.stages.push((name, took));
     }
 }
 
