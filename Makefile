@@ -39,7 +39,7 @@ NEEDS_test := -E $(EXTRAS) -G test
 NEEDS_docs := -E $(EXTRAS) -G test,docs
 NEEDS_bench := --release -E $(EXTRAS) -G bench
 
-.PHONY: help need need-python build demo demo-says wheel test lint docs linkcheck bench fuzz mutants map clean
+.PHONY: help need need-python build demo demo-says wheel web test lint docs linkcheck bench fuzz mutants map clean
 .DEFAULT_GOAL := help
 
 help:
@@ -52,6 +52,7 @@ help:
 	@echo 'make fuzz    each fuzz target for FUZZ_SECONDS ($(FUZZ_SECONDS)) seconds'
 	@echo 'make mutants seed bugs, each of which the tests must find (MUTANTS="proof-*" for some)'
 	@echo 'make wheel   a wheel for this machine, optimized as in a release, into dist'
+	@echo 'make web     the core as a module for pages, into target/web (crates/web/build.sh says how)'
 	@echo 'make map     the charts and tables of modules in ARCHITECTURE.md'
 	@echo 'make build   the package alone, installed into .venv in development mode'
 	@echo 'make clean   remove everything that these made'
@@ -103,6 +104,11 @@ wheel: $(STAMPS)/tools | need
 	else \
 		$(BIN)/maturin build --release --out dist --interpreter $(abspath $(BIN))/python; \
 	fi
+
+# A module of JavaScript over the core in WebAssembly. Without a compiler for it the tests of the
+# module are skipped.
+web: need
+	crates/web/build.sh
 
 demo-says:
 	@echo 'make demo triangulates 212,550 lidar points: a report, a picture and a mesh file. The first' \

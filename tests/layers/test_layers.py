@@ -134,6 +134,7 @@ NEEDS = {
     "core": {"delone-predicates", "num-bigint", "thiserror", "libc"},
     "delone": {"delone-core", "delone-predicates", "thiserror"},
     "bindings": {"delone", "delone-core", "delone-predicates", "pyo3", "numpy"},
+    "web": {"delone", "delone-core", "delone-predicates", "wasm-bindgen"},
 }
 # What the bindings take from the core: what the crate `delone` does not offer.
 BINDINGS = {

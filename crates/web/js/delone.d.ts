@@ -103,7 +103,7 @@ export interface Location {
   triangle: Int32Array;
   /** Barycentric weights of its corners, three for each query; NaN outside. */
   weights: Float64Array;
-  /** The row of the nearest vertex; -1 if `triangles` are not Delaunay and it is unknown. */
+  /** The row of the nearest point. */
   nearest: Int32Array;
 }
 
