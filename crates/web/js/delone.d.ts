@@ -201,6 +201,7 @@ export interface Core {
   incircles(coordinates: Coordinates, options?: { naive?: boolean }): Int8Array;
   /** Never 0 for four distinct points: ties as in all triangulations here. */
   incircleCanonical: Core["incircle"];
+  incirclesCanonical(coordinates: Coordinates): Int8Array;
 
   /** Steps of insertion with cavities, in the order of the rows, or in `order`. */
   bowyerWatsonSteps(xy: Coordinates, options?: { order?: Rows }): Steps;

@@ -232,8 +232,12 @@ class Core {
     return this.incircles(coordinates, { naive: true })[0];
   }
 
+  incirclesCanonical(coordinates) {
+    return core.incircles_canonical(finite(doubles(coordinates, 8, "coordinates")));
+  }
+
   incircleCanonical(...coordinates) {
-    return core.incircles_canonical(finite(doubles(coordinates, 8, "coordinates")))[0];
+    return this.incirclesCanonical(coordinates)[0];
   }
 
   /** The flips from `triangles` to the Delaunay triangulation: four rows each. */

@@ -90,6 +90,24 @@ class Signs {
     return this.core.incircleCanonical(...this.at(a, b, c, d)) > 0;
   }
 
+  /** For each row of three points, whether p is in their circle: one call for all. */
+  insides(triangles, p) {
+    return this.core.incirclesCanonical(this.gathered(triangles, p));
+  }
+
+  /** For each row of two points, on which side of them p is. */
+  sides(edges, p) {
+    return this.core.orientations(this.gathered(edges, p));
+  }
+
+  /** The coordinates of rows of points, each row followed by p. */
+  gathered(lists, p) {
+    const rows = lists.flatMap((list) => [...list, p]);
+    return Float64Array.from({ length: 2 * rows.length }, (_, k) => {
+      return this.points[2 * rows[k >> 1] + (k & 1)];
+    });
+  }
+
   /** Lexicographic order. */
   compare(a, b) {
     const [ax, ay, bx, by] = this.at(a, b);
@@ -139,14 +157,14 @@ class Growing {
     return this.apex.get(`${v},${u}`);
   }
 
-  /** Whether p lies in the circle of a triangle; that of a ghost is the outer half-plane and the
-   * edge itself. */
-  conflicts([a, b, c], p) {
-    const k = [a, b, c].indexOf(GHOST);
-    if (k < 0) return this.signs.inside(a, b, c, p);
-    const [u, v] = [[b, c], [c, a], [a, b]][k];
-    const side = this.signs.orient(u, v, p);
-    return side > 0 || (side === 0 && this.signs.between(u, v, p));
+  /** The ghosts whose outer half-plane or edge contains p. */
+  seen(p) {
+    const ghosts = [...this.triangles()].filter((triangle) => !isReal(triangle));
+    // The ghost comes first, then its edge.
+    const edges = ghosts.map(([, u, v]) => [u, v]);
+    const sides = this.signs.sides(edges, p);
+    const holds = (k) => sides[k] > 0 || (sides[k] === 0 && this.signs.between(...edges[k], p));
+    return ghosts.filter((_, k) => holds(k));
   }
 
   /** All triangles, each once. */
@@ -159,10 +177,9 @@ class Growing {
 
   /** The triangles in conflict with p, and the edges around them. */
   cavity(p) {
-    const removed = [];
-    for (const triangle of this.triangles()) {
-      if (this.conflicts(triangle, p)) removed.push(triangle);
-    }
+    const real = [...this.triangles()].filter(isReal);
+    const signs = this.signs.insides(real, p);
+    const removed = [...real.filter((_, k) => signs[k] > 0), ...this.seen(p)];
     const inner = new Set(removed.map((t) => turned(...t).join()));
     const edges = [];
     for (const [a, b, c] of removed) {
@@ -257,23 +274,15 @@ export function incrementalSteps(core, points, order) {
 
 /** The triangle that contains p, both at an edge that does, or the ghosts that see it. */
 function holding(mesh, p) {
-  const { signs } = mesh;
-  const ghosts = [];
-  for (const [a, b, c] of mesh.triangles()) {
-    const triangle = [a, b, c];
-    if (!isReal(triangle)) {
-      if (mesh.conflicts(triangle, p)) ghosts.push(triangle);
-      continue;
-    }
-    const edges = [[a, b], [b, c], [c, a]];
-    const sides = edges.map(([u, v]) => signs.orient(u, v, p));
-    if (Math.min(...sides) < 0) continue;
-    const on = sides.indexOf(0);
-    if (on < 0) return [triangle];
-    const [u, v] = edges[on];
-    return [triangle, [v, u, mesh.across(u, v)]];
-  }
-  return ghosts;
+  const real = [...mesh.triangles()].filter(isReal);
+  const edges = real.flatMap(([a, b, c]) => [[a, b], [b, c], [c, a]]);
+  const sides = mesh.signs.sides(edges, p);
+  const found = real.findIndex((_, t) => sides.subarray(3 * t, 3 * t + 3).every((s) => s >= 0));
+  if (found < 0) return mesh.seen(p);
+  const on = sides.indexOf(0, 3 * found);
+  if (on < 0 || on >= 3 * found + 3) return [real[found]];
+  const [u, v] = edges[on];
+  return [real[found], [v, u, mesh.across(u, v)]];
 }
 
 /** The edges around some triangles. */
