@@ -7,9 +7,8 @@
 `Delaunay` triangulates 2-D or 3-D points; `ConstrainedDelaunay` and `from_geometry` also take
 segments and polygons. `mesh` and `improve` create triangles and tetrahedra of good quality. Related
 structures are `Voronoi`, `ConvexHull`, `RegularTriangulation` and `PeriodicDelaunay`. The modules
-`graphs`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`,
-`interpolate`, `terrain`, `distributed`, `io`, `plot`, `predicates`, `datasets`, `testing`,
-`reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
+`graphs`, `terrain`, `interpolate`, `distributed`, `io`, `plot`, `predicates`, `datasets`,
+`testing`, `reference` and `compat` have the rest. All errors are subclasses of `DeloneError`.
 """
 
 from __future__ import annotations
@@ -67,8 +66,8 @@ if TYPE_CHECKING:
     from delone.constrained.polygons import PolygonTriangles, from_geometry, triangulate_polygon
     from delone.constrained.segments import SegmentReport
     from delone.constrained.validation import ConstrainedReport
-    from delone.explorer.widget import explore
     from delone.dynamic.dynamic import Dynamic
+    from delone.explorer.widget import explore
     from delone.flips import LawsonResult, lawson
     from delone.hull import ConvexHull
     from delone.periodic import PeriodicDelaunay

@@ -44,13 +44,10 @@ PYTHON: tuple[set[str], ...] = (
     {"complex"},
     {"triangulation", "regular_validation"},
     {"delaunay", "constrained", "regular", "tetmesh"},
-    {"hull", "periodic", "refine"},
-    {"graphs", "io"},
     {"dynamic", "hull", "periodic", "refine"},
-    {"io"},
+    {"graphs", "io"},
     {"voronoi", "interpolate"},
-    {"compat", "distributed", "explorer"},
-    {"compat", "distributed", "terrain"},
+    {"compat", "distributed", "explorer", "terrain"},
     # Data and oracles: nothing that they test may use them, and they use the ground alone.
     {"datasets", "reference", "testing"},
     # The package itself re-exports.

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from delone import ConstrainedDelaunay, Delaunay, __version__
-from delone.cli import cells, field, graph, tiles
-from delone.cli import cells, field, terrain, tiles
+from delone.cli import cells, field, graph, terrain, tiles
 from delone.cli.check import check_mesh
 from delone.cli.constraints import Constraints, constraint_figures, read_input, triangulated
 from delone.cli.exits import (
@@ -315,25 +314,9 @@ def info(
 app.callback()(_options)
 _EPILOG = "The table of exit codes is in: delone --help"
 _ON_POINTS = (
-    *(triangulate, check, info, explore),
+    *(triangulate, check, info, explore, graph.graph),
     *(field.interpolate, field.crossval, cells.voronoi, tiles.tile),
-    triangulate,
-    check,
-    info,
-    graph.graph,
-    field.interpolate,
-    field.crossval,
-    cells.voronoi,
-    triangulate,
-    check,
-    info,
-    field.interpolate,
-    field.crossval,
-    cells.voronoi,
-    terrain.contours,
-    terrain.profile,
-    terrain.volume,
-    tiles.tile,
+    *(terrain.contours, terrain.profile, terrain.volume),
 )
 for _command in _ON_POINTS:
     app.command(epilog=_EPILOG)(naming_lines(_command))

@@ -28,8 +28,8 @@ from delone.cli.options import (
 from delone.cli.referenced import Crs, Planar, referenced, require_known
 from delone.cli.report import Stopwatch, finite_or_none, peak_memory
 from delone.cli.show import print_json, print_report, spinner
-from delone.cli.tables import TABLE_SUFFIXES, write_table
 from delone.cli.solid import is_space
+from delone.cli.tables import TABLE_SUFFIXES, write_table
 from delone.extras import require
 from delone.io import input_suffixes, read_points
 
