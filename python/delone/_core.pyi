@@ -27,8 +27,11 @@ __all__ = [
     "ImprovementCounts",
     "JudgedTriangles",
     "Live2",
+    "Live3",
     "LiveArrays2",
+    "LiveArrays3",
     "LiveState2",
+    "LiveState3",
     "Location2",
     "Location3",
     "Locator2",
@@ -1118,6 +1121,59 @@ class LiveState2:
 
     def open(self) -> Live2: ...
     def own_bytes(self, other: LiveState2) -> int: ...
+
+@final
+class Live3:
+    """A 3-D Delaunay triangulation that is edited."""
+
+    def __new__(
+        cls,
+        points: NDArray[np.float64],
+        handles: NDArray[np.int64] | None,
+        total: int,
+        workers: int,
+    ) -> Live3: ...
+    def counts(self) -> list[int]: ...
+    def insert(self, points: NDArray[np.float64], workers: int) -> NDArray[np.int64]: ...
+    def remove(self, handles: NDArray[np.int64], workers: int) -> None: ...
+    def relocate(
+        self, handles: NDArray[np.int64], points: NDArray[np.float64], workers: int
+    ) -> None: ...
+    def faults(self, handles: NDArray[np.int64]) -> list[NDArray[np.int64]]: ...
+    def points(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
+    def arrays(self) -> LiveArrays3: ...
+    def corners(self, xi: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]: ...
+    def nearest(self, xi: NDArray[np.float64]) -> NDArray[np.int64]: ...
+    def changes(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+    def state(self) -> LiveState3: ...
+    def restore(self, state: LiveState3) -> None: ...
+
+@final
+class LiveArrays3:
+    """The present triangulation."""
+
+    @property
+    def handles(self) -> NDArray[np.int64]:
+        """The handles of the points, ascending, (n,)."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The points, (n, 3)."""
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        """Tetrahedra as rows of these, (m, 4)."""
+    @property
+    def neighbors(self) -> NDArray[np.int32]:
+        """The tetrahedron opposite each vertex, -1 outside, (m, 4)."""
+    @property
+    def duplicates(self) -> NDArray[np.int32]:
+        """Rows that repeat earlier rows, and the first of these, (k, 2)."""
+
+@final
+class LiveState3:
+    """A state of a `Live3`, which never changes."""
+
+    def open(self) -> Live3: ...
+    def own_bytes(self, other: LiveState3) -> int: ...
 
 @final
 class Locator2:

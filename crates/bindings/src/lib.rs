@@ -17,6 +17,7 @@ mod improve;
 mod interpolate;
 mod lawson;
 mod live;
+mod live3;
 mod locate;
 mod locate3;
 mod locator;
@@ -56,6 +57,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<live::Live2>()?;
     m.add_class::<live::LiveState2>()?;
     m.add_class::<live::LiveArrays2>()?;
+    m.add_class::<live3::Live3>()?;
+    m.add_class::<live3::LiveState3>()?;
+    m.add_class::<live3::LiveArrays3>()?;
     m.add_class::<constrained::ConstrainedTriangulation>()?;
     m.add_class::<refine::RefinedMesh>()?;
     m.add_class::<refine::JudgedTriangles>()?;

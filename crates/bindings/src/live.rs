@@ -42,26 +42,48 @@ pub struct LiveArrays2 {
 }
 
 impl Live2 {
-    /// Runs `work` on the triangulation, without the GIL unless there are few items and no other thread
-    /// is at work. A thread that waits never holds the GIL, which the other one may need.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
         count: usize,
         work: impl FnOnce(&mut Plane, &Watch) -> delone_core::error::Result<T> + Send,
     ) -> PyResult<T> {
-        if count <= FEW {
-            match self.0.try_lock() {
-                Ok(mut plane) => return watched_attached(py, move |watch| work(&mut plane, watch)),
-                Err(TryLockError::Poisoned(_)) => return Err(raise(py, &broken())),
-                Err(TryLockError::WouldBlock) => {}
-            }
-        }
-        watched(py, |watch| -> Result<T> {
-            let mut plane = self.0.lock().map_err(|_| broken())?;
-            Ok(work(&mut plane, watch)?)
-        })
+        locked(&self.0, py, count, work)
     }
+}
+
+/// Runs `work` on a triangulation, without the GIL unless there are few items and no other thread
+/// is at work. A thread that waits never holds the GIL, which the other one may need.
+pub fn locked<L: Send, T: Send>(
+    live: &Mutex<L>,
+    py: Python<'_>,
+    count: usize,
+    work: impl FnOnce(&mut L, &Watch) -> delone_core::error::Result<T> + Send,
+) -> PyResult<T> {
+    if count <= FEW {
+        match live.try_lock() {
+            Ok(mut live) => return watched_attached(py, move |watch| work(&mut live, watch)),
+            Err(TryLockError::Poisoned(_)) => return Err(raise(py, &broken())),
+            Err(TryLockError::WouldBlock) => {}
+        }
+    }
+    watched(py, |watch| -> Result<T> {
+        let mut live = live.lock().map_err(|_| broken())?;
+        Ok(work(&mut live, watch)?)
+    })
+}
+
+/// Handles that ascend, one for each of `count` points, before the handle `total`.
+pub fn checked_handles(given: &[i64], count: usize, total: usize) -> Result<Vec<u32>> {
+    let right = given.len() == count
+        && given.is_sorted_by(|a, b| a < b)
+        && given.first().is_none_or(|&h| h >= 0)
+        && given.last().is_none_or(|&h| (h as usize) < total);
+    if !right || total >= u32::MAX as usize {
+        let message = "handles must ascend from 0 to the next one, one for each point";
+        return Err(Error::Shape(message.into()));
+    }
+    Ok(given.iter().map(|&h| h as u32).collect())
 }
 
 /// The error of a triangulation in which a panic left something behind.
@@ -83,21 +105,10 @@ impl Live2 {
         let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
         let given = handles.as_ref().map(|h| flat(h, "handles")).transpose();
         let given = given.map_err(|e| raise(py, &e))?;
-        if let Some(given) = given {
-            let right = given.len() == points.len()
-                && given.is_sorted_by(|a, b| a < b)
-                && given.first().is_none_or(|&h| h >= 0)
-                && given.last().is_none_or(|&h| (h as usize) < total);
-            if !right || total >= u32::MAX as usize {
-                let message = "handles must ascend from 0 to the next one, one for each point";
-                return Err(raise(py, &Error::Shape(message.into())));
-            }
-        }
+        let given = given.map(|given| checked_handles(given, points.len(), total));
+        let given = given.transpose().map_err(|e| raise(py, &e))?;
         let plane = watched(py, |watch| match given {
-            Some(given) => {
-                let own: Vec<u32> = given.iter().map(|&h| h as u32).collect();
-                Plane::of(points, &own, total, workers, watch)
-            }
+            Some(own) => Plane::of(points, &own, total, workers, watch),
             None => Plane::new(points, workers, watch),
         })?;
         Ok(Self(Mutex::new(plane)))

@@ -288,6 +288,15 @@ fn hubs_lines_and_layers_equal_a_fresh_build() {
     twin.agree();
     twin.remove(&[401]);
     twin.agree();
+    // The first three points of a plane are on one line.
+    let mut twin = Twin::new(&[
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [2.0, 1.0, 0.0],
+        [3.0, 0.0, 0.0],
+    ]);
+    twin.insert(&[[1.0, 1.0, 1.0]]);
+    twin.agree();
     // A line, a layer, a point above it, and back.
     let line: Vec<Point3> = (0..40).map(|i| [f64::from(i), 3.0, 0.0]).collect();
     let mut twin = Twin::new(&line);

@@ -32,13 +32,15 @@ _FEW = 16
 
 
 class Dynamic:
-    """A 2-D Delaunay triangulation whose points are inserted, removed and moved.
+    """A 2-D or 3-D Delaunay triangulation whose points are inserted, removed and moved.
 
     Parameters
     ----------
-    points : array_like, shape (n, 2), or triangulation, optional
-        Finite coordinates, as for `Delaunay`, or a 2-D triangulation, whose points are taken. By
+    points : array_like, shape (n, 2) or (n, 3), or triangulation, optional
+        Finite coordinates, as for `Delaunay`, or a triangulation, whose points are taken. By
         default none. Their handles are 0 to n - 1.
+    ndim : int, optional
+        The number of coordinates, 2 or 3; by default that of `points`, and 2 without points.
     workers : int, optional
         Maximum number of threads where the points are triangulated at once; by default one per
         core. The result does not depend on it.
@@ -48,7 +50,7 @@ class Dynamic:
     NonFiniteError, ShapeError, DtypeError
         As for `Delaunay`.
     LimitError
-        There are more than 2**28 points, or 2**32 - 2 handles have been given.
+        There are more than 2**28 points, 2**27 in 3-D, or 2**32 - 2 handles have been given.
     MemoryError
         There is not enough memory.
 
@@ -67,19 +69,20 @@ class Dynamic:
     points with the same coordinates, the one with the smallest handle is the vertex, and another
     one takes its place when it goes (`duplicates`).
 
-    Points of which fewer than three are distinct, or that all lie on one line, have no simplex;
-    they stay, and simplices come back with the point that makes it possible.
+    Points that all lie on one line, or in 3-D in one plane, have no simplex; they stay, and
+    simplices come back with the point that makes it possible.
 
     An edit is all or nothing: on any error, Ctrl-C and refused memory included, nothing has
     changed. Edits from several threads take turns.
 
     An insertion takes a walk from the last edit, or from a tree of starting points, and time in
-    proportion to the triangles that it replaces (A. Bowyer; D. F. Watson, both 1981). A removal
-    fills the star of the point with triangles of its k neighbors in O(k^2), or triangulates all
-    points again where that is cheaper. A point that moves within its star stays in place, and
-    flips (C. L. Lawson, 1977) restore the triangulation. Batches are sorted along a space-filling
-    curve, and large ones triangulate all points again. Arrays such as `simplices` are made on
-    first use after an edit, in linear time. A handle takes 12 bytes for good.
+    proportion to the simplices that it replaces (A. Bowyer; D. F. Watson, both 1981). A removal
+    fills the star of the point with m simplices of its k neighbors in O(k m), or triangulates all
+    points again where that is cheaper. A point that moves within its star stays in place: in 2-D
+    flips (C. L. Lawson, 1977) restore the triangulation, in 3-D only if none is needed. Batches
+    are sorted along a space-filling curve, and large ones triangulate all points again. Arrays
+    such as `simplices` are made on first use after an edit, in linear time. A handle takes 12
+    bytes for good.
 
     Examples
     --------
@@ -98,29 +101,35 @@ class Dynamic:
 
     __slots__ = ("__weakref__", "_edit", "_live", "_present", "_workers")
 
-    _live: _core.Live2
+    _live: _core.Live2 | _core.Live3
     # An object of its own for each state, and the arrays of the state when they were made.
     _edit: object
-    _present: tuple[object, _core.LiveArrays2] | None
+    _present: tuple[object, _core.LiveArrays2 | _core.LiveArrays3] | None
     _workers: int | None
 
     def __init__(
-        self, points: ArrayLike | Complex | None = None, *, workers: int | None = None
+        self,
+        points: ArrayLike | Complex | None = None,
+        *,
+        ndim: int | None = None,
+        workers: int | None = None,
     ) -> None:
+        dimension = _as_ndim(ndim)
         if points is None:
-            points = np.empty((0, 2))
-        own = own_copy(points.points if isinstance(points, Complex) else points)
-        core = _core.Live2(own, None, 0, as_workers(workers))
+            points = np.empty((0, dimension or 2))
+        given = points.points if isinstance(points, Complex) else points
+        own = own_copy(given, ndim=dimension)
+        core = _live(own.shape[1])(own, None, 0, as_workers(workers))
         self._begin(core, workers)
 
-    def _begin(self, core: _core.Live2, workers: int | None) -> None:
+    def _begin(self, core: _core.Live2 | _core.Live3, workers: int | None) -> None:
         self._live = core
         self._workers = workers
         self._edit = object()
         self._present = None
 
     @classmethod
-    def _of(cls, core: _core.Live2, workers: int | None) -> Self:
+    def _of(cls, core: _core.Live2 | _core.Live3, workers: int | None) -> Self:
         made = cls.__new__(cls)
         made._begin(core, workers)
         return made
@@ -128,7 +137,8 @@ class Dynamic:
     @classmethod
     def _again(cls, points: Floats, handles: Handles, total: int, workers: int | None) -> Self:
         """Return the triangulation of a pickle."""
-        return cls._of(_core.Live2(points, handles, total, as_workers(workers)), workers)
+        core = _live(points.shape[1])(points, handles, total, as_workers(workers))
+        return cls._of(core, workers)
 
     def __reduce__(self) -> tuple[Any, ...]:
         handles, points = self._live.points()
@@ -154,11 +164,12 @@ class Dynamic:
         return len(gone) == 0
 
     def __repr__(self) -> str:
-        npoints, vertices, triangles, _ = self._live.counts()
+        npoints, vertices, nsimplex, _ = self._live.counts()
         points = counted(npoints, "point")
         if npoints > vertices:
             points += f" ({counted(npoints - vertices, 'duplicate')})"
-        return f"<{type(self).__name__} of {points}: {counted(triangles, 'triangle')}>"
+        simplices = counted(nsimplex, "triangle" if self.ndim == 2 else "tetrahedron")
+        return f"<{type(self).__name__} of {points}: {simplices}>"
 
     # Edits.
 
@@ -167,7 +178,7 @@ class Dynamic:
 
         Parameters
         ----------
-        points : array_like, shape (k, 2)
+        points : array_like, shape (k, d)
             Finite coordinates. A point that is there already becomes a duplicate.
 
         Returns
@@ -189,7 +200,7 @@ class Dynamic:
         >>> live.duplicates
         array([[4, 0]])
         """
-        made = self._live.insert(_own(points), self._threads(points))
+        made = self._live.insert(_own(points, self.ndim), self._threads(points))
         self._edit = object()
         return made
 
@@ -231,7 +242,7 @@ class Dynamic:
         ----------
         handles : array_like of int, shape (k,)
             Their handles, each once.
-        points : array_like, shape (k, 2)
+        points : array_like, shape (k, d)
             Where they move. Points that meet others become duplicates.
 
         Raises
@@ -249,7 +260,7 @@ class Dynamic:
         >>> live.points[0]
         array([1., 1.])
         """
-        own, places = _as_handles(handles), _own(points)
+        own, places = _as_handles(handles), _own(points, self.ndim)
         try:
             self._live.relocate(own, places, self._threads(own))
         except ShapeError:
@@ -315,7 +326,7 @@ class Dynamic:
         Raises
         ------
         DtypeError
-            `snapshot` is not a `Snapshot`.
+            `snapshot` is not a `Snapshot`, or one of another number of coordinates.
 
         Notes
         -----
@@ -328,7 +339,7 @@ class Dynamic:
         """
         if not isinstance(snapshot, Snapshot):
             raise DtypeError(f"snapshot must be a Snapshot, got {type(snapshot).__name__}")
-        self._live.restore(snapshot._state)
+        _restore(self._live, snapshot._state)
         self._edit = object()
 
     def changes(self) -> Changes:
@@ -377,7 +388,7 @@ class Dynamic:
         made = self._arrays()
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)
-        arrays: dict[str, NDArray[Any]] = {
+        arrays = {
             "points": made.points,
             "simplices": made.simplices,
             "neighbors": made.neighbors,
@@ -408,7 +419,7 @@ class Dynamic:
 
     # The present arrays.
 
-    def _arrays(self) -> _core.LiveArrays2:
+    def _arrays(self) -> _core.LiveArrays2 | _core.LiveArrays3:
         """Return the arrays of the present state, made once after each edit."""
         edit, present = self._edit, self._present
         if present is None or present[0] is not edit:
@@ -422,7 +433,7 @@ class Dynamic:
 
     @property
     def points(self) -> Floats:
-        """The coordinates, (n, 2), in ascending order of handles."""
+        """The coordinates, (n, d), in ascending order of handles."""
         return self._arrays().points
 
     @property
@@ -432,12 +443,12 @@ class Dynamic:
 
     @property
     def simplices(self) -> Indices:
-        """The triangles as rows of `points`, counter-clockwise, (m, 3)."""
+        """The simplices as rows of `points`, positively oriented, (m, d + 1)."""
         return self._arrays().simplices
 
     @property
     def neighbors(self) -> Indices:
-        """The triangle opposite each vertex, (m, 3); -1 outside."""
+        """The simplex opposite each vertex, (m, d + 1); -1 outside."""
         return self._arrays().neighbors
 
     @property
@@ -448,8 +459,8 @@ class Dynamic:
 
     @property
     def ndim(self) -> int:
-        """The number of coordinates."""
-        return 2
+        """The number of coordinates, 2 or 3."""
+        return 2 if isinstance(self._live, _core.Live2) else 3
 
     @property
     def npoints(self) -> int:
@@ -458,7 +469,7 @@ class Dynamic:
 
     @property
     def nsimplex(self) -> int:
-        """The number of simplices; 0 if all points are on one line."""
+        """The number of simplices; 0 if all points are on one line or in one plane."""
         return self._live.counts()[2]
 
     @property
@@ -473,7 +484,7 @@ class Dynamic:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Points to locate. NaN and infinity are outside.
 
         Returns
@@ -491,7 +502,7 @@ class Dynamic:
         >>> Dynamic([(0, 0), (1, 0), (0, 1)]).find_simplex([(0.25, 0.25), (2, 2)])
         array([ 0, -1], dtype=int32)
         """
-        queries = as_vectors(xi, 2, name="xi")
+        queries = as_vectors(xi, self.ndim, name="xi")
         if self.nsimplex == 0:
             return np.full(queries.shape[:-1], -1, dtype=np.int32)
         return self.freeze().find_simplex(queries)
@@ -501,7 +512,7 @@ class Dynamic:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Points to locate.
 
         Returns
@@ -527,15 +538,15 @@ class Dynamic:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Points to locate.
 
         Returns
         -------
-        handles : ndarray of int64, shape (..., 3)
+        handles : ndarray of int64, shape (..., d + 1)
             The handles of the corners of a simplex with the point inside or on its boundary; -1
             outside.
-        weights : ndarray of float64, shape (..., 3)
+        weights : ndarray of float64, shape (..., d + 1)
             Their barycentric weights; NaN outside.
 
         Notes
@@ -549,10 +560,10 @@ class Dynamic:
         >>> sorted(zip(handles.tolist(), weights.tolist(), strict=True))
         [(0, 0.25), (1, 0.25), (2, 0.5)]
         """
-        queries = as_vectors(xi, 2, name="xi")
-        flat = np.ascontiguousarray(queries.reshape(-1, 2))
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         handles, weights = self._live.corners(flat)
-        shape = (*queries.shape[:-1], 3)
+        shape = (*queries.shape[:-1], self.ndim + 1)
         return handles.reshape(shape), weights.reshape(shape)
 
     def nearest(self, xi: ArrayLike) -> Handles:
@@ -560,7 +571,7 @@ class Dynamic:
 
         Parameters
         ----------
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Points, inside or outside.
 
         Returns
@@ -579,8 +590,8 @@ class Dynamic:
         >>> Dynamic([(0, 0), (1, 0), (0, 1)]).nearest([(0.9, 0.2), (0.5, 0.5)])
         array([1, 0])
         """
-        queries = as_vectors(xi, 2, name="xi")
-        flat = np.ascontiguousarray(queries.reshape(-1, 2))
+        queries = as_vectors(xi, self.ndim, name="xi")
+        flat = np.ascontiguousarray(queries.reshape(-1, self.ndim))
         return self._live.nearest(flat).reshape(queries.shape[:-1])
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Floats:
@@ -590,7 +601,7 @@ class Dynamic:
         ----------
         values : array_like, shape (n, ...)
             A value for each row of `points`; of duplicates, that of the vertex counts.
-        xi : array_like, shape (..., 2)
+        xi : array_like, shape (..., d)
             Where to interpolate.
 
         Returns
@@ -625,10 +636,32 @@ class Dynamic:
         return np.asarray(found)
 
 
-def _own(points: ArrayLike) -> Floats:
+def _live(ndim: int) -> type[_core.Live2] | type[_core.Live3]:
+    """Return the class of the core for a number of coordinates."""
+    return _core.Live2 if ndim == 2 else _core.Live3
+
+
+def _restore(core: _core.Live2 | _core.Live3, state: _core.LiveState2 | _core.LiveState3) -> None:
+    """Restore a state of the same number of coordinates."""
+    if isinstance(core, _core.Live2) and isinstance(state, _core.LiveState2):
+        return core.restore(state)
+    if isinstance(core, _core.Live3) and isinstance(state, _core.LiveState3):
+        return core.restore(state)
+    own, other = (2, 3) if isinstance(core, _core.Live2) else (3, 2)
+    raise DtypeError(f"a {other}-D snapshot cannot be restored to a {own}-D triangulation")
+
+
+def _as_ndim(ndim: int | None) -> int | None:
+    """Return a number of coordinates, checked."""
+    if ndim not in (None, 2, 3):
+        raise ShapeError(f"ndim must be 2 or 3, got {ndim!r}")
+    return ndim
+
+
+def _own(points: ArrayLike, ndim: int) -> Floats:
     """Return points that nobody changes while the core runs."""
-    array = as_points(points, ndim=2)
-    return array if len(array) <= _FEW else own_copy(points)
+    array = as_points(points, ndim=ndim)
+    return array if len(array) <= _FEW else own_copy(points, ndim=ndim)
 
 
 def _as_handles(handles: ArrayLike) -> Handles:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from delone import _core
+from delone.errors import DtypeError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-    from delone import _core
 
 __all__ = ["Changes", "Snapshot"]
 
@@ -25,7 +26,8 @@ class Changes(NamedTuple):
 
     Notes
     -----
-    Each begins with its smallest handle and is positively oriented; rows are ascending. A simplex
+    Each begins with its smallest handle, in 3-D with the two smallest, and is positively oriented;
+    rows are ascending. A simplex
     whose vertices moved, but are still joined, is in neither.
 
     Examples
@@ -69,7 +71,7 @@ class Snapshot:
 
     __slots__ = ("_state",)
 
-    def __init__(self, state: _core.LiveState2) -> None:
+    def __init__(self, state: _core.LiveState2 | _core.LiveState3) -> None:
         self._state = state
 
     def bytes_beyond(self, other: Snapshot) -> int:
@@ -85,6 +87,11 @@ class Snapshot:
         int
             Bytes that the two do not share.
 
+        Raises
+        ------
+        DtypeError
+            One of them is 2-D, the other 3-D.
+
         Examples
         --------
         >>> from delone import Dynamic
@@ -93,7 +100,12 @@ class Snapshot:
         >>> live.snapshot().bytes_beyond(before) < 100
         True
         """
-        return self._state.own_bytes(other._state)
+        own, theirs = self._state, other._state
+        if isinstance(own, _core.LiveState2) and isinstance(theirs, _core.LiveState2):
+            return own.own_bytes(theirs)
+        if isinstance(own, _core.LiveState3) and isinstance(theirs, _core.LiveState3):
+            return own.own_bytes(theirs)
+        raise DtypeError("a 2-D and a 3-D snapshot share nothing")
 
     def __copy__(self) -> Snapshot:
         return self

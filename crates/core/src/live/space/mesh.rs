@@ -6,6 +6,7 @@
 
 use delone_predicates::{Point3, Sign, insphere_canonical, orient3d};
 
+pub use super::patch::INFINITE;
 use super::patch::Patch;
 use crate::error::Result;
 use crate::live::chunks::Chunks;
@@ -13,9 +14,6 @@ use crate::live::rows::NONE;
 use crate::locate::Start;
 use crate::memory::{make_room, push, zeroed};
 use crate::mesh3::{Code, FACETS, corner, tetrahedron};
-
-/// The vertex at infinity; its coordinates are NaN.
-pub const INFINITE: u32 = 0;
 
 /// Four vertices, positively oriented, then the codes of the facets as seen from the other sides.
 pub type Record = [u32; 8];

@@ -107,7 +107,7 @@ impl Mesh {
             let apex = lowest(facet, around).unwrap_or(INFINITE);
             self.patch.add([a, b, c, apex])?;
         }
-        self.work += self.patch.made();
+        self.work += self.patch.made.len();
         Ok(true)
     }
 

@@ -1,0 +1,204 @@
+//! Live 3-D triangulations: edited by one thread at a time, from any number of threads.
+
+use std::sync::Mutex;
+
+use delone::Error;
+use delone_core::live::space::{Space, State};
+use delone_core::watch::Watch;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{Column, Table, column, flat, number_rows, rows, table};
+use crate::errors::raise;
+use crate::live::{checked_handles, locked};
+use crate::signals::watched;
+
+type Points<'py> = PyReadonlyArray2<'py, f64>;
+type Handles<'py> = PyReadonlyArray1<'py, i64>;
+
+/// A 3-D Delaunay triangulation that is edited.
+#[pyclass(frozen, module = "delone._core")]
+pub struct Live3(Mutex<Space>);
+
+/// A state of a `Live3`, which never changes.
+#[pyclass(frozen, module = "delone._core")]
+pub struct LiveState3(State);
+
+/// The present triangulation.
+#[pyclass(frozen, get_all, module = "delone._core")]
+pub struct LiveArrays3 {
+    /// The handles of the points, ascending, (n,).
+    pub handles: Column<i64>,
+    /// The points, (n, 3).
+    pub points: Table<f64>,
+    /// Tetrahedra as rows of these, (m, 4).
+    pub simplices: Table<i32>,
+    /// The tetrahedron opposite each vertex, -1 outside, (m, 4).
+    pub neighbors: Table<i32>,
+    /// Rows that repeat earlier rows, and the first of these, (k, 2).
+    pub duplicates: Table<i32>,
+}
+
+impl Live3 {
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        work: impl FnOnce(&mut Space, &Watch) -> delone_core::error::Result<T> + Send,
+    ) -> PyResult<T> {
+        locked(&self.0, py, count, work)
+    }
+}
+
+#[pymethods]
+impl Live3 {
+    /// The triangulation of points with these handles, ascending, before the handle `total`.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        points: Points<'_>,
+        handles: Option<Handles<'_>>,
+        total: usize,
+        workers: usize,
+    ) -> PyResult<Self> {
+        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+        let given = handles.as_ref().map(|h| flat(h, "handles")).transpose();
+        let given = given.map_err(|e| raise(py, &e))?;
+        let given = given.map(|given| checked_handles(given, points.len(), total));
+        let given = given.transpose().map_err(|e| raise(py, &e))?;
+        let space = watched(py, |watch| match given {
+            Some(own) => Space::of(points, &own, total, workers, watch),
+            None => Space::new(points, workers, watch),
+        })?;
+        Ok(Self(Mutex::new(space)))
+    }
+
+    /// Numbers: points, vertices, tetrahedra, and the next handle.
+    fn counts(&self, py: Python<'_>) -> PyResult<[usize; 4]> {
+        self.with(py, 0, |space, _| {
+            Ok([
+                space.len(),
+                space.vertices(),
+                space.tetrahedra(),
+                space.total(),
+            ])
+        })
+    }
+
+    /// Inserts points and returns their handles.
+    fn insert(&self, py: Python<'_>, points: Points<'_>, workers: usize) -> PyResult<Column<i64>> {
+        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+        let made = self.with(py, points.len(), |space, watch| {
+            space.insert(points, workers, watch)
+        })?;
+        Ok(column(py, (made.start as i64..made.end as i64).collect()))
+    }
+
+    /// Removes points.
+    fn remove(&self, py: Python<'_>, handles: Handles<'_>, workers: usize) -> PyResult<()> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        self.with(py, handles.len(), |space, watch| {
+            space.remove(handles, workers, watch)
+        })
+    }
+
+    /// Moves points.
+    fn relocate(
+        &self,
+        py: Python<'_>,
+        handles: Handles<'_>,
+        points: Points<'_>,
+        workers: usize,
+    ) -> PyResult<()> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let points = rows(&points, "points").map_err(|e| raise(py, &e))?;
+        self.with(py, handles.len(), |space, watch| {
+            space.relocate(handles, points, workers, watch)
+        })
+    }
+
+    /// Which of these handles are not there, or are named earlier.
+    fn faults(&self, py: Python<'_>, handles: Handles<'_>) -> PyResult<[Column<i64>; 2]> {
+        let handles = flat(&handles, "handles").map_err(|e| raise(py, &e))?;
+        let [gone, twice] = self.with(py, handles.len(), |space, _| {
+            let gone = handles.iter().copied().filter(|&h| !space.has(h)).collect();
+            let mut sorted = handles.to_vec();
+            sorted.sort_unstable();
+            let pairs = sorted.windows(2).filter(|w| w[0] == w[1]);
+            Ok([gone, pairs.map(|w| w[0]).collect()])
+        })?;
+        Ok([column(py, gone), column(py, twice)])
+    }
+
+    /// The handles, ascending, and their points.
+    fn points(&self, py: Python<'_>) -> PyResult<(Column<i64>, Table<f64>)> {
+        let (handles, points) = self.with(py, usize::MAX, |space, watch| space.points(watch))?;
+        Ok((column(py, handles), table(py, points)?))
+    }
+
+    /// The present triangulation; no tetrahedra if all points are in one plane.
+    fn arrays(&self, py: Python<'_>) -> PyResult<LiveArrays3> {
+        let made = self.with(py, usize::MAX, |space, watch| space.export(watch))?;
+        Ok(LiveArrays3 {
+            handles: column(py, made.rows),
+            points: table(py, made.points)?,
+            simplices: table(py, made.arrays.simplices)?,
+            neighbors: table(py, made.arrays.neighbors)?,
+            duplicates: number_rows(py, &made.duplicates)?,
+        })
+    }
+
+    /// The handles of the corners of a tetrahedron that contains each query, -1 outside, and weights.
+    fn corners(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<(Table<i64>, Table<f64>)> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.with(py, queries.len(), |space, watch| {
+            space.corners(queries, watch)
+        })?;
+        Ok((table(py, found.rows)?, table(py, found.weights)?))
+    }
+
+    /// The handle of the nearest point to each query, -1 if there is none.
+    fn nearest(&self, py: Python<'_>, xi: Points<'_>) -> PyResult<Column<i64>> {
+        let queries = rows(&xi, "xi").map_err(|e| raise(py, &e))?;
+        let found = self.with(py, queries.len(), |space, watch| {
+            space.nearest(queries, watch)
+        })?;
+        Ok(column(py, found))
+    }
+
+    /// The tetrahedra that went and came since the last call, as handles.
+    fn changes(&self, py: Python<'_>) -> PyResult<(Table<i64>, Table<i64>)> {
+        let found = self.with(py, usize::MAX, |space, watch| space.changes(watch))?;
+        Ok((table(py, found.gone)?, table(py, found.new)?))
+    }
+
+    /// The present state.
+    fn state(&self, py: Python<'_>) -> PyResult<LiveState3> {
+        self.with(py, usize::MAX, |space, watch| space.state(watch))
+            .map(LiveState3)
+    }
+
+    /// Restores a state.
+    fn restore(&self, py: Python<'_>, state: &LiveState3) -> PyResult<()> {
+        let state = &state.0;
+        self.with(py, usize::MAX, |space, watch| space.restore(state, watch))
+    }
+}
+
+#[pymethods]
+impl LiveState3 {
+    /// A triangulation of its own in this state.
+    fn open(&self, py: Python<'_>) -> PyResult<Live3> {
+        let space = watched(py, |watch| {
+            let mut space = Space::new(&[], 1, watch)?;
+            space.restore(&self.0, watch)?;
+            Ok::<_, Error>(space)
+        })?;
+        Ok(Live3(Mutex::new(space)))
+    }
+
+    /// Bytes that are not shared with another state.
+    fn own_bytes(&self, other: &Self) -> usize {
+        self.0.own_bytes(&other.0)
+    }
+}
