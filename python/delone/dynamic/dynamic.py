@@ -388,7 +388,7 @@ class Dynamic:
         made = self._arrays()
         if not len(made.simplices):
             return Delaunay(made.points, workers=self._workers, planar=True)
-        arrays = {
+        arrays: dict[str, NDArray[Any]] = {
             "points": made.points,
             "simplices": made.simplices,
             "neighbors": made.neighbors,

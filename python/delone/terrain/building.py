@@ -273,7 +273,7 @@ def peeled(  # noqa: PLR0917
     kept = kept.copy()
     ends = points[simplices[:, [[1, 2], [2, 0], [0, 1]]]]
     long = np.hypot(*np.moveaxis(ends[:, :, 1] - ends[:, :, 0], -1, 0)) > limit
-    candidates = np.arange(len(simplices))
+    candidates: NDArray[Any] = np.arange(len(simplices))
     while len(candidates):
         around = neighbors[candidates]
         outer = (around < 0) | ~kept[around]

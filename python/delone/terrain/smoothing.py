@@ -64,8 +64,7 @@ def _on_hard_lines(points: Floats, tin: Surface) -> Bools:
     ends = corners[:, [[1, 2], [2, 0], [0, 1]]]
     keys = np.sort(ends, axis=2).astype(np.int64) @ np.array([tin.npoints, 1])
     lines = np.sort(hard, axis=1).astype(np.int64) @ np.array([tin.npoints, 1])
-    found: Bools = (on & np.isin(keys, lines)).any(axis=1)
-    return found
+    return np.asarray((on & np.isin(keys, lines)).any(axis=1))
 
 
 def _repeated(points: Floats, starts: Rows) -> Bools:
