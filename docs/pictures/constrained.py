@@ -41,7 +41,7 @@ def island() -> None:
     _, grid = plt.subplots(2, 2, figsize=(10, 7.9), layout="constrained")
     titles = (
         "Delaunay triangulation of the points;\norange: segments that are not there",
-        "constrained: all segments, bold, are edges;\na colour for each region",
+        "constrained: all segments, bold, are edges;\na color for each region",
         'boundary="outline", and the lake a hole',
         "conforming: orange vertices make all\nsegments Delaunay edges",
     )

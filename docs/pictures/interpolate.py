@@ -7,7 +7,7 @@ from matplotlib.colors import LightSource
 from delone import datasets
 from delone.interpolate import Linear, grid, interpolator
 
-# Metres between contour lines, and how near to a ship's track the sea floor is known, in degrees.
+# Meters between contour lines, and how near to a ship's track the sea floor is known, in degrees.
 CONTOURS = np.arange(-7000, 0, 500)
 KNOWN = 0.35
 
@@ -19,12 +19,12 @@ def sea_floor() -> None:
     sea = grid(made, resolution=0.0125, max_distance=KNOWN)
     figure, ax = plt.subplots(figsize=(8.4, 8.2), layout="constrained")
     ax.set_facecolor("#e9e3d3")
-    sea.plot(ax, contours=CONTOURS, label="metres", shade=True)
+    sea.plot(ax, contours=CONTOURS, label="meters", shade=True)
     ax.plot(*survey.points.T, ",", color="black", alpha=0.12)
     ax.set(
         xlabel="degrees east",
         ylabel="degrees north",
-        title=f"{len(survey.points):,} soundings off Baja California, natural neighbours",
+        title=f"{len(survey.points):,} soundings off Baja California, natural neighbors",
     )
     ax.set_aspect(1 / np.cos(np.radians(25)))
     figure.canvas.draw()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import delone
 from delone import Delaunay, predicates
 
-BLUE, ORANGE, GREY, PALE, INK = "#2f6f9f", "#d9742b", "#9a9a9a", "#dcdcdc", "#303030"
+BLUE, ORANGE, GRAY, PALE, INK = "#2f6f9f", "#d9742b", "#9a9a9a", "#dcdcdc", "#303030"
 # Degrees from which the paraboloid is looked at.
 ELEVATION, AZIMUTH = 16, -62
 
@@ -40,7 +40,7 @@ def _axes(rows: int, columns: int, width: float) -> list[Axes]:
     return list(grid.flat)
 
 
-def _edges(ax: Axes, points: Points, simplices: Rows, color: str = GREY) -> None:
+def _edges(ax: Axes, points: Points, simplices: Rows, color: str = GRAY) -> None:
     ax.triplot(*points.T, simplices, color=color, linewidth=1)
 
 
@@ -74,9 +74,9 @@ def cavity() -> None:
     left, middle, right = _axes(1, 3, 3.3)
     _edges(left, points, before.simplices)
     _fill(left, points, before.simplices[conflict], ORANGE)
-    for centre, corner in zip(before.circumcenters[conflict], corners[0][conflict], strict=True):
-        radius = np.hypot(*(centre - corner))
-        left.add_patch(plt.Circle(centre, radius, fill=False, color=ORANGE, linewidth=1))
+    for center, corner in zip(before.circumcenters[conflict], corners[0][conflict], strict=True):
+        radius = np.hypot(*(center - corner))
+        left.add_patch(plt.Circle(center, radius, fill=False, color=ORANGE, linewidth=1))
     _edges(middle, points, before.simplices[~conflict])
     _lines(middle, points, _rim(before.simplices[conflict]), color=ORANGE, linewidth=2)
     star = (after.simplices == len(points)).any(axis=1)
@@ -131,7 +131,7 @@ def seam() -> None:
     crossing = whole.edges[is_left[whole.edges].sum(axis=1) == 1]
     sides = is_left[whole.simplices].sum(axis=1)
     between = (sides > 0) & (sides < 3)
-    _fill(merged, points, whole.simplices[between], GREY, 0.3)
+    _fill(merged, points, whole.simplices[between], GRAY, 0.3)
     for rows, shift, color in (
         (np.flatnonzero(is_left), np.array([-0.05, 0]), BLUE),
         (np.flatnonzero(~is_left), np.array([0.05, 0]), ORANGE),
@@ -199,9 +199,9 @@ def paraboloid() -> None:
     chosen = int(mesh.find_simplex((0.36, -0.5)))
     one, others = mesh.simplices[chosen], np.delete(mesh.simplices, chosen, axis=0)
     turn = np.linspace(0, 2 * np.pi, 200)
-    centre = mesh.circumcenters[chosen]
-    radius = np.hypot(*(centre - points[one[0]]))
-    ring = centre + radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    center = mesh.circumcenters[chosen]
+    radius = np.hypot(*(center - points[one[0]]))
+    ring = center + radius * np.column_stack((np.cos(turn), np.sin(turn)))
     posts = np.stack((shadow, lifted), axis=1)
 
     figure = plt.figure(figsize=(6.4, 5.6))
@@ -210,8 +210,8 @@ def paraboloid() -> None:
     ax.add_collection3d(Line3DCollection(shadow[mesh.edges], color=BLUE, linewidth=0.8))
     ax.add_collection3d(Poly3DCollection(shadow[[one]], facecolor=ORANGE, edgecolor=BLUE))
     ax.plot(*ring.T, floor, color=ORANGE, linewidth=1.8)
-    ax.add_collection3d(Line3DCollection(posts[mesh.hull], color=GREY, linewidth=0.5))
-    # The plane of a lifted triangle rises by twice the centre of its circle. So this tells which
+    ax.add_collection3d(Line3DCollection(posts[mesh.hull], color=GRAY, linewidth=0.5))
+    # The plane of a lifted triangle rises by twice the center of its circle. So this tells which
     # are seen from above and lie behind, and which from below.
     up, round_ = np.radians(ELEVATION), np.radians(AZIMUTH)
     sight = np.cos(up) * np.array([np.cos(round_), np.sin(round_)])

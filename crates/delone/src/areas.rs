@@ -11,7 +11,7 @@ use delone_core::watch::{Pace, Watch};
 
 use crate::arrays::Segments;
 
-/// Triangles between two looks at the watch.
+/// Triangles between two checks for interruption.
 const LOT: usize = 1 << 16;
 
 /// All triangles of a convex hull, and whether the edge opposite each corner is a segment.

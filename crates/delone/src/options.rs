@@ -41,8 +41,8 @@ pub(crate) type Progress<'o> = &'o (dyn Fn(usize, &mut dyn FnMut() -> f64) + Syn
 ///
 /// use delone::{Error, Options};
 ///
-/// let cancelled = AtomicBool::new(true);
-/// let stop = || cancelled.load(Ordering::Relaxed);
+/// let canceled = AtomicBool::new(true);
+/// let stop = || canceled.load(Ordering::Relaxed);
 /// let options = Options::new().interrupt(&stop);
 /// let points: Vec<_> = (0..100_000_u32).map(|i| [f64::from(i), f64::from(i).sin()]).collect();
 /// assert_eq!(options.triangulate(&points).err(), Some(Error::Interrupted));
