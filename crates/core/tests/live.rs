@@ -226,6 +226,18 @@ fn scattered(n: usize, seed: u64) -> Vec<Point2> {
 }
 
 #[test]
+fn a_removed_point_leaves_the_triangles_of_the_others() {
+    let lattice = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5)]);
+    for points in [scattered(25, 3), lattice.collect()] {
+        for row in 0..25 {
+            let mut twin = Twin::new(&points);
+            twin.remove(&[row]);
+            twin.agree();
+        }
+    }
+}
+
+#[test]
 fn batches_in_a_large_set_equal_a_fresh_build() {
     let mut twin = Twin::new(&scattered(20_000, 1));
     twin.insert(&scattered(3000, 2));
