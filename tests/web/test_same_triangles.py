@@ -75,6 +75,8 @@ def test_tetrahedra_of_the_corpus(run: Run) -> None:
         assert value["tetrahedra"] == integers(right.simplices), name
         assert value["neighbors"] == integers(right.neighbors), name
         assert np.array_equal(value["volumes"], right.volumes), name
+        assert np.allclose(value["minDihedral"], right.quality().smallest_dihedral), name
+        assert np.allclose(value["maxDihedral"], right.quality().largest_dihedral), name
         assert len(value["hull"]) == 3 * (right.neighbors < 0).sum(), name
 
 
@@ -102,6 +104,11 @@ def test_segments_of_the_corpus(run: Run) -> None:
         assert value["neighbors"] == integers(right.neighbors), name
         assert value["points"] == right.points.ravel().tolist(), name
         assert value["subsegments"] == integers(right.segments), name
+        edges = set(map(tuple, np.sort(right.segments, axis=1).tolist()))
+        opposite = right.simplices[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2)
+        walls = [int(tuple(sorted(edge)) in edges) for edge in opposite.tolist()]
+        assert value["constrained"] == walls, name
+        assert value["added"] == len(right.points) - len(case["points"]), name
 
 
 def test_errors_are_those_of_python(run: Run) -> None:
@@ -150,6 +157,22 @@ def test_signs_are_exact_beside_plain_ones(run: Run) -> None:
     assert 0 < sum(a != b for a, b in zip(plain["value"], right, strict=True)) < len(right)
 
 
+def test_ties_of_one_call_are_those_of_many(node: Run) -> None:
+    square = [0, 0, 1, 0, 1, 1, 0, 1]
+    first = [0, 0, 1, 0, 1, 1]
+    found = node([
+        call("incircle", *square), call("incircleNaive", *square),
+        call("incircleCanonical", *square), call("incirclesCanonical", square * 2),
+        call("orient2d", *first), call("orient2dNaive", *first),
+        call("incircleCanonical", *square[2:], 0, 0), call("orient2d", *first[:5], "NaN"),
+    ])  # fmt: skip
+    *values, last, bad = found
+    assert [each["value"] for each in values[:3]] == [0, 0, -1]
+    assert [each["value"] for each in values[3:]] == [[-1, -1], 1, 1]
+    assert last["value"] == 1
+    assert bad["error"] == "NonFiniteError"
+
+
 def test_cells_circles_location_and_statistics(run: Run) -> None:
     points, queries = random(60, 2), random(40, 2, 2) * 1.5 - 0.25
     mesh = Delaunay(points)
@@ -167,6 +190,8 @@ def test_cells_circles_location_and_statistics(run: Run) -> None:
         call("hull", xy),
     ]))  # fmt: skip
     assert circles["centers"] == mesh.circumcenters.ravel().tolist()
+    reach = np.linalg.norm(points[mesh.simplices[:, 1]] - mesh.circumcenters, axis=1)
+    assert circles["radii"] == pytest.approx(reach.tolist())
     clipped = Voronoi(points, clip=(-1, -1, 2, 2))
     assert np.allclose(cells["areas"], clipped.cell_areas, rtol=1e-13)
     assert sum(cells["areas"]) == pytest.approx(9)
@@ -180,10 +205,21 @@ def test_cells_circles_location_and_statistics(run: Run) -> None:
     assert across <= edges
     assert len(across) > 100
     assert location["triangle"] == integers(mesh.find_simplex(queries))
+    inside = np.array(location["triangle"]) >= 0
+    weights = np.array(location["weights"], dtype=float).reshape(-1, 3)
+    corners = points[mesh.simplices[np.array(location["triangle"])[inside]]]
+    assert np.allclose(np.einsum("qk,qkd->qd", weights[inside], corners), queries[inside])
+    assert np.isnan(weights[~inside]).all()
+    assert 5 < inside.sum() < 35
     distance = np.linalg.norm(points[None] - queries[:, None], axis=2)
     assert location["nearest"] == integers(distance.argmin(axis=1))
     assert statistics["areas"] == mesh.areas.tolist()
     assert statistics["area"] == pytest.approx(mesh.areas.sum())
+    angles = mesh.quality().smallest_angle
+    assert np.allclose(statistics["angles"], angles, rtol=1e-14)
+    assert statistics["minAngle"] == min(statistics["angles"])
+    assert statistics["medianAngle"] == pytest.approx(np.median(angles))
+    assert (statistics["minArea"], statistics["maxArea"]) == (mesh.areas.min(), mesh.areas.max())
     assert hull == integers(ConvexHull(points).vertices)
 
 

@@ -97,6 +97,32 @@ def test_a_step_removes_what_was_there(
                 assert all(set(step["after"]) <= set(t) for t in added)
             if step["kind"] == "insert":
                 assert all(step["point"] in triangle for triangle in added)
+                cavity = np.reshape(np.array(step["cavity"], dtype=np.int64), (-1, 2)).tolist()
+                star = [
+                    tuple(np.roll(t, -t.index(min(t))))
+                    for u, v in cavity
+                    for t in [(u, v, step["point"])]
+                ]
+                assert set(star) == added
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_the_sweep_meets_circles_from_left_to_right(
+    walks: dict[tuple[str, str], dict[str, Any]], name: str
+) -> None:
+    steps = walks["sweepSteps", name]["steps"]
+    ends = [step["circle"][0] + step["circle"][2] for step in steps]
+    assert ends == sorted(ends)
+    assert all(step["circle"][2] > 0 for step in steps)
+
+
+def test_merges_join_halves(walks: dict[tuple[str, str], dict[str, Any]]) -> None:
+    points = np.array(INPUTS["scattered"])
+    steps = walks["divideSteps", "scattered"]["steps"]
+    merges = [step for step in steps if step["kind"] == "merge"]
+    for step in merges:
+        assert points[step["left"], 0].max() <= points[step["right"], 0].min()
+    assert sorted(merges[-1]["left"] + merges[-1]["right"]) == list(range(30))
 
 
 def test_the_order_of_insertion_is_the_one_given(node: Run) -> None:
