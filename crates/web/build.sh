@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the module for pages, delone.js and the compiled core beside it, into target/web.
 #
-# Where rustup has the target wasm32-unknown-unknown, or can fetch it, that compiler is used. Elsewhere
-# a tree of Debian sid with compiler, target and the command wasm-bindgen is made once by debootstrap
+# Where rustup has the target wasm32-unknown-unknown, or can fetch it, that compiler is used, and the
+# command wasm-bindgen is compiled once (some minutes). Elsewhere a tree of Debian sid with compiler, target and the command wasm-bindgen is made once by debootstrap
 # (as root; two to three minutes, 1.7 GB) in the cache folder. It does nothing while sources and output
 # are those of the last build.
 #
@@ -72,7 +72,7 @@ if ! has_target && [ ! -e "$sid/ready" ]; then
     fi
     timeout 60 rustup target add "$target" >/dev/null 2>&1 || make_sid
 fi
-if ! has_target; then
+if [ -e "$sid/ready" ]; then
     # Debian has the linker under its own name.
     inside=(chroot "$sid" env HOME=/root PATH=/usr/bin:/bin
         CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=wasm-ld)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,6 +130,9 @@ def test_errors_are_those_of_python(run: Run) -> None:
     ])  # fmt: skip
     assert (infinite["error"], infinite["rows"]) == ("NonFiniteError", [1])
     assert (crossing["error"], crossing["rows"]) == ("CrossingSegmentsError", [0, 1])
+    with pytest.raises(DeloneError) as caught:
+        Delaunay([(0, 0), (1, math.nan), (1, 1)])
+    assert infinite["message"] == str(caught.value)
     with pytest.raises(DeloneError) as caught:
         ConstrainedDelaunay(square, [(0, 2), (1, 3)])
     assert crossing["message"] == str(caught.value)

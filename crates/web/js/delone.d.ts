@@ -213,6 +213,8 @@ export interface Core {
   divideSteps(xy: Coordinates): Steps;
   /** The triangles in the order in which Fortune's sweep, from left to right, finds them. */
   sweepSteps(xy: Coordinates): Steps;
+  /** The flips alone: four rows u, v, p, q for each, where the edge u v became p q. */
+  flips(xy: Coordinates, triangles: Rows): Int32Array;
   /** The triangles of a scan from left to right: not Delaunay, the start of flips. */
   scan(xy: Coordinates): Int32Array;
 
