@@ -93,6 +93,10 @@ pinned=$(sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' crates/web/Cargo.toml)
 if [ ${#inside[@]} -eq 0 ]; then
     export PATH="$cache/bin:$PATH"
     if [ "$(wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $pinned" ]; then
+        if [ -n "${DELONE_WEB_OFFLINE:-}" ]; then
+            say "the command wasm-bindgen $pinned is missing, and may not be installed"
+            exit 3
+        fi
         say "installing wasm-bindgen $pinned"
         cargo install --quiet --root "$cache" --version "$pinned" wasm-bindgen-cli
     fi
