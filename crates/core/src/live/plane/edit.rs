@@ -380,7 +380,7 @@ impl Plane {
             let before = self.point(row);
             outcome = pace
                 .spend(1)
-                .and_then(|()| self.relocate_one(row, p, watch));
+                .and_then(|()| self.relocate_one(row, p, false, watch));
             if !matches!(outcome, Ok(Outcome::Done)) {
                 break;
             }
@@ -396,8 +396,9 @@ impl Plane {
             Err(error) => Err(error),
         };
         if done.is_err() {
+            // Each state on the way back has been there: none is flat, and hubs must not stop it.
             for &(row, p) in old.iter().rev() {
-                self.relocate_one(row, p, &IDLE)?;
+                self.relocate_one(row, p, true, &IDLE)?;
             }
         }
         done
@@ -409,8 +410,15 @@ impl Plane {
         self.mesh.at(v)
     }
 
-    /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed.
-    fn relocate_one(&mut self, row: u32, p: Point2, watch: &Watch) -> Result<Outcome> {
+    /// Moves one row to `p`. If a rebuild is needed, or on an error, nothing has changed. Unless
+    /// `always`, a rebuild takes the place of removing a vertex of very high degree.
+    fn relocate_one(
+        &mut self,
+        row: u32,
+        p: Point2,
+        always: bool,
+        watch: &Watch,
+    ) -> Result<Outcome> {
         let v = self.rows.vertex(i64::from(row)).unwrap_or_default();
         let before = self.mesh.at(v);
         if before == p {
@@ -428,7 +436,7 @@ impl Plane {
         if self.mesh.shift(v, p)? {
             return Ok(Outcome::Done);
         }
-        if self.mesh.unlink(v, false)? != Removed::Done {
+        if self.mesh.unlink(v, always)? != Removed::Done {
             return Ok(Outcome::Rebuild);
         }
         let placed = match self.mesh.place(p, watch) {
