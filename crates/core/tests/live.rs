@@ -333,6 +333,39 @@ fn an_interrupted_batch_changes_nothing() {
 }
 
 #[test]
+fn an_interrupted_batch_takes_back_a_hub() {
+    // A point moves to the middle of a circle of others, where its degree forbids removal.
+    let mut points = vec![[5.0, 5.0]];
+    for i in 0..2000 {
+        let (y, x) = (f64::from(i) * 0.003_141_592).sin_cos();
+        points.push([x, y]);
+    }
+    points.extend(scattered(20_000, 3).iter().map(|[x, y]| [x + 9.0, y + 9.0]));
+    let mut twin = Twin::new(&points);
+    let rows: Vec<i64> = (0..1).chain(2001..8001).collect();
+    let mut moved = vec![[0.0, 0.0]];
+    moved.extend(scattered(6000, 8).iter().map(|[x, y]| [x + 9.0, y + 9.0]));
+    let asked = AtomicUsize::new(0);
+    let mut interrupted = 0;
+    for after in 0..20 {
+        asked.store(0, Ordering::Relaxed);
+        let stop = || asked.fetch_add(1, Ordering::Relaxed) >= after;
+        let state = twin.live.state(&idle()).unwrap();
+        if twin
+            .live
+            .relocate(&rows, &moved, 1, &Watch::new(&stop))
+            .is_ok()
+        {
+            twin.live.restore(&state, &idle()).unwrap();
+        } else {
+            interrupted += 1;
+        }
+        twin.agree();
+    }
+    assert!(interrupted > 1, "{interrupted}");
+}
+
+#[test]
 fn bad_rows_change_nothing() {
     let mut twin = Twin::new(&scattered(100, 1));
     twin.remove(&[5]);
