@@ -36,6 +36,7 @@ FOLDERS = (
     "climate",
     "solids",
     "neighbors",
+    "plotting",
     "large",
 )
 PROBE = """
