@@ -12,6 +12,7 @@ import pytest
 
 import delone
 from delone import datasets
+from delone.terrain import TIN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +28,7 @@ MAKE: dict[str, Callable[[], Any]] = {
     "RegularTriangulation": lambda: delone.RegularTriangulation(FLAT, FLAT[:, 0], workers=2),
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(FLAT, (2, None), workers=2),
     "Mesh": lambda: delone.mesh(SQUARE, max_area=0.05, workers=2),
+    "TIN": lambda: TIN.from_points(np.column_stack((FLAT, FLAT[:, 0])), workers=2),
     "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID, workers=2)),
     "ConvexHull": lambda: delone.ConvexHull(SOLID, workers=2),
     "Voronoi 2-D": lambda: delone.Voronoi(FLAT, clip="box", workers=2),
@@ -121,4 +123,4 @@ def test_each_class_has_a_column() -> None:
         for name in delone.__all__
         if isinstance(getattr(delone, name), type) and hasattr(getattr(delone, name), "save")
     }
-    assert public == {name.split()[0] for name in MAKE}
+    assert public | {"TIN"} == {name.split()[0] for name in MAKE}

@@ -11,6 +11,7 @@ import pytest
 
 import delone
 from delone import datasets, errors, lawson
+from delone.terrain import TIN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +20,7 @@ FLAT, SOLID = datasets.uniform(30), datasets.uniform(30, ndim=3)
 NEEDLE = [(0, 0), (10, 0), (10, 1)], [(0, 1), (1, 2), (2, 0)]
 PLANE = [(0, 0, 0), (1, 0, 0), (1, 1, 1), (0, 1, 1)]
 BOX = (0, 0, 1, 1)
+HILL = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)]
 
 
 def coplanar() -> Any:
@@ -37,6 +39,11 @@ MADE: dict[str, Callable[[], Any]] = {
     "ConstrainedDelaunay": segments,
     "Mesh": lambda: delone.mesh(NEEDLE),
     "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID)),
+    "TIN": lambda: TIN.from_points(HILL, breaklines=[[(1, 1, 1), (3, 1, 1)]]),
+    "Contours": lambda: TIN.from_points(HILL).contours(interval=1),
+    "Bands": lambda: TIN.from_points(HILL).bands(interval=1),
+    "Profile": lambda: TIN.from_points(HILL).profile([(0, 1), (4, 1)]),
+    "Volume": lambda: TIN.from_points(HILL).volume(1),
     "Voronoi": lambda: delone.Voronoi(FLAT),
     "RegularTriangulation": lambda: delone.RegularTriangulation(FLAT, np.full(30, 0.01)),
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(FLAT, (1.0, 1.0)),

@@ -11,6 +11,7 @@ import shapely
 
 import delone
 from delone import FileFormatError, datasets
+from delone.terrain import TIN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,6 +32,12 @@ MAKE: dict[str, Callable[[], Any]] = {
     ),
     "from_geometry": lambda: delone.from_geometry(shapely.Polygon(SQUARE[:4], [SQUARE[4:]])),
     "Mesh": lambda: delone.mesh((SQUARE, SIDES), max_area=0.1, segment_markers=np.arange(8)),
+    "TIN": lambda: TIN.from_points(
+        np.column_stack((SQUARE, SQUARE[:, 0])),
+        breaklines=[[(0.5, 0.5, 1), (3, 0.5, 2)]],
+        holes=[SQUARE[4:]],
+        crs="EPSG:28992",
+    ),
     "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID), min_angle=60),
     "RegularTriangulation": lambda: delone.RegularTriangulation(SQUARE, SQUARE[:, 0] / 9),
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(SQUARE, (9, None)),

@@ -14,6 +14,7 @@ import delone
 from delone import FileFormatError, bounded
 from delone.distributed.store.files import Store
 from delone.io import read_mesh, read_points
+from delone.terrain import TIN
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,6 +29,7 @@ SAVED = {
     "Delaunay 3-D": lambda: delone.Delaunay(SOLID),
     "ConstrainedDelaunay": lambda: delone.ConstrainedDelaunay(FLAT, [(0, 1)]),
     "Mesh": lambda: delone.mesh(delone.ConstrainedDelaunay(FLAT, [(0, 1), (1, 3), (3, 2), (2, 0)])),
+    "TIN": lambda: TIN.from_points(np.column_stack((FLAT, FLAT[:, 0]))),
     "TetMesh": lambda: delone.improve(delone.Delaunay(SOLID)),
     "RegularTriangulation": lambda: delone.RegularTriangulation(FLAT, FLAT[:, 0]),
     "PeriodicDelaunay": lambda: delone.PeriodicDelaunay(FLAT, (9, 9)),

@@ -9,6 +9,7 @@ import pytest
 
 from delone import ConflictingValuesError, CrossingSegmentsError, InputError, NonFiniteError
 from delone.interpolate import Grid
+from delone.io import write_mesh
 from delone.terrain import TIN
 
 SQUARE = [(0, 0, 0), (4, 0, 0), (4, 4, 8), (0, 4, 8)]
@@ -233,6 +234,18 @@ def test_files_and_systems(tmp_path):
         assert np.array_equal(getattr(again, name), getattr(tin, name))
     assert again.crs == "EPSG:28992" and again.validate()
     assert again.contours(interval=0.1).crs == "EPSG:28992"
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".vtu", ".obj"])
+def test_exported_files_have_the_heights(suffix, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    tin = random_tin()
+    write_mesh(tmp_path / f"a{suffix}", tin)
+    found = meshio.read(tmp_path / f"a{suffix}")
+    assert np.allclose(found.points, tin.xyz, rtol=0, atol=1e-15)
+    assert np.array_equal(tin.to_meshio().points, tin.xyz)
+    write_mesh(tmp_path / f"b{suffix}", tin, z=2 * tin.z)
+    assert np.allclose(meshio.read(tmp_path / f"b{suffix}").points[:, 2], 2 * tin.z)
 
 
 def test_only_the_class_methods_make_a_surface():

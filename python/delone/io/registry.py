@@ -419,8 +419,8 @@ def write_mesh(
         surface of a hull goes to VTU, MSH, PLY, OBJ, STL, XDMF, INP and PNG. Both are written
         without `z` and `crs`.
     z : array_like of float, shape (n,), optional
-        Heights, the third coordinate; in plots the color, with shading if there are 2000 triangles
-        or more, but never on a `Mesh`.
+        Heights, the third coordinate, by default those of a `delone.terrain.TIN`; in plots the
+        color, with shading if there are 2000 triangles or more, but never on a `Mesh`.
     crs : str, int or pyproj.CRS, optional
         Coordinate reference system, for GeoPackage, GeoJSON, npz and the labels of plots; by
         default that of the triangulation, which `delone.from_geometry` keeps. Nothing is
@@ -478,6 +478,8 @@ def write_mesh(
     flat = kind in ("triangles", "separate")
     if not flat and z is not None:
         raise FileFormatError("3-D points already have heights: z must be None")
+    if flat and z is None:
+        z = getattr(triangulation, "z", None)  # a surface has its own
     given = _plain(attributes, suffix)
     _require_place(path, triangulation, kind, edges=lines)
     write = _writer(path, kind)

@@ -13,7 +13,7 @@ from delone._arrays import LARGEST_LIMIT, as_count, as_number, as_plain_array
 from delone.counting import counted
 from delone.errors import BudgetExceededError, DtypeError, InputError
 from delone.extras import require
-from delone.immutable import ReadOnly
+from delone.immutable import ReadOnly, sealed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -77,7 +77,7 @@ class Contours(ReadOnly):
     def closed(self) -> Bools:
         """Whether each line is closed, (k,)."""
         first, last = self.points[self.starts[:-1]], self.points[self.starts[1:] - 1]
-        found: Bools = (first == last).all(axis=1)
+        found: Bools = sealed((first == last).all(axis=1))
         return found
 
     def coordinates(self, line: int) -> Floats:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.int32]
 
-__all__ = ["aspect", "gradient", "hillshade", "normals", "raster", "slope"]
+__all__ = ["aspect", "cells_of", "gradient", "hillshade", "normals", "raster", "slope"]
 
 _WHAT = ("height", "slope", "aspect", "hillshade")
 _LIGHT = ("azimuth", "altitude", "z_factor")
@@ -114,3 +114,15 @@ def _nodes(tin: Surface, options: dict[str, Any]) -> tuple[Floats, Floats]:
         )
     low, high = tin.min_bound.tolist(), tin.max_bound.tolist()
     return raster_nodes((low, high), **options)
+
+
+def cells_of(dem: Any) -> tuple[Floats, Floats, Floats]:
+    """Return values, x and y of a raster."""
+    if all(hasattr(dem, name) for name in ("values", "x", "y")):
+        values, x, y = (np.asarray(each, dtype=np.float64) for each in (dem.values, dem.x, dem.y))
+        if values.ndim == 2 and values.shape == (len(y), len(x)):
+            return values, x, y
+    raise InputError(
+        "a raster must have one height in each cell, and the attributes values, x and y: a "
+        f"delone.interpolate.Grid or an xarray.DataArray with these coordinates, got {dem!r:.60}"
+    )

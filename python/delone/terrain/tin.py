@@ -236,7 +236,7 @@ class TIN(HullTiling):
         >>> TIN.from_raster(Grid(np.add.outer(y, x), x, y))
         <TIN of 12 points: 12 triangles, heights 0 to 5>
         """
-        values, x, y = _raster(dem)
+        values, x, y = slopes.cells_of(dem)
         grid = np.stack((*np.meshgrid(x, y), values), axis=-1).reshape(-1, 3)
         return cls.from_points(grid[~np.isnan(grid[:, 2])], crs=crs, **options)
 
@@ -365,10 +365,55 @@ class TIN(HullTiling):
         return Parts(
             self._points,
             self._simplices,
-            of_points={"z": self._z},
-            segments=self._breaklines,
+            segments=self._breaklines if len(self._breaklines) else None,
             crs=self.crs,
         )
+
+    def to_meshio(self) -> Any:
+        """Convert to a mesh of meshio with heights (extra ``mesh``).
+
+        Returns
+        -------
+        meshio.Mesh
+            Triangles between points in 3-D, and breaklines as lines.
+
+        Raises
+        ------
+        MissingExtraError
+            meshio is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_meshio().points[:, 2]
+        array([1., 2., 3.])
+        """
+        from delone.exchange.meshio import to_meshio
+
+        return to_meshio(self._parts()._replace(points=self.xyz))
+
+    def to_pyvista(self) -> Any:
+        """Convert to a surface of PyVista with heights (extra ``pyvista``).
+
+        Returns
+        -------
+        pyvista.PolyData
+            Triangles between points in 3-D.
+
+        Raises
+        ------
+        MissingExtraError
+            PyVista is not installed.
+
+        Examples
+        --------
+        >>> from delone.terrain import TIN
+        >>> TIN.from_points([(0, 0, 1), (1, 0, 2), (0, 1, 3)]).to_pyvista().bounds[4:]
+        (1.0, 3.0)
+        """
+        from delone.exchange.pyvista import to_pyvista
+
+        return to_pyvista(self._parts()._replace(points=self.xyz))
 
     def _sheet(self) -> _Sheet:
         return _Sheet(self._points, self._simplices, self._neighbors, self._z)
@@ -748,15 +793,3 @@ class TIN(HullTiling):
         lines = topology.edge_keys(a, b, self.npoints)
         constrained = np.isin(keys, lines) | (self._all_neighbors < 0)
         return validate(self._points, self._all_simplices, self._all_neighbors, constrained)
-
-
-def _raster(dem: Any) -> tuple[Floats, Floats, Floats]:
-    """Return values, x and y of a raster."""
-    if all(hasattr(dem, name) for name in ("values", "x", "y")):
-        values, x, y = (np.asarray(each, dtype=np.float64) for each in (dem.values, dem.x, dem.y))
-        if values.ndim == 2 and values.shape == (len(y), len(x)):
-            return values, x, y
-    raise InputError(
-        "a raster must have one height in each cell, and the attributes values, x and y: a "
-        f"delone.interpolate.Grid or an xarray.DataArray with these coordinates, got {dem!r:.60}"
-    )

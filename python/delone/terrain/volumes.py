@@ -13,7 +13,7 @@ from delone._arrays import as_number, as_workers
 from delone.constrained.polygons import from_geometry
 from delone.errors import InputError
 from delone.georeference import same_crs
-from delone.immutable import ReadOnly
+from delone.immutable import ReadOnly, sealed
 from delone.terrain.lines import rings_of
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class Volume(ReadOnly):
         """
         cut, fill, _, _, area = self.of_triangles.T
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.where(area > 0, (fill - cut) / area, np.nan)
+            return sealed(np.where(area > 0, (fill - cut) / area, np.nan))
 
 
 def volume(tin: Surface, other: Any, region: Any) -> Volume:
