@@ -8,7 +8,7 @@ import numpy as np
 
 from delone._arrays import as_vectors
 from delone.counting import counted
-from delone.errors import DtypeError, InputError
+from delone.errors import DtypeError
 from delone.immutable import kept, sealed
 from delone.plane import topology
 from delone.refine.validation import MeshValidation, validate
