@@ -8,6 +8,8 @@ sys.path.insert(0, str(Path(__file__).parent / "extensions"))
 
 import example_files
 
+ROOT = Path(__file__).parents[1]
+
 project = "delone"
 author = "The delone developers"
 copyright = "2026, The delone developers"
@@ -30,11 +32,15 @@ extensions = [
     "sphinx_copybutton",
     "sphinxcontrib.bibtex",
     "sphinxext.opengraph",
+    "live",
     "picture_texts",
 ]
 templates_path = ["_templates"]
 # The folder `gallery` also receives notebooks and scripts, which are not pages.
 exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py"]
+# Where `make web` puts the core for figures that readers can change; without it they show stored
+# steps.
+live_core = str(ROOT / "target" / "web")
 default_role = "py:obj"
 # Roles must lead somewhere. Single backticks alone, which docstrings put around names of arguments,
 # are links where a name is public.

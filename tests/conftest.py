@@ -79,6 +79,11 @@ EXPECTED_SKIPS = {
     ): "as packages of systems have it",
     ("tests/refine/test_gaps.py*", "needs the countries*"): "data that are not shipped",
     ("tests/explore/*", "no Chromium is installed"): "a browser is not a package of Python",
+    ("tests/learn/*", "no Chromium is installed"): "a browser is not a package of Python",
+    (
+        "tests/learn/*",
+        "the module for pages is not built",
+    ): "it needs a compiler for WebAssembly: make web",
     ("tests/web/*", "no Chromium is installed"): "a browser is not a package of Python",
     ("tests/web/*", "no Node is installed"): "Node is not a package of Python",
     (

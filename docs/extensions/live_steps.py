@@ -1,0 +1,101 @@
+"""What the figures of the course start with: points, and the answers of the core for them.
+
+A figure asks its core questions such as "the triangles of these points". `FIGURES` has a function
+for each figure that gives its points and the answers to all questions that its sliders lead to;
+they are stored with the site, so that the figures work, up to dragging, without the compiled core.
+The points have small integer coordinates, for which the arithmetic of a browser is exact.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from delone import Delaunay
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+Points = list[list[float]]
+
+WIDE = (0, 0, 1000, 600)
+SCATTERED: Points = [
+    [120, 130], [310, 60], [520, 150], [760, 70], [900, 230], [680, 260], [430, 290],
+    [200, 330], [80, 500], [330, 520], [560, 430], [620, 560], [860, 490],
+]  # fmt: skip
+FIVE: Points = [[0, 0], [4, 0], [4, 3], [0, 3], [2, 1]]
+# Early points span the figure, later ones fall inside, and two beyond the hull.
+INSERTED: Points = [
+    [150, 110], [820, 80], [500, 540], [470, 230], [330, 330], [640, 300], [420, 130],
+    [520, 390], [860, 470], [560, 180], [140, 430],
+]  # fmt: skip
+
+
+def key(name: str, *parts: Iterable[float]) -> str:
+    """Return the name of an answer, as `keyOf` of stored.js does."""
+    return ":".join([name, *(" ".join(map(number, part)) for part in parts)])
+
+
+def number(value: float) -> str:
+    """Return a number as JavaScript writes it."""
+    if isinstance(value, str):
+        return value
+    return str(int(value)) if value == int(value) else repr(float(value))
+
+
+def flat(rows: Any) -> list[Any]:
+    """Return the numbers of an array in one list."""
+    return [value for row in rows for value in row]
+
+
+def delaunay(points: Sequence[Sequence[float]]) -> dict[str, Any]:
+    """Return the answer about the triangles of points."""
+    return {key("delaunay", flat(points)): flat(Delaunay(points).simplices.tolist())}
+
+
+def picture(
+    points: Points, triangles: list[int], view: tuple[float, float, float, float] = WIDE
+) -> dict[str, Any]:
+    """Return what the first picture shows."""
+    faces = [triangles[t : t + 3] for t in range(0, len(triangles), 3)]
+    return {"points": points, "triangles": faces, "view": view}
+
+
+def plain(points: Points, view: tuple[float, float, float, float] = WIDE) -> dict[str, Any]:
+    """Return a figure that asks for the triangles of its points alone."""
+    answers = delaunay(points)
+    shown = picture(points, next(iter(answers.values())), view)
+    return {"points": points, "answers": answers, "picture": shown}
+
+
+def circle() -> dict[str, Any]:
+    """Return the figure of empty circles."""
+    return plain(SCATTERED)
+
+
+def five() -> dict[str, Any]:
+    """Return the figure of five points, also without the last."""
+    figure = plain(FIVE, (-2.4, -4.3, 6.4, 5.3))
+    figure["answers"] |= delaunay(FIVE[:4])
+    return figure
+
+
+def insertion() -> dict[str, Any]:
+    """Return the figure of Bowyer-Watson: the triangles after each insertion."""
+    figure = plain(INSERTED)
+    for count in range(3, len(INSERTED)):
+        figure["answers"] |= delaunay(INSERTED[:count])
+    return figure
+
+
+FIGURES: dict[str, Callable[[], dict[str, Any]]] = {
+    "circle": circle,
+    "five": five,
+    "insertion": insertion,
+}
+
+
+@cache
+def stored(name: str) -> dict[str, Any]:
+    """Return points, answers and the first picture of a figure."""
+    return FIGURES[name]()
