@@ -33,8 +33,35 @@ for name, diagram in (("before", before), ("after", after)):
 
 figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), layout="constrained")
 for ax, diagram, title in zip(axes, (before, after), ("Random", "30 steps"), strict=True):
-    relative = (diagram.cell_areas * len(diagram.points)).clip(0, 2)
-    relative[:2] = relative[:2].clip(0, 2)
+    relative = diagram.cell_areas * len(diagram.points)
     diagram.plot(ax, values=relative, cmap="RdBu", colorbar=False)
+    ax.collections[0].set_clim(0, 2)
     ax.set(title=title, xticks=[], yticks=[])
 plt.show()
+
+# %%
+# Stippling: with a density, sites gather where it is large. Here it is the darkness of a shaded ball. ``density`` takes
+# an array of positions of shape (n, 2) and returns a number for each.
+
+
+def darkness(positions):
+    """Return how dark the picture is, from 0.03 for the background to 1."""
+    x, y = 2.4 * positions.T - 1.2
+    height = np.sqrt(np.clip(1 - x**2 - y**2, 0, None))
+    light = np.clip((2 * height - x + y) / np.sqrt(6), 0, 1)
+    return np.where(x**2 + y**2 < 1, 1.05 - light, 0.03)
+
+
+random = np.random.default_rng(5)
+anywhere = random.random((60_000, 2))
+start = anywhere[random.random(len(anywhere)) < darkness(anywhere)][:6000]
+dots = lloyd(start, box, max_iter=20, density=lambda xy: darkness(xy) ** 2).points
+figure, ax = plt.subplots(figsize=(5.4, 5.6), layout="constrained")
+ax.scatter(*dots.T, s=3, color="black", linewidths=0)
+ax.set(title=f"Stippling: {len(dots):,} dots", aspect="equal", xticks=[], yticks=[])
+plt.show()
+
+# %%
+# The number of dots per area follows the square root of the density, hence the square. A usual mistake is to begin with
+# sites that are spread evenly: each step moves a site by less than its cell, and after twenty steps dark places are still
+# too bright. So draw the first sites from the density.
