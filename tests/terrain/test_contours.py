@@ -147,6 +147,21 @@ def test_contours_do_not_depend_on_the_order_of_points(seed):
     assert np.array_equal(one.points * 2.0**40, scaled.points)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_levels_a_few_roundings_apart(seed):
+    # Contours are less than a unit in the last place of the coordinates apart: most would cross.
+    rng = np.random.default_rng(seed)
+    xyz = np.column_stack((rng.random((6, 2)) + 2.0**20, rng.random(6)))
+    tin = TIN.from_points(xyz)
+    levels = np.median(xyz[:, 2]) + np.arange(30) * 2.0**-33 * rng.choice([0.5, 1, 2, 4])
+    found = tin.contours(levels)
+    # Merged lines of different levels may coincide.
+    segments = {frozenset(s) for s in segments_of(found.points, found.starts)}
+    assert len(segments) > 30
+    assert_nothing_crosses([tuple(sorted(s)) for s in segments])
+    assert shapely.is_valid(tin.bands(levels).to_shapely()).all()
+
+
 def test_higher_ground_is_to_the_left():
     hill = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (2, 2, 3)]
     up, down = (TIN.from_points([(x, y, sign * z) for x, y, z in hill]) for sign in (1, -1))
