@@ -122,7 +122,7 @@ def test_most_calls_are_checked() -> None:
         "mesh.neighbours",
         "delone.Delaunay(points).nearby",
         "delone.nothing(points)",
-        "delone.Delaunay(points, wrkers=2)",
+        "delone.Delaunay(points, helpers=2)",
         "delone.mesh(polygon, minimum_angle=30)",
         "from delone.compat.scipy import Delauny",
         "delone.terrain.TIN.from_nothing(points)",
